@@ -300,7 +300,7 @@ void test_no_database(void **) {
     assert_refused(not_found, Words{"profile", "list"} + db, {work("none.db")});
     assert_refused(not_found, Words{"profile", "remove", "1"} + db, {work("none.db")});
     assert_refused(usage, {"apply", "--from-db", "-o", work(""), scene("img000.png"), "--db", ""},
-                   {"--db", "names no file"});
+                   {"--db", "empty file name"});
     assert_refused(not_found, Words{"apply", "--from-db", "-o", work(""), scene("img000.png")} + db, {work("none.db")});
 }
 

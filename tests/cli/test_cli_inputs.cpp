@@ -94,11 +94,11 @@ void test_files_that_are_too_large(void **) {
          {build(pto), build(scene("pano.pto"), {"--compare", pto}), Words{"profile", "import", json}}) {
         const Outcome outcome = run_child(words);
         assert_int_equal(outcome.code, unreadable);
-        assert_true(contains(outcome.err, "is larger than such a file can be"));
+        assert_true(contains(outcome.err, "exceeds the maximum size of such a file"));
     }
     const Outcome unknown = run_child({"profile", "import", pto});
     assert_int_equal(unknown.code, usage);
-    assert_true(contains(unknown.err, "name it with --format"));
+    assert_true(contains(unknown.err, "give it with --format"));
 }
 
 // Point files may be large: the first lines show what is none.
@@ -158,7 +158,7 @@ void test_many_files(void **) {
     for (const char *name : {"0.png", "same.png", "link.png", "./9.png"}) {
         const Outcome outcome = run_words(frames + Words{work(name)});
         assert_int_equal(outcome.code, usage);
-        assert_true(contains(outcome.err, std::string(name) + ": is given twice"));
+        assert_true(contains(outcome.err, std::string(name) + ": given twice"));
     }
     write_picture(work("other.png"), make_smooth(20, 10, LENSPROF_LAYOUT_GREY));
     const Outcome apply =
@@ -172,7 +172,7 @@ void test_image_without_a_name(void **) {
     const std::string pto = copy_of("scene") + "/pano.pto";
     edit(pto, "n\"img001.png\"", "n\"\"");
     for (const Words &words : {build(pto), Words{"apply", "--pto", pto, "-o", work("out")}})
-        assert_refused(unreadable, words, {pto + ": image 1 names no file", "correct the project"});
+        assert_refused(unreadable, words, {pto + ": image 1 has no file name", "correct the project"});
 }
 
 // Warnings, too, are lines for a terminal: of names, control characters of one and of two bytes are spelt.
@@ -216,7 +216,7 @@ void test_names_that_are_too_long(void **) {
     }
     const Outcome cut = run_words(words + Words{"--camera", "C"});
     assert_int_equal(cut.code, done);
-    assert_true(contains(cut.err, "img000.png: EXIF's text for --lens is longer than what is stored, and is cut"));
+    assert_true(contains(cut.err, "img000.png: the EXIF text for --lens is too long and was truncated"));
     for (const Words &quiet : {words + Words{"--lens", "L"}, Words{"build", copy + "/pano.pto", "--no-store"} + quick})
         assert_false(contains(run_words(quiet).err, "--lens"));
 }

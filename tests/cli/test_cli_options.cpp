@@ -90,8 +90,8 @@ void test_the_nearest_is_named(void **) {
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     const Words far = {"query", "--zzzzzz", "1"};
     assert_refused(usage, far, {"--zzzzzz: no such option; see"});
-    assert_refused(usage, {"profile"}, {"name one of its verbs", "list", "stats"});
-    assert_refused(usage, {"profile", "check", "more"}, {"more: is more than this command takes"});
+    assert_refused(usage, {"profile"}, {"needs a verb", "list", "stats"});
+    assert_refused(usage, {"profile", "check", "more"}, {"more: unexpected argument"});
     assert_refused(usage, {"help", "profile", "export", "more"}, {"has no verbs", "`lensprof help profile export`"});
 }
 
@@ -101,23 +101,23 @@ void test_options_are_no_values(void **) {
         Words words;
         const char *said;
     } cases[] = {
-        {{"query", "--db", "--json", "--camera", "X"}, "--db: needs a value, and --json looks like an option"},
-        {{"apply", "-o", "--linear", "x.png"}, "--output: needs a value, and --linear looks like an option"},
-        {{"query", "--camera", "-X"}, "--camera: needs a value, and -X looks like an option"},
-        {{"query", "--camera", "X", "--db", "-1.db"}, "--db: needs a value, and -1.db looks like an option"},
+        {{"query", "--db", "--json", "--camera", "X"}, "--db: needs a value, but --json looks like an option"},
+        {{"apply", "-o", "--linear", "x.png"}, "--output: needs a value, but --linear looks like an option"},
+        {{"query", "--camera", "-X"}, "--camera: needs a value, but -X looks like an option"},
+        {{"query", "--camera", "X", "--db", "-1.db"}, "--db: needs a value, but -1.db looks like an option"},
         {{"query", "--db=a", "--camera", "X", "--focal", "-1e-3"}, "--focal: -1e-3 is not a number"},
         {{"query", "--camera"}, "--camera: needs a value; give --camera TEXT"},
         {{"query", "--camera", "--", "X"}, "--camera: needs a value"},
-        {{"profile", "check", "--db", "a", "--db", "b"}, "--db: is given more than once; give it once"},
-        {{"query", "--json=maybe"}, "--json: takes no value, and maybe is one; give --json alone"},
-        {{"simulate"}, "--output: is needed; give --output FOLDER"},
-        {{"build"}, "INPUT: is needed; give INPUT"},
+        {{"profile", "check", "--db", "a", "--db", "b"}, "--db: given more than once; give it once"},
+        {{"query", "--json=maybe"}, "--json: takes no value, but maybe was given; give --json alone"},
+        {{"simulate"}, "--output: missing; give --output FOLDER"},
+        {{"build"}, "INPUT: missing; give INPUT"},
         {{"apply", "-x.png"}, "-x.png: no such option; see `lensprof apply --help`, or put -- before names"},
-        {{"apply", "-y"}, "-y: no such option; did you mean -h? Else put -- before names that begin with -\n"},
+        {{"apply", "-y"}, "-y: no such option; did you mean -h? Otherwise put -- before names that start with -\n"},
         {{"apply", "--jsn"}, "--jsn: no such option; did you mean --json?\n"},
         {{"query", "-y"}, "-y: no such option; did you mean -h?\n"},
-        {{"build", "a.pto", "b.pto"}, "a.pto: is no picture (.jpg, .png, .tif) and no folder"},
-        {{"query", "a"}, "a: is more than this command takes"},
+        {{"build", "a.pto", "b.pto"}, "a.pto: is neither a picture (.jpg, .png, .tif) nor a folder"},
+        {{"query", "a"}, "a: unexpected argument"},
     };
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     assert_refused(unreadable, {"bracket", "-", scene("img000.png"), "--no-store", "--ev", "-1.5,-.5"}, {"-: cannot"});
@@ -126,7 +126,7 @@ void test_options_are_no_values(void **) {
 
 // A word within brackets is no list, and is told as it was given.
 void test_words_within_brackets(void **) {
-    assert_refused(usage, {"profile", "show", "[1]"}, {": [1] is no number of a profile"});
+    assert_refused(usage, {"profile", "show", "[1]"}, {": [1] is not a profile id; see"});
     assert_refused(usage, {"help", "[x]"}, {"lensprof: [x]: no such command"});
     assert_refused(not_found, {"query", "--camera", "[X,Y]", "--db", work("[p.db]")}, {work("[p.db]")});
     const std::string copy = copy_of("scene"), before = fs::current_path().string();
@@ -142,7 +142,7 @@ void test_a_short_option_with_an_equals_sign(void **) {
     const std::string out = work("out");
     must_exit(done, {"simulate", "-o=" + out, "--images", "2", "--size", "40x30"});
     assert_true(fs::exists(out + "/pano.pto"));
-    assert_refused(usage, {"simulate", "-o="}, {"--output: names no folder; give one"});
+    assert_refused(usage, {"simulate", "-o="}, {"--output: empty folder name; give one"});
 }
 
 // "--" ends the options wherever it stands.
@@ -152,13 +152,40 @@ void test_two_dashes_end_options(void **) {
     const Words query = {"query", "--camera", "Simulated Camera", "--db", work("p.db")};
     const std::string plain = must_exit(done, query);
     assert_string_equal(must_exit(done, query + Words{"--"}).c_str(), plain.c_str());
-    assert_refused(usage, query + Words{"--", "more"}, {"more: is more than this command takes"});
-    assert_refused(usage, query + Words{"--", "--help"}, {"--help: is more than this command takes"});
+    assert_refused(usage, query + Words{"--", "more"}, {"more: unexpected argument"});
+    assert_refused(usage, query + Words{"--", "--help"}, {"--help: unexpected argument"});
     const Words apply = {"apply", "--profile", "1", "--db", work("p.db"), copy + "/img000.png"};
     for (const char *name : {"-x.png", "--", "--json", "[a,b]"})
         assert_refused(unreadable, apply + Words{"--output", work("out"), "--", name},
                        {std::string(name) + ": cannot"});
     assert_refused(unreadable, apply + Words{"--", "--output", work("out")}, {"--output: cannot"});
+}
+
+// Descriptions are wrapped, and footers are written to fit.
+void test_help_fits_100_columns(void **) {
+    const std::vector<Words> commands = {{},
+                                         {"calibrate"},
+                                         {"build"},
+                                         {"bracket"},
+                                         {"response"},
+                                         {"flat"},
+                                         {"apply"},
+                                         {"align"},
+                                         {"query"},
+                                         {"simulate"},
+                                         {"profile"},
+                                         {"profile", "list"},
+                                         {"profile", "show"},
+                                         {"profile", "set"},
+                                         {"profile", "export"},
+                                         {"profile", "import"},
+                                         {"profile", "merge"},
+                                         {"profile", "check"}};
+    for (const Words &command : commands) {
+        std::istringstream help(must_exit(done, Words{"help"} + command));
+        for (std::string line; std::getline(help, line);)
+            if (line.size() > 100) fail_msg("%s", line.c_str());
+    }
 }
 
 void test_version(void **) {
@@ -174,10 +201,10 @@ void test_empty_values_that_are_needed(void **) {
         Words words;
         const char *said;
     } cases[] = {
-        {{"apply", "-o", ""}, "--output: names no folder; give one, or leave it out\n"},
-        {{"build", ""}, "INPUT: names no file; give one\n"},
-        {{"build", "--db", ""}, "--db: names no file; give one, or leave it out\n"},
-        {{"query", "--camera="}, "--camera: its value is empty; give one, or leave it out\n"},
+        {{"apply", "-o", ""}, "--output: empty folder name; give one, or omit the option\n"},
+        {{"build", ""}, "INPUT: empty file name; give one\n"},
+        {{"build", "--db", ""}, "--db: empty file name; give one, or omit the option\n"},
+        {{"query", "--camera="}, "--camera: empty value; give one, or omit the option\n"},
     };
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     const Words bracket = {"bracket", scene("img000.png"), scene("img001.png"), "--no-store", "--times"};
@@ -219,7 +246,7 @@ void test_largest_ids(void **) {
         const Words words = Words{"profile"} + verb + db;
         assert_refused(not_found, words + Words{"9223372036854775807"}, {"no profile 9223372036854775807"});
         for (const char *id : {"9223372036854775808", "99999999999999999999999", "0", "1x"})
-            assert_refused(usage, words + Words{id}, {std::string(id) + " is no number of a profile"});
+            assert_refused(usage, words + Words{id}, {std::string(id) + " is not a profile id; see"});
     }
 }
 
@@ -380,6 +407,7 @@ int main() {
         CLI_TEST(test_words_within_brackets),
         CLI_TEST(test_a_short_option_with_an_equals_sign),
         CLI_TEST(test_two_dashes_end_options),
+        CLI_TEST(test_help_fits_100_columns),
         CLI_TEST(test_version),
         CLI_TEST(test_empty_values_that_are_needed),
         CLI_TEST(test_long_and_odd_words),

@@ -1,4 +1,4 @@
-// The commands, as run() knows them.
+// The commands of the program, for run().
 #pragma once
 
 #include "cli/program/options.hpp"

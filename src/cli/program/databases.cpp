@@ -11,14 +11,14 @@ namespace {
 
 constexpr const char *kInstalled = "/lensprof/lensfun.db";
 
-// The folder beside the program's: /usr/local/share of /usr/local/bin/lensprof. Empty where it cannot be told.
+// The share folder next to the program's bin: /usr/local/share for /usr/local/bin/lensprof. Empty if unknown.
 std::string own_share_folder() {
     std::error_code error;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
     return error ? std::string() : (program.parent_path().parent_path() / "share").string();
 }
 
-// Nobody named it: what is damaged is passed over.
+// Not named by the user: a damaged one is skipped.
 bool can_be_read(const std::string &file) {
     lensprof_store *store = nullptr;
     const bool can = lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &store, nullptr) == LENSPROF_OK;
@@ -32,18 +32,18 @@ static void declare_files(Command &command, std::vector<std::string> &files, con
     command.words(
         "--db", "FILE", [&files](const std::string &word) { files.push_back(word); },
         about
-            + "; default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share, then the lens data that are installed "
-              "with lensprof");
+            + "; default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share, then the lens data installed with "
+              "lensprof");
 }
 
 void declare_databases(Command &command, std::vector<std::string> &files, const std::string &more) {
-    declare_files(command, files,
-                  "profile database" + more
-                      + ", may be given more than once: the first that knows the lens or the camera answers");
+    declare_files(
+        command, files,
+        "profile database" + more + "; repeat to search several: the first that has the lens or the camera answers");
 }
 
 void declare_listed_databases(Command &command, std::vector<std::string> &files, const std::string &more) {
-    declare_files(command, files, "profile database, may be given more than once" + more);
+    declare_files(command, files, "profile database; repeat to read several" + more);
 }
 
 std::string installed_database() {
@@ -68,7 +68,7 @@ std::vector<std::string> databases_of(const std::vector<std::string> &named) {
 Databases::Databases(const std::vector<std::string> &files) {
     std::set<std::string> seen;
     for (const std::string &file : files) {
-        if (!seen.insert(file_identity(file)).second) continue;  // a store is one transaction at a time
+        if (!seen.insert(file_identity(file)).second) continue;  // a store has one transaction at a time
         stores_.push_back(open_store(file, LENSPROF_STORE_READ));
         files_.push_back(file);
     }

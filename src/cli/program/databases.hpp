@@ -1,4 +1,4 @@
-// The databases that lookups ask, in their order.
+// The databases that lookups search, in order.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace lensprof {
 
-// --db FILE, any number of times.
+// Declares --db FILE, repeatable.
 void declare_databases(Command &command, std::vector<std::string> &files, const std::string &more = "");
 
-// The same for commands that show what is in all of them.
+// The same for commands that list the content of all of them.
 void declare_listed_databases(Command &command, std::vector<std::string> &files, const std::string &more = "");
 
-// lensprof/lensfun.db as `make install` puts it: in the program's own share folder, else in $XDG_DATA_DIRS. Empty where
-// there is none that can be read.
+// lensprof/lensfun.db as installed by `make install`: in the program's own share folder, else in $XDG_DATA_DIRS. Empty
+// if no readable one exists.
 std::string installed_database();
 
-// What --db names; without any, the user's own database and then the installed one, as far as they are there.
+// The databases given by --db; by default the user's own database and the installed one, if they exist.
 std::vector<std::string> databases_of(const std::vector<std::string> &named);
 
-// Open for reading. The files must be there.
+// Opens databases for reading. The files must exist.
 class Databases {
 public:
     Databases() = default;
@@ -35,10 +35,10 @@ public:
     const std::vector<std::string> &files() const { return files_; }
     std::string names() const;  // "a.db, b.db"
 
-    // A last column of a row, "  in a.db", where there are several.
+    // The last column of a row, "  in a.db", if there are several databases.
     std::string column(size_t index) const { return size() > 1 ? "  in " + file(index) : std::string(); }
 
-    // lensprof_store_lookup_in of all of them. NOT_FOUND is returned, every other failure thrown.
+    // lensprof_store_lookup_in for all of them. Returns NOT_FOUND, throws on every other failure.
     lensprof_status look_up(const lensprof_profile_key &key, const lensprof_lookup_options &options,
                             lensprof_profile &profile, lensprof_lookup &how) const;
 

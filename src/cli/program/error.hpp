@@ -1,4 +1,4 @@
-// The one exception of the command line program.
+// The exception type of the command line program.
 #pragma once
 
 #include <cstdint>
@@ -9,25 +9,25 @@
 
 namespace lensprof {
 
-// What the process returns to the shell. Scripts depend on the numbers: they are never changed.
+// Exit codes of the process. Scripts depend on the numbers: never change them.
 enum class ExitCode : int {
     done = 0,
     failed = 1,
     usage = 2,
     unreadable = 3,  // an input cannot be read
-    not_usable = 4,  // a fit ran, its result must not be used
+    not_usable = 4,  // the fit ran, but its result must not be used
     not_found = 5,   // no such profile
     store = 6,       // the profile database
     interrupted = 130
 };
 
-// what() is a complete line for the user: it names the item and the next step.
+// what() is a complete message for the user: the item, what is wrong, and the next step.
 struct Failure : std::runtime_error {
     Failure(ExitCode exit_code, const std::string &text, uint32_t why = LENSPROF_REASON_NONE)
         : std::runtime_error(text), code(exit_code), reason(why) {}
 
     ExitCode code;
-    uint32_t reason;  // lensprof_reason of what is not usable
+    uint32_t reason;  // lensprof_reason of a result that is not usable
 };
 
 }  // namespace lensprof

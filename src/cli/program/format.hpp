@@ -1,4 +1,4 @@
-// Text with numbers in it.
+// Formatting of text.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@ namespace lensprof {
 // printf into a string.
 std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));
 
-// "1 profile", "2 lenses"; without `things` with an s.
+// "1 profile", "2 lenses"; the default plural adds an s.
 std::string counted(size_t count, const std::string &thing, const std::string &things = "");
 
-// Names by their numbers, "img1.jpg, img2.jpg and 7 more".
+// Names by index, "img1.jpg, img2.jpg and 7 more".
 std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// Files that are read as a whole: projects, points, profiles of other programs.
+// Files that are read completely: projects, points, profiles of other programs.
 #pragma once
 
 #include <cstdint>
@@ -6,17 +6,17 @@
 
 namespace lensprof {
 
-// Most bytes of a file of text, as the library reads them.
+// Maximum bytes of a text file, as in the library.
 constexpr uint64_t largest_text = uint64_t(64) << 20;
 
-// Failure (unreadable) for what exists and is neither a file nor a folder: devices have no end, pipes are waited for,
-// and both can be read only once.
+// Failure (unreadable) for an existing path that is neither a regular file nor a folder: devices are endless, pipes
+// block, and both can be read only once.
 void demand_ordinary(const std::string &path);
 
-// The whole file, of at most `most_bytes`; Failure (unreadable) names it. A larger one is refused before it is read.
+// The whole file, at most `most_bytes`; Failure (unreadable) with its name. A larger file is refused before reading.
 std::string read_text(const std::string &path, uint64_t most_bytes);
 
-// The first `most_bytes` of a file, or all of a smaller one; Failure (unreadable) names it.
+// The first `most_bytes` of a file, or all of a smaller one; Failure (unreadable) with its name.
 std::string read_head(const std::string &path, size_t most_bytes);
 
 }  // namespace lensprof

@@ -19,7 +19,7 @@ void on_signal(int number) {
 void catch_interrupts() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error of the write, as a full disk is
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding `ulimit -f` is a write error, like a full disk
 }
 
 bool interrupted() { return flag != 0; }

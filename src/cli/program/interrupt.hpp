@@ -3,13 +3,13 @@
 
 namespace lensprof {
 
-// From now on SIGINT and SIGTERM only set a flag (a second one ends the process at once),
-// and a file beyond the limit of its size fails as any write does. Call once, from main.
+// From now on SIGINT and SIGTERM only set a flag (a second one ends the process immediately), and writing beyond the
+// file size limit fails like any other write. Call once, from main.
 void catch_interrupts();
 
 bool interrupted();
 
-// Throws Failure (interrupted) when the flag is set.
+// Throws Failure (interrupted) if the flag is set.
 void stop_if_interrupted();
 
 }  // namespace lensprof

@@ -37,7 +37,7 @@ ExitCode exit_code(lensprof_status status) {
     }
 }
 
-// Why a fit could not even be tried.
+// The reason that a fit could not be started.
 uint32_t reason_of(lensprof_status status) {
     return status == LENSPROF_ERROR_NO_OVERLAP   ? LENSPROF_REASON_IMAGE_GROUPS
            : status == LENSPROF_ERROR_NO_SAMPLES ? LENSPROF_REASON_FEW_PAIRS
@@ -71,7 +71,7 @@ std::string store_path(const std::string &path) {
     const char *data = std::getenv("XDG_DATA_HOME"), *home = std::getenv("HOME");
     if (data && data[0] == '/') return std::string(data) + "/lensprof/profiles.db";
     if (home && home[0] == '/') return std::string(home) + "/.local/share/lensprof/profiles.db";
-    throw Failure(ExitCode::usage, "no home folder for the profile database; name one with --db FILE");
+    throw Failure(ExitCode::usage, "no home folder for the profile database; give a database with --db FILE");
 }
 
 void demand_folder(const std::string &path) {
@@ -79,7 +79,7 @@ void demand_folder(const std::string &path) {
     if (path.empty() || is_folder(folder)) return;
     const std::string place = existing_part(folder);
     if (!is_folder(place)) throw Failure(ExitCode::store, path + ": " + place + " is not a folder; give another name");
-    throw Failure(ExitCode::store, path + ": there is no folder " + folder + " for the database; make it first");
+    throw Failure(ExitCode::store, path + ": folder " + folder + " does not exist; create it first");
 }
 
 std::unique_ptr<lensprof_profile> new_profile() {
@@ -91,12 +91,12 @@ std::unique_ptr<lensprof_profile> new_profile() {
 Store open_store(const std::string &path, lensprof_store_mode mode) {
     std::string file = store_path(path);
     if (path.empty() && mode == LENSPROF_STORE_CREATE) {
-        std::error_code ignored;  // a folder that cannot be made shows when the database is opened
+        std::error_code ignored;  // opening the database reports a folder that cannot be created
         std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
     }
     if (mode == LENSPROF_STORE_CREATE) demand_folder(path);
-    if (path_exists(file) && !is_regular_file(file) && !is_folder(file))  // reading a pipe would wait for ever
-        throw Failure(ExitCode::store, file + ": is no regular file; give the path of a database");
+    if (path_exists(file) && !is_regular_file(file) && !is_folder(file))  // reading a pipe would block
+        throw Failure(ExitCode::store, file + ": is not a regular file; give the path of a database");
     lensprof_store *store = nullptr;
     lensprof_error error{};
     check(lensprof_store_open(file.c_str(), mode, &store, &error), file, &error);
@@ -139,7 +139,7 @@ void demand_room(const std::string &maker, const std::string &camera, const std:
     for (const auto &field : fields)
         if (field.text.size() >= field.size)
             throw Failure(ExitCode::usage, std::string(field.option) + ": is " + std::to_string(field.text.size())
-                                               + " bytes long, and a profile holds at most "
+                                               + " bytes long, but a profile stores at most "
                                                + std::to_string(field.size - 1) + "; give a shorter text");
 }
 

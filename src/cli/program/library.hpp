@@ -1,4 +1,4 @@
-// From the library's status codes to the program's failures, and its handles with an owner.
+// Converts status codes of the library to failures of the program, and gives its handles owners.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace lensprof {
 
-// Throws Failure with the exit code that belongs to the status, unless it is OK. The text is `item`: error text (or the
-// status's name where there is none).
+// Throws Failure with the exit code of the status, unless it is OK. The text is `item`: error text (or the name of the
+// status otherwise).
 void check(lensprof_status status, const std::string &item, const lensprof_error *error = nullptr);
 
-// A text of the library with `name` in place of the words that name its item.
+// A message of the library, with the words that identify its item replaced by `name`.
 std::string with_name(const std::string &text, const lensprof_item &item, const std::string &name);
 
-// As check; the item of `kind` that the error names, if it does, has a name in `names`.
+// Like check; if the error identifies an item of `kind`, its name is taken from `names`.
 void check_named(lensprof_status status, const std::string &item, const lensprof_error &error, lensprof_item_kind kind,
                  const std::vector<std::string> &names);
 
-// What a function of the library writes: write(data, capacity, &count, &error) as in lensprof/base.h. `names` are those
-// of its profiles, where an error may name one.
+// The output of a library function write(data, capacity, &count, &error) as in lensprof/base.h. `names` are the names
+// of its profiles, in case an error identifies one.
 template <class Write>
 std::string written(const std::string &item, Write write, const std::vector<std::string> &names = {}) {
     lensprof_error error{};
@@ -43,17 +43,17 @@ using Store = std::unique_ptr<lensprof_store, StoreClose>;
 std::unique_ptr<lensprof_profile> new_profile();  // initialised
 
 struct StoredProfile {
-    int64_t id;  // 0: of a file, alone
+    int64_t id;  // 0: from a file
     std::unique_ptr<lensprof_profile> profile;
-    std::string database = {};  // where it is one of several
+    std::string database = {};  // if there are several
 };
 
-// The database to use: `path`, or where that is empty the user's own, $XDG_DATA_HOME/lensprof/profiles.db (else under
-// ~/.local/share), whose folder is made when `mode` may create it.
+// Opens the database `path` or, if that is empty, the user's own, $XDG_DATA_HOME/lensprof/profiles.db (else under
+// ~/.local/share), whose folder is created if `mode` may create it.
 Store open_store(const std::string &path, lensprof_store_mode mode);
 std::string store_path(const std::string &path);
 
-// Failure (store) where the folder of a database that is named is not there.
+// Failure (store) if the folder of a named database does not exist.
 void demand_folder(const std::string &path);
 
 struct PtoDestroy {
@@ -62,15 +62,15 @@ struct PtoDestroy {
 using Pto = std::unique_ptr<lensprof_pto, PtoDestroy>;
 
 Pto read_pto(const std::string &path);
-Pto parse_pto(const std::string &text, const std::string &item);  // `item` names it in a Failure
+Pto parse_pto(const std::string &text, const std::string &item);  // `item` is its name in a Failure
 std::string pto_name(const lensprof_pto &pto, uint32_t index);
 std::string pto_text(const lensprof_pto &pto);
 
-// Copies a text into a fixed field of a key or provenance, cut at its size between UTF-8 characters; control
-// characters become blanks, and in a text that is not UTF-8 all bytes beyond ASCII question marks.
+// Copies a text into a fixed field of a key or provenance, truncated between UTF-8 characters; control characters
+// become blanks, and in text that is not UTF-8 all non-ASCII bytes become question marks.
 void set_text(char *field, size_t size, const std::string &text);
 
-// Failure (usage) for the option --maker, --camera, --lens, --unit or --style whose text a key's field would cut.
+// Failure (usage) if the text of --maker, --camera, --lens, --unit or --style is too long for its field of the key.
 void demand_room(const std::string &maker, const std::string &camera, const std::string &lens, const std::string &unit,
                  const std::string &style);
 

@@ -4,7 +4,7 @@
 
 namespace lensprof {
 
-// The upper one of two in the middle; 0 of no values.
+// The median, the upper one of two middle values; 0 without values.
 double median(std::vector<double> values);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// What people are told on standard error while a command runs.
+// Messages on standard error.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace lensprof {
 
-// One line that begins with "lensprof: ", with "lensprof: warning: " and "lensprof: note: ". Names of files and EXIF
-// may hold anything: control characters do not reach the terminal.
+// Prints one line that starts with "lensprof: ", "lensprof: warning: " or "lensprof: note: ". File names and EXIF may
+// contain anything: control characters are escaped.
 void tell(Streams &streams, const std::string &text);
 void warn(Streams &streams, const std::string &text);
 void note(Streams &streams, const std::string &text);

@@ -26,7 +26,7 @@ std::string in_small_letters(std::string word) {
     return word;
 }
 
-// The shortest of `words` that begins with `start`, which has at least two letters after its dashes; else empty.
+// The shortest of `words` that starts with `start`, which has at least two letters after its dashes; else empty.
 std::string longer_word(const std::string &start, const std::vector<std::string> &words) {
     const size_t dashes = std::min(start.find_first_not_of('-'), start.size());
     std::string shortest;

@@ -1,4 +1,4 @@
-// Which word was meant.
+// Finds the word that was probably meant.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace lensprof {
 
-// The shortest of `words` that begins with `word`; else the one with the fewest letters changed, left out, added or
-// swapped with their neighbour (optimal string alignment), the first of several; empty where all differ in more than a
-// third of the letters. Capital and small letters are the same.
+// The shortest of `words` that starts with `word`; else the one with the fewest letters changed, omitted, added or
+// swapped with a neighbour (optimal string alignment), the first of several; empty if all differ in more than a third
+// of the letters. Case is ignored.
 std::string nearest_of(const std::string &word, const std::vector<std::string> &words);
 
-// How many letters are changed, left out, added or swapped between two words; capital and small letters are the same.
+// The number of letters changed, omitted, added or swapped between two words, ignoring case.
 size_t letters_changed(const std::string &a, const std::string &b);
 
 // "; did you mean NEAREST?", or empty.

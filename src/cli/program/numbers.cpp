@@ -31,8 +31,7 @@ std::string range_text(const Quantity &quantity) {
     return text.str();
 }
 
-// The decimal number, or infinity, at the start of `text`, of which it leaves the rest; false where there is none.
-// strtod would also take hexadecimal digits, and a number after blanks.
+// Parses the decimal number, or infinity, at the start of `text` and removes it; false if not found.
 bool take_number(const char *&text, double &value) {
     const char *digits = text + (*text == '-' || *text == '+');
     const bool is_hexadecimal = digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');
@@ -69,7 +68,7 @@ uint32_t count_of(const std::string &word, uint32_t low, uint32_t high) {
     const bool digits = !word.empty() && word.size() <= 10 && word.find_first_not_of("0123456789") == std::string::npos;
     const uint64_t value = digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
     if (!digits || value < low || value > high)
-        throw std::invalid_argument(word + " is not a whole number from " + std::to_string(low) + " to "
+        throw std::invalid_argument(word + " is not an integer from " + std::to_string(low) + " to "
                                     + std::to_string(high));
     return static_cast<uint32_t>(value);
 }
@@ -88,8 +87,8 @@ std::vector<std::string> elements(const std::string &list) {
     const std::vector<std::string> words = split(list);
     for (const std::string &word : words)
         if (word.empty())
-            throw std::invalid_argument(list + ": a value is missing before or after a comma; give values with one comma "
-                                               "between two of them");
+            throw std::invalid_argument(list + ": a value is missing before or after a comma; separate values by "
+                                               "single commas");
     return words;
 }
 

@@ -1,4 +1,4 @@
-// Numbers in the words of an option.
+// Parsing of numbers in option values.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace lensprof {
 
-// What a number measures: the units that may follow it.
+// The quantity of a number: determines the units that may follow it.
 enum class Unit {
     none,
     focal_mm,    // 24, 24mm
@@ -17,7 +17,7 @@ enum class Unit {
     distance_m,  // 3, 3m
 };
 
-// A number from low to high, both included; neither "nan" nor "inf" beyond them.
+// A number from low to high, inclusive; never "nan", and "inf" only within this range.
 struct Quantity {
     double low, high;
     Unit unit = Unit::none;
@@ -29,20 +29,19 @@ constexpr Quantity focal_lengths = {0.01, 1e5, Unit::focal_mm};
 constexpr Quantity f_numbers = {0.01, 1e4, Unit::f_number};
 constexpr Quantity distances = {1e-6, INFINITY, Unit::distance_m};
 
-// "0.125", "1e-3" or "1/8", with the unit or without. std::invalid_argument says what is wrong with the word.
+// Parses "0.125", "1e-3" or "1/8", with or without unit. Throws std::invalid_argument with the reason.
 double number_of(const std::string &word, const Quantity &quantity);
 
-// A whole number. std::invalid_argument as above.
+// Parses an integer. Throws std::invalid_argument as above.
 uint32_t count_of(const std::string &word, uint32_t low, uint32_t high);
 
-// The words of a list with commas.
+// Splits a comma-separated list.
 std::vector<std::string> split(const std::string &list, char separator = ',');
 
-// The same, where none may be empty. std::invalid_argument as above.
+// The same, without empty elements. Throws std::invalid_argument as above.
 std::vector<std::string> elements(const std::string &list);
 
-// Failure (usage) that names the option where a list of so many `values` does not have one for each of `count` things
-// ("picture").
+// Failure (usage) with the option if the number of `values` is not `count`, one per thing (such as "picture").
 void demand_count(size_t values, const std::string &option, size_t count, const std::string &thing);
 
 }  // namespace lensprof

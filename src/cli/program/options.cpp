@@ -25,7 +25,7 @@ std::string path_of(const CLI::App &app) {
     return app.get_parent() ? path_of(*app.get_parent()) + " " + app.get_name() : app.get_name();
 }
 
-// App::help would print the help of the command that was parsed.
+// App::help would print the help of the parsed command.
 std::string help_of(const CLI::App &app) {
     return app.get_formatter()->make_help(&app, path_of(app), CLI::AppFormatMode::Normal);
 }
@@ -36,7 +36,7 @@ std::vector<std::string> names_of_commands(const CLI::App &app) {
     return names;
 }
 
-// The command or verb of that name; null where there is none.
+// The command or verb with this name; null if not found.
 const CLI::App *command_of(const CLI::App &app, const std::string &name) {
     const auto found = app.get_subcommands([&](const CLI::App *command) { return command->get_name() == name; });
     return found.empty() ? nullptr : found.front();
@@ -57,10 +57,38 @@ std::string joined(const std::vector<std::string> &words) {
     return text;
 }
 
-// A list of commands shows the first line of what they say about themselves.
+// The text with line breaks so that each line has at most `columns` characters, unless one word is longer.
+std::string wrapped(const std::string &text, size_t columns) {
+    std::string lines;
+    size_t column = 0;
+    std::istringstream paragraphs(text);
+    for (std::string paragraph; std::getline(paragraphs, paragraph);) {
+        if (!lines.empty()) lines += '\n', column = 0;
+        std::istringstream words(paragraph);
+        for (std::string word; words >> word; column += word.size()) {
+            if (column > 0 && column + 1 + word.size() > columns)
+                lines += '\n', column = 0;
+            else if (column > 0)
+                lines += ' ', column++;
+            lines += word;
+        }
+    }
+    return lines;
+}
+
+constexpr size_t help_columns = 100;
+
+// Wraps descriptions. A list of commands shows only the first line of each description.
 class HelpText : public CLI::Formatter {
 public:
     HelpText() { label("SUBCOMMAND", "VERB"); }
+    std::string make_option_desc(const CLI::Option *option) const override {
+        return wrapped(CLI::Formatter::make_option_desc(option), help_columns - get_column_width());
+    }
+    std::string make_description(const CLI::App *app) const override {
+        const std::string about = CLI::Formatter::make_description(app);
+        return about.empty() ? about : wrapped(about, help_columns) + "\n";
+    }
     std::string make_usage(const CLI::App *app, std::string name) const override {
         if (app->get_parent()) return CLI::Formatter::make_usage(app, name);
         return "\nusage: lensprof COMMAND [OPTIONS]\n\n";
@@ -73,13 +101,13 @@ public:
     }
 };
 
-// The nearest of the words, else where to look.
+// Suggests the nearest word, else where to look.
 std::string advice(const std::string &word, const std::vector<std::string> &words, const std::string &otherwise) {
     const std::string nearest = did_you_mean(word, words);
     return nearest.empty() ? "; " + otherwise : nearest;
 }
 
-// Not a command, or not a verb of one.
+// Failure for an unknown command or verb.
 [[noreturn]] void fail_no_command(const CLI::App &app, const std::string &word) {
     const std::string path = path_of(app), own = app.get_parent() ? path.substr(path.find(' ') + 1) : "";
     const std::string help = "`lensprof help" + (own.empty() ? "" : " " + own) + "`";
@@ -90,19 +118,19 @@ std::string advice(const std::string &word, const std::vector<std::string> &word
                                        + advice(word, names, help + " lists them"));
 }
 
-// What a shell makes of a variable that is not set.
+// Message for an empty value, such as from an unset shell variable.
 std::string empty_text(const CLI::Option &option) {
     const std::string type = option.get_type_name();
-    return (type == "FILE"     ? std::string("names no file; give one")
-            : type == "FOLDER" ? "names no folder; give one"
-                               : "its value is empty; give one")
-           + (option.get_required() ? "" : ", or leave it out");
+    return (type == "FILE"     ? std::string("empty file name; give one")
+            : type == "FOLDER" ? "empty folder name; give one"
+                               : "empty value; give one")
+           + (option.get_required() ? "" : ", or omit the option");
 }
 
 bool is_flag(const CLI::Option &option) { return option.get_items_expected_max() == 0; }
 
-// "-o", "--output" and "-1.db"; neither "-", a file by custom, nor numbers: "-1.5", "-1/8,1e-3". An option of numbers
-// says itself what is wrong with "-3x".
+// "-o", "--output" and "-1.db" look like options; "-", a file by convention, and numbers such as "-1.5" or "-1/8,1e-3"
+// do not. An option that takes numbers reports its own error for "-3x".
 bool looks_like_option(const std::string &word, const CLI::Option &option) {
     if (word.size() < 2 || word[0] != '-') return false;
     if (std::string("0123456789.").find(word[1]) == std::string::npos) return true;
@@ -111,12 +139,12 @@ bool looks_like_option(const std::string &word, const CLI::Option &option) {
     return !takes_numbers && word.find_first_not_of("0123456789.,/eE+-", 1) != std::string::npos;
 }
 
-// CLI11 takes a value within brackets for a list, and one that begins with this character for text.
+// CLI11 parses a value in brackets as a list, and one that starts with this character as text.
 constexpr char text_mark = '=';
 
-// Brings the words of a command line into the order in which CLI11 takes them as they are meant: the commands, options
-// with their values, "--", positionals. Else it takes an option for the value of the one before it, and "--" after a
-// positional for the end of the command. Failure (usage) for the first word that fits nowhere.
+// Sorts the command line into the order that CLI11 parses as intended: commands, options with their values, "--",
+// positionals. Otherwise it takes an option as the value of the preceding one, and "--" after a positional as the end
+// of the command. Failure (usage) for the first word that does not fit.
 class SortedWords {
 public:
     SortedWords(const CLI::App &root, const std::vector<std::string> &words) : app_(&root), words_(words) {
@@ -139,7 +167,7 @@ public:
     const CLI::App &command() const { return *app_; }
     bool wants_help() const { return wants_help_; }
 
-    // From the last to the first, as CLI11 wants them.
+    // In reverse order, as CLI11 expects.
     std::vector<std::string> reversed() const {
         std::vector<std::string> all = commands_;
         all.insert(all.end(), options_.begin(), options_.end());
@@ -160,7 +188,7 @@ private:
         }
         if (wants_help_) return;
         if (positionals_.size() == room())
-            throw Failure(ExitCode::usage, word + ": is more than this command takes; see " + own_help());
+            throw Failure(ExitCode::usage, word + ": unexpected argument; see " + own_help());
         positionals_.push_back(text_mark + word);
     }
 
@@ -175,30 +203,30 @@ private:
         const size_t value_at = is_long || equal == 2 ? equal + 1 : 2;  // of --output=FILE, -o=FILE and -oFILE
         const std::string value = has_value ? word.substr(value_at) : next_value(*option);
         if (counts_[option]++ > 0 && option->get_items_expected_max() == 1)
-            throw Failure(ExitCode::usage, option->get_name() + ": is given more than once; give it once");
+            throw Failure(ExitCode::usage, option->get_name() + ": given more than once; give it once");
         options_.push_back(option->get_name());
         options_.push_back(text_mark + value);
     }
 
-    // A word with one dash may be the name of a file, whatever option is near.
+    // A word with one dash may be a file name, even if an option is similar.
     [[noreturn]] void fail_no_option(const std::string &name, bool is_long) const {
         const std::string nearest = did_you_mean(name, names_of_options(*app_)),
-                          hint = "put -- before names that begin with -";
+                          hint = "put -- before names that start with -";
         throw Failure(ExitCode::usage, name + ": no such option"
                                            + (nearest.empty() ? "; see " + own_help() + (room() ? ", or " + hint : "")
-                                              : room() && !is_long ? nearest + " Else " + hint
+                                              : room() && !is_long ? nearest + " Otherwise " + hint
                                                                    : nearest));
     }
 
-    // An option of the program itself, as --version, is all that is done.
+    // An option of the program itself, such as --version, ends parsing.
     void take_flag(const CLI::Option &flag, const std::string &value) {
         const std::string &name = flag.get_name();
-        if (value.empty()) throw Failure(ExitCode::usage, name + ": its value is empty; give " + name + " alone");
+        if (value.empty()) throw Failure(ExitCode::usage, name + ": takes no value; give " + name + " alone");
         try {
             CLI::detail::to_flag_value(value);
         } catch (const std::exception &) {
-            throw Failure(ExitCode::usage, name + ": takes no value, and " + value + " is one; give " + name
-                                               + " alone, or leave it out");
+            throw Failure(ExitCode::usage,
+                          name + ": takes no value, but " + value + " was given; give " + name + " alone");
         }
         options_.push_back(name + "=" + value);
         is_done_ = !app_->get_parent();
@@ -209,11 +237,11 @@ private:
         if (at_ == words_.size()) throw Failure(ExitCode::usage, name + ": needs a value" + give);
         const std::string &word = words_[at_++];
         if (!looks_like_option(word, option)) return word;
-        throw Failure(ExitCode::usage, name + ": needs a value, and " + word + " looks like an option" + give + ", or "
+        throw Failure(ExitCode::usage, name + ": needs a value, but " + word + " looks like an option" + give + ", or "
                                            + name + "=" + word + " if that is the value");
     }
 
-    // How many positionals the command takes.
+    // The number of positionals the command takes.
     size_t room() const {
         size_t room = 0;
         for (const CLI::Option *option : app_->get_options())
@@ -231,14 +259,14 @@ private:
     std::vector<std::string> commands_, options_, positionals_;
 };
 
-// Failure (usage) that names what the command cannot do without.
+// Failure (usage) for a missing required option or positional.
 void check_required(const CLI::App &command) {
     for (const CLI::Option *option : command.get_options()) {
         if (!option->get_required() || option->count()) continue;
         const std::string name = option->get_name(),
                           type = option->get_positional() ? "" : " " + option->get_type_name();
         throw Failure(ExitCode::usage,
-                      name + ": is needed; give " + name + type + ", see `" + path_of(command) + " --help`");
+                      name + ": missing; give " + name + type + ", see `" + path_of(command) + " --help`");
     }
 }
 
@@ -350,7 +378,7 @@ int64_t profile_id_of(const std::string &word) {
     errno = 0;
     const unsigned long long id = digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
     if (id == 0 || errno != 0 || id > INT64_MAX)
-        throw std::invalid_argument(word + " is no number of a profile; `lensprof profile list` shows them");
+        throw std::invalid_argument(word + " is not a profile id; see `lensprof profile list`");
     return static_cast<int64_t>(id);
 }
 
@@ -446,8 +474,7 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
     }
     const auto action = actions_->of.find(&command);
     if (action == actions_->of.end())
-        throw Failure(ExitCode::usage,
-                      path_of(command) + ": name one of its verbs: " + joined(names_of_commands(command)));
+        throw Failure(ExitCode::usage, path_of(command) + ": needs a verb: " + joined(names_of_commands(command)));
     return action->second(streams);
 }
 
@@ -456,10 +483,10 @@ void declare_db(Command &command, std::string &path, const std::string &more) {
                  "profile database" + more + "; default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share");
 }
 
-void declare_json(Command &command, bool &json) { command.flag("--json", json, "print one JSON object"); }
+void declare_json(Command &command, bool &json) { command.flag("--json", json, "print the result as one JSON object"); }
 
 void declare_progress(Command &command, bool &progress) {
-    command.flag("--progress", progress, "show progress also when standard error is not a terminal");
+    command.flag("--progress", progress, "show progress even if standard error is not a terminal");
 }
 
 }  // namespace lensprof

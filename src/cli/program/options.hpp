@@ -1,5 +1,5 @@
-// The commands and their options. This is the one place that knows the library that parses (CLI11), which costs seconds
-// to compile: commands declare what they accept in these words and receive typed values.
+// The commands and their options. Only this file knows the parsing library (CLI11), which costs seconds to compile:
+// commands declare what they accept with this interface and receive typed values.
 #pragma once
 
 #include <cstdint>
@@ -20,23 +20,23 @@ class Option;
 
 namespace lensprof {
 
-// What a word of an option stands for.
+// The value of each word of an option.
 template <class Value>
 using Choices = std::vector<std::pair<const char *, Value>>;
 
 class Program;
 
-// A command, or a verb of one (`profile list`). Options are named as "--seed" or "-o,--output", positionals as "FILES".
-// Every value is given once and none may be empty, which is what a shell makes of a variable that is not set. Values
-// must live until the program ends: declare_... keep theirs in the action.
+// A command, or a verb of one (`profile list`). Options are named "--seed" or "-o,--output", positionals "FILES". By
+// default a value may be given once and must not be empty, as an unset shell variable would be. The variables must live
+// until the program ends: declare_... functions keep theirs in the action.
 class Command {
 public:
     Command(CLI::App &app, Program &program) : app_(&app), program_(&program) {}
 
-    // `brief` stands in the list of commands; `about` follows it in the command's own help.
+    // `brief` is shown in the list of commands; `about` follows it in the command's own help.
     Command add(const char *name, const std::string &brief, const std::string &about = "");
 
-    // What it does; Failure is thrown. A command without an action wants one of its verbs.
+    // Sets the action; it throws Failure. A command without an action needs one of its verbs.
     void run(std::function<int(Streams &)> action);
 
     void flag(const char *names, bool &value, const std::string &about);
@@ -56,13 +56,13 @@ public:
     void profile_id(const char *names, int64_t &value, const std::string &about);
     void profile_ids(const char *name, std::vector<int64_t> &values, const std::string &about);  // positional
 
-    // One word of those.
+    // One of these words.
     template <class Value>
     void choice(const char *names, Value &value, const Choices<Value> &choices, const std::string &about) {
         choice_of(
             names, words_of(choices), [&value, choices](size_t i) { value = choices[i].second; }, about);
     }
-    // Several, with commas.
+    // Several words, separated by commas.
     template <class Value>
     void list(const char *names, std::vector<Value> &values, const Choices<Value> &choices, const std::string &about) {
         list_of(
@@ -70,15 +70,15 @@ public:
             [&values, choices](size_t i) { values.push_back(choices[i].second); }, about);
     }
 
-    // For what has a form of its own: `read` sets the value, or throws std::invalid_argument with what is wrong with
-    // the word. Of `words` any number may be given, by the option again and again.
+    // For values with their own syntax: `read` sets the value, or throws std::invalid_argument with the reason. `words`
+    // may be repeated any number of times.
     using Read = std::function<void(const std::string &)>;
     void word(const char *names, const std::string &type, const Read &read, const std::string &about);
     void words(const char *names, const std::string &type, const Read &read, const std::string &about);
 
     void require(const char *name);        // a declared option or positional
-    void group(const std::string &title);  // of the options that follow, in the help
-    void footer(const std::string &text);  // of the help
+    void group(const std::string &title);  // heading of the following options in the help
+    void footer(const std::string &text);  // text at the end of the help
 
 private:
     template <class Value>
@@ -97,7 +97,7 @@ private:
     Program *program_;
 };
 
-// All commands: parses the words of the command line and runs the one they name.
+// All commands: parses the command line and runs the chosen command.
 class Program {
 public:
     Program(const std::string &name, const std::string &about);
@@ -107,10 +107,10 @@ public:
 
     Command root();
 
-    // Help that is asked for is printed. Words that do not fit are a Failure (usage) that names the nearest that does.
+    // Prints help on request. Words that do not fit cause a Failure (usage) that suggests the nearest valid word.
     int run(const std::vector<std::string> &words, Streams &streams);
 
-    // Of the command and verbs named by `words`, of the program where there are none; Failure (usage).
+    // Help of the command and verbs in `words`, or of the program for an empty list; Failure (usage).
     std::string help(const std::vector<std::string> &words) const;
 
 private:
@@ -120,13 +120,13 @@ private:
     std::unique_ptr<Actions> actions_;
 };
 
-// --db FILE, a profile database; `more` is said of it.
+// Declares --db FILE, a profile database; `more` is added to its description.
 void declare_db(Command &command, std::string &path, const std::string &more = "");
 
-// The number of a profile; throws std::invalid_argument.
+// Parses a profile id; throws std::invalid_argument.
 int64_t profile_id_of(const std::string &word);
 
-// --json and --progress.
+// Declare --json and --progress.
 void declare_json(Command &command, bool &json);
 void declare_progress(Command &command, bool &progress);
 

@@ -24,7 +24,7 @@ namespace {
 [[noreturn]] void fail(const std::string &path, int error_number) {
     const char *advice = "check the folder and its permissions";
     if (error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG)
-        advice = "make room or write to another disk";
+        advice = "free some space or write to another disk";
     throw Failure(ExitCode::failed, path + ": cannot write: " + system_text(error_number) + "; " + advice);
 }
 
@@ -46,7 +46,7 @@ std::string extension_of(const std::string &path) {
     return path.substr(dot);
 }
 
-// Not derived from the wanted name, which may already be as long as the file system allows.
+// Not derived from the final name, which may already have the maximum length.
 int create_beside(const std::string &target, mode_t mode, std::string &name) {
     static std::atomic<unsigned> counter{0};
     for (int attempt = 0; attempt < 1000; ++attempt) {
@@ -66,13 +66,13 @@ int sync_path(const std::string &path, int flags) {
     return error_number;
 }
 
-CommitWatch::Note commit_note;  // set while no other thread writes files
+CommitWatch::Note commit_note;  // set before other threads write files
 
 }  // namespace
 
 namespace {
 
-// ".lensprof-PID-NUMBER.png", as create_beside() makes them, of a process that is no more.
+// Whether the name is ".lensprof-PID-NUMBER.png", as made by create_beside(), of a process that no longer exists.
 bool is_left_over(const std::string &name) {
     const std::string start = ".lensprof-";
     const size_t dash = name.find('-', start.size()), end = std::min(name.find('.', start.size()), name.size());
@@ -110,7 +110,7 @@ int open_nameless(const std::string &beside) {
     const int nameless = open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (nameless >= 0) return nameless;
 #endif
-    std::string name;  // not every file system has files without one
+    std::string name;  // not every file system supports unnamed files
     const int created = create_beside(beside, 0600, name);
     if (created < 0) return -1;
     close(created);
@@ -137,7 +137,7 @@ void make_folder(const std::string &folder) {
     std::filesystem::create_directories(folder, error);
     if (error)
         throw Failure(ExitCode::failed,
-                      folder + ": cannot be made: " + system_text(error.value()) + "; give another name");
+                      folder + ": cannot be created: " + system_text(error.value()) + "; give another name");
 }
 
 std::string system_text(int error_number) { return std::generic_category().message(error_number); }
@@ -146,10 +146,10 @@ OutputFile::OutputFile(const std::string &path) : path_(path), target_(follow_li
     struct stat status = {};
     const bool exists = stat(target_.c_str(), &status) == 0;
     if (exists && !S_ISREG(status.st_mode))
-        throw Failure(ExitCode::usage, path_ + ": cannot write: is not a regular file; give the name of a file");
+        throw Failure(ExitCode::usage, path_ + ": cannot write: not a regular file; give the name of a file");
     const int file = create_beside(target_, 0666, temporary_);
     if (file < 0) fail(path_, errno);
-    // Best effort: a file system without permissions refuses, and the picture matters more.
+    // Best effort: a file system without permissions refuses this, but the picture matters more.
     if (exists && fchmod(file, status.st_mode & 07777) != 0) errno = 0;
     close(file);
 }
@@ -169,7 +169,7 @@ void OutputFile::commit() {
     if (commit_note) commit_note(path_, temporary_);
     if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
     temporary_.clear();
-    // The data are safe and in place; that the new name survives a power cut is a bonus not all file systems give.
+    // The data are durable and in place; not all file systems make the new name survive a power cut.
     const std::string folder = folder_of(target_);
     sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
 }

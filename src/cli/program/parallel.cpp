@@ -10,13 +10,13 @@
 namespace lensprof {
 namespace {
 
-// Items whose work is done, and which of them are finished.
+// Items whose work is done, and those finished.
 class Finishing {
 public:
     Finishing(uint32_t count, const std::function<void(uint32_t)> &finish) : worked_(count), finish_(finish) {}
 
-    // Item i was worked on: finishes what can be, unless another thread is about it. False when that failed; then
-    // nothing is finished any more.
+    // Marks item i as done and finishes all possible items, unless another thread is doing so. False after a failure;
+    // then nothing more is finished.
     bool add(uint32_t i) {
         std::unique_lock<std::mutex> lock(mutex_);
         worked_[i] = true;
@@ -37,7 +37,7 @@ public:
         return true;
     }
 
-    // When no thread is at work any more.
+    // Call when all threads have ended.
     void throw_failure() const {
         if (failure_) std::rethrow_exception(failure_);
     }
@@ -46,7 +46,7 @@ private:
     std::mutex mutex_;
     std::vector<bool> worked_;
     const std::function<void(uint32_t)> &finish_;
-    uint32_t next_ = 0;           // written by the thread that is busy
+    uint32_t next_ = 0;           // written by the finishing thread
     std::exception_ptr failure_;  // of finishing item next_
     bool busy_ = false;
 };
@@ -75,7 +75,7 @@ void for_each_in_order(uint32_t count, uint32_t threads, const std::function<voi
             return finishing.add(i);
         });
     } catch (...) {
-        finishing.throw_failure();  // of a lower item: those up to it were worked on without failure
+        finishing.throw_failure();  // of a lower item: all below it were done without failure
         throw;
     }
     finishing.throw_failure();

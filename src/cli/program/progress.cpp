@@ -21,8 +21,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }  // namespace
 
 double TimeLeft::seconds(const std::string &what, double fraction, double now) {
-    constexpr double soonest = 2.0, least = 0.01;  // s, and share, from which on the rate is known
-    constexpr double anew = 0.05;                  // share that threads do not go back by
+    constexpr double soonest = 2.0, least = 0.01;  // seconds, and share, from which on the rate is reliable
+    constexpr double anew = 0.05;                  // larger than the steps back between threads
     if (what != what_ || fraction < last_ - anew) {
         what_ = what;
         begin_ = now, first_ = fraction;

@@ -1,4 +1,4 @@
-// One line on standard error that says how far a command is; only where somebody watches.
+// A progress line on standard error; shown only on a terminal unless requested.
 #pragma once
 
 #include <chrono>
@@ -15,11 +15,11 @@ enum class ShowProgress {
     never
 };
 
-// How long a piece of work will take yet, by how much of it was done in the time since it began.
+// Estimates the remaining time of a task from the share done since it started.
 class TimeLeft {
 public:
-    // Seconds, of work called `what` of which `fraction` is done at the time `now`, in seconds; 0 where that is not
-    // known: at the beginning, and where nothing is done yet.
+    // Remaining seconds of the task `what`, of which `fraction` is done at time `now`, in seconds; 0 if unknown: at the
+    // beginning, and if nothing is done yet.
     double seconds(const std::string &what, double fraction, double now);
 
 private:
@@ -27,25 +27,25 @@ private:
     double begin_ = 0.0, first_ = 0.0, last_ = 0.0;
 };
 
-// ", 40 s left", ", 3 min left", ", 2 h 5 min left"; empty where it is short.
+// ", 40 s left", ", 3 min left", ", 2 h 5 min left"; empty if it is short.
 std::string describe_time_left(double seconds);
 
 // Threads: all methods may be called by any thread.
 class Progress {
 public:
-    // `err` is written to when `show` says so; the terminal test is for standard error.
+    // Writes to `err` if `show` allows it; the terminal test applies to standard error.
     Progress(std::ostream &err, ShowProgress show);
     ~Progress();
 
-    // `detail` follows the percentage, and the time left that; where they alone change the line is drawn again a few
-    // times a second.
+    // `detail` follows the percentage, and the remaining time follows `detail`; if only these change, the line is
+    // redrawn a few times per second.
     void update(const std::string &what, double fraction, const std::string &detail = std::string());
     void clear();
 
-    // A line that stays, where progress is shown.
+    // Prints a permanent line if progress is shown.
     void say(const std::string &line);
 
-    // A line that stays, always.
+    // Prints a permanent line always.
     void warn(const std::string &line);
 
 private:
@@ -60,7 +60,7 @@ private:
     std::mutex mutex_;
 };
 
-// Pictures and pixels that are done, and how fast, as progress. Threads: all methods may be called by any thread.
+// Shows progress as pictures and pixels done, with their rate. Threads: all methods may be called by any thread.
 class Throughput {
 public:
     Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels);
@@ -68,7 +68,7 @@ public:
     void add_pixels(uint64_t pixels);
     void add_picture();
 
-    double seconds() const;  // since the beginning
+    double seconds() const;  // since the start
     double megapixels() const;
 
     // "40 pictures, 480.0 megapixels in 9.8 s: 4.1 pictures/s, 49.0 megapixels/s"

@@ -37,7 +37,9 @@ lensprof_response response_of_word(const std::string &word) {
     } else {
         throw std::invalid_argument(word + ": use linear, srgb, film, gamma:G or emor:a,b,...");
     }
-    if (status != LENSPROF_OK) throw std::invalid_argument(word + ": is not a monotone response");
+    if (status != LENSPROF_OK)
+        throw std::invalid_argument(word + ": is not a monotonic response; use linear, srgb, "
+                                                                  "film, gamma:G or emor:a,b,...");
     return response;
 }
 

@@ -1,4 +1,4 @@
-// A response in the words of an option.
+// Parsing of a response given as an option value.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace lensprof {
 
-// linear, srgb, gamma:G, film (an S like film's), or emor:a,b,... (EMoR coefficients); throws std::invalid_argument
-// with what is wrong with another word.
+// linear, srgb, gamma:G, film (an S curve like that of film), or emor:a,b,... (EMoR coefficients); throws
+// std::invalid_argument with the reason for other words.
 lensprof_response response_of_word(const std::string &word);
 
 }  // namespace lensprof

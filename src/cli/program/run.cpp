@@ -17,9 +17,9 @@ int print_version(Streams &streams) {
 }
 
 void declare_help(Command &root, const Program &program) {
-    Command help = root.add("help", "print this, or the help of a command");
+    Command help = root.add("help", "print this help, or the help of a command");
     auto words = std::make_shared<std::vector<std::string>>();
-    help.texts("COMMAND", *words, "the command, and its verb");
+    help.texts("COMMAND", *words, "the command, optionally followed by its verb");
     help.run([words, &program](Streams &streams) {
         streams.out << program.help(*words);
         return 0;
@@ -30,9 +30,9 @@ void declare_root(Command &root, const Program &program) {
     auto version = std::make_shared<bool>(false);
     root.flag("--version", *version, "print the version");
     root.footer(
-        "`lensprof help COMMAND` prints a command's options.\n"
-        "exit codes: 0 done, 1 failed, 2 usage, 3 input unreadable, 4 fit not usable, 5 not found, "
-        "6 store, 130 interrupted");
+        "Run `lensprof help COMMAND` for its options.\n"
+        "exit codes: 0 done, 1 failed, 2 usage, 3 input unreadable, 4 fit not usable, 5 not found, 6 store,\n"
+        "130 interrupted");
     root.run([version, &program](Streams &streams) {
         if (*version) return print_version(streams);
         streams.out << program.help({});
@@ -62,14 +62,14 @@ void declare_all(Command root, const Program &program) {
 int run(const std::vector<std::string> &words, Streams &streams) {
     streams.words = words;
     try {
-        Program program("lensprof", "lensprof - what the camera did to the light, and how to undo it");
+        Program program("lensprof", "lensprof - calibrate camera response and vignetting, and correct pictures");
         declare_all(program.root(), program);
         return program.run(words, streams);
     } catch (const Failure &failure) {
         tell(streams, failure.what());
         return static_cast<int>(failure.code);
     } catch (const std::bad_alloc &) {
-        tell(streams, "out of memory");
+        tell(streams, "out of memory; close other programs or use smaller pictures");
     } catch (const std::exception &e) {
         tell(streams, e.what());
     }

@@ -1,4 +1,4 @@
-// The program as a function, so that tests run it in process.
+// The program as a function, so that tests can run it in process.
 #pragma once
 
 #include <ostream>
@@ -7,7 +7,7 @@
 
 namespace lensprof {
 
-// Where a command writes: results to `out`, everything else to `err`.
+// Output of a command: results to `out`, everything else to `err`.
 struct Streams {
     std::ostream &out;
     std::ostream &err;
@@ -15,7 +15,7 @@ struct Streams {
     std::vector<std::string> warnings = {};  // that were written to `err`, without "warning: "
 };
 
-// The whole program: returns its exit code (ExitCode in error.hpp).
+// Runs the program and returns its exit code (ExitCode in error.hpp).
 int run(const std::vector<std::string> &words, Streams &streams);
 
 }  // namespace lensprof

@@ -12,11 +12,12 @@ Shard shard_of(const std::string &word) {
     if (word.empty()) return {};
     const size_t slash = word.find('/');
     try {
-        if (slash == std::string::npos) throw std::invalid_argument("there is no /");
+        if (slash == std::string::npos) throw std::invalid_argument("no slash");
         const uint32_t count = count_of(word.substr(slash + 1), 1, most_shards);
         return {count_of(word.substr(0, slash), 1, count), count};
     } catch (const std::invalid_argument &) {
-        throw Failure(ExitCode::usage, "--shard " + word + ": is no part of a whole; give one as 2/5, from 1/5 to 5/5");
+        throw Failure(ExitCode::usage, "--shard " + word + ": not a valid part; give INDEX/COUNT with 1 <= INDEX <= "
+                                                           "COUNT, such as 2/5");
     }
 }
 

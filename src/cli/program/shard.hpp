@@ -1,4 +1,4 @@
-// A part of the work for one of several machines, as farms of command lines start them.
+// A part of the work, to distribute it over several machines.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 namespace lensprof {
 
 struct Shard {
-    uint32_t number = 1, count = 1;  // the first is 1
+    uint32_t number = 1, count = 1;  // 1-based
 
-    // The items of this part are from first(items) to end(items), not included: all parts together have each item once.
+    // The items of this part are first(items) to end(items), exclusive: each item belongs to exactly one part.
     size_t first(size_t items) const { return items * (number - 1) / count; }
     size_t end(size_t items) const { return items * number / count; }
 };
 
-// "2/5"; the whole for an empty word. Failure (usage) names the option --shard.
+// Parses "2/5"; an empty word gives the whole. Failure (usage) for the option --shard.
 Shard shard_of(const std::string &word);
 
 }  // namespace lensprof
