@@ -178,7 +178,7 @@ void test_held_balances(void **) {
 void test_known_is_said(void **) {
     const std::string path = linear_scene();
     const Outcome known = run_words({"build", path + "/pano.pto", "--no-store", "--gamma-from", "known"});
-    assert_true(contains(known.out, "gamma     known by what is held"));
+    assert_true(contains(known.out, "gamma     known from the fixed parameters"));
 }
 
 void test_refused_options(void **) {
@@ -188,7 +188,7 @@ void test_refused_options(void **) {
                                Words{"--camera-kind", "scanner"}, Words{"--gamma-from", "exif", "--exif-sigma", "0"},
                                Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
         assert_refused(usage, build(path, words), {words[0]});
-    assert_refused(usage, build(path, {"--force"}), {"--no-store and --force", "leave one out"});
+    assert_refused(usage, build(path, {"--force"}), {"--no-store and --force", "omit one of them"});
     assert_refused(usage, {"bracket", path + "/img000.tif", path + "/img001.tif", "--no-store", "--force"},
                    {"--force"});
     must_exit(done, build(path, {"--force", "--pto-out", work("out.pto")}));

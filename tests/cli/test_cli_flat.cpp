@@ -89,7 +89,7 @@ void test_turned_shots_are_measured_and_stored(void **) {
     assert_string_equal(stored["key"]["processing"].get<std::string>().c_str(), "raw");
     assert_true(stored["vignetting"] == json["vignetting"]);
     const std::string table = must_exit(done, words);
-    for (const char *part : {"falloff", "told from the lens", "stored    profile 2", "residual", "turned180.tif"})
+    for (const char *part : {"falloff", "separated from the lens", "stored    profile 2", "residual", "turned180.tif"})
         assert_true(contains(table, part));
 }
 
@@ -124,13 +124,13 @@ void test_the_card_is_corrected(void **) {
                              1);
             must_exit(done, Words{"apply"} + setting + db + out);
         } else {
-            assert_refused(usage, measure, {file, "nothing in it says that it is linear", "--linear"});
+            assert_refused(usage, measure, {file, "is not marked as linear", "--linear"});
             const Outcome outcome = run_words(measure + Words{"--linear"});
             assert_int_equal(outcome.code, done);
             assert_true(contains(outcome.err, "lensprof apply --processing raw"));
             const Outcome guessed = run_words(Words{"apply"} + setting + db + out);
             assert_int_equal(guessed.code, done);
-            assert_true(contains(guessed.err, "nothing says whether this 16 bit TIFF is linear"));
+            assert_true(contains(guessed.err, "this 16 bit TIFF is not marked as linear"));
             must_exit(done, Words{"apply", "--processing", "raw"} + setting + db + out);
         }
         assert_close(evenness(in_folder(name + "-out/" + name + ".tif")), 1.0, 0.01);

@@ -94,11 +94,11 @@ void test_a_folder_of_many_things(void **) {
     assert_int_equal(run.code, done);
     const Json json = Json::parse(run.out);
     assert_int_equal(json["images"].size(), 5);
-    assert_true(contains(run.err, "x0.png, x1.png, x2.png: left out, another group"));
-    assert_true(contains(run.err, "y.png: left out, no overlap"));
+    assert_true(contains(run.err, "x0.png, x1.png, x2.png: left out: part of another group"));
+    assert_true(contains(run.err, "y.png: left out: no overlap"));
     assert_true(contains(run.err, "damaged.png"));
     assert_true(contains(run.err, "it is a copy of copy.png"));
-    assert_true(contains(run.err, "small.png: left out, of a camera, size or processing of which no two"));
+    assert_true(contains(run.err, "small.png: left out: no two pictures of its camera, size or processing overlap"));
     std::map<std::string, std::string> left_out;
     for (const Json &one : json["left_out"]) left_out[one["file"]] = one["reason"];
     assert_int_equal(left_out.size(), 7);
@@ -121,8 +121,10 @@ void test_another_camera_in_a_chain(void **) {
     const Outcome run = build_with_one_smaller("chain", {"--images", "6", "--seed", "61"}, "img002.png");
     assert_int_equal(run.code, done);
     assert_int_equal(Json::parse(run.out)["images"].size(), 3);
-    assert_true(contains(run.err, "img000.png, img001.png: left out, another group: only pictures of another camera"));
-    assert_true(contains(run.err, "img002.png: left out, of a camera, size or processing of which no two"));
+    assert_true(contains(run.err,
+                         "img000.png, img001.png: left out: part of another group: only pictures of another "
+                         "camera"));
+    assert_true(contains(run.err, "img002.png: left out: no two pictures of its camera, size or processing overlap"));
 }
 
 // A picture that only one of another size joins to the others is not itself of another size.
@@ -130,8 +132,10 @@ void test_one_picture_behind_another_camera(void **) {
     if (is_missing()) return;
     const Outcome run = build_with_one_smaller("behind", {"--images", "5", "--seed", "62"}, "img001.png");
     assert_int_equal(run.code, done);
-    assert_true(contains(run.err, "img001.png: left out, of a camera, size or processing of which no two"));
-    assert_true(contains(run.err, "img000.png: left out, only pictures of another camera, size or processing join it"));
+    assert_true(contains(run.err, "img001.png: left out: no two pictures of its camera, size or processing overlap"));
+    assert_true(contains(run.err,
+                         "img000.png: left out: only pictures of another camera, size or processing connect "
+                         "it"));
 }
 
 // A bracket shows no falloff: what takes it is named. Beside a row of pictures it is left out, however many it has.
@@ -152,7 +156,7 @@ void test_a_bracket(void **) {
     const Outcome run = run_words(Words{"build", work("row")} + quietly);
     assert_int_equal(run.code, done);
     assert_int_equal(Json::parse(run.out)["images"].size(), 3);
-    assert_true(contains(run.err, "s3.png: left out, another group, of a camera that did not move"));
+    assert_true(contains(run.err, "s3.png: left out: part of another group, whose camera did not move"));
 }
 
 // Pictures a third of which is fixed to the frame, as from behind a windscreen, are of a camera that turned.
@@ -200,7 +204,7 @@ void test_own_pictures_are_left_out(void **) {
     const Outcome run = run_words(Words{"build", work("own")} + quietly);
     assert_int_equal(run.code, done);
     assert_int_equal(Json::parse(run.out)["images"].size(), 3);
-    assert_true(contains(run.err, "even/img001.png: left out, lensprof has made it"));
+    assert_true(contains(run.err, "even/img001.png: left out: lensprof made it"));
     must_exit(not_usable, Words{"build", work("own/even")} + quietly);
 }
 
@@ -219,11 +223,11 @@ void test_outputs_are_checked_first(void **) {
     };
     for (const char *picture : {"first/copy.png", "first/z.png", "first/img001.png"}) {
         const std::string before = text_of(work(picture));
-        refused({"--no-store", "--preview", work(picture)}, work(picture) + ": would be written over");
+        refused({"--no-store", "--preview", work(picture)}, work(picture) + ": would be overwritten");
         assert_true(text_of(work(picture)) == before);
     }
     refused({"--no-store", "--pto-out", work("alone/img001.png")}, "is the name of a picture");
-    refused({"--no-store", "--preview", work("alone/img001.png")}, "is a photograph that is there already");
+    refused({"--no-store", "--preview", work("alone/img001.png")}, "is an existing photograph");
     refused({"--no-store", "--preview", work("nowhere/p.jpg")}, "cannot write", failed);
     refused({"--no-store", "--project-out", work("nowhere/p.pto")}, "cannot write", failed);
     refused({"--no-store", "--pto-out", work("alone")}, "is not a regular file");
@@ -231,7 +235,7 @@ void test_outputs_are_checked_first(void **) {
     for (const char *picture :
          {"first/img000.png", "first/img001.png", "first/img002.png", "first/copy.png", "first/z.png"})
         write_picture(work(picture), read_picture(work(picture)));  // without metadata
-    refused({"--db", work("first.db")}, "no EXIF says which camera");
+    refused({"--db", work("first.db")}, "EXIF does not name camera and lens");
     assert_true(!fs::exists(work("first.db")));
 }
 
@@ -242,7 +246,7 @@ void test_corrected_copies_are_not_read(void **) {
     const Outcome run = run_words(Words{"build", work("copies")} + quietly);
     assert_int_equal(run.code, done);
     assert_int_equal(Json::parse(run.out)["images"].size(), 3);
-    assert_true(contains(run.err, "img000.png: left out, it is in a folder that calibrate has written"));
+    assert_true(contains(run.err, "img000.png: left out: it is in an output folder of calibrate"));
 }
 
 // A logo in the same place of all frames matches everywhere, and says nothing of the scene.
@@ -334,7 +338,7 @@ void test_odd_files_among_good_ones(void **) {
     save_text(work("odd/empty1.jpg"), ""), save_text(work("odd/empty2.jpg"), "");
     const Outcome run = run_words(Words{"build", work("odd")} + quietly);
     assert_int_equal(run.code, done);
-    assert_true(contains(run.err, "line.png: left out, no overlap"));
+    assert_true(contains(run.err, "line.png: left out: no overlap"));
     assert_true(contains(run.err, "empty1.jpg") && contains(run.err, "empty2.jpg") && !contains(run.err, "a copy of"));
 }
 
@@ -398,7 +402,7 @@ void test_a_camera_that_moved(void **) {
     const Outcome run = run_words(Words{"build", work("moved")} + quietly);
     if (run.code != done) print_error("%s\n", run.err.c_str());
     assert_int_equal(run.code, done);
-    assert_true(contains(run.err, "compared where they match"));
+    assert_true(contains(run.err, "compared only at matched points"));
     is_right(Json::parse(run.out));
     assert_true(Json::parse(run.out)["images"] == json_of(Words{"build", work("moved")} + quietly)["images"]);
     is_right(json_of(Words{"build", work("moved"), "--method", "radiance"} + quietly));
@@ -424,12 +428,12 @@ void test_refused(void **) {
         if (!contains(refused.err, text)) print_error("%s\n", refused.err.c_str());
         assert_true(contains(refused.err, text));
     };
-    refuse({"build", a, "--no-store"}, not_usable, "has one picture");
-    refuse({"build", a, a, "--no-store"}, not_usable, "has one picture");
+    refuse({"build", a, "--no-store"}, not_usable, "has only one picture");
+    refuse({"build", a, a, "--no-store"}, not_usable, "has only one picture");
     refuse({"build", a, b, "--no-store"}, not_usable, "no two of the pictures overlap");
     refuse({"build", work("one"), "--points", work("p.txt"), "--no-store"}, usage, "--points: needs the project");
-    refuse({"build", pto, "--project-out", work("q.pto"), "--no-store"}, usage, "--project-out: writes the project of");
-    refuse({"build", work("one"), "--project-out", a, "--no-store"}, usage, "would be written over");
+    refuse({"build", pto, "--project-out", work("q.pto"), "--no-store"}, usage, "--project-out: needs pictures");
+    refuse({"build", work("one"), "--project-out", a, "--no-store"}, usage, "would be overwritten");
     refuse({"build", work("nowhere"), "--no-store"}, unreadable, "nowhere");
     save_text(work("p1.png"), "no picture"), save_text(work("p2.png"), "none either");
     refuse({"build", work("p1.png"), work("p2.png"), "--no-store"}, unreadable, "none of the pictures can be read");

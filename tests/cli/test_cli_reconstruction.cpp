@@ -348,7 +348,10 @@ void test_options(void **) {
                    {"--seed-exif", "--model"});
     assert_refused(usage, {"apply", "--model", file, "--merge", "--linear", "-o", work("out")}, {"--merge", "--pto"});
     save_text(work("notes.txt"), "mine");
-    assert_refused(usage, build("model", {"--exposures-out", work("notes.txt")}), {"notes.txt", "is there already"});
+    assert_refused(usage, build("model", {"--exposures-out", work("notes.txt")}),
+                   {"notes.txt",
+                    "exists and is not a "
+                    "file of exposures"});
     for (const char *option : {"--preview", "--points", "--project-out"})
         assert_refused(usage, build("model", {option, work("x.png")}), {option, "reconstruction"});
     assert_refused(usage, {"build", work("pictures"), "--images", work("pictures"), "--no-store"},

@@ -34,7 +34,7 @@ Json shown(int64_t id) { return json_of({"profile", "show", std::to_string(id), 
 void test_next_sequences(void **) {
     const Json first = json_of(build(pictures("a", "1")));
     assert_true(first["prior"]["profile"].is_null());
-    assert_true(contains(first["prior"]["reason"].get<std::string>(), "no database yet"));
+    assert_true(contains(first["prior"]["reason"].get<std::string>(), "no database exists yet"));
     Json last = first;
     for (const char *name : {"b", "c"}) {
         const Json next = json_of(build(pictures(name, name == std::string("b") ? "2" : "3")));
@@ -50,7 +50,7 @@ void test_next_sequences(void **) {
     assert_int_equal(stored["provenance"]["images"], 6);
     assert_int_equal(stored["provenance"]["pairs"].get<int>(), 3 * shown(1)["provenance"]["pairs"].get<int>());
     const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--stored", "auto"});
-    assert_true(contains(said, "prior     profile 3, which the result holds"));
+    assert_true(contains(said, "prior     profile 3, used by the result"));
 }
 
 // Not even as what is in another profile, or under another name.
@@ -63,10 +63,10 @@ void test_pictures_count_once(void **) {
         assert_int_equal(json["prior"]["profile"], 1);
         assert_true(json["prior"]["used"].get<bool>());
     }
-    assert_refused(usage, build(a), {a, "profile 2 holds these pictures already"});
+    assert_refused(usage, build(a), {a, "profile 2 already includes these pictures"});
     must_exit(done, {"profile", "remove", "2", "--db", work("l.db")});
     const Json alone = json_of(build(a, {"--no-store"}));
-    assert_true(contains(alone["prior"]["reason"].get<std::string>(), "profile 1 is of these pictures alone"));
+    assert_true(contains(alone["prior"]["reason"].get<std::string>(), "profile 1 is from these pictures alone"));
     json_of(build(b));
     must_exit(done, {"profile", "remove", "1", "--db", work("l.db")});  // the chain ends: nothing is known of it
     assert_true(json_of(build(a, {"--no-store"}))["prior"]["used"].get<bool>());
@@ -84,12 +84,12 @@ void test_merged_profiles_count_once(void **) {
     assert_int_equal(merged["provenance"]["prior_id"], 2);
     const Words again = all + Words{"--stored", "auto", "--json", "--no-store"};
     assert_int_equal(json_of(Words{"build", b} + again)["prior"]["profile"], 2);
-    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 holds these pictures already", "--stored none"});
-    assert_refused(usage, Words{"build", a, "--stored", "3", "--no-store"} + all, {"holds these pictures already"});
+    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 already includes these pictures", "--stored none"});
+    assert_refused(usage, Words{"build", a, "--stored", "3", "--no-store"} + all, {"already includes these pictures"});
     const Json deep =
         json_of(Words{"build", a, "--no-store", "--json"} + all);  // not asked for: it is said, and left out
     assert_true(deep["prior"]["profile"].is_null());
-    assert_true(contains(deep["prior"]["reason"].get<std::string>(), "profile 3 holds these pictures already"));
+    assert_true(contains(deep["prior"]["reason"].get<std::string>(), "profile 3 already includes these pictures"));
     // What is in a file has no numbers of ours.
     must_exit(done, Words{"profile", "export", "3", "-o", work("one.json")} + all);
     must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
@@ -97,7 +97,7 @@ void test_merged_profiles_count_once(void **) {
     assert_true(alone["provenance"]["prior_id"].is_null());
     assert_int_equal(alone["provenance"]["images"], 4);
     const std::string said = must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
-    assert_true(contains(said, "1 was there already"));
+    assert_true(contains(said, "1 was stored already"));
 }
 
 // Its falloff, that is: its response is that of these pictures, and stays the prior.
@@ -128,7 +128,7 @@ void test_composed_prior(void **) {
     assert_int_equal(shown(3)["provenance"]["images"], 2);
     const Json again = json_of(build(a, {"--aperture", "4.2", "--no-store"}));
     assert_true(again["prior"]["profile"].is_null());
-    assert_true(contains(again["prior"]["reason"].get<std::string>(), "holds these pictures already"));
+    assert_true(contains(again["prior"]["reason"].get<std::string>(), "already includes these pictures"));
 }
 
 void test_no_prior_for_this(void **) {

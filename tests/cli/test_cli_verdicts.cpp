@@ -43,7 +43,7 @@ void test_one_bad_picture_of_six(void **) {
     assert_true(contains(text_of(result), "\n#-lensprof left_out 5\n"));
     const Outcome corrected = run_words({"apply", "--pto", result, "-o", even});
     assert_int_equal(corrected.code, done);
-    assert_true(contains(corrected.err, "img005.png: is not part of the result"));
+    assert_true(contains(corrected.err, "img005.png: not corrected: the project has no exposure for it"));
     assert_true(fs::exists(even + "/img003.png") && !fs::exists(even + "/img005.png"));
     const Json alone = json_of({"apply", "--pto", result, "-o", even, "--json", work("bad/img005.png")}, not_usable);
     assert_int_equal(alone["pictures"].size(), 0);
@@ -70,8 +70,8 @@ void test_even_pictures_that_are_no_profile(void **) {
     assert_true(json["usable"] == false && json["evens"] == true && json["reason_code"] == "patterns");
     const Outcome told = run_words({"build", pto("tone"), "--no-store", "--pto-out", result});
     assert_int_equal(told.code, done);
-    assert_true(contains(told.err, "evens out these pictures, but is not a profile to store"));
-    assert_true(contains(told.out, "EVENS OUT"));
+    assert_true(contains(told.err, "corrects these pictures, but is not stored as a profile"));
+    assert_true(contains(told.out, "CORRECTS"));
     assert_true(fs::exists(result));
     const Outcome stored = run_words({"build", pto("tone"), "--db", db});
     assert_int_equal(stored.code, not_usable);

@@ -17,12 +17,12 @@ ImagePair images_of(const lensprof_match &match) { return std::minmax(match.imag
 
 struct Block {
     std::vector<uint32_t> images;
-    std::vector<SamplePicture> pictures;  // read when they are needed
+    std::vector<SamplePicture> pictures;  // read when needed
 };
 
-// The matches between two blocks, or within one, with the block's own numbers of the images.
+// The matches between two blocks, or within one, with block-local image indices.
 struct BlockMatches {
-    std::vector<uint32_t> images;  // of the project
+    std::vector<uint32_t> images;  // index in the project
     std::vector<lensprof_sample_image> views;
     std::vector<lensprof_match> matches;
     size_t links = 0;
@@ -43,7 +43,7 @@ public:
 private:
     uint64_t bytes_of(uint32_t image) const;
     void read(Block &block);
-    // Of two blocks, which may be one, and the matches of these numbers.
+    // Samples two blocks, which may be the same, at the matches with these indices.
     BlockMatches matches_between(Block &a, Block &b, const std::vector<uint32_t> &numbers) const;
     void sample(Block &a, Block &b, const std::vector<uint32_t> &numbers);
 
@@ -53,7 +53,7 @@ private:
     Progress &progress_;
     LinkWeights matches_of_link_;
     std::vector<Block> blocks_;
-    std::vector<uint32_t> block_of_;  // of each image
+    std::vector<uint32_t> block_of_;  // per image
     std::string nothing_;             // why a sampling found nothing
 };
 
@@ -63,7 +63,7 @@ BlockSampler::BlockSampler(const Project &project, const lensprof_sample_options
     for (const lensprof_match &match : project.matches) matches_of_link_[images_of(match)]++;
     const auto count = static_cast<uint32_t>(project.images.size());
     block_of_.resize(count);
-    uint64_t bytes = block_bytes;  // so that the first image begins a block
+    uint64_t bytes = block_bytes;  // so that the first image starts a block
     for (const uint32_t image : order_by_links(count, matches_of_link_)) {
         const uint64_t own = bytes_of(image);
         if (bytes + own > block_bytes) blocks_.emplace_back(), bytes = 0;
@@ -151,7 +151,7 @@ void BlockSampler::run() {
         matches_of_blocks[std::minmax(block_of_[image[0]], block_of_[image[1]])].push_back(m);
     }
     size_t done = 0;
-    uint32_t held = UINT32_MAX;  // the block that is kept for what is between it and later ones
+    uint32_t held = UINT32_MAX;  // the block kept in memory for pairs with later ones
     for (const auto &[numbers, matches] : matches_of_blocks) {
         stop_if_interrupted();
         Block &a = blocks_[numbers.first], &b = blocks_[numbers.second];

@@ -1,4 +1,4 @@
-// Pairs at the matches of a reconstruction, whose pictures may be too many to be held in memory together.
+// Samples pairs at the matches of a reconstruction whose pictures may not fit in memory together.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,12 @@
 
 namespace lensprof {
 
-// Most bytes of the pictures of a block.
+// Maximum bytes of the pictures of a block.
 constexpr uint64_t usual_block_bytes = uint64_t(512) << 20;
 
-// Measures pairs at the project's matches, each of two blocks of pictures that are read together: images that share
-// matches are in few blocks, so that every picture is read a few times. `links` receives those of the images, `points`
-// the scene point of each pair. options.pairs: 0 = one a match. Channels: 3, or 1 where every picture is grey, which
-// *channels receives.
+// Measures pairs at the project's matches, for two blocks of pictures at a time: images that share matches are in few
+// blocks, so every picture is read only a few times. `links` receives the links of the images, `points` the scene point
+// per pair. options.pairs: 0 = one per match. *channels receives 3, or 1 if all pictures are grey.
 std::vector<lensprof_pair> sample_in_blocks(const Project &project, const lensprof_sample_options &options,
                                             uint32_t max_side, uint64_t block_bytes, Progress &progress,
                                             std::vector<lensprof_link> &links, std::vector<uint32_t> &points,

@@ -1,4 +1,4 @@
-// `lensprof bracket`: pictures of one scene at several exposures -> the camera's response.
+// `lensprof bracket`: fits the camera's response to pictures of one scene at several exposures.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -32,30 +32,35 @@ struct Options {
 };
 
 void declare(Command &command, Options &o) {
-    command.files("FILES", o.files, "pictures of one scene by a camera that does not move");
+    command.files("FILES", o.files, "pictures of one scene from a stationary camera");
     command.require("FILES");
     command.numbers("--ev", o.ev, {-64.0, 64.0},
-                    "their exposures, EV, larger = brighter, with commas; default EXIF's, else unknown");
+                    "exposures of the pictures, EV, larger = brighter, separated by commas; default from EXIF, else "
+                    "unknown");
     command.numbers("--times", o.times_s, {1e-9, 1e9, Unit::time_s},
-                    "their exposure times instead, seconds, e.g. 1/8,1,8 or 1/8s,1s,8s");
-    command.number("--ev-sigma", o.ev_sigma, {0.001, 10.0}, "standard error of these, EV");
+                    "exposure times instead of --ev, seconds, such as 1/8,1,8 or 1/8s,1s,8s");
+    command.number("--ev-sigma", o.ev_sigma, {0.001, 10.0},
+                   "standard error of the exposures given by --ev or "
+                   "--times, EV; default 0.05");
     command.choice("--white-balance", o.free_balance, {{"free", true}, {"fixed", false}},
-                   "free or fixed from picture to picture");
+                   "white balance of the pictures: free (default: estimated per picture) or fixed (the same in all)");
     declare_fit(command, o.fit, {true, false});
-    command.flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
-    command.text("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
+    command.flag("--modes-only", o.modes_only, "restrict the response to EMoR modes even if a free curve fits better");
+    command.text("--reference", o.reference,
+                 "picture (number or name) whose exposure is 0 EV; default the first usable one");
     command.number("--black", o.black, {0.0, 200.0},
-                   "grey values up to this, levels of 255, are not used: black that is not 0, as in scanned film");
-    command.count("--pairs", o.pairs, 0, 1 << 24, "number of pairs; 0 = 10000 a picture");
-    command.count("--seed", o.seed, 0, UINT32_MAX, "of the sampling");
+                   "ignore grey values up to this, levels of 255, if black is not 0, as in scanned film; default 0");
+    command.count("--pairs", o.pairs, 0, 1 << 24, "number of pairs; default 0 = 10000 per picture");
+    command.count("--seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");
     command.count("--max-side", o.max_side, 0, UINT32_MAX,
-                  "sample pictures reduced to no less than this many pixels (1600); 0 = full size");
+                  "sample pictures reduced to at least this many pixels on the longer side; default 1600; 0 = full "
+                  "size");
     declare_store(command, o.store);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }
 
-// The exposures of the command line, EV; empty when it says nothing.
+// The exposures of the command line, EV; empty if not given.
 std::vector<double> given_exposures(const Options &o) {
     if (!o.ev.empty()) demand_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty() || o.times_s.empty()) return o.ev;
@@ -80,8 +85,8 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     return pairs;
 }
 
-// The pictures that pairs join, in order: the largest group, the earlier one of two. The others show hardly anything
-// between black and white that another one shows, too.
+// The pictures connected by pairs, in order: the largest group, the earlier one of two. The others share almost no
+// unclipped grey values with another picture.
 std::vector<uint32_t> joined(const std::vector<lensprof_pair> &pairs, uint32_t count) {
     std::vector<uint32_t> group(count), size(count, 0);
     std::iota(group.begin(), group.end(), 0u);
@@ -101,7 +106,7 @@ std::vector<uint32_t> joined(const std::vector<lensprof_pair> &pairs, uint32_t c
     return members;
 }
 
-// The members of the input alone, numbered anew.
+// Only the members of the input, renumbered.
 void keep_only(const std::vector<uint32_t> &members, FitInput &input) {
     std::vector<uint32_t> number(input.images.size(), UINT32_MAX);
     std::vector<lensprof_fit_image> images;
@@ -120,7 +125,7 @@ void keep_only(const std::vector<uint32_t> &members, FitInput &input) {
     input.pairs = pairs;
 }
 
-// What was found for the members, in its places; of the others what is known beforehand, relative to the reference.
+// The result of the members at their indices; for the others what is known beforehand, relative to the reference.
 void report_members(const std::vector<uint32_t> &members, const std::vector<lensprof_fit_image> &images,
                     const Fitted &fitted, BuildReport &report, Streams &streams) {
     const auto &zero = images[report.reference];
@@ -136,15 +141,14 @@ void report_members(const std::vector<uint32_t> &members, const std::vector<lens
             bool known = images[i].known_ev_sigma > 0.0 && zero.known_ev_sigma > 0.0;
             exposure.ev = known ? images[i].known_ev - zero.known_ev : NAN;
             quality[i].component = i;
-            warn(streams, report.names[i] + ": shows hardly anything between black and white that another picture "
-                          "shows, too; left out");
+            warn(streams, report.names[i] + ": left out: shares almost no unclipped grey values with another picture");
         }
         report.exposures.push_back(exposure);
     }
     report.quality = quality;
 }
 
-// Of the members' fit, about the pictures, with what the command has against it.
+// The verdict of the members' fit in terms of the pictures, with the objections of this command.
 Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uint32_t> &members,
                         const std::vector<std::string> &names) {
     Verdict verdict = verdict_of(result);
@@ -154,7 +158,11 @@ Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uin
     case LENSPROF_REASON_STILL_FEW_AGREE:
     case LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE:
     case LENSPROF_REASON_STILL_IMAGE_DISAGREES:
-    case LENSPROF_REASON_STILL_IMAGE_ODD: verdict.text += "; --black leaves grey values of a raised black out"; break;
+    case LENSPROF_REASON_STILL_IMAGE_ODD:
+        verdict.text +=
+            "; use --black to exclude grey values of a raised black "
+            "level";
+        break;
     default: break;
     }
     return verdict;
@@ -162,7 +170,7 @@ Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uin
 
 bool is_debevec(const Options &o) { return o.fit.method == LENSPROF_METHOD_DEBEVEC; }
 
-// Failure (usage) for what has no meaning to the method debevec.
+// Failure (usage) for options without meaning for the method debevec.
 void check_debevec_options(const Options &o) {
     const std::pair<bool, const char *> without[] = {{o.fit.modes != LENSPROF_MODES_AUTO, "--modes"},
                                                      {o.modes_only, "--modes-only"},
@@ -171,17 +179,16 @@ void check_debevec_options(const Options &o) {
     for (const auto &[is_given, option] : without)
         if (is_given && is_debevec(o))
             throw Failure(ExitCode::usage, std::string("--method debevec and ") + option
-                                               + " contradict each other: it finds the response at every grey level "
-                                                 "by least squares, from known exposures");
+                                               + " exclude each other: debevec estimates the response at every grey "
+                                                 "level by least squares, with known exposures; omit one of them");
 }
 
-// Failure (usage) where the exposure of a picture is not known that has to be.
+// Failure (usage) if the exposure of a picture is unknown but needed.
 void check_exposures_known(const Options &o, const std::vector<lensprof_fit_image> &images) {
     for (size_t i = 0; i < images.size() && is_debevec(o); i++)
         if (!(images[i].known_ev_sigma > 0.0))
-            throw Failure(ExitCode::usage, o.files[i] + ": --method debevec wants known exposures of all pictures, and "
-                                                        "EXIF does not give that of this one; give --ev or --times, or use "
-                                                        "--method transfer");
+            throw Failure(ExitCode::usage, o.files[i] + ": EXIF does not state the exposure, which --method debevec "
+                                                        "needs; give --ev or --times, or use --method transfer");
 }
 
 FitInput fit_input(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
@@ -219,8 +226,9 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     auto place = std::find(members.begin(), members.end(), report.reference);
     if (place == members.end() && !o.reference.empty())
         throw Failure(ExitCode::not_usable,
-                      project.names[report.reference] + ": shows hardly anything between black and white that another picture "
-                                                        "shows, too; choose another reference", LENSPROF_REASON_IMAGE_GROUPS);
+                      project.names[report.reference] + ": shares almost no unclipped grey values with another "
+                                                        "picture; choose another reference",
+                      LENSPROF_REASON_IMAGE_GROUPS);
     if (place == members.end()) place = members.begin();
     report.reference = *place;
     keep_only(members, input);
@@ -244,9 +252,9 @@ int bracket_and_store(const Options &o, Streams &streams) {
     check_store(o.store);
     CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
     if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(project.files[0]))
-        kind = {};  // the response is asked for; that of a camera raw file is known
+        kind = {};  // the response is wanted; that of a camera raw file is known
     BuildReport report = fit_bracket(o, project, metadata, ev, kind, streams);
-    if (!report.fit.usable) report.fit.evens = 0;  // a bracket is to show a response
+    if (!report.fit.usable) report.fit.evens = 0;  // a bracket must determine a response
     return finish_fit(
         report, key, o.store,
         {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),
@@ -260,7 +268,7 @@ int run(const Options &o, Streams &streams) {
     check_debevec_options(o);
     check_store_options(o.store);
     if (!o.ev.empty() && !o.times_s.empty())
-        throw Failure(ExitCode::usage, "--ev and --times say the same; give one of the two");
+        throw Failure(ExitCode::usage, "--ev and --times exclude each other; give one of them");
     try {
         return bracket_and_store(o, streams);
     } catch (const Failure &failure) {
@@ -276,8 +284,8 @@ int run(const Options &o, Streams &streams) {
 }  // namespace
 
 void declare_bracket(Command &program) {
-    Command command = program.add("bracket", "pictures of one scene at several exposures -> the camera's response",
-                                  "Recovers the response of a camera, and exposures, from pictures of one scene.");
+    Command command = program.add("bracket", "fit the camera's response to an exposure bracket of one scene",
+                                  "Estimates the camera's response and the exposures from pictures of one scene.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

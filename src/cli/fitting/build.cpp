@@ -1,4 +1,4 @@
-// `lensprof build`: pictures of a project -> response, falloff, exposures -> a profile in the database.
+// `lensprof build`: fits response, falloff and exposures to the pictures of a project and stores a profile.
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -32,7 +32,7 @@ struct Options : ProjectFitOptions {
     std::string images, image_list, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview, report,
         compare;
     bool track_colours = false;
-    std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
+    std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: according to the project
     bool json = false, progress = false;
 };
 
@@ -42,34 +42,32 @@ constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | balance_flags;
 void declare_points(Command &command, Options &o) {
     command.files(
         "INPUT", o.inputs,
-        "pictures and folders of pictures, whose overlaps are found; or one Hugin project, whose v lines choose "
-        "what is estimated; or one reconstruction (COLMAP database.db or model folder, tracks.csv of OpenSfM and "
-        "OpenDroneMap, Bundler .out, AliceVision .sfm, OpenMVG sfm_data.json, or a folder of one)");
+        "overlapping pictures and folders of them; or one Hugin project, whose v lines choose what is estimated; or "
+        "one reconstruction (COLMAP database.db or model folder, tracks.csv of OpenSfM and OpenDroneMap, Bundler "
+        ".out, AliceVision .sfm, OpenMVG sfm_data.json, or a folder with one of them)");
     command.require("INPUT");
-    command.folder("--images", o.images, "folder of a reconstruction's pictures; default beside it");
+    command.folder("--images", o.images, "folder of the reconstruction's pictures; default next to the reconstruction");
     command.file("--image-list", o.image_list,
-                 "take the images of a reconstruction that this file names alone, one a line");
+                 "use only the images of the reconstruction that this file lists, one name per line; default all");
     command.text("--shard", o.shard,
-                 "only a part of a reconstruction's images, for several machines at once: 2/5 is the second of five; "
-                 "give each its own --db, which `profile merge` joins");
+                 "use only a part of the reconstruction's images, to distribute the work: 2/5 is the second of five "
+                 "parts; give each part its own --db and join them with `profile merge`; default all");
     command.flag("--track-colors", o.track_colours,
-                 "take the colours in tracks.csv and read no picture; so it is without pictures, too");
+                 "use the colours in tracks.csv instead of reading the pictures; default if there are no pictures");
     command.file("--project-out", o.project_out,
-                 "write the project that was found for the pictures, before the fit; to correct it, open it in Hugin");
+                 "write the project found for the pictures, before the fit, for inspection and correction in Hugin");
     command.file("--points", o.points,
-                 "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
+                 "use the pairs of this point file instead of the pictures and their EXIF exposures");
     command.file("--points-out", o.points_out,
-                 "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
+                 "write the pairs used (Hugin's 16 columns), even if the fit is not usable");
     command.file("--preview", o.preview,
-                 "write a mosaic of the pictures before, and below it after correction, as .jpg, .png or .tif");
-    command.file("--report", o.report,
-                 "write a report with charts and the pictures before and after, as one .html file");
+                 "write a mosaic of the pictures before and, below, after correction, as .jpg, .png or .tif");
     command.file("--exposures-out", o.exposures_out,
-                 "write exposures and white balances with their errors, response and falloff, for `apply --model` and "
-                 "other programs, as JSON");
+                 "write exposures and white balances with standard errors, response and falloff as JSON, for `apply "
+                 "--model` and other programs");
     command.file("--gain-chart", o.gain_chart,
-                 "draw what the correction of a reconstruction's pictures gains, as .svg or .png");
-    command.file("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
+                 "write a chart of the improvement by the correction, as .svg or .png; needs a reconstruction");
+    command.file("--pto-out", o.pto_out, "write the project with the result, for Hugin, nona and `apply --pto`");
 }
 
 void declare(Command &command, Options &o) {
@@ -78,7 +76,7 @@ void declare(Command &command, Options &o) {
     choices.stored_prior = true;
     declare_fit(command, o.fit, choices);
     command.choice("--falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
-                   "1, 3 (one a channel) or auto (held-out error decides)");
+                   "number of falloff curves: 1, 3 (one per channel) or auto (default: chosen by held-out error)");
     command.list("--free", o.free,
                  {{"response", LENSPROF_FREE_RESPONSE},
                   {"falloff", falloff_flags},
@@ -86,52 +84,55 @@ void declare(Command &command, Options &o) {
                   {"ev", LENSPROF_FREE_EV},
                   {"wb", balance_flags},
                   {"all", all_flags}},
-                 "what is estimated instead of the v lines, the same of every image; default of a project without "
-                 "photometric v lines: all");
-    command.text("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
+                 "parameters to estimate for every image, separated by commas; default according to the v lines, or "
+                 "all if there are no photometric v lines");
+    command.text("--reference", o.reference,
+                 "image (number or name) whose exposure is 0 EV; default the first whose exposure is fixed, else the "
+                 "first");
     command.flag(
         "--one-lens", o.one_lens,
-        "estimate one response and one falloff for all pictures, whatever camera, lens, focal length, aperture and "
-        "focus they state");
+        "estimate one response and one falloff for all pictures, regardless of the stated camera, lens, focal length, "
+        "aperture and focus");
     command.choice("--sampling", o.sampling,
                    {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
-                   "balanced or paper (d'Angelo 5.1)");
+                   "selection of the pairs: balanced (default) or paper (d'Angelo 5.1)");
     command.count("--pairs", o.pairs, 0, 1 << 24,
-                  "number of pairs; 0 = 300 an image, at least 2000 (radiance: points, 150)");
-    command.count("--seed", o.seed, 0, UINT32_MAX, "of the sampling");
-    command.count("--max-side", o.max_side, 0, UINT32_MAX,
-                  "sample pictures reduced to no less than this many pixels (800); 0 = full size");
+                  "number of pairs; default 0 = 300 per image, at least 2000 (radiance: number of points, 150 per "
+                  "image)");
+    command.count("--seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");
+    command.count(
+        "--max-side", o.max_side, 0, UINT32_MAX,
+        "sample pictures reduced to at least this many pixels on the longer side; default 800; 0 = full size");
     declare_store(command, o.store);
-    command.file("--compare", o.compare, "truth.json of `simulate`: print recovered next to true values");
+    command.file("--compare", o.compare, "print estimated next to true values of this truth.json of `simulate`");
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }
 
-// A name for text that is one of a picture is a slip, which would cost a photograph where it is there; so would a
-// preview in the place of one.
+// A picture name for a text output is a mistake that could overwrite a photograph; so is a preview with the name of
+// one.
 void check_is_no_photograph(const std::string &output, bool is_preview) {
     if (!is_preview && is_picture_name(output))
         throw Failure(ExitCode::usage,
-                      output + ": is the name of a picture, and what is written is text; give another");
+                      output + ": is the name of a picture, but the output is text; give another name");
     if (!is_preview || !is_regular_file(output)) return;
     PictureMetadata metadata = unknown_metadata();
     try {
         metadata = read_metadata(output);
     } catch (const Failure &) {
-        return;  // no picture that anybody can read
+        return;  // not a readable picture
     }
     if (*metadata.key.camera_model || metadata.exposure_time_s)
-        throw Failure(ExitCode::usage,
-                      output + ": is a photograph that is there already; give the preview another name");
+        throw Failure(ExitCode::usage, output + ": is an existing photograph; give the preview another name");
 }
 
-// Files of exposures lie beside those of reconstructions, and nothing else is to be lost by a slip.
+// Files of exposures are next to reconstructions; nothing else must be overwritten by mistake.
 void check_is_no_other_file(const std::string &output) {
     if (!is_regular_file(output) || file_bytes(output) == 0 || is_exposure_file(output)) return;
-    throw Failure(ExitCode::usage, output + ": is there already, and is no file of exposures; give another name");
+    throw Failure(ExitCode::usage, output + ": exists and is not a file of exposures; give another name");
 }
 
-// No output may take the place of an input, of the database or of another output.
+// No output may overwrite an input, the database or another output.
 void check_outputs(const Options &o, std::vector<std::string> taken) {
     taken.insert(taken.end(), {o.points, o.image_list, o.compare});
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
@@ -140,7 +141,8 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
             if (is_same_file(output, other))
-                throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
+                throw Failure(ExitCode::usage, output + ": is an input and would be overwritten; give the output "
+                                                        "another name");
         check_is_no_photograph(output, output == o.preview || output == o.gain_chart);
         if (output == o.exposures_out) check_is_no_other_file(output);
         check_output_file(output);
@@ -148,7 +150,7 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
     }
 }
 
-// Few reconstruct from film. Sensors of phones are small.
+// Reconstructions from film are rare. Sensors of phones are small.
 CameraKind usual_kind(const lensprof_profile_key &key) {
     constexpr double least_crop_factor = 4.5;
     const bool is_phone = key.crop_factor != LENSPROF_UNKNOWN && key.crop_factor >= least_crop_factor;
@@ -176,19 +178,19 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path
-                          + (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read with --points")
-                          + ": gamma rests on the prior");
+                          + (o.points.empty() ? ": the EXIF exposures do not differ" : ": --points does not read EXIF")
+                          + "; gamma depends on the prior");
     return std::move(done.report);
 }
 
-// What can be said before the overlaps of pictures are found, which takes time.
+// Checks that need no overlaps, which take time to find.
 void check_photographs(const Options &o, const Photographs &list) {
     std::vector<std::string> inputs = list.files;
     for (const auto &[file, why] : list.left_out) inputs.push_back(file);
     check_outputs(o, inputs);
     check_store(o.store);
     if (o.store.no_store) return;
-    // One picture that states camera or lens may be the reference; where none does, the first says so.
+    // One picture with camera or lens suffices as the reference; without any, the first one fails.
     std::optional<Failure> unnamed;
     for (const std::string &file : list.files) {
         try {
@@ -196,24 +198,26 @@ void check_photographs(const Options &o, const Photographs &list) {
             override_key(metadata.key, metadata.size, o.store, file);
             return;
         } catch (const Failure &failure) {
-            if (!unnamed && failure.code == ExitCode::usage) unnamed = failure;  // others are left out, and named then
+            if (!unnamed && failure.code == ExitCode::usage)
+                unnamed = failure;  // others are left out and reported
+                                    // later
         }
     }
     if (unnamed) throw *unnamed;
 }
 
-// What cannot be asked of a project without cameras.
+// Refuses options that need a project with cameras.
 Project open_reconstruction(const Options &o, Streams &streams) {
     for (const auto &[option, value] : {std::pair("--points", o.points), std::pair("--preview", o.preview),
                                         std::pair("--project-out", o.project_out)})
         if (!value.empty())
-            throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, and " + o.inputs[0]
-                                               + " is a reconstruction; leave it out");
+            throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, but " + o.inputs[0]
+                                               + " is a reconstruction; omit the option");
     return project_of_reconstruction(
         o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pairs, o.seed}, streams);
 }
 
-// A project, or the pictures that take its place.
+// The project, or the pictures instead.
 Project open_project(const Options &o, Streams &streams) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
     for (const auto &[option, is_given] :
@@ -222,49 +226,49 @@ Project open_project(const Options &o, Streams &streams) {
           std::pair("--gain-chart", !o.gain_chart.empty())})
         if (is_given)
             throw Failure(ExitCode::usage,
-                          std::string(option) + ": is of a reconstruction, and " + o.inputs[0]
-                              + " is none; leave it out, or give database.db, tracks.csv or the like alone");
+                          std::string(option) + ": is for reconstructions, but " + o.inputs[0]
+                              + " is not one; omit the option, or give only database.db, tracks.csv or a similar file");
     const bool is_project = o.inputs.size() == 1 && !names_pictures(o.inputs[0]);
     for (const std::string &input : o.inputs)
         if (!is_project && !names_pictures(input))
-            throw Failure(ExitCode::usage, input + ": is no picture (.jpg, .png, .tif) and no folder; give one project "
-                                                   "alone, or pictures and folders");
+            throw Failure(ExitCode::usage, input + ": is neither a picture (.jpg, .png, .tif) nor a folder; give a "
+                                                   "single project, or pictures and folders");
     if (is_project && !o.project_out.empty())
-        throw Failure(ExitCode::usage, "--project-out: writes the project of pictures, and " + o.inputs[0]
-                                           + " is a project; leave it out, or give --pto-out");
+        throw Failure(ExitCode::usage, "--project-out: needs pictures, but " + o.inputs[0]
+                                           + " is a project; omit the option, or use --pto-out");
     if (is_project) {
         check_is_no_part(o.inputs[0]);
         return read_project(o.inputs[0]);
     }
     if (!o.points.empty())
         throw Failure(ExitCode::usage,
-                      "--points: needs the project that its pairs belong to; give that in place of pictures");
+                      "--points: needs the project that its pairs belong to; give the project instead of pictures");
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     const Photographs list = find_photographs(o.inputs, streams);
     check_photographs(o, list);
     return project_of_pictures(list, o.one_lens, progress, streams);
 }
 
-// What is estimated: by --free, else by the v lines; all where these name nothing photometric, as those of a project
-// that was only aligned do not.
+// The free parameters: by --free, else by the v lines; all if these have nothing photometric, as in a project that was
+// only aligned.
 void choose_unknowns(const Options &o, Project &project, Streams &streams) {
     uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), asked = 0;
     for (const auto &image : project.images) asked |= image.free;
     if (!free && !asked) {
         note(streams, project.path
-                          + ": its v lines name nothing photometric; response, falloff, exposures and white balances "
-                            "are estimated, unless --free says else");
+                          + ": no photometric v lines; estimating response, falloff, exposures and white balances "
+                            "(use --free to change this)");
         free = all_flags;
     }
     for (auto &image : project.images) image.free = free ? free : image.free;
 }
 
-// The command once its options are read; `names` receives the images as soon as they are known.
+// Runs the command after option parsing; `names` receives the images as soon as they are known.
 int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
     Project project = open_project(o, streams);
     names = project.names;
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, project.path + ": has one image; at least two overlapping ones are needed",
+        throw Failure(ExitCode::not_usable, project.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
     std::vector<std::string> inputs = project.files;
     inputs.push_back(project.path);
@@ -290,9 +294,9 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     for (const std::string &file : {o.exposures_out, o.pto_out})
         if (!report.fit.usable && !report.fit.evens && !file.empty() && !o.store.force)
-            tell(streams, file + ": not written (--force writes it all the same)");
+            tell(streams, file + ": not written (use --force to write it anyway)");
     if (!report.fit.usable && !report.fit.evens && !o.preview.empty())
-        tell(streams, o.preview + ": not written, for the result evens nothing out");
+        tell(streams, o.preview + ": not written: the result corrects nothing");
     return code;
 }
 
@@ -303,9 +307,11 @@ int run(const Options &o, Streams &streams) {
     if (!o.gain_chart.empty()) check_chart_name(o.gain_chart);
     if (!o.report.empty()) check_page_name(o.report);
     if (!o.preview.empty() && !o.points.empty())
-        throw Failure(ExitCode::usage, "--preview: shows pictures, which --points leaves out; give one of the two");
+        throw Failure(ExitCode::usage, "--preview: needs the pictures, which --points does not read; give one of them");
     if (o.json && !o.compare.empty())
-        throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
+        throw Failure(ExitCode::usage,
+                      "--compare and --json exclude each other: --compare prints a table; give one "
+                      "of them");
     check_store_options(o.store, takes_stored_prior(o.fit), !o.pto_out.empty() || !o.exposures_out.empty());
 
     std::vector<std::string> names;
@@ -320,8 +326,9 @@ int run(const Options &o, Streams &streams) {
 }  // namespace
 
 void declare_build(Command &program) {
-    Command command = program.add("build", "overlapping pictures, or a Hugin project -> a lens profile in the database",
-                                  "Recovers response, falloff, exposure and white balance from overlapping pictures.");
+    Command command = program.add("build", "fit a lens profile to overlapping pictures or a Hugin project",
+                                  "Estimates response, falloff, exposures and white balances from overlapping "
+                                  "pictures.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 constexpr uint64_t most_bytes = uint64_t(1) << 30;
 constexpr int schema = 1;
-constexpr double most_ev = 30.0;  // from the reference
+constexpr double most_ev = 30.0;  // relative to the reference
 
-// The response as its kind has it, and the light of every grey level of 8 bits.
+// The response in its own form, and the irradiance of every 8 bit grey level.
 Json camera_json(const lensprof_response &response, const std::string &name) {
     Json curve = response_json(&response, 1), light = Json::array();
     if (response.kind != LENSPROF_RESPONSE_TABLE) curve.erase("values");
@@ -69,7 +69,7 @@ Json image_json(const ProjectFit &done, const Project &project, uint32_t i, cons
     return json;
 }
 
-// What reads the file, and says what is wrong with it.
+// Reads the file and reports errors.
 class Reader {
 public:
     explicit Reader(const std::string &path) : path_(path) {}
@@ -88,20 +88,21 @@ public:
         return found;
     }
     double number(const Json &value, const char *name) const {
-        if (!value.is_number() || !std::isfinite(value.get<double>())) fail(std::string(name) + " is no number");
+        if (!value.is_number() || !std::isfinite(value.get<double>())) fail(std::string(name) + " is not a number");
         return value.get<double>();
     }
     uint32_t index(const Json &object, const char *name, size_t count) const {
         const double number = this->number(member(object, name), name);
         if (number < 0.0 || number >= double(count) || number != std::floor(number))
-            fail(std::string(name) + " is none of those that are there");
+            fail(std::string(name) + " is not an index of an element of the file");
         return static_cast<uint32_t>(number);
     }
     std::string text(const Json &object, const char *name) const {
         const Json &value = member(object, name);
-        if (!value.is_string() || value.get_ref<const std::string &>().empty()) fail(std::string(name) + " is no text");
+        if (!value.is_string() || value.get_ref<const std::string &>().empty())
+            fail(std::string(name) + " is not a string");
         if (value.get_ref<const std::string &>().find('\0') != std::string::npos)
-            fail(std::string(name) + " is no name");
+            fail(std::string(name) + " is not a valid name");
         return value.get<std::string>();
     }
     std::vector<double> numbers(const Json &object, const char *name, size_t most) const {
@@ -133,7 +134,7 @@ lensprof_response Reader::response(const Json &camera) const {
         const std::vector<double> values = modes.empty() ? std::vector<double>() : numbers(json, "emor", 25);
         status = lensprof_response_set_emor(&response, values.data(), static_cast<uint32_t>(values.size()));
     } else if (kind != "table") {
-        fail("a response is of the kind " + short_name(kind) + ", which is not known");
+        fail("unknown kind of response " + short_name(kind));
     } else {
         const Json &channels = list(json, "values");
         const std::vector<double> values = numbers({{"values", channels[0]}}, "values", LENSPROF_RESPONSE_SAMPLES);
@@ -171,7 +172,7 @@ lensprof_exposure Reader::exposure(const Json &image) const {
     return own;
 }
 
-// One model a lens, which all of its images share.
+// One model per lens, shared by its images.
 std::vector<std::shared_ptr<const lensprof_profile>> models_of(const Reader &reader, const Json &all) {
     const Json &cameras = reader.list(all, "cameras");
     std::vector<lensprof_response> responses;
@@ -209,7 +210,7 @@ void add_image(const Reader &reader, const Json &json,
     project.models.push_back(models[reader.index(json, "lens", models.size())]);
     project.names.push_back(name);
     const bool has_file = json.contains("file") && images.empty();
-    if (!has_file && images.empty()) reader.fail("does not say where " + name + " is (--images does)");
+    if (!has_file && images.empty()) reader.fail("does not state the folder of " + name + "; use --images");
     project.files.push_back(has_file ? (folder / reader.text(json, "file")).lexically_normal().string()
                                      : picture_of_name(images, name));
 }
@@ -241,8 +242,8 @@ Project read_exposures(const std::string &path, const std::string &images) {
     const Reader reader(path);
     Json all = Json::parse(read_text(path, most_bytes), nullptr, false);
     if (all.is_discarded() || !all.is_object() || !all.contains("file") || all["file"] != "lensprof exposures")
-        reader.fail("is no file of exposures");
-    if (reader.member(all, "schema") != schema) reader.fail("is of another version");
+        reader.fail("is not a file of exposures");
+    if (reader.member(all, "schema") != schema) reader.fail("has another format version");
     Project project;
     project.path = path;
     const auto models = models_of(reader, all);
@@ -252,10 +253,9 @@ Project read_exposures(const std::string &path, const std::string &images) {
         if (!names.insert(project.names.back()).second) reader.fail("names " + project.names.back() + " twice");
     }
     if (std::all_of(project.images.begin(), project.images.end(), [](const auto &image) { return image.left_out; }))
-        reader.fail("has no exposure of any image");
+        reader.fail("has no exposures");
     const std::string reference = reader.text(all, "reference");
-    if (!names.count(reference))
-        reader.fail("has no image " + short_name(reference) + ", which is to be the reference");
+    if (!names.count(reference)) reader.fail("does not contain the reference image " + short_name(reference));
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (project.names[i] == reference) project.reference = i;
     return project;

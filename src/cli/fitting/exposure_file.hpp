@@ -1,5 +1,5 @@
-// The file of measured exposures, exposures.json: of every image EV and white balance with their standard errors, of
-// every camera the response, of every lens setting the falloff. docs/reconstructions.md describes it.
+// The file of measured exposures, exposures.json: EV and white balance with standard errors per image, the response per
+// camera, the falloff per lens setting. See docs/reconstructions.md.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace lensprof {
 
-// The text of the file, to be written to `path`: names of files are relative to its folder.
+// The text of the file, to be written to `path`: file names are relative to its folder.
 std::string exposures_text(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata,
                            const std::string &path);
 
-// Whether a file is one of exposures, by its first lines.
+// Whether a file is a file of exposures, judged by its first lines.
 bool is_exposure_file(const std::string &path);
 
-// The file as a project of which each image has a model. Pictures are those it names, or where `images` is not empty
-// the images' names in that folder. Failure (unreadable) for a file that is damaged or something else.
+// Reads the file as a project in which each image has a model. Pictures are the files it names, or, if `images` is not
+// empty, the image names in that folder. Failure (unreadable) for a damaged or foreign file.
 Project read_exposures(const std::string &path, const std::string &images);
 
 }  // namespace lensprof

@@ -36,12 +36,13 @@ void declare_method(Command &command, FitOptions &o, const FitChoices &choices) 
                                  {"radiance", LENSPROF_METHOD_RADIANCE},
                                  {"transfer-function", LENSPROF_METHOD_TRANSFER_FUNCTION}};
     std::string about =
-        "transfer (d'Angelo 2007), radiance (Goldman & Chen 2005: one radiance a scene point, which any "
-        "number of pictures may see, saturated ones among them) or transfer-function (Kim & Pollefeys "
-        "2004)";
+        "estimation method: transfer (d'Angelo 2007, default), radiance (Goldman & Chen 2005: one radiance per scene "
+        "point, seen by any number of pictures, saturated ones included) or transfer-function (Kim & Pollefeys 2004)";
     if (choices.debevec) {
         methods.emplace_back("debevec", LENSPROF_METHOD_DEBEVEC);
-        about += "; debevec (Debevec & Malik 1997), a reference: known exposures taken as exact, white balances fixed";
+        about +=
+            "; debevec (Debevec & Malik 1997), for comparison: takes known exposures as exact and fixes white "
+            "balances";
     }
     command.choice("--method", o.method, methods, about);
 }
@@ -58,11 +59,13 @@ void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
         "--prior", "WEIGHT",
         [&o, may_be_stored](const std::string &word) {
             if (word == "auto" && may_be_stored)
-                throw std::invalid_argument("auto: stored profiles are the prior by --stored auto, the default");
+                throw std::invalid_argument(
+                    "auto: use --stored auto (the default) to take stored profiles as the "
+                    "prior");
             o.prior_weight = number_of(word, {0.0, 1e6});
         },
-        std::string("weight of the priors; 0 = none, as in the paper")
-            + (may_be_stored ? ", stored ones included" : ""));
+        std::string("weight of the priors") + (may_be_stored ? ", stored ones included" : "")
+            + "; default 1; 0 = none, as in the paper");
     if (!may_be_stored) return;
     command.word(
         "--stored", "auto|none|ID",
@@ -71,16 +74,16 @@ void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
             o.stored_is_asked = o.stored;
             o.stored_id = !o.stored || word == "auto" ? 0 : profile_id_of(word);
         },
-        "prior knowledge from the databases: auto, the profile that is stored for this lens and setting, or the falloff "
-        "of the lens and the response of the camera as far as they are known (default); ID, a profile; none");
+        "prior from the databases: auto (default), the profile stored for this lens and setting, else the known "
+        "falloff of the lens and response of the camera; ID, a profile; none");
 }
 
 void declare_gamma(Command &command, FitOptions &o, bool known_response) {
     Choices<uint32_t> gamma = {
         {"auto", LENSPROF_GAMMA_AUTO}, {"exif", LENSPROF_GAMMA_EXPOSURES}, {"prior", LENSPROF_GAMMA_PRIOR}};
     std::string about =
-        "what settles the common exponent of exposure, falloff and response: auto (EXIF exposures that "
-        "differ, and the prior, each by its standard error), exif, prior";
+        "source of the common exponent of exposure, falloff and response: auto (default: differing EXIF exposures and "
+        "the prior, weighted by standard error), exif, prior";
     if (known_response) {
         gamma.emplace_back("known", LENSPROF_GAMMA_KNOWN);
         about += ", known (the project's response)";
@@ -96,20 +99,21 @@ void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
         o.modes = word == "auto" ? LENSPROF_MODES_AUTO : count_of(word, 0, LENSPROF_EMOR_MODES);
     };
     command.word("--modes", "COUNT|auto", read_modes,
-                 "EMoR modes of the response: 0..25 or auto (held-out error decides)");
+                 "number of EMoR modes of the response, 0 to 25, or auto (default: chosen by held-out error)");
     command.choice(
         "--loss", o.loss,
         {{"robust", LENSPROF_LOSS_ROBUST}, {"huber", LENSPROF_LOSS_HUBER}, {"squared", LENSPROF_LOSS_SQUARED}},
-        "robust, huber (the paper's) or squared");
-    command.number("--huber", o.huber, {0.01, 255.0}, "sigma of the Huber loss, levels of 255");
+        "loss function: robust (default), huber (as in the paper) or squared");
+    command.number("--huber", o.huber, {0.01, 255.0}, "sigma of the Huber loss, levels of 255; default 5");
     declare_prior(command, o, choices.stored_prior);
     declare_gamma(command, o, choices.known_response);
     command.number("--exif-sigma", o.exif_sigma, {0.0, 10.0},
-                   "standard error of every EXIF exposure, EV; 0 = do not use them; without this option .1, and .03 "
-                   "of the pictures at one manual exposure");
+                   "standard error of EXIF exposures, EV; default 0.1, or 0.03 for pictures at one manual exposure; 0 "
+                   "= ignore EXIF exposures");
     command.choice("--camera-kind", o.camera_kind, camera_kind_choices(),
-                   "whose exponents the prior is of: camera or phone (today's JPEG), digital (of the 1990s), film "
-                   "(scanned), linear (the response is held linear), any, or auto: what EXIF says took the pictures");
+                   "kind of camera that the prior describes: camera or phone (today's JPEG), digital (of the 1990s), "
+                   "film (scanned), linear (the response is fixed as linear), any, or auto (default: according to "
+                   "EXIF)");
 }
 
 bool takes_stored_prior(const FitOptions &o) {
@@ -119,10 +123,10 @@ bool takes_stored_prior(const FitOptions &o) {
 
 void check_fit_options(const FitOptions &o) {
     if (o.stored_is_asked && !takes_stored_prior(o))
-        throw Failure(ExitCode::usage, "--stored: is for the methods transfer and radiance, and a --prior above 0");
+        throw Failure(ExitCode::usage, "--stored: needs --method transfer or radiance, and a --prior above 0");
     if (o.gamma_from == LENSPROF_GAMMA_EXPOSURES && o.exif_sigma == 0.0)
         throw Failure(ExitCode::usage,
-                      "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
+                      "--gamma-from exif and --exif-sigma 0 (ignore EXIF) exclude each other; omit one of them");
 }
 
 lensprof_fit_options fit_options(const FitOptions &o) {
@@ -146,7 +150,7 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
     key.processing = metadata.processing_before;
     const uint32_t kind = lensprof_camera_kind_of(&key);
     const bool is_own = kind == LENSPROF_CAMERA_LINEAR || (kind != LENSPROF_CAMERA_ANY && metadata.is_of_camera);
-    if (!is_own) return {};  // what is not the camera's JPEG was developed by something else
+    if (!is_own) return {};  // anything but the camera's JPEG was developed by other software
     return {kind, KindFrom::pictures};
 }
 
@@ -155,7 +159,7 @@ size_t joined_images(const Fitted &fitted) {
                                              [](const lensprof_exposure &e) { return !std::isnan(e.ev); }));
 }
 
-// For what is found of lens settings and cameras.
+// For the results of lens settings and cameras.
 static void make_room(const std::vector<lensprof_fit_image> &images, Fitted &fitted) {
     uint32_t last_setting = 0, last_camera = 0;
     for (const lensprof_fit_image &image : images) {
@@ -194,7 +198,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
                                                             fitted.exposures.data(), &fitted.result, &error);
     stop_if_interrupted();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
-        throw Failure(ExitCode::usage, item + ": every parameter is held; give --free all");
+        throw Failure(ExitCode::usage, item + ": no parameter is estimated; give --free all");
     check(status, item, &error);
     fitted.result.image_quality = nullptr;
     fitted.result.settings = nullptr, fitted.result.setting_count = 0;
@@ -220,24 +224,25 @@ BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure
     return report;
 }
 
-// Names the other images whose known exposures are wrong; the verdict names the one that is farthest off.
+// Reports the other images with wrong known exposures; the verdict reports the worst.
 void name_left_out(const BuildReport &report, Streams &streams) {
     if (report.verdict.code != LENSPROF_REASON_KNOWN_WRONG) return;
     for (size_t i = 0; i < report.quality.size(); i++) {
         const auto &q = report.quality[i];
         if (q.known_ev_left_out && i != report.verdict.item.index)
             warn(streams, report.names[i]
-                              + format(": its exposure is %.1f EV away from the known one, which is left out",
+                              + format(": its exposure differs from the known one by %.1f EV; the known one is not "
+                                       "used",
                                        std::fabs(q.known_ev_residual)));
     }
 }
 
-// Whether the camera of an image has a part; of one camera it has.
+// Whether the camera of an image is part of the result; a single camera always is.
 static bool is_camera_joined(const BuildReport &report, size_t image) {
     return report.cameras.empty() || report.cameras[report.camera_of[image]].found.joined;
 }
 
-// Names the cameras that have no part, and why.
+// Reports the cameras that are not part of the result, with reasons.
 static void name_cameras(const BuildReport &report, const std::string &source, Streams &streams) {
     for (uint32_t k = 0; k < report.cameras.size(); k++) {
         const CameraReport &camera = report.cameras[k];
@@ -245,40 +250,40 @@ static void name_cameras(const BuildReport &report, const std::string &source, S
         const auto own =
             std::find_if(report.settings.begin(), report.settings.end(),
                          [&](const SettingReport &setting) { return setting.camera == k && setting.found.images; });
-        const std::string left_out = source + ": " + camera.label + ": left out, ";
+        const std::string left_out = source + ": " + camera.label + ": left out: ";
         if (!camera.found.images)
-            warn(streams, left_out + "for no two of its pictures share enough; give more of them, or --one-lens to take "
-                                     "all as of one camera");
+            warn(streams, left_out + "no two of its pictures overlap enough; give more of them, or use --one-lens to "
+                                     "treat all as one camera");
         else if (!camera.found.evens && own != report.settings.end() && !own->found.usable)
-            warn(streams, left_out + "for its own pictures are not evened out: " + own->verdict.text);
+            warn(streams, left_out + "its pictures cannot be corrected: " + own->verdict.text);
         else
-            warn(streams, left_out + "for what its pictures share with those of others is too little, or does not agree; "
+            warn(streams, left_out + "its overlap with pictures of the other cameras is too small or inconsistent; "
                                      "give more that overlap");
     }
 }
 
-// Names the images that do not agree with the others; where the verdict is about them, too.
+// Reports the images that disagree with the others, even if the verdict is about them.
 void name_unjoined(const BuildReport &report, Streams &streams) {
     for (size_t i = 0; i < report.quality.size() && report.fit.left_out; i++)
         if (!report.quality[i].joined && is_camera_joined(report, i))
             warn(streams, report.names[i]
-                              + ": left out, for it does not agree with the others, or no pair joins it to them; check "
-                                "its alignment");
+                              + ": left out: it disagrees with the others, or no pair connects it to them; check its "
+                                "alignment");
 }
 
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {
     return source + ": not usable: " + verdict.text
-           + (store.force || store.no_store ? "" : "; nothing was stored (--force stores it all the same)");
+           + (store.force || store.no_store ? "" : "; nothing was stored (use --force to store it anyway)");
 }
 
 namespace {
 
-// `own` is a result with one setting's numbers. The prior is of the setting of the reference.
+// `own` is the result of one setting. The prior is that of the reference's setting.
 int64_t store_setting(const lensprof_fit_result &own, size_t images, const lensprof_profile_key &key, bool is_reference,
                       const StoreOptions &store, const Finish &finish) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
-    const EarlierProfile *prior = finish.prior;  // the response holds it in all settings, and the falloff in one
+    const EarlierProfile *prior = finish.prior;  // used by the response of all settings and by the falloff of one
     if (prior && is_reference) options.profile = prior->profile.get();
     auto profile = profile_of(own, &options, images);
     profile->key = key;
@@ -286,13 +291,13 @@ int64_t store_setting(const lensprof_fit_result &own, size_t images, const lensp
     return store_profile(store, *profile, {finish.method, finish.source, own.usable != 0, held});
 }
 
-// Profiles of every lens setting that is usable, or of all with --force.
+// Stores the profiles of every usable lens setting, or of all with --force.
 void store_result(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store,
                   const Finish &finish) {
     const bool is_wanted = report.fit.usable || store.force;
     if (report.settings.empty() && is_wanted)
         report.profile_id = store_setting(report.fit, report.names.size(), key, true, store, finish);
-    std::vector<SettingReport *> order;  // the reference's first
+    std::vector<SettingReport *> order;  // the reference first
     for (SettingReport &setting : report.settings) order.push_back(&setting);
     std::stable_partition(order.begin(), order.end(), [](const SettingReport *s) { return s->is_reference; });
     std::set<std::string> keys;
@@ -300,7 +305,7 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
         SettingReport &setting = *one;
         if (!setting.found.images || !(setting.found.usable || store.force) || !setting.no_key.empty()) continue;
         setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
-        if (setting.has_same_key) continue;  // a lookup could not tell them apart
+        if (setting.has_same_key) continue;  // a lookup could not distinguish them
         setting.profile_id = store_setting(result_of(report, setting), setting.found.images, setting.key,
                                            setting.is_reference, store, finish);
         if (setting.is_reference) report.profile_id = setting.profile_id;
@@ -318,32 +323,31 @@ void print_stored(const BuildReport &report, const lensprof_profile_key &key, co
     for (const SettingReport &setting : report.settings) print(setting.profile_id, setting.key);
 }
 
-// Says which of several settings give no profile, and why.
+// Reports which of several settings give no profile, and why.
 void name_unusable(const BuildReport &report, const std::string &source, Streams &streams) {
     for (const SettingReport &setting : report.settings)
         if (setting.found.images && setting.found.usable && !setting.no_key.empty())
             warn(streams, source + ": " + setting.label + ": not stored: " + setting.no_key);
     for (const SettingReport &setting : report.settings)
         if (setting.has_same_key)
-            warn(streams,
-                 source + ": " + setting.label
-                     + ": not stored, for another setting has the same camera, lens, focal length and aperture");
+            warn(streams, source + ": " + setting.label
+                              + ": not stored: another setting has the same camera, lens, focal length and aperture");
     for (const SettingReport &setting : report.settings)
         if (!setting.found.usable && !setting.is_reference)
             warn(streams, source + ": " + setting.label
-                              + (setting.found.images ? ": not a profile to store: " + setting.verdict.text
-                                                      : ": none of its pictures agrees with the others"));
+                              + (setting.found.images ? ": not stored as a profile: " + setting.verdict.text
+                                                      : ": not stored: none of its pictures agrees with the others"));
 }
 
-// Of a result that evens pictures and is no profile: how much of them it does not explain, where that is a lot.
+// Warns if a result that corrects pictures without being a profile leaves much unexplained.
 void name_misfit(const BuildReport &report, const std::string &source, Streams &streams) {
-    constexpr double most_outliers = 0.3, most_levels = 15.0;  // as the verdict has them for profiles
+    constexpr double most_outliers = 0.3, most_levels = 15.0;  // the limits of the verdict for profiles
     const double outliers = 1.0 - report.fit.inlier_share, rms = report.fit.heldout_rms;
     if (outliers <= most_outliers && rms <= most_levels) return;
     warn(streams,
          source
-             + format(": %.0f %% of the pairs do not agree with the result, and %.1f levels RMS are left: parallax, "
-                      "or things that moved; look at the seams (--preview)",
+             + format(": %.0f %% of the pairs disagree with the result, and the residual is %.1f levels RMS, because "
+                      "of parallax or moving objects; check the seams with --preview",
                       100.0 * outliers, rms));
 }
 
@@ -372,22 +376,21 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     const bool is_good = is_any_usable(report) || (store.no_store && evens);
     if (!report.fit.usable && is_good)
         warn(streams, finish.source
-                          + (report.fit.evens ? ": evens out these pictures, but is not a profile to store: "
-                                              : ": the setting of the reference: not a profile to store: ")
+                          + (report.fit.evens ? ": corrects these pictures, but is not stored as a profile: "
+                                              : ": the setting of the reference is not stored as a profile: ")
                           + report.verdict.text);
     if (is_good) name_unusable(report, finish.source, streams);
     if (!report.fit.usable && is_good) name_misfit(report, finish.source, streams);
     if (!is_good)
         tell(streams, not_usable_text(finish.source, report.verdict, store)
-                          + (evens ? "; it evens out these pictures, which --no-store accepts" : ""));
+                          + (evens ? "; it does correct these pictures: use --no-store to accept it" : ""));
     return static_cast<int>(is_good ? ExitCode::done : ExitCode::not_usable);
 }
 
 void check_max_side(uint32_t max_side) {
     if (max_side != 0 && max_side < 64)
-        throw Failure(
-            ExitCode::usage,
-            "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
+        throw Failure(ExitCode::usage,
+                      "--max-side: fewer than 64 pixels give too few samples; give more, or 0 for full size");
 }
 
 double lap(std::chrono::steady_clock::time_point &since) {

@@ -1,4 +1,4 @@
-// What every command that fits has in common: its options, the call, what is said about the result.
+// The common parts of all commands that fit: options, the call of the library, the report.
 #pragma once
 
 #include <chrono>
@@ -21,62 +21,62 @@ namespace lensprof {
 // How to fit.
 struct FitOptions {
     uint32_t method = LENSPROF_METHOD_TRANSFER, modes = LENSPROF_MODES_AUTO, loss = LENSPROF_LOSS_ROBUST;
-    uint32_t gamma_from = LENSPROF_GAMMA_AUTO;  // KNOWN: the project's response is held
-    std::optional<uint32_t> camera_kind;        // empty: what the pictures say
+    uint32_t gamma_from = LENSPROF_GAMMA_AUTO;  // KNOWN: the project's response is fixed
+    std::optional<uint32_t> camera_kind;        // empty: according to the pictures
     double prior_weight = 1.0, huber = 5.0;
-    std::optional<double> exif_sigma;  // of all EXIF exposures, EV; 0: none is used; empty: by what EXIF says of them
-    bool stored = true;                // what is stored of the lens and the camera is the prior, as far as it goes
+    std::optional<double> exif_sigma;  // of all EXIF exposures, EV; 0: EXIF is not used; empty: chosen by EXIF
+    bool stored = true;                // use what is stored for lens and camera as the prior
     bool stored_is_asked = false;
-    int64_t stored_id = 0;  // the profile that is the prior; 0: what a lookup finds
+    int64_t stored_id = 0;  // profile to use as the prior; 0: that of a lookup
 };
 
-// What not every command has to offer.
+// Options that only some commands offer.
 struct FitChoices {
-    bool debevec = false;        // the pictures' exposures may be known
-    bool known_response = true;  // a project says a response that may be held
-    bool stored_prior = false;   // a stored profile may be the prior
+    bool debevec = false;        // exposures may be given
+    bool known_response = true;  // a project has a response that may be fixed
+    bool stored_prior = false;   // a stored profile can be the prior
 };
 void declare_fit(Command &command, FitOptions &o, FitChoices choices = {});
 
-// Whether stored knowledge is the prior of this fit: the method takes one, and priors have a weight.
+// Whether stored profiles are the prior of this fit: the method must support it and the prior weight be above 0.
 bool takes_stored_prior(const FitOptions &o);
 
-// Of --method, as provenances name it.
+// The name of a method, as in provenances.
 const char *method_name(uint32_t method);
 
-// Failure (usage) for options that contradict each other.
+// Failure (usage) for conflicting options.
 void check_fit_options(const FitOptions &o);
 
-// The library's options; everything shared is free, and the camera of any kind unless one is asked for.
+// The library's options, with all shared parameters free and any kind of camera unless one is given.
 lensprof_fit_options fit_options(const FitOptions &o);
 
-// The kind of camera whose exponent the prior is of: the one asked for, else that of the pictures, whose `key` says the
-// camera, and `metadata` of one of them what the files are.
+// The kind of camera that the prior on the exponent describes: the requested one, else that of the pictures, according
+// to the camera in `key` and the file type in `metadata`.
 CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const PictureMetadata &metadata);
 
-// What is fitted.
+// The input of a fit.
 struct FitInput {
     lensprof_fit_options options{};
     lensprof_response fixed{};
     std::vector<lensprof_fit_image> images;
-    std::vector<lensprof_pair> pairs;                // what is fitted where there are no observations
+    std::vector<lensprof_pair> pairs;                // used if there are no observations
     std::vector<lensprof_observation> observations;  // tracks, for the method radiance
 };
 
 // A result and the exposures that belong to it.
 struct Fitted {
     lensprof_fit_result result{};
-    std::vector<lensprof_exposure> exposures;    // relative to the reference; ev is NaN of images that were left out
-    std::vector<lensprof_fit_setting> settings;  // by the images' `setting`; `result` has that of the reference
-    std::vector<uint32_t> setting_of;            // of each image
-    std::vector<lensprof_fit_camera> cameras;    // by the images' `camera`; `result` has that of the reference
-    std::vector<uint32_t> camera_of;             // of each image
-    uint32_t reference = 0;                      // the one asked for, or where that was left out the result's own
+    std::vector<lensprof_exposure> exposures;    // relative to the reference; ev is NaN for images left out
+    std::vector<lensprof_fit_setting> settings;  // indexed by the images' `setting`; `result` has that of the reference
+    std::vector<uint32_t> setting_of;            // per image
+    std::vector<lensprof_fit_camera> cameras;    // indexed by the images' `camera`; `result` has that of the reference
+    std::vector<uint32_t> camera_of;             // per image
+    uint32_t reference = 0;                      // the requested one, or the result's own if that was left out
 
-    // Whether the pictures may be corrected with it; a profile to store has to be usable.
+    // Whether the pictures can be corrected with it; storing a profile requires a usable result.
     bool corrects() const { return result.usable || result.evens; }
 
-    // The curves of an image, and how many its camera's fit has.
+    // The falloff curves of an image, and their number in its camera's fit.
     const lensprof_vignetting *falloff_of(uint32_t image) const {
         return settings.empty() ? result.vignetting : settings[setting_of[image]].vignetting;
     }
@@ -87,39 +87,39 @@ struct Fitted {
         return is_of_own_camera(image) ? cameras[camera_of[image]].response : result.response;
     }
 
-    // Whether the fit of an image is that of one camera of several.
+    // Whether the image belongs to one of several cameras.
     bool is_of_own_camera(uint32_t image) const { return !cameras.empty() && cameras[camera_of[image]].images; }
 };
 
-// The number of images that a result has exposures of.
+// The number of images with an exposure in the result.
 size_t joined_images(const Fitted &fitted);
 
-// Fits, with `progress` shown. `item` names the input in a Failure. `quality` may be NULL.
+// Fits and shows `progress`. `item` is the name of the input in a Failure. `quality` may be NULL.
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
            std::vector<lensprof_fit_image_quality> *quality);
 
-// What is reported where no fit could be made: the same object, neutral, with the reason.
+// The report if no fit was possible: the same object with neutral values and the reason.
 BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure);
 
 // Where a result goes.
 struct Finish {
     std::string method;  // for the provenance
-    std::string source;  // what it was made from
+    std::string source;  // the inputs
     bool json = false;
-    bool evens_pictures = false;            // what evens them out is a success where nothing is to be stored
-    OutputFiles *outputs = nullptr;         // committed once the profile is stored; or NULL
-    const EarlierProfile *prior = nullptr;  // that the fit was given; or NULL
+    bool evens_pictures = false;            // a result that corrects the pictures counts as success if nothing is to be
+                                            // stored
+    OutputFiles *outputs = nullptr;         // committed after the profile is stored; or NULL
+    const EarlierProfile *prior = nullptr;  // the prior of the fit; or NULL
 };
 
-// What is said about a result that is not usable: of what, why, and that it was not stored where it could be.
+// The message for a result that is not usable: the item, the reason, and that nothing was stored if it could have been.
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store);
 
-// Stores a result that is usable or forced, prints it, says on standard error what is wrong with it. Returns the exit
-// code.
+// Stores a usable or forced result, prints it, and reports problems on standard error. Returns the exit code.
 int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
                Streams &streams);
 
-// Failure (usage) for a longest side that holds too few samples.
+// Failure (usage) for a --max-side that gives too few samples.
 void check_max_side(uint32_t max_side);
 
 // Seconds since `since`, which becomes now.

@@ -1,4 +1,4 @@
-// `lensprof flat`: pictures of a white card or another even light -> falloff -> a profile in the database.
+// `lensprof flat`: measures the falloff on pictures of a white card or another even light and stores a profile.
 #include "cli/fitting/flat.hpp"
 
 #include <chrono>
@@ -27,19 +27,24 @@ std::array<double, 4> card_of(const std::string &word) {
 }
 
 void declare_card(Command &command, FlatCommand &o) {
-    command.flag("--several", o.several, "one card at several places of the frame, its brightness the same in all");
-    command.number("--ev-sigma", o.ev_sigma, {0.001, 1.0}, "with --several: standard error of an exposure, EV");
-    command.flag("--find-card", o.find_card, "the card covers a part of the frame: look for it");
+    command.flag("--several", o.several,
+                 "the pictures show one card at several places of the frame, with constant "
+                 "brightness");
+    command.number("--ev-sigma", o.ev_sigma, {0.001, 1.0},
+                   "standard error of an exposure, EV, with --several; "
+                   "default 0.02");
+    command.flag("--find-card", o.find_card, "the card covers only a part of the frame: find it");
     command.words(
         "--card", "X,Y,WIDTH,HEIGHT", [&o](const std::string &word) { o.cards.push_back(card_of(word)); },
-        "the card is there (px of the frame): once, or once a picture");
+        "rectangle of the card, px of the frame: give once for all, or once per picture; default the whole frame");
     command.choice("--light", o.light,
                    {{"auto", LENSPROF_FLAT_LIGHT_AUTO},
                     {"even", LENSPROF_FLAT_LIGHT_EVEN},
                     {"plane", LENSPROF_FLAT_LIGHT_PLANE},
                     {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
-                   "even, plane, quadratic, or auto: plane, with --several even");
-    command.flag("--own-light", o.own_light, "every shot has a light of its own");
+                   "model of the light on the card: even, plane, quadratic or auto (default: plane, or even with "
+                   "--several)");
+    command.flag("--own-light", o.own_light, "estimate the light per shot; default one for all shots");
 }
 
 void declare(Command &command, FlatCommand &o) {
@@ -47,30 +52,30 @@ void declare(Command &command, FlatCommand &o) {
     command.require("FILES");
     command.flag(
         "--linear", o.linear,
-        "the pictures are linear (developed from RAW without a tone curve); float TIFF, and a colour profile with a "
-        "linear tone curve, say so themselves");
-    command.number("--gamma", o.gamma, {0.1, 10.0}, "the pictures' response is x^(1/gamma)");
-    command.profile_id("--profile", o.profile, "the response is that of this profile of the database");
+        "the pictures are linear (developed from raw files without a tone curve); not needed for float TIFF or a "
+        "colour profile with a linear tone curve");
+    command.number("--gamma", o.gamma, {0.1, 10.0}, "use the response x^(1/gamma)");
+    command.profile_id("--profile", o.profile, "use the response of this profile of the database");
     command.counts("--shots", o.shots, 0, 1000000,
-                   "number of every picture's shot, as 1,1,1,2,2,2: exposures of one shot are merged; without it every "
-                   "picture is a shot of its own");
-    command.numbers("--ev", o.ev, any_number, "exposure of every picture, EV, instead of EXIF's");
+                   "shot number per picture, such as 1,1,1,2,2,2: exposures of one shot are merged; default one shot "
+                   "per picture");
+    command.numbers("--ev", o.ev, any_number, "exposure per picture, EV, separated by commas; default from EXIF");
     command.numbers("--turned", o.turned_deg, {-360.0, 360.0},
-                    "by how many degrees the camera was turned about its axis, clockwise seen from behind it, in every "
-                    "shot: separates the light from the lens");
+                    "rotation of the camera about its optical axis per shot, degrees, clockwise seen from the back of "
+                    "the camera; separates the light from the lens; default 0");
     declare_card(command, o);
     command.choice("--falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
-                   "1, 3 (one a channel) or auto (3 where they clearly differ)");
+                   "number of falloff curves: 1, 3 (one per channel) or auto (default: 3 if they clearly differ)");
     command.choice("--center", o.free_center, {{"free", true}, {"fixed", false}},
-                   "free, or fixed in the middle of the frame");
+                   "centre of the falloff: free (default) or fixed at the centre of the frame");
     command.choice(
         "--grid", o.grid,
         {{"auto", LENSPROF_FLAT_GRID_AUTO}, {"none", LENSPROF_FLAT_GRID_NONE}, {"always", LENSPROF_FLAT_GRID_ALWAYS}},
-        "gain grid for what is not radial: auto (where 0.3 % are left), none, always");
-    command.number("--black", o.black, {0.0, 1.0}, "grey value (0..1) below which nothing is used");
-    command.number("--white", o.white, {0.0, 1.0}, "grey value (0..1) above which nothing is used");
+        "gain grid for the non-radial part: auto (default: if 0.3 % or more remain), none or always");
+    command.number("--black", o.black, {0.0, 1.0}, "ignore grey values below this, 0 to 1; default 2/255");
+    command.number("--white", o.white, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
     command.count("--max-side", o.max_side, 0, UINT32_MAX,
-                  "read pictures reduced to no less than this many pixels (1600); 0 = full");
+                  "read pictures reduced to at least this many pixels on the longer side; default 1600; 0 = full size");
     declare_store(command, o.store);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -81,8 +86,7 @@ int on_progress(double done, void *progress) {
     return interrupted();
 }
 
-// JPEG rounds colours over blocks of 16 pixels, which no mean over pixels evens out: channels do not get curves of
-// their own from that.
+// JPEG rounds colours over blocks of 16 pixels, which averaging does not remove: no falloff per channel from JPEG.
 void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
     for (size_t i = 0; i < input.pictures.size(); i++) {
         if (!input.pictures[i].traits.is_lossy) continue;
@@ -90,14 +94,14 @@ void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
         const bool is_jpeg = input.pictures[i].traits.format == FileFormat::jpeg;
         warn(
             streams,
-            o.files[i] + (is_jpeg ? ": JPEG" : ": its lossy compression") + " rounds grey values and colours over blocks of pixels, so that "
-               "the falloff may be farther off "
-               "than stated (by half a level of the card's grey); RAW, or TIFF or PNG of 16 bit, is better");
+            o.files[i] + (is_jpeg ? ": JPEG" : ": its lossy compression")
+                + " rounds grey values and colours over blocks of pixels; the error of the falloff may exceed the "
+                  "stated one by half a grey level of the card. Use raw files, or 16 bit TIFF or PNG");
         return;
     }
 }
 
-// What is known before the fit.
+// The report fields known before the fit.
 FlatReport begin_report(const FlatInput &input) {
     FlatReport report;
     report.names = input.names;
@@ -112,7 +116,7 @@ FlatReport begin_report(const FlatInput &input) {
     return report;
 }
 
-// What is reported where no fit could be made.
+// The report if no fit was possible.
 FlatReport no_flat(const FlatInput &input, const Failure &failure) {
     FlatReport report = begin_report(input);
     report.fit.vignettings = 1;
@@ -187,8 +191,9 @@ int run(const FlatCommand &o, Streams &streams) {
 
 void declare_flat(Command &program) {
     Command command = program.add(
-        "flat", "pictures of a white card or another even light -> a lens profile in the database",
-        "Measures the falloff on pictures of a white card or another even light; docs/flat.md explains how to take them.");
+        "flat", "measure a lens profile on pictures of a white card",
+        "Measures the falloff from pictures of a white card or another even light; see docs/flat.md for how to take "
+        "them.");
     auto o = std::make_shared<FlatCommand>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -1,4 +1,4 @@
-// The parts of `lensprof flat`: what is asked for, the pictures, what is said about the result.
+// The parts of `lensprof flat`: options, pictures, report.
 #pragma once
 
 #include <array>
@@ -30,27 +30,28 @@ struct FlatCommand {
     uint32_t max_side = 1600;
 };
 
-// Everything that the library is asked with, and what keeps it alive.
+// All inputs of the library call, and the memory they refer to.
 struct FlatInput {
-    std::vector<std::string> names;  // the pictures, as people know them
+    std::vector<std::string> names;  // picture names for reports
     std::vector<Picture> pictures;
-    std::vector<std::vector<uint8_t>> masks;  // of every picture; empty = all of it
+    std::vector<std::vector<uint8_t>> masks;  // per picture; empty = the whole picture
     std::vector<lensprof_flat_image> images;
-    std::vector<lensprof_response> response;  // one, or three
-    lensprof_profile_key key;                 // by EXIF of the first picture
+    std::vector<lensprof_response> response;  // one or three
+    lensprof_profile_key key;                 // from EXIF of the first picture
     lensprof_flat_options options;
 };
 
-// Failure (usage) for options that contradict each other or do not fit the number of pictures.
+// Failure (usage) for conflicting options and counts that do not match the number of pictures.
 void check_flat_options(const FlatCommand &o);
 
-// What can be known before pixels are read: shots, exposures, turns, response and key. Failure for what is missing.
+// Determines everything that needs no pixels: shots, exposures, rotations, response and key. Failure if something is
+// missing.
 FlatInput prepare_flat(const FlatCommand &o, Streams &streams);
 
-// Reads the pictures; afterwards images and options are complete.
+// Reads the pictures and completes images and options.
 void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input);
 
-// What `flat` found out.
+// The report of `flat`.
 struct FlatReport {
     std::vector<std::string> names;
     std::vector<uint32_t> shots;  // of the pictures

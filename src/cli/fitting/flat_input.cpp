@@ -1,4 +1,4 @@
-// What `lensprof flat` works on: pictures, and what is known about their exposure, turn, card and response.
+// The input of `lensprof flat`: pictures with their exposure, rotation, card and response.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -28,7 +28,7 @@ std::vector<uint32_t> shots_of(const FlatCommand &o) {
     return o.shots;
 }
 
-// Turn of every picture from the turns of the shots, in the order in which these begin.
+// The rotation per picture from that of the shots, in the order of their first pictures.
 std::vector<double> turns_of(const FlatCommand &o, const std::vector<uint32_t> &shots) {
     std::vector<uint32_t> order;
     for (uint32_t shot : shots)
@@ -41,7 +41,7 @@ std::vector<double> turns_of(const FlatCommand &o, const std::vector<uint32_t> &
     return turns;
 }
 
-// Exposures matter between pictures of one shot, and between all of a card at several places.
+// Exposures matter between pictures of one shot and, with a card at several places, between all.
 bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i) {
     return (o.several && shots.size() > 1) || std::count(shots.begin(), shots.end(), shots[i]) > 1;
 }
@@ -55,33 +55,35 @@ std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_
         if (o.ev.empty() && needs_ev(o, shots, i)) {
             if (!metadata[i].exif_ev)
                 throw Failure(ExitCode::usage, o.files[i]
-                                                   + ": no EXIF says how it was exposed (time, aperture, ISO); give the "
-                                                     "exposures of all pictures with --ev, as 0,0,0 where they are alike");
+                                                   + ": EXIF does not state its exposure (time, aperture, ISO); give "
+                                                     "the exposures of all pictures with --ev, for example 0,0,0 if "
+                                                     "they are equal");
             ev[i] = *metadata[i].exif_ev;
         }
         if (!(std::fabs(ev[i]) <= farthest_ev))
             throw Failure(ExitCode::usage,
-                          o.files[i] + ": an exposure beyond 64 EV cannot be true; check --ev or EXIF");
+                          o.files[i] + ": an exposure beyond 64 EV is not plausible; check --ev or EXIF");
     }
     return ev;
 }
 
-// Whether the pictures are linear: as the command line says, else as all of them say. `o` says one response at most.
+// Whether the pictures are linear: by the command line, else if all are marked as linear. `o` has at most one response.
 bool are_linear(const FlatCommand &o, const std::vector<PictureMetadata> &metadata) {
     if (o.linear || o.gamma || o.profile) return o.linear;
     for (size_t i = 0; i < metadata.size(); i++)
         if (metadata[i].processing_before != LENSPROF_PROCESSING_RAW)
-            throw Failure(ExitCode::usage, o.files[i] + ": nothing in it says that it is linear; say which response the "
-                                                        "pictures have: one of --linear, --gamma G, --profile ID");
+            throw Failure(ExitCode::usage, o.files[i] + ": is not marked as linear; give the response of the pictures "
+                                                        "with --linear, --gamma G or --profile ID");
     return true;
 }
 
-// Pictures that are linear by the command line alone are rendered ones to every other command.
+// Pictures that only the command line declares linear are rendered ones for all other commands.
 void note_linear(const PictureMetadata &first, const std::string &file, Streams &streams) {
     if (first.processing_before == LENSPROF_PROCESSING_RAW) return;
     note(streams, file
-                      + (first.may_be_linear ? ": nothing in it says that it is linear"
-                                             : ": is linear by --linear; its colour profile or format says otherwise")
+                      + (first.may_be_linear
+                             ? ": is not marked as linear"
+                             : ": is linear according to --linear, but not according to its colour profile or format")
                       + "; correct such pictures with `lensprof apply --processing raw`");
 }
 
@@ -99,7 +101,7 @@ std::vector<lensprof_response> response_of(const FlatCommand &o) {
     return response;
 }
 
-// The card's rectangle as a mask of the held pixels.
+// The card's rectangle as a mask of the stored pixels.
 std::vector<uint8_t> mask_of(const std::array<double, 4> &r, const Picture &picture, const std::string &file) {
     if (!(r[2] > 0 && r[3] > 0) || r[0] + r[2] > picture.frame_width || r[1] + r[3] > picture.frame_height)
         throw Failure(ExitCode::usage, format("--card %g,%g,%g,%g", r[0], r[1], r[2], r[3])
@@ -115,7 +117,7 @@ std::vector<uint8_t> mask_of(const std::array<double, 4> &r, const Picture &pict
     return mask;
 }
 
-// All of one frame and kind; Failure names the one that differs.
+// All pictures must have the same frame and kind; Failure names the one that differs.
 uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictures) {
     const Picture &first = pictures.front();
     const uint32_t channels = lensprof_layout_channels(first.layout);
@@ -124,13 +126,15 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
         if (p.frame_width != first.frame_width || p.frame_height != first.frame_height)
             throw Failure(
                 ExitCode::unreadable,
-                format("%s: has %u x %u px, not %u x %u as %s; give pictures of one camera, none of them turned",
+                format("%s: is %u x %u px, not %u x %u as %s; give pictures of one camera, all in the same orientation",
                        o.files[i].c_str(), p.frame_width, p.frame_height, first.frame_width, first.frame_height,
                        o.files.front().c_str()));
         if (lensprof_layout_channels(p.layout) != channels)
-            throw Failure(ExitCode::usage, o.files[i] + ": colour and grey pictures do not go together");
+            throw Failure(ExitCode::usage, o.files[i] + ": is in colour and others are grey, or the reverse; give "
+                                                        "pictures of one kind");
         if (std::max(p.width, p.height) < smallest_side)
-            throw Failure(ExitCode::not_usable, o.files[i] + ": less than 64 px are too few cells of light",
+            throw Failure(ExitCode::not_usable, o.files[i] + ": fewer than 64 px give too few cells; give larger "
+                                                             "pictures",
                           LENSPROF_REASON_FLAT_FEW_CELLS);
     }
     return channels;
@@ -141,25 +145,29 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
 void check_flat_options(const FlatCommand &o) {
     check_store_options(o.store);
     if (o.linear + o.gamma.has_value() + (o.profile != 0) > 1)
-        throw Failure(ExitCode::usage,
-                      "say which response the pictures have: one of --linear, --gamma G, --profile ID");
+        throw Failure(ExitCode::usage, "give the response of the pictures with --linear, --gamma G or --profile ID");
     if (o.files.size() > LENSPROF_FLAT_IMAGES)
         throw Failure(ExitCode::usage, std::to_string(o.files.size()) + " pictures; give at most "
                                            + std::to_string(LENSPROF_FLAT_IMAGES));
     for (size_t i = 0; i < o.files.size(); i++)
         for (size_t j = 0; j < i; j++)
-            if (is_same_file(o.files[i], o.files[j])) throw Failure(ExitCode::usage, o.files[i] + ": is given twice");
-    if (!(o.black < o.white)) throw Failure(ExitCode::usage, "--black must be less than --white");
+            if (is_same_file(o.files[i], o.files[j]))
+                throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
+    if (!(o.black < o.white))
+        throw Failure(ExitCode::usage, "--black: must be less than --white; give a smaller value");
     if (o.max_side != 0 && o.max_side < smallest_side)
         throw Failure(ExitCode::usage,
-                      "--max-side: less than 64 pixels are too few cells; give more, or 0 for full size");
+                      "--max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
     if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
-        throw Failure(ExitCode::usage, "--several: a card of one brightness has even light; leave out --light");
-    if (o.find_card && !o.cards.empty()) throw Failure(ExitCode::usage, "--card and --find-card contradict each other");
+        throw Failure(ExitCode::usage, "--several: assumes even light on the card; omit --light");
+    if (o.find_card && !o.cards.empty())
+        throw Failure(ExitCode::usage,
+                      "--card and --find-card exclude each other; "
+                      "give one of them");
     if (o.cards.size() > 1 && o.cards.size() != o.files.size())
         throw Failure(ExitCode::usage, std::to_string(o.cards.size()) + " --card for "
                                            + counted(o.files.size(), "picture")
-                                           + "; give one for all, or one for each");
+                                           + "; give one for all, or one per picture");
 }
 
 FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
@@ -211,7 +219,7 @@ void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input) {
     });
     input.options.channels = common_channels(o, input.pictures);
     if (input.options.channels == 1 && input.options.vignettings == 3)
-        throw Failure(ExitCode::usage, "--falloff-curves 3: the pictures are grey");
+        throw Failure(ExitCode::usage, "--falloff-curves 3: the pictures are grey; use 1");
     for (size_t i = 0; i < count; i++) {
         Picture &picture = input.pictures[i];
         if (!o.cards.empty())

@@ -1,4 +1,4 @@
-// What `lensprof flat` says: a JSON object, and a table for people.
+// The report of `lensprof flat`: a JSON object and a table.
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
@@ -45,7 +45,7 @@ Json spots_json(const lensprof_flat_result &fit) {
     return spots;
 }
 
-// Attenuation as [channel][row][column]; null where there is none.
+// Attenuation as [channel][row][column]; null if not found.
 Json grid_json(const lensprof_gain_grid &grid) {
     if (!grid.columns) return Json();
     Json channels = Json::array();
@@ -75,7 +75,7 @@ void print_images(const FlatReport &report, std::ostream &out) {
 
 void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
     if (!fit.spots) return;
-    out << format("dust      %u spots, left out:", fit.spots);
+    out << format("dust      %u spots excluded:", fit.spots);
     const uint32_t told = std::min<uint32_t>(fit.spots, 5);
     for (uint32_t i = 0; i < told; i++)
         out << format("  %.0f,%.0f px (%.1f %% darker, in %u of %u shots)", fit.spot[i].x, fit.spot[i].y,
@@ -124,23 +124,23 @@ void print_flat(const FlatReport &report, std::ostream &out) {
     print_vignettings(*profile_of(fit, report.response), out);
     for (const auto &response : report.response) print_response(response, out);
     out << format("light     %s; its gradient %s\n", light_name(fit.light),
-                  fit.light == LENSPROF_FLAT_LIGHT_EVEN ? "taken as none"
-                  : fit.separated                       ? "told from the lens by the turned shots"
-                                                        : "and the centre told apart by the prior on the centre alone");
+                  fit.light == LENSPROF_FLAT_LIGHT_EVEN ? "taken as zero"
+                  : fit.separated                       ? "separated from the lens by the rotated shots"
+                                                        : "and the centre separated only by the prior on the centre");
     out << format(
-        "residual  %.2f %% of the light a cell (noise %.2f, texture %.2f, not radial %.2f, shots differ %.2f); "
-        "%.1f %% inliers of %u cells\n",
+        "residual  %.2f %% of the light per cell (noise %.2f, texture %.2f, not radial %.2f, shots differ %.2f); %.1f "
+        "%% inliers of %u cells\n",
         100.0 * fit.residual, 100.0 * fit.noise, 100.0 * fit.texture, 100.0 * fit.frame_residual,
         100.0 * fit.shot_residual, 100.0 * fit.inlier_share, fit.cells);
     if (fit.gain_grid.columns)
-        out << format("grid      %u x %u nodes take what is not radial: %.2f %% are left\n", fit.gain_grid.columns,
+        out << format("grid      %u x %u nodes for the non-radial part: %.2f %% remain\n", fit.gain_grid.columns,
                       fit.gain_grid.rows, 100.0 * fit.grid_residual);
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!fit.usable)
         out << "NOT USABLE: " << report.verdict.text << "\n";
     else if (!report.verdict.text.empty())
-        out << "mind      " << report.verdict.text << "\n";
+        out << "warning   " << report.verdict.text << "\n";
 }
 
 }  // namespace lensprof

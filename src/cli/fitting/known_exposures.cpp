@@ -10,14 +10,14 @@ namespace lensprof {
 namespace {
 
 constexpr double kRoundedSigma = 0.1, kRepeatedSigma = 0.03;  // EV
-constexpr double kFarthest = 40.0;  // EV from 1 s, f/1, ISO 100: no picture was ever taken there
-constexpr double kSame = 1e-3;      // of times, apertures and sensitivities, relative
+constexpr double kFarthest = 40.0;  // EV relative to 1 s, f/1, ISO 100: no picture has such an exposure
+constexpr double kSame = 1e-3;      // relative tolerance of times, apertures and ISO
 
 bool is_possible(const PictureMetadata &m) { return m.exif_ev && std::fabs(*m.exif_ev) < kFarthest; }
 
 bool is_same(std::optional<double> a, std::optional<double> b) { return std::fabs(*a / *b - 1.0) < kSame; }
 
-// By the same camera and lens, with the same time, aperture and ISO, by hand.
+// Whether two pictures have the same camera, lens, time, aperture and ISO, set manually.
 bool is_one_manual_exposure(const PictureMetadata &a, const PictureMetadata &b) {
     return is_possible(a) && is_possible(b) && a.is_manual && b.is_manual
            && is_same(a.exposure_time_s, b.exposure_time_s) && is_same(a.f_number, b.f_number) && is_same(a.iso, b.iso)
@@ -25,7 +25,8 @@ bool is_one_manual_exposure(const PictureMetadata &a, const PictureMetadata &b) 
            && !std::strcmp(a.key.unit, b.key.unit);
 }
 
-// Of the largest group of pictures at one manual exposure, of two at least, the first; none: their number.
+// The first picture of the largest group (at least two) at one manual exposure; the number of pictures if there is
+// none.
 size_t largest_group(const std::vector<PictureMetadata> &metadata) {
     size_t first = metadata.size();
     std::ptrdiff_t most = 1;
@@ -52,7 +53,7 @@ void add_known_exposures(const FitOptions &o, const std::vector<std::string> &fi
     for (size_t i = 0; i < images.size(); i++) {
         if (!metadata[i].exif_ev) continue;
         if (!is_possible(metadata[i])) {
-            warn(streams, files[i] + ": time, aperture and ISO in its EXIF cannot be true and are not used");
+            warn(streams, files[i] + ": time, aperture and ISO in its EXIF are not plausible and not used");
             continue;
         }
         const bool is_repeated = one < metadata.size() && is_one_manual_exposure(metadata[one], metadata[i]);

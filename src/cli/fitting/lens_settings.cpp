@@ -10,13 +10,14 @@
 namespace lensprof {
 namespace {
 
-constexpr double kSameStop = 0.17;       // log2 of f-numbers squared: a sixth of a stop is how EXIF rounds
+constexpr double kSameStop = 0.17;       // log2 of squared f-numbers: a sixth of a stop, the rounding of EXIF
 constexpr double kSameFocal = 0.02;      // relative
-constexpr double kSameExtension = 0.02;  // focal length over focus distance: what focusing moves the falloff by
+constexpr double kSameExtension = 0.02;  // focal length over focus distance, which determines the falloff change by
+                                         // focusing
 
 bool are_known(double a, double b) { return a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; }
 
-// As far as both keys say.
+// As far as both keys state it.
 bool is_same_setting(const lensprof_profile_key &a, const lensprof_profile_key &b) {
     if (*a.lens && *b.lens && std::strcmp(a.lens, b.lens) != 0) return false;
     if (are_known(a.aperture, b.aperture) && std::fabs(2.0 * std::log2(a.aperture / b.aperture)) > kSameStop)
@@ -27,13 +28,13 @@ bool is_same_setting(const lensprof_profile_key &a, const lensprof_profile_key &
     return !are_known(a.distance_m, b.distance_m) || std::fabs(extension(a) - extension(b)) < kSameExtension;
 }
 
-// How much a key says of the setting.
+// How many fields of the setting a key states.
 int stated(const lensprof_profile_key &key) {
     return (key.aperture != LENSPROF_UNKNOWN) + (key.focal_mm != LENSPROF_UNKNOWN)
            + (key.distance_m != LENSPROF_UNKNOWN) + (*key.lens != '\0');
 }
 
-// What the command line states of all pictures tells none apart.
+// Fields given on the command line for all pictures do not distinguish any.
 lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &store) {
     if (store.aperture != LENSPROF_UNKNOWN) key.aperture = store.aperture;
     if (store.focal != LENSPROF_UNKNOWN) key.focal_mm = store.focal;
@@ -56,8 +57,8 @@ LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint
     return settings;
 }
 
-// Whether two images are of one camera: EXIF says it, unless their sizes or processings differ, or the project, unless
-// EXIF says that they are not. `is_given`: the command line states the camera of all.
+// Whether two images are from one camera: according to EXIF, unless sizes or processings differ, or to the project,
+// unless EXIF contradicts. `is_given`: the command line gives the camera of all.
 bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given, uint32_t i,
                     uint32_t j) {
     const lensprof_profile_key &a = metadata[i].key, &b = metadata[j].key;
@@ -73,8 +74,8 @@ bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &
     return is_stated && is_one_kind;
 }
 
-// Numbers cameras in the order of their first images. Images that state their camera come first, so that those which do
-// not join what the project links them to.
+// Numbers cameras in the order of their first images. Images that state their camera come first, so that others do not
+// connect what EXIF separates.
 void number_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given,
                     LensSettings &settings) {
     const auto count = static_cast<uint32_t>(project.images.size());
@@ -99,8 +100,8 @@ void number_cameras(const Project &project, const std::vector<PictureMetadata> &
 
 }  // namespace
 
-// Images that state most come first, and one that states less joins the only setting that it may be of; where there are
-// several, that of those that state as little.
+// Images that state most come first; one that states less joins the only setting it may belong to or, if there are
+// several, that of images stating as little.
 LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
                            const StoreOptions &store, bool one_lens) {
     const auto count = static_cast<uint32_t>(project.images.size());
@@ -117,7 +118,7 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
     for (uint32_t i : order) {
         const auto is_possible = [&](uint32_t other) {
             const auto &a = project.images[i], &b = project.images[other];
-            const bool is_upright = a.camera.height > a.camera.width;  // centres are in the frame's own axes
+            const bool is_upright = a.camera.height > a.camera.width;  // centres are along the frame's own axes
             return cameras.camera_of_image[i] == cameras.camera_of_image[other] && a.vignetting_of == b.vignetting_of
                    && is_upright == (b.camera.height > b.camera.width) && is_same_setting(keys[i], keys[other]);
         };
@@ -132,10 +133,10 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
         if (found[i] == first.size()) first.push_back(i);
     }
     if (first.size() > LENSPROF_SETTINGS_MAX)
-        throw Failure(ExitCode::usage,
-                      project.path + ": its pictures have " + std::to_string(first.size()) + " lens settings, and "
-                          + std::to_string(LENSPROF_SETTINGS_MAX)
-                          + " are the most of one fit; give fewer pictures, or --one-lens to take all as one");
+        throw Failure(ExitCode::usage, project.path + ": its pictures have " + std::to_string(first.size())
+                                           + " lens settings, but a fit takes at most "
+                                           + std::to_string(LENSPROF_SETTINGS_MAX)
+                                           + "; give fewer pictures, or use --one-lens to treat all as one");
     LensSettings settings = in_order(found, first);
     settings.camera_of_image = cameras.camera_of_image, settings.first_of_camera = cameras.first_of_camera;
     return settings;

@@ -10,11 +10,11 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kLeastPairs = 8;          // of a link that says something
+constexpr size_t kLeastPairs = 8;          // of an informative link
 constexpr size_t kLeastImages = 3;         // of a group
 constexpr double kLeastRatio = 8.0;        // of variances between and within
-constexpr double kLeastDifference = 0.25;  // levels of 255 squared: what rounding leaves
-constexpr size_t kMostLooked = 200;        // links that may part the images
+constexpr double kLeastDifference = 0.25;  // levels of 255 squared: the effect of rounding
+constexpr size_t kMostLooked = 200;        // links that may separate the images
 constexpr double kNear = 1.2;              // of the usual distance of views
 
 struct Link {
@@ -38,7 +38,7 @@ std::vector<Link> links_of(const FitInput &input, const std::vector<double> &dif
     return links;
 }
 
-// The smaller of the two groups that the tree without one of its links leaves.
+// The smaller of the two groups left by removing one link from the tree.
 std::vector<uint32_t> smaller_group(const std::vector<Link> &tree, size_t without, size_t images) {
     JoinedSets groups(images);
     for (size_t n = 0; n < tree.size(); n++)
@@ -71,14 +71,14 @@ LightGroups light_groups(const FitInput &input, const std::vector<double> &diffe
         std::vector<uint32_t> group = smaller_group(tree, n, input.images.size());
         if (group.size() < kLeastImages) continue;
         const auto is_in = [&](uint32_t image) { return std::binary_search(group.begin(), group.end(), image); };
-        std::vector<double> within{usual};  // the group may differ more within it than the rest does
+        std::vector<double> within{usual};  // the group may vary more internally than the rest
         for (const Link &link : tree)
             if (is_in(link.image[0]) && is_in(link.image[1])) within.push_back(link.difference);
         const double most = kLeastRatio * std::max(usual, median(within));
         const auto is_comparable = [&](const Link &link) {
             return is_in(link.image[0]) != is_in(link.image[1]) && link.distance <= kNear * usual_distance;
         };
-        const auto nearest = std::find_if(links.begin(), links.end(), is_comparable);  // of them the most alike
+        const auto nearest = std::find_if(links.begin(), links.end(), is_comparable);  // the most similar of them
         if (nearest == links.end() || nearest->difference <= most) continue;
         found.ratio = kLeastRatio * nearest->difference / most;
         found.second = std::move(group);

@@ -1,4 +1,4 @@
-// Pictures of one place in different light: whether the images of a result fall into such groups.
+// Detects whether the images of a result fall into groups that show the scene in different light.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace lensprof {
 
-// Two groups of images whose colours agree within each and not between them.
+// Two groups of images whose colours agree within each group but not between the groups.
 struct LightGroups {
-    double ratio = 1.0;            // how much more colours differ between the groups than within: of variances
-    std::vector<uint32_t> second;  // images of the smaller group; empty: there is one light
+    double ratio = 1.0;            // ratio of colour variances between groups and within
+    std::vector<uint32_t> second;  // images of the smaller group; empty: only one light
 };
 
-// By the links of the minimum spanning tree of the images, a link weighing the median difference of its pairs
-// (colour_differences): where the light differs, a group is joined to the rest by links that are all as bad, also
-// between views that are as near to each other (`view_distances`) as those within. Groups of fewer than three images
-// are not told from pictures that are off.
+// Uses the minimum spanning tree of the images, with the median difference of a link's pairs (colour_differences) as
+// its weight: if the light differs, all links that connect a group to the rest are equally bad, even between views as
+// close (`view_distances`) as those within a group. Groups of fewer than three images cannot be distinguished from
+// outliers.
 LightGroups light_groups(const FitInput &input, const std::vector<double> &differences,
                          const std::map<std::pair<uint32_t, uint32_t>, double> &view_distances);
 

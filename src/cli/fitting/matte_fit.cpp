@@ -12,14 +12,14 @@
 namespace lensprof {
 namespace {
 
-constexpr double kCountedShare = 0.9;      // of the pairs: the others may show different things
+constexpr double kCountedShare = 0.9;      // of the pairs: the others may show different objects
 constexpr double kMatteShare = 0.75;       // of the points
-constexpr double kMostDifference = 400.0;  // levels squared that count of one pair
+constexpr double kMostDifference = 400.0;  // maximum levels squared counted per pair
 constexpr double kSameExposure = 0.002;    // EV
 constexpr int kMostRounds = 6;
 constexpr size_t kGreyBins = 8;
 
-// Corrects grey values of the pictures to the mean exposure by a result.
+// Corrects grey values of the pictures to the mean exposure with a result.
 class Corrector {
 public:
     Corrector(const FitInput &input, const Fitted &fitted)
@@ -75,7 +75,7 @@ std::vector<double> colour_differences(const FitInput &input, const Fitted *fitt
             const auto level = [&](int side) {
                 return corrector ? corrector->level(pair, side, c) : 255.0 * pair.value[side][c];
             };
-            const double difference = level(0) - level(1);  // NaN where an exposure is
+            const double difference = level(0) - level(1);  // NaN if an exposure is NaN
             sum += 0.5 * difference * difference;
         }
         differences.push_back(sum / channels);
@@ -96,8 +96,8 @@ double colour_variance_of(const std::vector<double> &differences) {
 
 namespace {
 
-// Of each pair whether its point is among the share of the points whose colours differ least, of those of about its
-// grey value: where the response is flat, as near white, all differences are small.
+// Whether the point of each pair is in the share of points whose colours differ least, among those of similar grey
+// value: where the response is flat, as near white, all differences are small.
 std::vector<bool> are_matte(const std::vector<lensprof_pair> &pairs, const std::vector<double> &differences,
                             const std::vector<uint32_t> &points) {
     struct Point {
@@ -128,7 +128,7 @@ std::vector<bool> are_matte(const std::vector<lensprof_pair> &pairs, const std::
     return matte;
 }
 
-// The largest difference of two results' exposures, EV; images that one of them lacks count as much.
+// The largest difference of exposures between two results, EV; images missing from one of them count as much.
 double largest_change(const Fitted &a, const Fitted &b) {
     double largest = 0.0;
     for (size_t i = 0; i < a.exposures.size(); i++) {
@@ -139,7 +139,7 @@ double largest_change(const Fitted &a, const Fitted &b) {
     return largest;
 }
 
-// While held-out pairs need not choose modes and curves again: of one camera, whose result has chosen them.
+// If held-out pairs need not choose modes and curves again: for one camera, whose result has chosen them.
 class HeldChoices {
 public:
     HeldChoices(FitInput &input, const Fitted &chosen)
@@ -158,7 +158,7 @@ private:
     const uint32_t modes_, vignettings_;
 };
 
-// Fits the pairs for which keeps(p) holds; none where these are too few.
+// Fits the pairs for which keeps(p) holds; empty if they are too few.
 template <class Keeps>
 std::optional<Fitted> fit_some(FitInput &input, const std::vector<lensprof_pair> &all, const Keeps &keeps,
                                uint32_t reference, const std::string &item, Progress &progress,
@@ -174,8 +174,8 @@ std::optional<Fitted> fit_some(FitInput &input, const std::vector<lensprof_pair>
     }
 }
 
-// The root mean square of the differences of two results' exposures and white balances, each less its mean and what an
-// exponent of both explains: EV, and of the logarithms.
+// The root mean square difference of exposures and white balances between two results, each without its mean and
+// without the part explained by an exponent: EV, and logarithms.
 std::array<double, 3> differences_of(const Fitted &a, const Fitted &b) {
     std::array<double, 3> rms{};
     for (size_t what = 0; what < 3; what++) {  // EV, red, blue
@@ -236,7 +236,7 @@ void add_errors_by_halves(FitInput input, const std::vector<uint32_t> &points, c
     const std::vector<lensprof_pair> all = input.pairs;
     std::optional<Fitted> halves[2];
     for (const uint32_t half : {0u, 1u}) {
-        const auto keeps = [&](size_t p) { return (points[p] * 2654435761u >> 31) == half; };  // by a hash
+        const auto keeps = [&](size_t p) { return (points[p] * 2654435761u >> 31) == half; };  // chosen by a hash
         halves[half] = fit_some(input, all, keeps, result.reference, item, progress, nullptr);
         if (!halves[half]) return;
     }

@@ -18,15 +18,16 @@ Project project_of_words(const std::vector<std::string> &words, const std::strin
         return project_of_reconstruction(words[0], options, streams);
     }
     if (!images.empty())
-        throw Failure(ExitCode::usage, "--images: is of a reconstruction, and " + words[0] + " is none; leave it out");
+        throw Failure(ExitCode::usage,
+                      "--images: is for reconstructions, but " + words[0] + " is not one; omit the option");
     if (is_one && !names_pictures(words[0])) {
         check_is_no_part(words[0]);
         return read_project(words[0]);
     }
     for (const std::string &word : words)
         if (!names_pictures(word))
-            throw Failure(ExitCode::unreadable, word + ": is no picture (.jpg, .png, .tif) and no folder; give one "
-                                                       "project alone, or pictures and folders");
+            throw Failure(ExitCode::unreadable, word + ": is neither a picture (.jpg, .png, .tif) nor a folder; give "
+                                                       "a single project, or pictures and folders");
     return project_of_pictures(find_photographs(words, streams), false, progress, streams);
 }
 

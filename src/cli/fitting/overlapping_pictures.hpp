@@ -1,4 +1,4 @@
-// Overlapping pictures as a user names them, and the pairs that are drawn of them.
+// Overlapping pictures as named on the command line, and the pairs sampled from them.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@
 
 namespace lensprof {
 
-// Pictures and folders, whose overlaps are found, or one project or reconstruction, whose pictures are in the folder
-// `images` where that is not empty. Failure: usage for words that are no pictures among others, unreadable, and not
-// usable where no two overlap.
+// Takes pictures and folders and finds their overlaps, or takes one project or reconstruction, whose pictures are in
+// the folder `images` unless that is empty. Failure (usage) for words that are not pictures, (unreadable), and
+// (not_usable) if no two pictures overlap.
 Project project_of_words(const std::vector<std::string> &words, const std::string &images, Progress &progress,
                          Streams &streams);
 
 struct DrawnPairs {
     std::vector<lensprof_pair> pairs;
-    uint32_t channels = 3;  // or 1 where all pictures are grey
+    uint32_t channels = 3;  // or 1 if all pictures are grey
 };
 
-// What the first look of a fit draws; nothing is known of the camera.
+// Draws the pairs of a first fit, without knowledge of the camera.
 DrawnPairs draw_pairs(const Project &project, Progress &progress);
 
 }  // namespace lensprof

@@ -16,7 +16,7 @@
 namespace lensprof {
 namespace {
 
-// Whether two files of one size, which is not 0, hold the same, as far as they can be read.
+// Whether two files of equal, nonzero size have the same content, as far as they can be read.
 bool is_copy(const std::string &one, const std::string &other) {
     std::ifstream a(one, std::ios::binary), b(other, std::ios::binary);
     std::vector<char> x(1 << 16), y(1 << 16);
@@ -37,13 +37,13 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
     std::map<uint64_t, std::vector<size_t>> by_size;
     for (const NamedPicture &picture : pictures) {
         if (!known.insert(file_identity(picture.file)).second) continue;
-        const uint64_t bytes = file_bytes(picture.file);  // 0 where there is no file
+        const uint64_t bytes = file_bytes(picture.file);  // 0 if the file does not exist
         auto &alike = by_size[bytes];
         const auto copied = !bytes ? alike.end() : std::find_if(alike.begin(), alike.end(), [&](size_t other) {
             return is_copy(list.files[other], picture.file);
         });
         if (copied != alike.end()) {
-            list.left_out.emplace_back(picture.file, "it is a copy of " + list.names[*copied]);
+            list.left_out.emplace_back(picture.file, "a copy of " + list.names[*copied]);
             continue;
         }
         alike.push_back(list.files.size());
@@ -57,20 +57,20 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
 
 namespace {
 
-using LeftOut = std::vector<std::pair<std::string, std::string>>;  // names, and why
+using LeftOut = std::vector<std::pair<std::string, std::string>>;  // names and reasons
 
-// Names pictures that are not part of the project, for one reason.
+// Reports pictures that are not part of the project, for one reason.
 void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names, const std::string &reason,
                LeftOut &left_out, Streams &streams) {
     for (uint32_t number : numbers) left_out.emplace_back(names[number], reason);
-    warn(streams, listed(numbers, names) + ": left out, " + reason);
+    warn(streams, listed(numbers, names) + ": left out: " + reason);
 }
 
 std::string why_apart(const FoundProject &other, const FoundProject &project) {
     if (other.kind == SceneKind::still)
-        return "another group, of a camera that did not move; `lensprof bracket` and `lensprof align` take its pictures";
-    if (other.whole == project.whole) return std::string("another group: ") + joined_by_another_body;
-    return "another group, which overlaps with none of these; give its pictures alone";
+        return "part of another group, whose camera did not move; use `lensprof bracket` or `lensprof align` for it";
+    if (other.whole == project.whole) return std::string("part of another group: ") + joined_by_another_body;
+    return "part of another group that overlaps none of these pictures; give that group's pictures alone";
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
@@ -78,44 +78,44 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
     const FoundProject &project = found.projects[0];
     const std::string unfit =
         project.unfit
-            ? format(" that fit, %u more do not fit the cameras and are compared where they match", project.unfit)
+            ? format(" that fit; %u more do not fit the cameras and are compared only at matched points", project.unfit)
             : "";
     note(streams,
          label
-             + format(": %zu pictures overlap (%s%s; %.2f %% of the longer side is left; %s); response, falloff, "
-                      "exposures and white balances are estimated, unless --free says else",
+             + format(": %zu pictures overlap (%s%s; alignment residual %.2f %% of the longer side; %s); estimating "
+                      "response, falloff, exposures and white balances (use --free to change this)",
                       project.pictures.size(), counted(project.links - project.unfit, "link").c_str(), unfit.c_str(),
                       100.0 * project.residual,
-                      project.kind == SceneKind::plane ? "a camera that moved over a plane, compared where they match"
+                      project.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
+                                                         "points"
                                                        : "a camera that turned about one point"));
     const size_t cameras = std::set<uint32_t>(project.bodies.begin(), project.bodies.end()).size();
     if (cameras > 1)
         note(streams,
              label
-                 + format(": the pictures are of %zu cameras, sizes or processings; each gets a response of its "
-                          "own, unless --one-lens takes all as of one",
+                 + format(": the pictures are from %zu cameras, sizes or processings; each gets its own response (use "
+                          "--one-lens to treat all as one)",
                           cameras));
     if (!project.cameras_fit()) warn(streams, label + no_cameras_fit);
     for (size_t n = 1; n < found.projects.size(); n++)
         leave_out(found.projects[n].pictures, names, why_apart(found.projects[n], project), left_out, streams);
     if (!found.foreign.empty()) leave_out(found.foreign, names, of_another_body, left_out, streams);
     if (!found.apart.empty()) leave_out(found.apart, names, joined_by_another_body, left_out, streams);
-    if (!found.alone.empty())
-        leave_out(found.alone, names, "no overlap with another picture was found", left_out, streams);
+    if (!found.alone.empty()) leave_out(found.alone, names, "no overlap with another picture found", left_out, streams);
 }
 
 }  // namespace
 
 bool names_pictures(const std::string &word) { return is_folder(word) || is_picture_name(word); }
 
-// Whether a picture of a folder is marked as one of lensprof's own.
+// Whether a picture in a folder is marked as an output of lensprof.
 static bool is_corrected_copy(const NamedPicture &picture) {
     if (!picture.in_folder) return false;
     try {
         const auto mark = read_metadata(picture.file).mark;
         return mark && mark->falloff != CorrectionMark::Falloff::added;
     } catch (const Failure &) {
-        return false;  // said when it is read
+        return false;  // reported when it is read
     }
 }
 
@@ -130,13 +130,15 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
     named.erase(own, named.end());
     Photographs list = list_photographs(words, named);
     for (const NamedPicture &picture : outputs)
-        list.left_out.emplace_back(picture.file, "it is in a folder that calibrate has written");
+        list.left_out.emplace_back(picture.file, "it is in an output folder of calibrate");
     for (const NamedPicture &picture : corrected)
-        list.left_out.emplace_back(picture.file, "lensprof has made it of another picture; name it itself to take it");
-    for (const auto &[file, why] : list.left_out) warn(streams, file + ": left out, " + why);
+        list.left_out.emplace_back(picture.file,
+                                   "lensprof made it from another picture; give its name explicitly to "
+                                   "use it");
+    for (const auto &[file, why] : list.left_out) warn(streams, file + ": left out: " + why);
     demand_one_kind(list.files);
     if (list.files.size() < 2)
-        throw Failure(ExitCode::not_usable, list.label + ": has one picture; at least two overlapping ones are needed",
+        throw Failure(ExitCode::not_usable, list.label + ": has only one picture; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
     return list;
 }
@@ -157,13 +159,13 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
         throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
     if (found.projects.empty() && !found.foreign.empty())
         throw Failure(ExitCode::not_usable,
-                      label + ": no two pictures of one camera, size and processing overlap, as each camera's must; give "
-                              "more of them, or --one-lens to take all as of one",
+                      label + ": no two pictures of the same camera, size and processing overlap; give more pictures "
+                              "per camera, or use --one-lens to treat all as one",
                       LENSPROF_REASON_FEW_PAIRS);
     if (found.projects.empty())
         throw Failure(ExitCode::not_usable,
-                      label + ": no two of the pictures overlap, or too little in them can be recognised; give pictures "
-                              "that share a third, or a Hugin project",
+                      label + ": no two of the pictures overlap, or they have too few recognisable features; give "
+                              "pictures that overlap by a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
     if (found.projects[0].kind == SceneKind::still)
         throw Failure(ExitCode::not_usable, label + no_falloff_of_still, LENSPROF_REASON_FEW_PAIRS);
@@ -184,7 +186,7 @@ std::string text_of_found(const FoundProject &found) {
     std::vector<ProjectImage> images;
     for (size_t n = 0; n < found.pictures.size(); n++)
         images.push_back(
-            {found.cameras[n], format("image%zu", n), found.bodies[n], found.lenses[n]});  // a name may hold quotes
+            {found.cameras[n], format("image%zu", n), found.bodies[n], found.lenses[n]});  // a name may contain quotes
     return new_project_text("found by lensprof build", images, found.points);
 }
 

@@ -1,4 +1,4 @@
-// Pictures that are in no project, as one.
+// Makes a project of pictures.
 #pragma once
 
 #include <string>
@@ -11,45 +11,45 @@
 
 namespace lensprof {
 
-// Whether a word of the command line names a picture or a folder, and not a project.
+// Whether a word of the command line names a picture or folder, not a project.
 bool names_pictures(const std::string &word);
 
-// Every picture once, whatever its names; copies of a picture are left out. Within a folder that is the only word
-// reports call a picture by the rest of its path.
+// Lists every picture once, regardless of its names; copies of a picture are left out. If a folder is the only word,
+// reports use paths relative to it.
 struct Photographs {
-    std::string label;  // of all
+    std::string label;  // number of all pictures
     std::vector<std::string> files, names;
-    std::vector<std::pair<std::string, std::string>> left_out;  // files, and why
+    std::vector<std::pair<std::string, std::string>> left_out;  // files and reasons
 };
 Photographs list_photographs(const std::vector<std::string> &words, const std::vector<NamedPicture> &pictures);
 
-// The pictures that are named, and those of folders that are. What calibrate has written is left out. What is left out
-// is named on standard error. Failure for raw files among others (usage), and where fewer than two are left.
+// The named pictures and those of named folders. Outputs of calibrate are left out. What is left out is listed on
+// standard error. Failure (usage) for raw files among others, and if fewer than two pictures remain.
 Photographs find_photographs(const std::vector<std::string> &words, Streams &streams);
 
-// Finds the overlaps. The project is that of the largest group; what it leaves out is named on standard
-// error. With `one_lens` all pictures are taken as of one. All unknowns are asked for. Failure (not usable) where no
-// two overlap.
+// Finds the overlaps and returns the project of the largest group; pictures left out are listed on standard error. With
+// `one_lens` all pictures are treated as from one camera. All parameters are free. Failure (not_usable) if no two
+// pictures overlap.
 Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams);
 
-// Why a picture is not part of a project that it overlaps with, directly or through others.
+// Why a picture is not part of a project that it overlaps, directly or through others.
 constexpr const char *of_another_body =
-    "of a camera, size or processing of which no two pictures overlap (--one-lens takes all as of one)";
+    "no two pictures of its camera, size or processing overlap (use --one-lens to treat all as one)";
 constexpr const char *joined_by_another_body =
-    "only pictures of another camera, size or processing join it to the others (--one-lens takes all as of one)";
+    "only pictures of another camera, size or processing connect it to the others (use --one-lens to treat all as one)";
 
-// Why pictures of a camera that did not move are not fitted, and what they serve for.
+// Why pictures of a stationary camera are not fitted, and what to use them for.
 constexpr const char *no_falloff_of_still =
-    ": the camera did not move, and the pictures show no falloff; `lensprof bracket` finds its response, `lensprof align` "
-    "evens or merges them";
+    ": the camera did not move, so the pictures cannot show the falloff; use `lensprof bracket` for its response, "
+    "`lensprof align` to match or merge the pictures";
 
-// What is to be said of a project whose cameras do not fit.
+// Note for a project whose cameras do not fit.
 constexpr const char *no_cameras_fit =
-    ": no cameras fit the pictures well: parallax of a camera that moved, distortion, or things that moved. The pictures "
-    "are compared where they match; a project or preview of them does not show the scene";
+    ": no camera model fits the pictures well, because of parallax, distortion or moving objects. The pictures are "
+    "compared only at matched points; a project or preview of them does not show the scene";
 
-// The project of a group of pictures, whose images are called image0, image1 and so on; and the same as a project,
-// whose path, names and files are known.
+// The project of a group of pictures, whose images are named image0, image1 and so on; and the same as a Project with
+// path, names and files.
 std::string text_of_found(const FoundProject &found);
 void read_found(const std::string &text, Project &project);
 

@@ -10,10 +10,15 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t longer_side = 1600, gap = 8;                           // px of a mosaic
-constexpr uint32_t picture_side = 500;                                    // px that pictures are reduced to
-constexpr double widest_flat = 55.0 * M_PI / 180.0, farthest_flat = 8.0;  // seen ahead; px of a plane at distance 1
+constexpr uint32_t picture_side = 500;                                    // px to which pictures are reduced
+constexpr double widest_flat = 55.0 * M_PI / 180.0, farthest_flat = 8.0;  // forward view; px of a plane at distance 1
 
-// The model on a reduced picture, whose place in the frame does not matter: radii are in half diagonals.
+struct Tile {
+    Picture before, after;  // 8 bit
+    lensprof_camera camera{};
+};
+
+// The model on a reduced picture, whose position in the frame does not matter: radii are in half diagonals.
 Picture applied(Picture &source, const lensprof_apply_options &options, const std::string &file) {
     lensprof_apply_options own = options;
     own.frame_width = source.width, own.frame_height = source.height;
@@ -33,8 +38,8 @@ Picture applied(Picture &source, const lensprof_apply_options &options, const st
     return target;
 }
 
-CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted,
-                      uint32_t max_side) {
+// A picture corrected with a result, and the unchanged picture in the same format.
+Tile tile_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted) {
     ReadOptions read;
     read.max_side = max_side;
     Picture source = read_picture(project.files[i], read);
@@ -59,7 +64,7 @@ CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, 
     return copy;
 }
 
-// A mosaic's projection, and the part of it that pictures cover.
+// The projection of a mosaic, and the part of it that pictures cover.
 struct Canvas {
     bool is_flat = true;
     double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0, px = 1.0;  // px: of a pixel
@@ -79,7 +84,7 @@ struct Box {
     double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
 };
 
-// Calls use(direction) for places of a frame, its edges among them.
+// Calls use(direction) for sample positions of a frame, including its edges.
 template <class Use>
 void look_around(const lensprof_camera &camera, const Use &use) {
     constexpr int steps = 12;
@@ -91,7 +96,7 @@ void look_around(const lensprof_camera &camera, const Use &use) {
                 use(direction);
 }
 
-// Where a picture lies; all around where it crosses the edge of an equirectangular canvas.
+// The extent of a picture; the full width if it crosses the edge of an equirectangular canvas.
 Box box_of(const Canvas &canvas, const lensprof_camera &camera) {
     Box box;
     look_around(camera, [&](const double direction[2]) {
@@ -136,8 +141,8 @@ void copy_pixel(const Picture &from, uint32_t x, uint32_t y, uint8_t *to) {
     for (uint32_t c = 0; c < 3; c++) to[c] = pixel[samples < 3 ? 0 : c];
 }
 
-// A tile's pixels into both mosaics, where no other's middle is nearer.
-void paint(const Canvas &canvas, const CorrectedCopy &tile, std::vector<float> &nearest, Mosaic &out) {
+// Draws a tile's pixels into both mosaics, unless another picture's centre is nearer.
+void paint(const Canvas &canvas, const Tile &tile, std::vector<float> &nearest, Picture &out) {
     const lensprof_camera &camera = tile.camera;
     const Box box = box_of(canvas, camera);
     const auto pixel = [&](double at, double from, uint32_t count) {
@@ -168,11 +173,12 @@ void paint(const Canvas &canvas, const CorrectedCopy &tile, std::vector<float> &
 
 void check_preview(const std::string &path) {
     if (format_of_name(path) == FileFormat::exr)
-        throw Failure(ExitCode::usage, path + ": OpenEXR holds light, and a mosaic is a picture; give a name in .jpg, .png "
+        throw Failure(ExitCode::usage, path + ": a mosaic is not written as OpenEXR; give a name ending in .jpg, .png "
                                               "or .tif");
 }
 
-std::vector<uint32_t> images_with_exposure(const Fitted &fitted) {
+void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress) {
+    const lensprof_exposure wanted = mean_exposure(fitted.exposures);  // as in `apply --pto`
     std::vector<uint32_t> joined;
     for (uint32_t i = 0; i < fitted.exposures.size(); i++)
         if (!std::isnan(fitted.exposures[i].ev)) joined.push_back(i);

@@ -1,4 +1,4 @@
-// An unblended mosaic of a project's pictures before and after correction: what a fit is worth, at a glance.
+// An unblended mosaic of a project's pictures before and after correction, to judge a fit by eye.
 #pragma once
 
 #include <string>
@@ -9,31 +9,11 @@
 
 namespace lensprof {
 
-// A picture as it is and as the result corrects it, to the mean exposure; 8 bit, reduced.
-struct CorrectedCopy {
-    Picture before, after;
-    lensprof_camera camera{};
-    uint32_t image = 0;
-};
-
-// The images that a result has exposures of.
-std::vector<uint32_t> images_with_exposure(const Fitted &fitted);
-
-// Copies of these images, with a longer side of at least `max_side` pixels.
-std::vector<CorrectedCopy> corrected_copies(const Project &project, const Fitted &fitted,
-                                            const std::vector<uint32_t> &images, uint32_t max_side, Progress &progress);
-
-// Both of one size, 8 bit RGB, the longer side 1600 pixels.
-struct Mosaic {
-    Picture before, after;
-};
-Mosaic mosaic_of(const std::vector<CorrectedCopy> &copies);
-
-// Failure (usage) for a name that no picture can have.
+// Failure (usage) for a name without a picture extension.
 void check_preview(const std::string &path);
 
-// Writes the mosaic before, and below it the mosaic after, both of the images that the result has exposures of: each
-// place by the picture whose middle is nearest. Rectilinear where all looks ahead or the camera moved, else
+// Writes the mosaic before and, below it, after correction, of the images with an exposure in the result: each point is
+// taken from the picture whose centre is nearest. Rectilinear if all cameras look forward or the camera moved, else
 // equirectangular.
 void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress);
 

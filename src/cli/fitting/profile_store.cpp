@@ -27,32 +27,36 @@ void declare_store(Command &command, StoreOptions &o) {
             o.dbs.push_back(word);
             o.db = o.dbs.front();
         },
-        "profile database; where it is given more than once the profile is stored in the first, and the others are read; "
-        "default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share");
+        "profile database; repeat to read several, the profile is stored in the first; default lensprof/profiles.db "
+        "in $XDG_DATA_HOME or ~/.local/share");
     command.flag("--no-store", o.no_store, "do not store the profile");
-    command.flag("--force", o.force, "store a result that is not usable");
-    command.text("--maker", o.maker, "camera maker, instead of EXIF's");
-    command.text("--camera", o.camera, "camera model");
-    command.text("--lens", o.lens, "lens");
+    command.flag("--force", o.force, "store the result even if it is not usable");
+    command.text("--maker", o.maker, "camera maker; default from EXIF");
+    command.text("--camera", o.camera, "camera model; default from EXIF");
+    command.text("--lens", o.lens, "lens model; default from EXIF");
     command.text("--unit", o.unit,
-                 "the profile is of one camera and lens alone: their serial numbers, or exif for those of the picture");
-    command.number("--crop-factor", o.crop_factor, crop_factors, "43.27 mm over the diagonal of the camera's sensor");
-    command.number("--focal", o.focal, focal_lengths, "focal length, mm, as 50 or 50mm");
-    command.number("--aperture", o.aperture, f_numbers, "f-number, as 4 or f/4");
-    command.number("--distance", o.distance, distances, "focus distance, m, as 3 or 3m");
+                 "serial numbers of camera and lens, for a profile of this single unit; exif takes those of the "
+                 "picture; default none");
+    command.number("--crop-factor", o.crop_factor, crop_factors,
+                   "crop factor: 43.27 mm divided by the sensor "
+                   "diagonal; default from EXIF or the table of cameras");
+    command.number("--focal", o.focal, focal_lengths, "focal length, mm, such as 50 or 50mm; default from EXIF");
+    command.number("--aperture", o.aperture, f_numbers, "f-number, such as 4 or f/4; default from EXIF");
+    command.number("--distance", o.distance, distances, "focus distance, m, such as 3 or 3m; default from EXIF");
     command.choice("--processing", o.processing, processing_choices(),
-                   "raw, jpeg or corrected (falloff corrected in camera)");
-    command.text("--style", o.style, "picture style, as the camera calls it");
+                   "processing of the pictures: raw, jpeg or corrected (falloff corrected in camera); default from "
+                   "EXIF");
+    command.text("--style", o.style, "picture style, by the camera's name for it; default from EXIF");
 }
 
 void check_store_options(const StoreOptions &o, bool reads_db, bool writes_else) {
     demand_room(o.maker, o.camera, o.lens, o.unit, o.style);
     if (o.no_store && o.force && !writes_else)
-        throw Failure(ExitCode::usage,
-                      "--no-store and --force, which stores a result that is not usable, contradict each "
-                      "other; leave one out");
+        throw Failure(
+            ExitCode::usage,
+            "--no-store and --force (store a result that is not usable) exclude each other; omit one of them");
     if (o.no_store && !reads_db && !o.db.empty())
-        throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
+        throw Failure(ExitCode::usage, "--db and --no-store exclude each other; omit one of them");
 }
 
 void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file, Streams &streams) {
@@ -64,8 +68,8 @@ void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const s
     for (const std::string &option : metadata.cut)
         for (const auto &one : used)
             if (option == one.first && one.second && !o.no_store)
-                warn(streams, file + ": EXIF's text for " + option
-                                  + " is longer than what is stored, and is cut; give a shorter one with " + option);
+                warn(streams, file + ": the EXIF text for " + option + " is too long and was truncated; give a "
+                                                                       "shorter one with " + option);
 }
 
 lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, const StoreOptions &o,
@@ -75,7 +79,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
     if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
     if (o.unit == "exif" && !*key.unit)
         throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --unit");
-    if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit);  // of all of the model, where none is given
+    if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit);  // any unit of the model, unless given
     const bool is_given = o.crop_factor != LENSPROF_UNKNOWN;
     const double crop = is_given ? o.crop_factor : crop_factor_in_files(o.dbs, key, size);
     if (crop != LENSPROF_UNKNOWN) key.crop_factor = crop;
@@ -86,7 +90,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
     if (!o.style.empty()) set_text(key.style, sizeof key.style, o.style);
     if (!*key.camera_model && !*key.lens && !o.no_store)
         throw Failure(ExitCode::usage,
-                      file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
+                      file + ": EXIF does not name camera and lens; give --camera and --lens, or --no-store");
     return key;
 }
 
@@ -101,7 +105,7 @@ lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata,
     key.aperture = unknown.aperture;
     key.distance_m = unknown.distance_m;
     if (!*key.camera_model && o.camera.empty() && o.lens.empty() && !o.no_store)
-        throw Failure(ExitCode::usage, file + ": no EXIF says which camera it was; give --camera, or --no-store");
+        throw Failure(ExitCode::usage, file + ": EXIF does not name the camera; give --camera, or --no-store");
     return override_key(key, metadata.size, o, file);
 }
 
@@ -124,9 +128,9 @@ void remove_empty_store(const std::string &file) {
     std::error_code ignored;
     if (lensprof_store_open(file.c_str(), LENSPROF_STORE_WRITE, &store, nullptr) != LENSPROF_OK) {
         if (is_regular_file(file) && file_bytes(file) == 0) std::filesystem::remove(file, ignored);
-        return;  // else somebody else's
+        return;  // else another process's
     }
-    Store closing(store);  // nobody writes to it while it is counted and removed
+    Store closing(store);  // keeps others from writing while it is counted and removed
     if (lensprof_store_begin(store, nullptr) != LENSPROF_OK) return;
     if (lensprof_store_list(store, nullptr, nullptr, 0, &profiles, nullptr) != LENSPROF_OK || profiles) return;
     for (const char *end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);

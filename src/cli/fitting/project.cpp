@@ -25,28 +25,28 @@ uint32_t find_reference(const Project &project) {
     return 0;
 }
 
-// Failure where the frame of a picture is not the one of the project.
+// Failure if the frame of a picture differs from that of the project.
 void check_size(const Project &project, uint32_t i, const Picture &header) {
     const auto &camera = project.images[i].camera;
     if (header.frame_width == camera.width && header.frame_height == camera.height) return;
     throw Failure(
         ExitCode::unreadable,
         project.files[i] + format(": is %u x %u pixels, but ", header.frame_width, header.frame_height) + project.path
-            + format(" says %u x %u; use the pictures that the project was made with", camera.width, camera.height));
+            + format(" states %u x %u; use the pictures that the project was made with", camera.width, camera.height));
 }
 
-// No file has such a name: the project is damaged.
+// No file can have such a name: the project is damaged.
 void check_name(const Project &project, uint32_t i) {
     if (project.names[i].empty())
         throw Failure(ExitCode::unreadable, project.path + ": image " + std::to_string(i)
-                                                + " names no file (its n is empty or missing); correct the project");
+                                                + " has no file name (its n is empty or missing); correct the project");
     if (is_too_long(project.files[i]))
         throw Failure(ExitCode::unreadable, project.path + ": image " + std::to_string(i) + ": its name "
                                                 + short_name(project.names[i])
-                                                + " is longer than names of files can be; correct the project");
+                                                + " is too long for a file name; correct the project");
 }
 
-// What may be used: project_max_bytes, or less where the machine or its limit of a process (ulimit -v) has less.
+// The available memory: project_max_bytes, or less if the machine or its process limit (ulimit -v) has less.
 uint64_t memory_bound() {
     uint64_t bound = project_max_bytes;
     const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
@@ -117,7 +117,7 @@ std::string project_text_at(Project &project, const std::string &path) {
 uint32_t image_of_word(const Project &project, const std::string &word) {
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (word == project.names[i] || word == std::to_string(i)) return i;
-    throw Failure(ExitCode::usage, word + ": no such image in " + project.path + "; give its number or name");
+    throw Failure(ExitCode::usage, word + ": not an image of " + project.path + "; give the number or name of one");
 }
 
 ImagesByFile::ImagesByFile(const Project &project) : project_(&project) {
@@ -131,8 +131,7 @@ std::optional<uint32_t> ImagesByFile::find(const std::string &file) const {
 
 uint32_t ImagesByFile::at(const std::string &file, const std::string &option) const {
     if (const auto found = find(file)) return *found;
-    throw Failure(ExitCode::usage,
-                  file + ": is not a picture of " + project_->path + "; leave it out or leave " + option + " out");
+    throw Failure(ExitCode::usage, file + ": is not a picture of " + project_->path + "; omit it, or omit " + option);
 }
 
 void check_pictures(const Project &project, uint32_t max_side) {
@@ -150,8 +149,8 @@ void check_pictures(const Project &project, uint32_t max_side) {
     if (needed > bound)
         throw Failure(ExitCode::unreadable,
                       project.path
-                          + format(": its %zu pictures need %.1f GiB of memory, and %.1f are the most; give a smaller "
-                                   "--max-side or fewer pictures",
+                          + format(": its %zu pictures need %.1f GiB of memory, but at most %.1f are available; give "
+                                   "a smaller --max-side or fewer pictures",
                                    project.files.size(), double(needed) / (1 << 30), double(bound) / (1 << 30)));
 }
 
@@ -203,7 +202,7 @@ lensprof_sample_image sample_image(const Project &project, uint32_t i, SamplePic
 
 namespace {
 
-// By lensprof_sample_overlap, lensprof_sample_tracks or lensprof_sample_matches.
+// Samples with lensprof_sample_overlap, lensprof_sample_tracks or lensprof_sample_matches.
 template <class Item, class Function>
 std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pictures, lensprof_sample_options options,
                          const GreyRange &range, Progress &progress, std::vector<lensprof_link> *links,
@@ -242,7 +241,7 @@ ImagePair images_of(const Item &item) {
     return std::minmax(item.image[0], item.image[1]);
 }
 
-// The pairs and links of one way of sampling; none where it finds nothing, which `nothing` then holds.
+// The pairs and links of one way of sampling; empty if it finds nothing, with the reason in `nothing`.
 template <class Draw>
 std::vector<lensprof_pair> drawn_or_none(const Draw &draw, std::vector<lensprof_link> &links,
                                          std::optional<Failure> &nothing) {
@@ -256,7 +255,8 @@ std::vector<lensprof_pair> drawn_or_none(const Draw &draw, std::vector<lensprof_
     }
 }
 
-// Pairs at the project's matches, as many as their links' share, and those of the cameras between other images.
+// Pairs at the project's matches, in proportion to the share of their links, and pairs through the cameras between
+// other images.
 std::vector<lensprof_pair> sample_matches(const Project &project, std::vector<SamplePicture> &pictures,
                                           lensprof_sample_options options, const GreyRange &range, Progress &progress,
                                           std::vector<lensprof_link> &links) {
@@ -330,27 +330,28 @@ std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observatio
 
 namespace {
 
-// `number`: of the point in its file, from 1 on.
+// `number`: 1-based index of the point in its file.
 void check_point(const std::string &path, const Project &project, const lensprof_pair &pair, int side, size_t number) {
     const uint32_t image = pair.image[side];
     if (image >= project.images.size())
-        throw Failure(ExitCode::unreadable, path + ": names image " + std::to_string(image) + ", but " + project.path
-                                                + " has images 0 to " + std::to_string(project.images.size() - 1)
+        throw Failure(ExitCode::unreadable, path + ": refers to image " + std::to_string(image) + ", but "
+                                                + project.path + " has images 0 to "
+                                                + std::to_string(project.images.size() - 1)
                                                 + "; give the points of this project");
     const auto &camera = project.images[image].camera;
     const double *xy = pair.xy[side];
     if (!(xy[0] >= -1.0 && xy[1] >= -1.0 && xy[0] <= camera.width && xy[1] <= camera.height))
-        throw Failure(ExitCode::unreadable, path + ": point " + std::to_string(number) + " is outside of "
+        throw Failure(ExitCode::unreadable, path + ": point " + std::to_string(number) + " is outside "
                                                 + project.names[image] + "; give the points of this project");
 }
 
-// Point files may have gigabytes: what is none is refused by its first lines.
+// Point files may have gigabytes: other files are refused by their first lines.
 void check_first_points(const std::string &path) {
     constexpr size_t most_bytes = 1 << 16;
     const std::string head = read_head(path, most_bytes);
-    const size_t end = head.size() < most_bytes ? head.size() : head.rfind('\n') + 1;  // 0 where there is no line's end
+    const size_t end = head.size() < most_bytes ? head.size() : head.rfind('\n') + 1;  // 0 without a line end
     if (end == 0 && !head.empty())
-        throw Failure(ExitCode::unreadable, path + ": line 1 is longer than lines of a point file; check the name");
+        throw Failure(ExitCode::unreadable, path + ": line 1 is too long for a point file; check the file name");
     lensprof_error error{};
     uint32_t found = 0;
     check(lensprof_points_read(head.data(), end, nullptr, 0, &found, &error), path, &error);
@@ -359,7 +360,7 @@ void check_first_points(const std::string &path) {
 }  // namespace
 
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
-    // As many pairs as --pairs allows, with 17 digits.
+    // The maximum number of pairs of --pairs, with 17 digits.
     constexpr uint64_t largest_points = uint64_t(1 << 24) * 256;
     check_first_points(path);
     std::string text = read_text(path, largest_points);
@@ -367,7 +368,7 @@ std::vector<lensprof_pair> read_points(const std::string &path, const Project &p
     uint32_t found = 0;
     check(lensprof_points_read(text.data(), text.size(), nullptr, 0, &found, &error), path, &error);
     std::vector<lensprof_pair> pairs(found);
-    if (found == 0) throw Failure(ExitCode::unreadable, path + ": holds no points");
+    if (found == 0) throw Failure(ExitCode::unreadable, path + ": has no points; give a point file of this project");
     check(lensprof_points_read(text.data(), text.size(), pairs.data(), found, &found, &error), path, &error);
     for (size_t p = 0; p < pairs.size(); p++)
         for (int side = 0; side < 2; side++) check_point(path, project, pairs[p], side, p + 1);

@@ -35,11 +35,11 @@ lensprof_fit_options project_options(const ProjectFitOptions &o, const Project &
     return options;
 }
 
-// A profile holds what was measured of a lens: it is not stored where nothing of it is asked for.
+// A profile stores measured properties of a lens: without any to estimate, nothing is stored.
 void check_unknowns(const ProjectFitOptions &o, const Project &project, const lensprof_fit_options &options) {
     if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
         throw Failure(ExitCode::usage, project.path
-                                           + ": neither response nor falloff is asked for, so that there is nothing to "
+                                           + ": neither response nor falloff is estimated, so there is nothing to "
                                              "store; give --no-store, or --free all");
 }
 
@@ -61,13 +61,13 @@ lensprof_sample_options sample_options(const ProjectFitOptions &o) {
     return options;
 }
 
-// Tells the fit what sampling found of the links.
+// Passes the links found by sampling to the fit.
 void set_links(ProjectFit &done) {
     done.input.options.links = done.report.links.data();
     done.input.options.link_count = static_cast<uint32_t>(done.report.links.size());
 }
 
-// Pairs or tracks of the pictures; what `known` says of the camera, where it is not NULL, helps to find them.
+// Samples pairs or tracks of the pictures; `known`, if not NULL, is the known camera and helps to find them.
 void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &pictures, const Fitted *known,
                  ProjectFit &done) {
     auto clock = std::chrono::steady_clock::now();
@@ -75,7 +75,7 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     std::vector<lensprof_link> &links = done.report.links;
     lensprof_sample_options options = sample_options(o);
     if (known) options.response = &known->result.response, options.vignetting = &green_falloff(known->result);
-    // The method radiance makes tracks of pairs where no cameras find more.
+    // The method radiance makes tracks of pairs if sampling by cameras finds no tracks.
     const bool by_matches = project.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;
     if (o.fit.method == LENSPROF_METHOD_RADIANCE && !by_matches) {
         input.observations = sample_tracks(project, pictures, options, done.progress, &links);
@@ -87,7 +87,7 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     done.report.sample_s += lap(clock);
 }
 
-// The pairs or tracks that are fitted, and the pictures they were drawn from (none where pairs are given).
+// The fitted pairs or tracks, and the pictures they were drawn from (empty if pairs are given).
 Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectFit &done) {
     auto clock = std::chrono::steady_clock::now();
     uint32_t &channels = done.input.options.channels;
@@ -100,7 +100,7 @@ Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectF
     }
     if (project.is_reconstruction) {
         lensprof_sample_options options = sample_options(o);
-        options.pairs = 0;  // as many as matches, which were chosen for that
+        options.pairs = 0;  // as many as there are matches, which were selected for this
         done.input.pairs = sample_in_blocks(project, options, o.max_side, usual_block_bytes, done.progress,
                                             done.report.links, done.points, &channels);
         set_links(done);
@@ -119,8 +119,8 @@ size_t links_of_state(const std::vector<lensprof_link> &links, uint32_t state) {
         std::count_if(links.begin(), links.end(), [=](const lensprof_link &link) { return link.state == state; }));
 }
 
-// Whether a second result explains more of the pictures: in nothing less, and more of them, better, or by more links
-// that are verified.
+// Whether a second result explains more of the pictures: worse in nothing, and with more of them, better, or with more
+// verified links.
 bool explains_more(const Fitted &second, const std::vector<lensprof_link> &second_links, const Fitted &first,
                    const std::vector<lensprof_link> &first_links) {
     const auto worth_of = [](const Fitted &fitted, const std::vector<lensprof_link> &links) {
@@ -132,8 +132,8 @@ bool explains_more(const Fitted &second, const std::vector<lensprof_link> &secon
     return !is_less && worth_of(second, second_links) > worth_of(first, first_links);
 }
 
-// Whether links may join once the response and the falloff are known. Not by a result that is refused: the light that
-// it tells is not that of the pictures.
+// Whether links may connect images once response and falloff are known. Not with a refused result, whose irradiance is
+// wrong.
 bool may_join_more(const ProjectFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
     const bool is_trusted = first.corrects() || first.result.reason_code == LENSPROF_REASON_IMAGE_GROUPS;
     const bool is_whole =
@@ -141,7 +141,7 @@ bool may_join_more(const ProjectFitOptions &o, const Fitted &first, const std::v
     return o.sampling == LENSPROF_SAMPLING_BALANCED && is_trusted && !is_whole;
 }
 
-// Draws once more, comparing light in place of grey values, and fits that; kept where it explains more.
+// Draws again, comparing irradiance instead of grey values, and fits the new pairs; kept if it explains more.
 void look_again(const ProjectFitOptions &o, const Project &project, Pictures &pictures, ProjectFit &done) {
     const std::vector<lensprof_pair> pairs = done.input.pairs;
     const std::vector<lensprof_observation> observations = done.input.observations;
@@ -157,14 +157,15 @@ void look_again(const ProjectFitOptions &o, const Project &project, Pictures &pi
             return;
         }
     } catch (const Failure &failure) {
-        if (failure.code == ExitCode::interrupted) throw;  // else the first look stands
+        if (failure.code == ExitCode::interrupted) throw;  // else the first fit stays
     }
     done.input.pairs = pairs, done.input.observations = observations, done.report.links = links;
     set_links(done);
 }
 
-// Another reference than the project's: where nothing else is held, it is held in that one's place, so that standard
-// errors are relative to it. Held exposures are relative to the project's own; there the result is moved afterwards.
+// Changes the reference of the project: if nothing else is fixed, its exposure is fixed instead, so that standard
+// errors are relative to it. Fixed exposures are relative to the project's own reference; then the result is shifted
+// afterwards.
 void refer_to(uint32_t reference, FitInput &input) {
     uint32_t &own = input.options.reference, asked = 0;
     for (const auto &image : input.images) asked |= image.free;
@@ -177,13 +178,14 @@ void refer_to(uint32_t reference, FitInput &input) {
     own = reference;
 }
 
-// The images' settings, where the method fits several, and cameras.
+// Sets the images' settings, if the method fits several, and cameras.
 void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams) {
     LensSettings &settings = done.settings;
-    const bool is_of_one = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // of one falloff a camera
+    const bool is_of_one = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // with one falloff per camera
     if (is_of_one && settings.first.size() > settings.first_of_camera.size()) {
-        warn(streams, "--method transfer-function: estimates one falloff, and these pictures are at "
-                          + counted(settings.first.size(), "lens setting") + "; transfer and radiance estimate each");
+        warn(streams, "--method transfer-function: estimates one falloff, but these pictures have "
+                          + counted(settings.first.size(), "lens setting")
+                          + "; use transfer or radiance to estimate one per setting");
         settings.of_image = settings.camera_of_image, settings.first = settings.first_of_camera;
     }
     for (size_t i = 0; i < done.input.images.size(); i++) {
@@ -192,33 +194,33 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams
     }
 }
 
-// Failure (usage) for images of several cameras that are to be held to one response though theirs differ, or of more
-// cameras than a fit takes, or each of its own.
+// Failure (usage) for images of several cameras with different responses that should share a fixed one, for more
+// cameras than a fit takes, and if each image has its own camera.
 void check_cameras(const Project &project, uint32_t free, LensSettings &settings) {
     if (!settings.are_of_several_cameras()) return;
     const size_t cameras = settings.first_of_camera.size();
     const auto refuse = [&](const std::string &why) {
-        throw Failure(ExitCode::usage, project.path + ": its images are of " + std::to_string(cameras)
-                                           + " cameras, by their links in Ra..Re and by EXIF" + why);
+        throw Failure(ExitCode::usage, project.path + ": its images are from " + std::to_string(cameras)
+                                           + " cameras, according to their links in Ra..Re and EXIF" + why);
     };
     if (!(free & LENSPROF_FREE_RESPONSE)) {
         const auto &first = project.images[settings.first_of_camera[0]];
         for (const uint32_t i : settings.first_of_camera) {
             const auto &image = project.images[i];
             if (image.response_type != first.response_type || !std::equal(image.emor, image.emor + 5, first.emor))
-                refuse(", and the response of " + project.names[i]
-                       + " is to be held beside another; estimate the responses, or give one camera at a time");
+                refuse(", and the response of " + project.names[i] + " is fixed while others are estimated; estimate "
+                                                                     "all responses, or give one camera at a time");
         }
         join_cameras(settings);
     } else if (cameras == project.images.size()) {
-        refuse(", no two of one; give more pictures of each, or --one-lens to take all as of one");
+        refuse(", one image each; give more pictures per camera, or use --one-lens to treat all as one");
     } else if (cameras > LENSPROF_CAMERAS_MAX) {
-        refuse(format(", and %d are the most of one fit; give fewer, or --one-lens to take all as of one",
+        refuse(format(", but a fit takes at most %d; give fewer, or use --one-lens to treat all as one",
                       LENSPROF_CAMERAS_MAX));
     }
 }
 
-// The kind of all cameras, where pictures say it; any where they differ.
+// The kind of all cameras, if the pictures state it; any if they differ.
 CameraKind kind_of_all(const ProjectFitOptions &o, const std::vector<PictureMetadata> &metadata,
                        const LensSettings &settings, const CameraKind &of_reference) {
     for (const uint32_t first : settings.first_of_camera)
@@ -228,7 +230,7 @@ CameraKind kind_of_all(const ProjectFitOptions &o, const std::vector<PictureMeta
     return of_reference;
 }
 
-// Things look different from another side, which in few pictures is taken for falloff.
+// Objects look different from other sides, which with few pictures is mistaken for falloff.
 void warn_of_few(const ProjectFitOptions &o, const Project &project, const Fitted &fitted, Streams &streams) {
     constexpr size_t enough = 12;
     size_t images = joined_images(fitted);  // or of the camera with fewest
@@ -236,46 +238,46 @@ void warn_of_few(const ProjectFitOptions &o, const Project &project, const Fitte
         if (camera.images) images = std::min<size_t>(images, camera.images);
     if (!project.by_matches || !fitted.corrects() || images >= enough) return;
     warn(streams, project.path
-                      + format(": the falloff is of %zu pictures of a camera that moved, and its error may be several "
-                               "times the stated one; give %zu pictures or more%s",
+                      + format(": the falloff is from only %zu pictures of a moving camera; its error may be several "
+                               "times the stated one. Give %zu pictures or more%s",
                                images, enough, o.store.no_store ? "" : ", or --no-store"));
 }
 
-// Takes exposures alone as the result, for a profile of which there is nothing.
+// Uses only exposures as the result and stores no profile.
 void take_exposures_only(const Fitted &only, const Project &project, ProjectFit &done, Streams &streams) {
     warn(streams, project.path
-                      + ": response and falloff explain the pictures no better than exposures and white balances alone, "
-                        "which are given");
+                      + ": response and falloff do not explain the pictures better than exposures and white balances "
+                        "alone; only the latter are returned");
     done.best = only;
     done.best.result.usable = 0;
     done.best.result.reason_code = LENSPROF_REASON_NONE;
     std::snprintf(done.best.result.reason, sizeof done.best.result.reason,
-                  "the pictures show neither response nor falloff");
+                  "the pictures determine neither response nor falloff");
     done.settings.of_image.assign(done.settings.of_image.size(), 0), done.settings.first.resize(1);
     join_cameras(done.settings);
 }
 
-// Whether a result evens out the pictures of a reconstruction: colours differ less than before, and either much less or
-// no more than those of a scene whose surfaces shine. Matches that are none differ by more whatever is done.
+// Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
+// no more than those of a scene with glossy surfaces. With false matches they differ more regardless of the correction.
 bool are_evened(const ColourVariance &variance) {
     constexpr double much_less = 0.5, most_variance = 200.0;  // levels of 255 squared: 20 levels between two pictures
     return variance.result < variance.before
            && (variance.result < much_less * variance.before || variance.result < most_variance);
 }
 
-// Failure (not usable) for pictures of two visits, whose light differs in more than an exposure.
+// Failure (not_usable) for pictures of two visits whose light differs by more than an exposure.
 void check_light(const LightGroups &groups, const Project &project) {
     if (groups.second.empty()) return;
     throw Failure(ExitCode::not_usable,
                   project.path + ": " + listed(groups.second, project.names)
-                      + format(" show the same in other light than the rest (colours differ %.0f times as much between "
-                               "these groups as within); give the pictures of each visit alone, with --image-list",
+                      + format(" show the scene in other light than the rest (colours differ %.0f times as much "
+                               "between these groups as within); fit each visit separately, with --image-list",
                                groups.ratio),
                   LENSPROF_REASON_IMAGE_GROUPS);
 }
 
-// Of a reconstruction: fits without what shines, measures what was gained, and where response and falloff explain no
-// more of the pairs than exposures alone takes these, for what the pictures do not show does harm.
+// For a reconstruction: fits without glossy points, measures the improvement and, if response and falloff explain the
+// pairs no better than exposures alone, uses only exposures, because undetermined parameters do harm.
 void fit_reconstruction(const Project &project, ProjectFit &done, Streams &streams) {
     BuildReport &report = done.report;
     const bool is_by_pairs = done.input.observations.empty() && done.input.options.free != 0;
@@ -310,7 +312,7 @@ void fit_reconstruction(const Project &project, ProjectFit &done, Streams &strea
     check_light(light_groups(all, done.gains[2].variances, project.view_distances), project);
 }
 
-// What was found of each setting, where there are several.
+// The result of each setting, if there are several.
 void report_settings(const ProjectFitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                      ProjectFit &done) {
     BuildReport &report = done.report;
@@ -342,7 +344,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
     }
 }
 
-// The same of each camera.
+// The same for each camera.
 void report_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, ProjectFit &done) {
     BuildReport &report = done.report;
     const LensSettings &settings = done.settings;
@@ -362,7 +364,7 @@ void report_cameras(const Project &project, const std::vector<PictureMetadata> &
 
 constexpr uint32_t project_modes = 5;  // Ra..Re
 
-// A project holds five modes and one falloff: what is best with these, not what is left of something better.
+// A project stores five modes and one falloff: refits with these instead of truncating a better result.
 Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, const std::string &item,
                        Progress &progress) {
     const auto can_hold = [](const auto &found) {
@@ -401,7 +403,7 @@ lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &proj
     for (uint32_t first : settings.first)
         if (settings.of_image[first] != settings.of_image[project.reference]) {
             warn(streams, project.files[first] + ": lens, focal length, aperture or focus differ from " + file
-                              + format("; one falloff is estimated for all %zu settings", settings.first.size()));
+                              + format("; estimating one falloff for all %zu settings", settings.first.size()));
             break;
         }
     return key;
@@ -436,9 +438,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     Pictures pictures = get_points(o, project, done);
     stop_if_interrupted();
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
-        warn(streams,
-             "--sampling paper: goes by the cameras, which fit pictures of a camera that moved badly; leave it "
-             "out");
+        warn(streams, "--sampling paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
     input.images = fit_images(project);
     set_settings(o, done, streams);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
@@ -446,11 +446,11 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     const auto setting_of = [&](uint32_t image) { return done.settings.of_image[image]; };
     if (prior.profile && setting_of(input.options.reference) != setting_of(project.reference)) {
         input.options.profile = nullptr, report.prior_id = 0;
-        report.no_prior = "the reference is at another lens setting than " + project.names[project.reference];
+        report.no_prior = "the reference has another lens setting than " + project.names[project.reference];
     }
     done.item = o.points.empty() ? project.path : o.points;
     done.best = fit(input, report.reference, done.item, done.progress, &report.quality);
-    const bool is_of_one = !done.settings.are_of_several_cameras();  // light is compared by one response
+    const bool is_of_one = !done.settings.are_of_several_cameras();  // irradiance is compared with one response
     if (is_of_one && !pictures.empty() && may_join_more(o, done.best, report.links))
         look_again(o, project, pictures, done);
     fit_reconstruction(project, done, streams);

@@ -23,11 +23,11 @@
 namespace lensprof {
 namespace {
 
-constexpr double kAnyAngle = 50.0;  // of view, degrees: nothing goes by it
-// Pairs that are drawn of an image: as many as that are in all, but not less than the least.
+constexpr double kAnyAngle = 50.0;  // of view, degrees: not used by anything
+// Pairs drawn per image: in proportion to the total, but not less than the minimum.
 constexpr uint32_t kPairsOfImage = 600, kLeastOfImage = 150, kPairsOfAll = 600000;
-constexpr uint32_t kEnds = 2;                             // a pair is of two images, which both choose it
-constexpr double kBlackLevel = 2.0, kWhiteLevel = 250.0;  // colours outside are not used
+constexpr uint32_t kEnds = 2;                             // each pair counts for two images
+constexpr double kBlackLevel = 2.0, kWhiteLevel = 250.0;  // colours outside are ignored
 
 std::vector<ProjectImage> images_of(const Reconstruction &r) {
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> sizes;  // upright or not
@@ -38,12 +38,12 @@ std::vector<ProjectImage> images_of(const Reconstruction &r) {
         camera.hfov_deg = kAnyAngle;
         const auto size = std::minmax(camera.width, camera.height);
         const auto lens = sizes.emplace(size, static_cast<uint32_t>(sizes.size())).first->second;
-        images.push_back({camera, format("image%zu", i), lens, lens});  // a name may hold quotes
+        images.push_back({camera, format("image%zu", i), lens, lens});  // a name may contain quotes
     }
     return images;
 }
 
-// The colours of two observations, where both are between black and white.
+// The colours of two observations, if both are unclipped.
 bool pair_of_colours(const TrackObservation &a, const TrackObservation &b, lensprof_pair &pair) {
     const TrackObservation *ends[2] = {&a, &b};
     for (int side = 0; side < 2; side++) {
@@ -66,8 +66,8 @@ void add_pairs_of_colours(const Reconstruction &r, const std::vector<Observation
         project.pair_points.push_back(r.observations[own.first].point);
     }
     if (project.pairs.empty())
-        throw Failure(ExitCode::not_usable, project.path + ": the colours of its points are all black or white; give its "
-                                                           "pictures with --images",
+        throw Failure(ExitCode::not_usable, project.path + ": the colours of its points are all clipped (black or "
+                                                           "white); give its pictures with --images",
                       LENSPROF_REASON_FEW_PAIRS);
 }
 
@@ -82,10 +82,10 @@ void report_read(const Reconstruction &r, const std::string &label, bool has_pic
     note(streams, label
                       + format(": %s of %zu images, %u points, %zu observations; %s; %s", r.kind.c_str(),
                                r.images.size(), r.point_count(), r.observations.size(),
-                               placed ? "similar views, by their angles, count most"
-                                      : "similar views, by the points they share, count most",
-                               has_pictures ? "the pictures are compared at its points"
-                                            : "the colours of its points are compared, and no picture is read"));
+                               placed ? "pairs weighted by similarity of viewing angle"
+                                      : "pairs weighted by the number of shared points",
+                               has_pictures ? "comparing the pictures at its points"
+                                            : "comparing the colours of its points without reading pictures"));
 }
 
 std::vector<std::string> read_names(const std::string &list) {
@@ -95,7 +95,7 @@ std::vector<std::string> read_names(const std::string &list) {
     return names;
 }
 
-// Leaves the images that a file names.
+// Keeps the images listed in a file.
 void take_listed(const std::string &list, Reconstruction &r) {
     std::map<std::string, uint32_t> image_of;
     for (uint32_t i = 0; i < r.images.size(); i++) image_of[r.images[i].name] = i;
@@ -103,16 +103,16 @@ void take_listed(const std::string &list, Reconstruction &r) {
     for (const std::string &name : read_names(list)) {
         const auto image = image_of.find(name);
         if (image == image_of.end())
-            throw Failure(ExitCode::unreadable, list + ": names " + short_name(name) + ", which is no image of "
-                                                    + r.path + "; give names as they are there, one a line");
+            throw Failure(ExitCode::unreadable, list + ": " + short_name(name) + " is not an image of " + r.path
+                                                    + "; give image names as stored there, one per line");
         kept.insert(image->second);
     }
     if (kept.size() < 2)
-        throw Failure(ExitCode::unreadable, list + ": names fewer than two images; give names, one a line");
+        throw Failure(ExitCode::unreadable, list + ": has fewer than two image names; give one name per line");
     keep_images(std::vector<uint32_t>(kept.begin(), kept.end()), r);
 }
 
-// Reports how many pictures next to those of the reconstruction are not in it: they get no exposure.
+// Reports the number of pictures in the folder that are not part of the reconstruction and get no exposure.
 void report_unused(const std::vector<std::string> &files, Streams &streams) {
     namespace fs = std::filesystem;
     std::set<std::string> used, folders;
@@ -130,11 +130,11 @@ void report_unused(const std::vector<std::string> &files, Streams &streams) {
             if (!unused++ || file < first) first = file;
         }
     if (unused)
-        note(streams, counted(unused, "picture") + " next to those of the reconstruction, the first " + first
-                          + ", are not in it and get no exposure");
+        note(streams, counted(unused, "picture") + " in the folder, the first " + first
+                          + ", not part of the reconstruction: no exposure for them");
 }
 
-// Leaves the images of a shard, their files, and what is seen in them; `label` names it.
+// Keeps the images of a shard, their files and observations; sets `label`.
 void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &files, std::string &label) {
     if (shard.count == 1) return;
     const auto count = static_cast<uint32_t>(r.images.size());
@@ -143,8 +143,8 @@ void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &
                end = static_cast<std::ptrdiff_t>(shard.end(count));
     const std::string part = format("%u/%u", shard.number, shard.count);
     if (end - first < 2)
-        throw Failure(ExitCode::usage, "--shard " + part + ": has fewer than two of the " + counted(count, "image")
-                                           + "; give fewer parts");
+        throw Failure(ExitCode::usage, "--shard " + part + ": contains fewer than two of the " + counted(count, "image")
+                                           + "; use fewer parts");
     std::vector<uint32_t> kept(order.begin() + first, order.begin() + end);
     std::sort(kept.begin(), kept.end());
     keep_images(kept, r);
@@ -172,8 +172,8 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     auto clock = std::chrono::steady_clock::now();
     Reconstruction r = read_reconstruction(path, streams);
     if (options.is_by_colours && !r.has_colours)
-        throw Failure(ExitCode::usage, "--track-colors: are in OpenSfM's tracks.csv alone, and " + path + " is a "
-                                           + r.kind + "; leave the option out");
+        throw Failure(ExitCode::usage, "--track-colors: needs OpenSfM's tracks.csv, but " + path + " is a " + r.kind
+                                           + "; omit the option");
     Project project;
     project.path = path;
     project.by_matches = project.is_reconstruction = true;

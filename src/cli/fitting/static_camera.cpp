@@ -8,8 +8,8 @@
 namespace lensprof {
 namespace {
 
-// JPEG rings about edges: within a block (16 px with subsampled colours) that holds white, values next to white are
-// those of white. Such blocks are masked.
+// JPEG rings at edges: in a block (16 px with subsampled colours) with white pixels, values near white are artefacts of
+// white. Such blocks are masked.
 void mask_ringing(SamplePicture &own) {
     constexpr uint32_t block_px = 16;
     const Picture &picture = own.picture;
@@ -35,7 +35,7 @@ lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free)
     image.camera.projection = LENSPROF_PROJECTION_RECTILINEAR;
     image.camera.width = size.width;
     image.camera.height = size.height;
-    image.camera.hfov_deg = 50.0;  // any: all look in the same direction
+    image.camera.hfov_deg = 50.0;  // any value: all have the same direction
     lensprof_exposure_init(&image.exposure);
     image.free = free;
     image.ev_of = image.red_of = image.blue_of = number;
@@ -47,14 +47,15 @@ lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free)
 Project static_project(const std::vector<std::string> &files, bool free_balance) {
     if (files.size() < 2)
         throw Failure(ExitCode::usage,
-                      "one picture shows no difference of exposure; give at least two of the same scene");
+                      "one picture shows no difference in exposure; give at least two of the same scene");
     Project project;
     project.path = files[0];
     project.names = project.files = files;
     const uint32_t balance = free_balance ? LENSPROF_FREE_RED | LENSPROF_FREE_BLUE : 0;
     std::set<std::string> seen;
     for (uint32_t i = 0; i < files.size(); i++) {
-        if (!seen.insert(file_identity(files[i])).second) throw Failure(ExitCode::usage, files[i] + ": is given twice");
+        if (!seen.insert(file_identity(files[i])).second)
+            throw Failure(ExitCode::usage, files[i] + ": given twice; give it once");
         PictureSize size = read_size(files[i]);
         project.images.push_back(still_image(size, i, LENSPROF_FREE_RESPONSE | LENSPROF_FREE_EV | balance));
         const auto &first = project.images[0].camera;

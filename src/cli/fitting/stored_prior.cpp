@@ -12,8 +12,8 @@
 namespace lensprof {
 namespace {
 
-// Whether two sources may have pictures in common: `build FOLDER` names the folder, and `calibrate FOLDER` a picture of
-// each of its panoramas.
+// Whether two sources may have pictures in common: `build FOLDER` stores the folder, and `calibrate FOLDER` a picture
+// of each panorama.
 bool may_share(const std::string &one, const std::string &other) {
     const auto is_in = [](const std::string &picture, const std::string &folder) {
         return is_picture_name(picture) && picture.compare(0, folder.size() + 1, folder + "/") == 0;
@@ -21,7 +21,7 @@ bool may_share(const std::string &one, const std::string &other) {
     return one == other || is_in(one, other) || is_in(other, one);
 }
 
-// Whether a profile that is in this one was made from `source`.
+// Whether a profile in this one's history was made from `source`.
 bool holds(lensprof_store *store, const lensprof_profile &profile, const std::string &source) {
     auto next = std::make_unique<lensprof_profile>(profile);
     std::set<int64_t> seen;
@@ -33,7 +33,7 @@ bool holds(lensprof_store *store, const lensprof_profile &profile, const std::st
     }
 }
 
-// A refined response, which is a table, says it of gamma alone; an error of that from 0.7 on says nothing.
+// A refined response, a table, states only the error of gamma; an error of 0.7 or more carries no information.
 bool says_how_sure(const lensprof_profile &profile) {
     if (profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_TABLE
         && profile.provenance.gamma_sigma > 0.0 && profile.provenance.gamma_sigma < 0.7)
@@ -43,18 +43,18 @@ bool says_how_sure(const lensprof_profile &profile) {
     return false;
 }
 
-// A response that is none of this camera's but of its kind: the fit knows that by itself.
+// A response of the kind of camera, not of this camera: the fit has this prior anyway.
 void forget_response(lensprof_profile &profile) {
     const uint32_t n = profile.covariance_size, modes = profile.responses == 1 ? profile.response[0].modes : 0;
     for (uint32_t i = 0; i < std::min(modes, n); i++)
         for (uint32_t j = 0; j < n; j++) profile.covariance[i * n + j] = profile.covariance[j * n + i] = 0.0;
 }
 
-// Standard error of M in the corner that is added to what profiles of other settings say of it: copies of a lens
-// differ, and most of those who measured Lensfun's lenses do not say how sure they are. Assumed, not measured.
+// Standard error of M in the corner, added to that of profiles at other settings: copies of a lens differ, and most
+// measurements in Lensfun have no stated error. Assumed, not measured.
 constexpr double kCopySigma = 0.02;
 
-// Adds it to the falloff's block, which a lookup scales to the error that it states.
+// Adds it to the covariance block of the falloff, which a lookup scales to its stated error.
 void add_copy_error(const lensprof_lookup &how, lensprof_profile &profile) {
     const double stated = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma));
     if (!(stated > 0.0)) return;
@@ -64,8 +64,8 @@ void add_copy_error(const lensprof_lookup &how, lensprof_profile &profile) {
         for (uint32_t j = n - std::min(n, 3 * profile.vignettings); j < n; j++) profile.covariance[i * n + j] *= scale;
 }
 
-// What is composed of profiles of the lens at other settings, and of the camera with other lenses. It is the prior, but
-// nobody's pictures count as those of the result.
+// A prior composed of profiles of the lens at other settings and of the camera with other lenses. No pictures count as
+// those of the result.
 EarlierProfile composed_prior(const Databases &databases, const lensprof_store *own_store, const lensprof_lookup &how,
                               std::unique_ptr<lensprof_profile> profile, const std::string &own) {
     const bool is_camera =
@@ -82,10 +82,10 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
     for (const auto &[store, id] : rows) {
         if (lensprof_store_get(store, id, row.get(), nullptr) != LENSPROF_OK) continue;
         if (may_share(row->provenance.source, own) || holds(store, *row, own))
-            return {0, nullptr, "profile " + std::to_string(id) + " holds these pictures already"};
+            return {0, nullptr, "profile " + std::to_string(id) + " already includes these pictures"};
         if (row->provenance.forced)
             return {0, nullptr,
-                    "profile " + std::to_string(id) + " was stored by --force, of a fit that was not usable"};
+                    "profile " + std::to_string(id) + " was stored with --force from a fit that was not usable"};
         gamma_sigma = std::max(gamma_sigma, row->provenance.gamma_sigma);
     }
     if (is_camera && profile->response[0].kind == LENSPROF_RESPONSE_TABLE)
@@ -97,30 +97,31 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
     return {rows.front().second, std::move(profile), "", true, is_own};
 }
 
-// The profile of an id, in the first database, unless these pictures are in it; `named` is what it is called.
+// The profile with an id in the first database, unless it includes these pictures; `named` is its name.
 EarlierProfile one_prior(lensprof_store *store, int64_t id, std::unique_ptr<lensprof_profile> profile,
                          const std::string &own, bool is_asked) {
     const std::string named = "profile " + std::to_string(id);
     if (!says_how_sure(*profile)) return {0, nullptr, named + " has no covariance"};
-    if (profile->provenance.forced) return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
-    if (may_share(own, profile->provenance.source)) {  // fitted again: what it was given then is the prior again
+    if (profile->provenance.forced)
+        return {0, nullptr, named + " was stored with --force from a fit that was not "
+                                                                "usable"};
+    if (may_share(own, profile->provenance.source)) {  // fitted again: its earlier prior is used again
         id = profile->provenance.prior_id;
         if (id <= 0 || lensprof_store_get(store, id, profile.get(), nullptr) != LENSPROF_OK || !says_how_sure(*profile)
             || profile->provenance.forced)
-            return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
+            return {0, nullptr, named + " is from these pictures alone, which are fitted again"};
     }
     if (!may_share(own, profile->provenance.source) && !holds(store, *profile, own))
         return {id, std::move(profile), ""};
-    const std::string reason =
-        "profile " + std::to_string(id) + " holds these pictures already, and others that came later";
+    const std::string reason = "profile " + std::to_string(id) + " already includes these pictures, and later ones";
     if (is_asked)
         throw Failure(ExitCode::usage,
-                      own + ": " + reason + "; nothing would be gained. Give --stored none to fit them alone");
+                      own + ": " + reason + "; a fit would add no information. Use --stored none to fit them alone");
     return {0, nullptr, reason};
 }
 
-// What a lookup predicts states its error, which an imported profile does not: the falloff is asked a hair beside the
-// setting.
+// A predicted falloff has an error, unlike an imported profile: the lookup asks for a setting slightly off the stored
+// one.
 lensprof_profile_key beside(lensprof_profile_key key, const lensprof_profile &stored) {
     constexpr double hair = 1e-4;
     if (key.aperture == LENSPROF_UNKNOWN) key.aperture = stored.key.aperture;
@@ -133,7 +134,7 @@ lensprof_profile_key beside(lensprof_profile_key key, const lensprof_profile &st
 EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_asked, const lensprof_profile_key &key,
                                  const std::string &source) {
     auto files = databases_of(o.dbs);
-    if (!path_exists(files.front())) files.erase(files.begin());  // it is made when the profile is stored
+    if (!path_exists(files.front())) files.erase(files.begin());  // it is created when the profile is stored
     auto profile = new_profile();
     const std::string own = source_of(source);
     if (id) {
@@ -143,10 +144,10 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_aske
         EarlierProfile given = one_prior(store.get(), id, std::move(profile), own, is_asked);
         if (!given.id)
             throw Failure(ExitCode::usage, "--stored " + std::to_string(id) + ": " + given.reason
-                                               + "; give another, or --stored none to fit the pictures alone");
+                                               + "; give another profile, or --stored none to fit the pictures alone");
         return given;
     }
-    if (files.empty()) return {0, nullptr, is_asked ? "there is no database yet" : ""};
+    if (files.empty()) return {0, nullptr, is_asked ? "no database exists yet" : ""};
     const Databases databases(files);
     lensprof_lookup how;
     lensprof_lookup_init(&how);
