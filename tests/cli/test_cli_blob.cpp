@@ -182,7 +182,7 @@ void test_show_refuses(void **) {
     assert_refused(unreadable, {"profile", "show", "--blob", work("none.blob")}, {work("none.blob")});
     fs::create_directory(work("folder"));
     assert_refused(unreadable, {"profile", "show", "--blob", work("folder")}, {work("folder")});
-    assert_refused(unreadable, {"profile", "show", "--blob", "/dev/zero"}, {"/dev/zero", "ordinary"});
+    assert_refused(unreadable, {"profile", "show", "--blob", "/dev/zero"}, {"/dev/zero", "not a regular file"});
 }
 
 void test_options_that_do_not_fit(void **) {

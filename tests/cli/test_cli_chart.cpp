@@ -172,7 +172,9 @@ void test_gain_grid(void **) {
     lensprof_store_close(store);
 
     const std::string text = must_exit(done, {"profile", "show", "3", "--db", db});
-    const char *const shown = "\ngain grid 3 x 2 nodes, one grid a channel; multiplies the falloff by 0.625 to 1.375\n";
+    const char *const shown =
+        "\n"
+        "gain grid 3 x 2 nodes, one grid per channel; multiplies the falloff by 0.625 to 1.375\n";
     assert_true(contains(text, shown));
     assert_false(contains(must_exit(done, {"profile", "show", "2", "--db", db}), "gain grid"));
     const Json grid = json_of({"profile", "show", "3", "--json", "--db", db})["gain_grid"];
@@ -283,8 +285,8 @@ void test_usage(void **) {
     for (const char *name : {"chart.jpg", "chart", ".png", "svg"})
         assert_refused(usage, show + Words{"1", "--chart-out", work(name)}, {name, ".svg or .png"});
     assert_refused(usage, {"profile", "list", "--chart", "--db", db}, {"--chart"});
-    assert_refused(usage, {"profile", "list", "1", "--db", db}, {"1: is more", "profile list --help"});
-    assert_refused(usage, {"profile", "remove", "1", "--camera", "A", "--db", db}, {"either ids", "--camera"});
+    assert_refused(usage, {"profile", "list", "1", "--db", db}, {"1: unexpected argument", "profile list --help"});
+    assert_refused(usage, {"profile", "remove", "1", "--camera", "A", "--db", db}, {"give ids", "--camera"});
     assert_refused(usage, {"profile", "remove", "--db", db}, {"profile list"});
     assert_refused(usage, {"profile", "remove", "1", "--chart-out", work("a.png"), "--db", db}, {"--chart-out"});
 }

@@ -116,7 +116,7 @@ void test_undecided(void **) {
     }
     assert_false(of(json, 2)["as_good_as_best"].get<bool>());
     const std::string said = must_exit(done, against("1 6 2 1", in_folder("two/pano.pto")));
-    assert_true(contains(said, "do not tell profiles 1 and 6 apart"));
+    assert_true(contains(said, "cannot distinguish profiles 1 and 6"));
 }
 
 // A falloff alone is tried with the response by which it does best: with that of the pictures' camera it fits.
@@ -172,7 +172,7 @@ void test_none_fits(void **) {
     assert_true(json["best"].is_null());
     assert_false(json["is_decided"].get<bool>());
     for (int id : {1, 2}) assert_false(of(json, id)["better_than_none"].get<bool>());
-    assert_refused(not_usable, against("1 2", flat), {flat, "none of the profiles fits", "lensprof build"});
+    assert_refused(not_usable, against("1 2", flat), {flat, "none of the profiles is better", "lensprof build"});
     assert_refused(not_usable, against("5", in_folder("two/pano.pto")), {"two", "no falloff correction"});
     assert_int_equal(measured("5 1", in_folder("two/pano.pto"))["best"], 1);
 }

@@ -175,7 +175,7 @@ void test_too_large_maps(void **) {
         assert_refused(usage,
                        {"profile", "export", "1", "--db", work("three.db"), "-o", work("large.tif"), "--frame",
                         "6000x4000", "--grid", grid},
-                       {"large.tif", "over 80 million values", "give a smaller --grid"});
+                       {"large.tif", "more than 80 million values", "give a smaller --grid"});
     assert_false(fs::exists(work("large.tif")));
 }
 
@@ -189,12 +189,12 @@ void test_refused(void **) {
     assert_refused(usage, import({work("pcalib.txt")}), {"pcalib.txt", "--camera"});
     assert_refused(usage, import({work("pcalib.txt"), work("curve.csv"), "--camera", "C"}),
                    {"curve.csv", "pcalib.txt"});
-    assert_refused(usage, import({work("one.json"), "--camera", "C"}), {"leave --camera"});
+    assert_refused(usage, import({work("one.json"), "--camera", "C"}), {"omit --camera"});
     save_text(work("notes"), "nothing of any format\n");
     assert_refused(usage, import({work("notes"), "--camera", "C"}), {"notes", "--format"});
     assert_refused(unreadable, import({work("notes"), "--format", "pcalib", "--camera", "C"}), {"notes"});
     assert_refused(unreadable, import({work("none.csv"), "--camera", "C"}), {"none.csv"});
-    assert_refused(unreadable, import({"/dev/zero", "--format", "json"}), {"/dev/zero", "ordinary"});
+    assert_refused(unreadable, import({"/dev/zero", "--format", "json"}), {"/dev/zero", "not a regular file"});
     assert_refused(usage, export_to(work("a.m")), {"a.m", ".csv"});
     assert_refused(usage, export_to(work("q.jpg"), {"--frame", "60x40", "--format", "map"}), {"q.jpg", "JPEG"});
     assert_refused(usage, export_to(work("q.tif"), {"--frame", "60000x60000"}), {"q.tif", "--grid"});

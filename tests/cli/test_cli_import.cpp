@@ -113,7 +113,7 @@ void test_units_and_settings(void **) {
     assert_refused(usage, {"profile", "show", "abc", "--db", work("l.db")}, {"abc is no number of a profile"});
     const Outcome written = run_words({"profile", "export", "2", "-o", work("one.xml"), "--db", work("l.db")});
     assert_int_equal(written.code, done);
-    assert_true(contains(written.err, "profile 2: has a falloff for each channel, of which lensfun holds the mean"));
+    assert_true(contains(written.err, "profile 2: its falloff differs per channel; lensfun stores the mean"));
     assert_refused(usage, {"profile", "export", "2", "-o", work("one.lcp"), "--db", work("l.db"), "--all"}, {"--all"});
     must_exit(done, {"profile", "export", "2", "-o", work("one.csv"), "--grid", "2x1024", "--db", work("l.db")});
 }
@@ -129,8 +129,8 @@ void test_import_refuses(void **) {
     assert_refused(unreadable, import_words() + Words{work("")}, {"is a folder"});
     assert_refused(usage, {"profile", "import"}, {"FILES"});
     assert_refused(store_failed, {"profile", "import", good, "--db", work("none/l.db")},
-                   {"there is no folder", "make it first"});
-    assert_refused(store_failed, {"profile", "merge", work("l.db"), "--db", work("none/l.db")}, {"there is no folder"});
+                   {"does not exist", "create it first"});
+    assert_refused(store_failed, {"profile", "merge", work("l.db"), "--db", work("none/l.db")}, {"does not exist"});
 }
 
 }  // namespace

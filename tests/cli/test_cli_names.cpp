@@ -89,7 +89,7 @@ void test_remove_what_matches(void **) {
     make_db();
     const Words remove = Words{"profile", "remove"} + db_words();
     assert_refused(usage, remove + Words{"--lens", "24-70"}, {"would remove 3 profiles", work("p.db"), "--yes"});
-    assert_refused(usage, remove + Words{"--yes"}, {"either ids"});
+    assert_refused(usage, remove + Words{"--yes"}, {"give ids"});
     assert_refused(not_found, remove + Words{"--lens", "85mm", "--yes"}, {"85mm"});
     assert_refused(not_found, remove + Words{"1", "9"}, {"9"});
     assert_int_equal(listed({}), 4);  // none, for one that is not there

@@ -49,12 +49,12 @@ void test_merge_refuses(void **) {
     const std::string all = make_db("all.db", "24mm", {{24, 2, -0.4}}), fresh = work("fresh.db");
     fs::create_hard_link(a, work("hard.db"));
     for (const std::string &db : {all, fresh}) {
-        assert_refused(usage, merge_into(db) + Words{b, db}, {db, "is the database itself"});
+        assert_refused(usage, merge_into(db) + Words{b, db}, {db, "database itself"});
         assert_refused(not_found, merge_into(db) + Words{b, work("none.db")}, {"none.db"});
         assert_refused(store_failed, merge_into(db) + Words{b, work("a.db.xml")},
                        {"a.db.xml", "not a lensprof database"});
     }
-    assert_refused(usage, merge_into(a) + Words{work("hard.db")}, {"hard.db", "is the database itself"});
+    assert_refused(usage, merge_into(a) + Words{work("hard.db")}, {"hard.db", "database itself"});
     assert_refused(usage, merge_into(all), {"OTHER.db"});
     run_sql(a, "UPDATE vignettings SET k1 = -7");
     for (const std::string &db : {all, fresh})

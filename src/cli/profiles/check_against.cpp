@@ -21,7 +21,7 @@ bool is_number(const std::string &word) {
     return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
 }
 
-// Numbers are ids, each once; other words are further pictures, as a shell makes them of --against *.jpg.
+// Numbers are ids, used once each; other words are further pictures, as a shell expands --against *.jpg.
 void sort_words(const AgainstOptions &o, std::vector<int64_t> &ids, std::vector<std::string> &pictures) {
     pictures = o.pictures;
     for (const std::string &word : o.words) {
@@ -39,11 +39,9 @@ void sort_words(const AgainstOptions &o, std::vector<int64_t> &ids, std::vector<
     }
     if (o.pictures.empty())
         throw Failure(ExitCode::usage, (o.words.empty() ? std::string("--images") : o.words[0])
-                                           + ": is more than this command takes without --against, which names the "
-                                             "pictures that profiles are checked against; see `lensprof help profile "
-                                             "check`");
-    if (ids.empty())
-        throw Failure(ExitCode::usage, "--against: which profiles? Give the ids that `lensprof profile list` shows");
+                                           + ": unexpected argument without --against, which names the pictures to "
+                                             "check profiles against; see `lensprof help profile check`");
+    if (ids.empty()) throw Failure(ExitCode::usage, "--against: needs profile ids; see `lensprof profile list`");
 }
 
 std::vector<StoredProfile> read_profiles(const std::string &db, const std::vector<int64_t> &ids) {
@@ -57,7 +55,7 @@ std::vector<StoredProfile> read_profiles(const std::string &db, const std::vecto
     return profiles;
 }
 
-// Notes of `build` say what it estimates, which is not so here; warnings are of the pictures.
+// Notes of `build` describe its estimates, which do not apply here; warnings concern the pictures.
 Project open_pictures(const std::vector<std::string> &words, const std::string &images, Progress &progress,
                       Streams &streams) {
     std::ostringstream err;
@@ -77,8 +75,8 @@ Project open_pictures(const std::vector<std::string> &words, const std::string &
     }
 }
 
-// The pairs of one camera at one lens setting, which a profile is of: that with most of them. `first` receives its
-// image that states most.
+// The pairs of one camera at one lens setting, as in a profile: the setting with most pairs. `first` receives its image
+// with most metadata.
 std::vector<lensprof_pair> pairs_of_one_setting(const Project &project, const std::vector<PictureMetadata> &metadata,
                                                 std::vector<lensprof_pair> pairs, uint32_t &first, Streams &streams) {
     const LensSettings settings = lens_settings(project, metadata, {}, false);
@@ -93,8 +91,8 @@ std::vector<lensprof_pair> pairs_of_one_setting(const Project &project, const st
                                                           [&](uint32_t setting) { return setting != most; }));
     if (others)
         warn(streams, project.path + ": " + counted(others, "picture")
-                          + " of another camera, size or lens setting left out, for a profile is of one; those of "
-                          + describe_setting(metadata[first].key, project.names[first]) + " are taken");
+                          + " of another camera, size or lens setting left out, since a profile describes one "
+                            "setting; using those of " + describe_setting(metadata[first].key, project.names[first]));
     const auto is_other = [&](const lensprof_pair &p) { return !is_of_one(p) || setting_of(p, 0) != most; };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_other), pairs.end());
     return pairs;
@@ -104,12 +102,12 @@ TrialErrors try_candidate(const TrialPairs &pairs, const Candidate &own, const l
     return try_model(pairs, {falloff, own.responses.data(), static_cast<uint32_t>(own.responses.size())});
 }
 
-// A profile of sensor data tells nothing of rendered pictures but its falloff.
+// For rendered pictures only the falloff of a raw profile applies.
 bool has_response(const lensprof_profile &profile) {
     return profile.key.processing != LENSPROF_PROCESSING_RAW || profile.response[0].kind != LENSPROF_RESPONSE_LINEAR;
 }
 
-// The response that goes with the pictures: sensor data have a linear one.
+// The response of the pictures: that of sensor data is linear.
 void take_own_response(const lensprof_profile &profile, uint32_t camera_kind, Candidate &own) {
     own.response_from = ResponseOf::own;
     own.responses.assign(profile.response, profile.response + profile.responses);
@@ -119,7 +117,7 @@ void take_own_response(const lensprof_profile &profile, uint32_t camera_kind, Ca
     lensprof_response_set_linear(&own.responses[0]);
 }
 
-// For what has no response of its own: the one by which it does best, of the kind of camera or of a profile.
+// For a candidate without a response of its own: the best one, of the kind of camera or of a profile.
 void take_best_response(const TrialPairs &pairs, const std::vector<Candidate> &profiles, uint32_t camera_kind,
                         const lensprof_profile *falloff, Candidate &own) {
     own.response_from = camera_kind == LENSPROF_CAMERA_LINEAR ? ResponseOf::sensor : ResponseOf::kind;
@@ -127,7 +125,7 @@ void take_best_response(const TrialPairs &pairs, const std::vector<Candidate> &p
     lensprof_error error{};
     check(lensprof_response_set_typical(&own.responses[0], camera_kind, nullptr, nullptr), "response", &error);
     own.errors = try_candidate(pairs, own, falloff);
-    const auto rms_of = [](const TrialErrors &errors) {  // of what is not far off
+    const auto rms_of = [](const TrialErrors &errors) {  // of what is not an outlier
         return figures_of(errors, explained_pairs({errors})).rms;
     };
     for (const Candidate &other : profiles) {
@@ -160,12 +158,12 @@ void warn_of_corrected(const Project &project, const std::vector<PictureMetadata
     for (size_t i = 0; i < metadata.size(); i++)
         if (!metadata[i].corrected_by.empty()) {
             warn(streams, project.names[i] + ": its falloff was corrected before, " + metadata[i].corrected_by
-                              + "; what is measured is what that left");
+                              + "; only the remaining falloff is measured");
             return;
         }
 }
 
-// Everything that is measured; the figures are filled in.
+// The measured report; figures are filled in.
 TrialReport measure(const Project &project, const std::vector<StoredProfile> &profiles, Progress &progress,
                     Streams &streams) {
     const std::vector<PictureMetadata> metadata = picture_metadata({}, project);
@@ -180,8 +178,8 @@ TrialReport measure(const Project &project, const std::vector<StoredProfile> &pr
     if (report.pairs.heldout.size() < kFewestMeasured)
         throw Failure(ExitCode::not_usable,
                       project.path
-                          + format(": its overlaps hold %zu pairs to measure, and at least %zu are needed; give "
-                                   "pictures that share a third",
+                          + format(": its overlaps contain %zu usable pairs, but at least %zu are needed; give "
+                                   "pictures that overlap by a third",
                                    report.pairs.heldout.size(), kFewestMeasured),
                       LENSPROF_REASON_FEW_PAIRS);
     report.profiles = try_profiles(report.pairs, profiles, kind);
@@ -193,12 +191,12 @@ TrialReport measure(const Project &project, const std::vector<StoredProfile> &pr
 }  // namespace
 
 void declare_against(Command &command, AgainstOptions &o) {
-    command.texts("ID", o.words, "with --against: the profiles that are compared, and further pictures");
+    command.texts("ID", o.words, "profiles to compare with --against, and further pictures");
     command.words(
         "--against", "PICTURES", [&o](const std::string &word) { o.pictures.push_back(word); },
-        "overlapping pictures (folders, files, as *.jpg), a Hugin project or a reconstruction: says which of the "
-        "profiles fits them, and how well");
-    command.folder("--images", o.images, "folder of a reconstruction's pictures; default beside it");
+        "compare the profiles on these overlapping pictures (folders or files, such as *.jpg), Hugin project or "
+        "reconstruction, and report which fits best");
+    command.folder("--images", o.images, "folder of the reconstruction's pictures; default next to the reconstruction");
     declare_progress(command, o.progress);
 }
 
@@ -210,7 +208,7 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     const Project project = open_pictures(pictures, o.images, progress, streams);
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, project.path + ": has one image; at least two overlapping ones are needed",
+        throw Failure(ExitCode::not_usable, project.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
     TrialReport report = measure(project, profiles, progress, streams);
     report.file = store_path(db), report.path = project.path;
@@ -220,8 +218,8 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
         print_trial(report, streams.out);
     if (report.is_any_better()) return static_cast<int>(ExitCode::done);
     tell(streams, project.path
-                      + ": none of the profiles fits these pictures better than no falloff correction; give profiles of "
-                        "this lens and setting, or make one with `lensprof build`");
+                      + ": none of the profiles is better than no falloff correction; give profiles of this lens and "
+                        "setting, or make one with `lensprof build`");
     return static_cast<int>(ExitCode::not_usable);
 }
 

@@ -1,4 +1,4 @@
-// `lensprof profile check ID... --against PICTURES`: which of several profiles fits overlapping pictures, and how well.
+// `lensprof profile check ID... --against PICTURES`: which of several profiles fits overlapping pictures best.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct AgainstOptions {
 
 void declare_against(Command &command, AgainstOptions &o);
 
-// Of the database `db`; writes nothing. Returns the exit code: not usable where no profile is better than none.
+// Uses the database `db`; writes nothing. Returns the exit code: not_usable if no profile is better than none.
 int run_against(const AgainstOptions &o, const std::string &db, bool json, Streams &streams);
 
 }  // namespace lensprof

@@ -7,15 +7,15 @@
 namespace lensprof {
 namespace {
 
-constexpr double kLeastScale = 0.3;   // levels: quantisation alone makes as much
-constexpr double kFirstLimit = 40.0;  // in scales: nearly everything counts
-constexpr double kLastLimit = 3.0;    // what is farther off has little weight
-constexpr double kLimitFactor = 0.7;  // from round to round
+constexpr double kLeastScale = 0.3;   // levels: quantisation alone causes as much
+constexpr double kFirstLimit = 40.0;  // in scales: nearly all differences count
+constexpr double kLastLimit = 3.0;    // larger differences get little weight
+constexpr double kLimitFactor = 0.7;  // per iteration
 constexpr int kRoundsAtLast = 6;
 constexpr double kMedianToSigma = 1.4826;
-constexpr double kSolved = 1e-20;  // of the squared remainder
+constexpr double kSolved = 1e-20;  // of the squared residual
 
-// Weighted differences of all pairs of images, as one least squares problem.
+// Weighted differences of all pairs of images as one least squares problem.
 class Links {
 public:
     explicit Links(uint32_t images) : right_(images), diagonal_(images) {}
@@ -29,7 +29,7 @@ public:
         }
     }
 
-    // Conjugate gradients from zero, which leave the constant of each joined group alone.
+    // Conjugate gradients from zero, which leave the constant of each connected group at zero.
     std::vector<double> solve() const {
         const size_t n = right_.size();
         std::vector<double> x(n), remainder = right_, step = scaled(remainder), image(n);
@@ -72,7 +72,7 @@ private:
     std::vector<double> right_, diagonal_;
 };
 
-// What is left of each difference, levels; of what says nothing 0.
+// The residual of each difference, levels; 0 without information.
 std::vector<double> levels_left(const std::vector<LightDifference> &differences, const std::vector<double> &x) {
     std::vector<double> left;
     for (const LightDifference &d : differences)
@@ -91,7 +91,7 @@ double scale_of(std::vector<double> left) {
 std::vector<double> log_exposures(const std::vector<LightDifference> &differences, uint32_t images) {
     std::vector<double> x(images);
     if (differences.empty()) return x;
-    std::vector<double> left(differences.size(), 0.0);  // at first all count alike
+    std::vector<double> left(differences.size(), 0.0);  // initially all count equally
     double limit = kFirstLimit;
     for (int at_last = 0; at_last < kRoundsAtLast;) {
         const double end = limit * scale_of(left);

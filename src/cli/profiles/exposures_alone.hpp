@@ -1,5 +1,5 @@
-// Exposures and white balances of pictures whose response and falloff are known: differences of the logarithm of light,
-// channel by channel.
+// Exposures and white balances of pictures with known response and falloff, from differences of log irradiance per
+// channel.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,15 @@
 
 namespace lensprof {
 
-// What two images say of one place in one channel.
+// A comparison of two images at one point in one channel.
 struct LightDifference {
     uint32_t image[2];
-    double log_ratio;  // ln of the light in the first over that in the second, without the falloff
-    double sigma;      // what one level of 255 of noise in both makes of it; 0: it says nothing
+    double log_ratio;  // ln of the ratio of irradiance in the first to that in the second, without the falloff
+    double sigma;      // its error from one level of 255 of noise in both; 0: no information
 };
 
-// ln of the exposure of each image, up to a constant for all that are joined; 0 of an image that nothing joins. Robust:
-// half of the differences less a few may be wrong, where the others agree.
+// ln of the exposure per image, up to a constant per connected set; 0 for unconnected images. Robust: nearly half of
+// the differences may be wrong if the others agree.
 std::vector<double> log_exposures(const std::vector<LightDifference> &differences, uint32_t images);
 
 }  // namespace lensprof

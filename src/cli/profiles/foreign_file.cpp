@@ -20,16 +20,16 @@ std::string extension_of(const std::string &path) {
 
 const ForeignRule &rule_of(uint32_t format) {
     if (const ForeignRule *rule = lensprof_format_get_info(format)) return *rule;
-    throw Failure(ExitCode::failed, "a format without a rule; please report it");
+    throw Failure(ExitCode::failed, "internal error: a format without a rule; please report this");
 }
 
 const ForeignRule &rule_of_word(const std::string &word) {
     for (uint32_t format = 1; const ForeignRule *rule = lensprof_format_get_info(format); format++)
         if (word == rule->name) return *rule;
-    throw Failure(ExitCode::usage, "--format " + word + ": is none; `lensprof profile import --help` lists them");
+    throw Failure(ExitCode::usage, "--format " + word + ": unknown format; see `lensprof profile import --help`");
 }
 
-// A TIFF or DNG is what its tags say: opcodes, or XMP of a drone's camera; AUTO where there are neither.
+// Identifies a TIFF or DNG by its tags: opcodes, or XMP of a drone camera; AUTO if it has neither.
 uint32_t format_of_tags(const std::string &path, const std::string &head) {
     const std::string magic = head.substr(0, 4);
     if (magic != std::string("II*\0", 4) && magic != std::string("MM\0*", 4)) return LENSPROF_FORMAT_AUTO;
@@ -57,18 +57,20 @@ const ForeignRule &format_to_read(const std::string &path, const std::string &wa
     if (!format) format = lensprof_format_detect(head.data(), head.size(), path.c_str());
     if (format) return rule_of(format);
     throw Failure(ExitCode::usage,
-                  path + ": neither its content nor its name identifies its format; name it with --format");
+                  path + ": the format cannot be identified from content or name; give it with --format");
 }
 
 const ForeignRule &format_to_write(const std::string &path, const std::string &wanted) {
     const uint32_t named = lensprof_format_detect(nullptr, 0, path.c_str());
     if (wanted.empty() && !named)
-        throw Failure(ExitCode::usage, path + ": its name does not identify a format; name it with --format");
+        throw Failure(ExitCode::usage, path + ": the name does not identify a format; give it with --format");
     const ForeignRule *rule = wanted.empty() ? &rule_of(named) : &rule_of_word(wanted);
     if (extension_of(path) == "m" && rule->format == LENSPROF_FORMAT_CURVES)
-        throw Failure(ExitCode::usage, path + ": pfstools' tables are read only; give it the ending .csv");
+        throw Failure(ExitCode::usage, path + ": the format of pfstools is supported for import only; use a name "
+                                              "ending in .csv");
     if (!rule->is_written)
-        throw Failure(ExitCode::usage, path + ": " + rule->name + " is read only; choose another --format");
+        throw Failure(ExitCode::usage, path + ": " + rule->name + " is supported for import only; choose another "
+                                                                  "--format");
     return *rule;
 }
 

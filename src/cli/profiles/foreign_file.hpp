@@ -1,5 +1,4 @@
-// Profiles from and to the files of other programs (docs/formats.md): which format a file is of, and
-// its bytes.
+// Profiles from and to files of other programs (docs/formats.md): identification of the format, and the bytes.
 #pragma once
 
 #include <functional>
@@ -12,22 +11,23 @@
 
 namespace lensprof {
 
-// One format, as the library knows it.
+// A format, as the library describes it.
 using ForeignRule = lensprof_format_info;
-std::string about_foreign(bool written_only);  // for --help: a line a format
+std::string about_foreign(bool written_only);  // for --help: one line per format
 
-// What files do not say themselves.
+// Information that files do not contain.
 struct ForeignOptions {
     uint32_t width = 0, height = 0;  // of the frame, px; 0 = not given
-    uint32_t columns = 0, rows = 0;  // of tables and maps; 0 = as the format has them
+    uint32_t columns = 0, rows = 0;  // of tables and maps; 0 = default of the format
     uint32_t curve = LENSPROF_CURVE_INVERSE;
     uint32_t depth = 16;  // bits of a map as PNG
     double color_temperature_k = LENSPROF_UNKNOWN;
-    std::string sense;  // of maps: attenuation, gain, or empty: PNG the one, TIFF the other
+    std::string sense;  // of maps: attenuation, gain, or empty: attenuation for PNG, gain for TIFF
     uint32_t opcode = LENSPROF_DNG_AUTO;
 };
 
-// By --format; where that is empty, by the file's content, then its name. Failure (usage or unreadable) names it.
+// The format given by --format; if that is empty, identified by content, then by name. Failure (usage or unreadable)
+// with the file name.
 const ForeignRule &format_to_read(const std::string &path, const std::string &wanted);
 const ForeignRule &format_to_write(const std::string &path, const std::string &wanted);
 
@@ -37,24 +37,24 @@ void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_im
 // Calls visit for every camera of a Lensfun database. Failure (unreadable) names the file.
 void read_cameras(const std::string &path, lensprof_camera_visitor visit, void *user);
 
-// Puts the response, or the falloff with doubt and what is known of the key, of a file into a profile.
+// Stores the response, or the falloff with doubt and known key fields, of a file in a profile.
 void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
                lensprof_profile &profile);
 
-// The bytes of a file that would hold these profiles. Failure (usage) for what needs a picture: maps and opcodes.
+// The bytes of a file with these profiles. Failure (usage) for formats that need a picture: maps and opcodes.
 std::string foreign_bytes(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
                           const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names);
 
-// Writes the profiles, one where the format holds one. Complete or not at all; opcodes go into the TIFF or DNG that is
-// there. Failure names the file and, by its name in `names`, the profile, and says what the format cannot hold.
+// Writes the profiles, one if the format holds only one, completely or not at all; opcodes are written into an existing
+// TIFF or DNG. Failure with the file, the profile's name in `names`, and what the format does not support.
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
                    const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names);
 
 // Whether the opcodes of a DNG or TIFF correct a falloff.
 bool has_falloff_opcode(const std::string &path);
 
-// Copies a DNG with the falloff as an opcode in place of one that is there; pixels and all else stay as they are.
-// Failure where other opcodes would be lost.
+// Copies a DNG with the falloff as an opcode, replacing an existing one; pixels and everything else stay unchanged.
+// Failure if other opcodes would be lost.
 void write_opcodes(const std::string &path_in, const std::string &path_out, const lensprof_profile &profile);
 
 }  // namespace lensprof

@@ -5,28 +5,29 @@ namespace lensprof {
 void declare_foreign(Command &command, ForeignOptions &o, bool written) {
     constexpr std::pair<uint32_t, uint32_t> sides = {2, 65536};
     command.size("--frame", o.width, o.height, sides,
-                 "size of the pictures, px, for formats that depend on it and do not say it");
+                 "size of the pictures, px, for formats that depend on it but do not store it");
     command.size("--grid", o.columns, o.rows, sides,
-                 written ? "columns and rows of maps (that of the frame) and of alsc (16x12)"
-                         : "alsc: columns and rows of tables other than 16x12 and 32x32");
+                 written ? "columns and rows of maps (default: the frame size) and of alsc (default: 16x12)"
+                         : "columns and rows of alsc tables; default 16x12 or 32x32, by their length");
     command.choice(
         "--curve", o.curve,
         {{"inverse", LENSPROF_CURVE_INVERSE},
          {"log", LENSPROF_CURVE_LOG},
          {"log10", LENSPROF_CURVE_LOG10},
          {"forward", LENSPROF_CURVE_FORWARD}},
-        "curves: what the table holds: inverse (grey value to irradiance; default), log or log10 of that, or "
-        "forward (irradiance to grey value)");
+        "content of a table of curves: inverse (default: grey value to irradiance), log or log10 of that, or forward "
+        "(irradiance to grey value)");
     command.choice<std::string>(
         "--sense", o.sense, {{"attenuation", "attenuation"}, {"gain", "gain"}},
-        "maps: attenuation (divide; default for PNG) or gain (multiply; default for float TIFF)");
+        "meaning of maps: attenuation (divide; default for PNG) or gain (multiply; default for float TIFF)");
     command.number("--color-temperature", o.color_temperature_k, {500.0, 50000.0},
-                   "alsc: K; default that of the file or profile, or 4500");
+                   "colour temperature of alsc tables, K; default that of the file or profile, else 4500");
     if (!written) return;
-    command.choice("--depth", o.depth, {{"8", 8}, {"16", 16}}, "maps as PNG: bits, 8 or 16 (default)");
+    command.choice("--depth", o.depth, {{"8", 8}, {"16", 16}}, "bits of PNG maps: 8 or 16 (default)");
     command.choice("--opcode", o.opcode,
                    {{"auto", LENSPROF_DNG_AUTO}, {"radial", LENSPROF_DNG_RADIAL}, {"map", LENSPROF_DNG_GAIN_MAP}},
-                   "opcodes: radial (FixVignetteRadial), map (GainMap) or auto: radial where that is exact to 0.5 %");
+                   "kind of DNG opcodes: radial (FixVignetteRadial), map (GainMap) or auto (default: radial if exact "
+                   "to 0.5 %)");
 }
 
 Choices<std::string> format_choices(bool written_only) {

@@ -1,4 +1,4 @@
-// The options of `profile import` and `profile export` that say what files do not.
+// The options of `profile import` and `profile export` for information that files do not contain.
 #pragma once
 
 #include "cli/profiles/foreign_file.hpp"
@@ -6,10 +6,10 @@
 
 namespace lensprof {
 
-// `options` outlives the parsing.
+// `options` must outlive the parsing.
 void declare_foreign(Command &command, ForeignOptions &options, bool written);
 
-// The words of --format.
+// The choices of --format.
 Choices<std::string> format_choices(bool written_only);
 
 }  // namespace lensprof

@@ -18,7 +18,7 @@ std::string name_of(const std::string &path) {
     return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
-// Takes the response or the falloff of an entry, with its doubt and key.
+// Takes the response or falloff of an entry, with its doubt and key.
 lensprof_status take_part(void *user, const lensprof_import_entry *entry) {
     lensprof_profile &profile = *static_cast<lensprof_profile *>(user);
     const lensprof_profile &found = *entry->profile;
@@ -35,7 +35,7 @@ lensprof_status take_part(void *user, const lensprof_import_entry *entry) {
     return LENSPROF_OK;
 }
 
-// What the library is told of a file.
+// The library's options for a file.
 lensprof_import_options options_of(const ForeignRule &rule, const ForeignOptions &o) {
     lensprof_import_options options;
     lensprof_import_options_init(&options);
@@ -53,10 +53,10 @@ void import(const std::string &path, const std::string &bytes, const lensprof_im
     check(lensprof_import(bytes.data(), bytes.size(), &options, visit, user, &error), path, &error);
 }
 
-// Width and height of the frame, which some files do not say.
+// Width and height of the frame, which some files do not state.
 void demand_frame(const std::string &path, const ForeignOptions &o) {
     if (!o.width || !o.height)
-        throw Failure(ExitCode::usage, path + ": does not say how large the pictures are; give --frame WIDTHxHEIGHT");
+        throw Failure(ExitCode::usage, path + ": does not state the size of the pictures; give --frame WIDTHxHEIGHT");
 }
 
 // A picture's values as floats, without alpha.
@@ -93,23 +93,24 @@ void read_map(const std::string &path, const ForeignOptions &o, lensprof_import_
     const double shape = double(picture.width) / picture.height, wanted = o.width ? double(o.width) / o.height : shape;
     if (std::fabs(shape / wanted - 1.0) > 0.01)
         throw Failure(ExitCode::usage,
-                      path + ": has another shape than --frame; give the size of the pictures that it is for");
+                      path + ": its aspect ratio differs from that of --frame; give the size of the pictures that it "
+                             "is for");
     const lensprof_map map = {picture.width, picture.height, channels,
                               is_gain ? LENSPROF_MAP_GAIN : LENSPROF_MAP_ATTENUATION, values.data()};
     options.map = &map;
     import(path, "", options, take_part, &profile);
 }
 
-// The bytes of the tag, and what they work on.
+// The bytes of the tag, and what they apply to.
 std::string opcodes_of(const std::string &path, lensprof_import_options &options) {
     const OpcodeLists lists = read_opcode_lists(path);
     const std::vector<uint8_t> &list = lists.list3.empty() ? lists.list2 : lists.list3;
     if (list.empty())
-        throw Failure(ExitCode::unreadable, path + ": has no opcode list of DNG; give a picture that has one");
+        throw Failure(ExitCode::unreadable, path + ": has no DNG opcode list; give a picture that has one");
     const bool of_mosaic = lists.list3.empty();
     if (of_mosaic && lists.layout == UINT32_MAX)
         throw Failure(ExitCode::unreadable,
-                      path + ": its mosaic is none of red, green, green and blue; give another picture");
+                      path + ": its mosaic is not red, green, green and blue; give another picture");
     if (of_mosaic || lists.layout == LENSPROF_LAYOUT_GREY) options.layout = lists.layout;
     options.width = lists.width, options.height = lists.height;
     return {list.begin(), list.end()};
@@ -119,20 +120,21 @@ bool is_packet_alone(const std::string &path) {
     return path.size() > 4 && path.compare(path.size() - 4, 4, ".xmp") == 0;
 }
 
-// The packet of a picture, or a packet alone.
+// The XMP packet of a picture, or of a standalone file.
 std::string packet_of(const std::string &path, const ForeignOptions &o, lensprof_import_options &options) {
     const bool is_packet = is_packet_alone(path);
     if (is_packet) demand_frame(path, o);
     const std::string packet = is_packet ? read_text(path, largest_text) : read_xmp_packet(path);
     if (packet.empty())
-        throw Failure(ExitCode::unreadable, path + ": has no XMP, in which drones' cameras describe their falloff");
+        throw Failure(ExitCode::unreadable, path + ": has no XMP, where drone cameras describe their falloff; give "
+                                                   "the original picture");
     if (is_packet || o.width) return packet;
     const PictureSize size = read_size(path);
     options.width = size.width, options.height = size.height;
     return packet;
 }
 
-// What the command line leaves open of camera, lens and setting, by the picture's EXIF. A packet alone has none.
+// Completes camera, lens and setting from the picture's EXIF. A standalone packet has no EXIF.
 void complete_key(lensprof_profile_key &key, const std::string &path) {
     const lensprof_profile_key exif = read_metadata(path).key;
     const auto take_text = [](auto &own, const auto &other) {

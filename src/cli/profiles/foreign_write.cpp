@@ -11,7 +11,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t most_map_values = 80000000;  // of all channels; each takes 12 bytes of memory
+constexpr uint64_t most_map_values = 80000000;  // of all channels; each needs 12 bytes of memory
 
 void demand_one(const std::string &path, const ForeignRule &rule, size_t profiles) {
     if (profiles != 1)
@@ -25,20 +25,21 @@ void demand_frame(const std::string &path, const ForeignRule &rule, const Foreig
                       path + ": " + rule.name + " is for pictures of one size; give --frame WIDTHxHEIGHT");
 }
 
-// A map as a picture: attenuation of the mean of the channels as PNG (DSO's vignette.png), gains a channel as float
+// A map as a picture: attenuation of the mean of the channels as PNG (DSO's vignette.png), gains per channel as float
 // TIFF.
 void write_map(const std::string &path, const ForeignOptions &o, const lensprof_profile &profile) {
     const bool is_tiff = format_of_name(path) == FileFormat::tiff;
     const bool is_gain = o.sense.empty() ? is_tiff : o.sense == "gain";
     if (format_of_name(path) == FileFormat::jpeg)
-        throw Failure(ExitCode::usage, path + ": JPEG is not exact; give a map the ending .png or .tif");
+        throw Failure(ExitCode::usage, path + ": JPEG is lossy; use a name ending in .png or .tif for a map");
     if (!is_tiff && is_gain)
-        throw Failure(ExitCode::usage, path + ": gains go beyond 1 and need a float TIFF; give it the ending .tif");
+        throw Failure(ExitCode::usage, path + ": gains exceed 1 and need a float TIFF; use a name ending in .tif");
     const bool has_channels = profile.vignettings == 3 || profile.grid.channels == 3;
     const uint32_t channels = is_tiff && has_channels ? 3 : 1;
     const uint32_t columns = o.columns ? o.columns : o.width, rows = o.rows ? o.rows : o.height;
     if (uint64_t(columns) * rows * channels > most_map_values)
-        throw Failure(ExitCode::usage, path + ": a map of over 80 million values; give a smaller --grid");
+        throw Failure(ExitCode::usage,
+                      path + ": the map would have more than 80 million values; give a smaller --grid");
     std::vector<float> values(size_t(columns) * rows * channels);
     lensprof_error error{};
     check(lensprof_map_write(&profile, o.width, o.height, columns, rows, channels,
@@ -51,7 +52,7 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     const size_t size = lensprof_sample_type_bytes(picture.sample);
     picture.row_bytes = size_t(columns) * channels * size;
     picture.pixels.resize(picture.row_bytes * rows);
-    for (size_t i = 0; i < values.size(); i++) {  // 0 would be: not known
+    for (size_t i = 0; i < values.size(); i++) {  // 0 would mean unknown
         const double full = o.depth == 8 ? 255.0 : 65535.0;
         const auto word = static_cast<uint16_t>(std::clamp(std::lround(full * values[i]), 1l, std::lround(full)));
         if (is_tiff)
@@ -64,7 +65,7 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     write_picture(path, picture);
 }
 
-// Whether a list has an opcode that `is_one` is true of.
+// Whether a list has an opcode for which `is_one` is true.
 template <typename Is>
 bool has_opcode(const std::vector<uint8_t> &list, const Is &is_one) {
     const auto word = [&](size_t at) {
@@ -79,13 +80,13 @@ bool has_opcode(const std::vector<uint8_t> &list, const Is &is_one) {
 
 bool is_gain(uint32_t id) { return id == 3 || id == 9; }  // FixVignetteRadial, GainMap
 
-// What else a picture's lists do must stay, and a falloff must not be corrected twice.
+// Other opcodes of a picture must stay, and a falloff must not be corrected twice.
 void demand_no_others(const std::string &path, const OpcodeLists &lists) {
     if (has_opcode(lists.list2, is_gain))
-        throw Failure(ExitCode::usage, path + ": its OpcodeList2 corrects the falloff already; take another picture");
+        throw Failure(ExitCode::usage, path + ": its OpcodeList2 already corrects the falloff; give another picture");
     if (has_opcode(lists.list3, [](uint32_t id) { return !is_gain(id); }))
-        throw Failure(ExitCode::usage, path + ": its OpcodeList3 does other things, too, which would be lost (as a correction of "
-                                              "distortion); take a picture without");
+        throw Failure(ExitCode::usage, path + ": its OpcodeList3 has other corrections (such as distortion), which "
+                                              "would be lost; give a picture without them");
 }
 
 std::string bytes_of(const std::string &path, const lensprof_export_options &options,
@@ -109,12 +110,12 @@ lensprof_export_options options_of(const ForeignRule &rule, const ForeignOptions
     return options;
 }
 
-// From one picture to another, or into the one that is there.
+// From one picture to another, or in place.
 void write_opcodes_as(const std::string &path, const std::string &path_out, lensprof_export_options options,
                       const lensprof_profile &profile) {
     const OpcodeLists lists = read_opcode_lists(path);
     demand_no_others(path, lists);
-    // after demosaicing there are three channels; linear raw images and plain TIFF have them from the start
+    // after demosaicing there are three channels; linear raw images and plain TIFF have three from the start
     if (lists.layout == LENSPROF_LAYOUT_GREY) options.layout = lists.layout;
     options.width = lists.width, options.height = lists.height;
     const std::string bytes = bytes_of(path, options, {&profile}, {});
@@ -141,7 +142,7 @@ std::string foreign_bytes(const ForeignRule &rule, const std::string &path, cons
     const uint32_t format = rule.format;
     if (format == LENSPROF_FORMAT_MAP || format == LENSPROF_FORMAT_DNG_OPCODES)
         throw Failure(ExitCode::usage,
-                      path + ": " + rule.name + " is written to a picture; export one profile with -o FILE");
+                      path + ": " + rule.name + " is written into a picture; export one profile with -o FILE");
     if (!rule.is_many) demand_one(path, rule, profiles.size());
     if (format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC) demand_frame(path, rule, o);
     return bytes_of(path, options_of(rule, o), profiles, names);

@@ -14,7 +14,7 @@
 namespace lensprof {
 namespace {
 
-// The lenses or cameras that a name or a part of one is of; without a name one that any profile has.
+// The lenses or cameras that match a name or a part of one; without a name, one that matches any profile.
 std::vector<lensprof_store_summary> named(lensprof_store *store, const std::string &db, const std::string &name,
                                           decltype(&lensprof_store_list_lenses) list) {
     if (name.empty()) return std::vector<lensprof_store_summary>(1);
@@ -29,13 +29,15 @@ std::vector<lensprof_store_summary> named(lensprof_store *store, const std::stri
 void KeyFilter::add_options(Command &command) {
     command.text("--camera", camera_, "camera model");
     command.text("--maker", maker_, "camera maker");
-    command.text("--lens", lens_, "lens");
-    command.text("--unit", unit_, "serial numbers of the one camera and lens that a profile is of");
-    command.number("--focal", focal_, focal_lengths, "focal length, mm, as 50 or 50mm");
-    command.number("--aperture", aperture_, f_numbers, "f-number, as 4 or f/4");
-    command.number("--distance", distance_, distances, "focus distance, m, as 3 or 3m");
-    command.choice("--processing", processing_, processing_choices(), "raw, jpeg or corrected");
-    command.text("--style", style_, "picture style, as the camera calls it");
+    command.text("--lens", lens_, "lens model");
+    command.text("--unit", unit_, "serial numbers of camera and lens, for profiles of a single unit");
+    command.number("--focal", focal_, focal_lengths, "focal length, mm, such as 50 or 50mm");
+    command.number("--aperture", aperture_, f_numbers, "f-number, such as 4 or f/4");
+    command.number("--distance", distance_, distances, "focus distance, m, such as 3 or 3m");
+    command.choice("--processing", processing_, processing_choices(),
+                   "processing of the pictures: raw, jpeg or "
+                   "corrected (falloff corrected in camera)");
+    command.text("--style", style_, "picture style, by the camera's name for it");
 }
 
 bool KeyFilter::is_empty() const {
@@ -108,7 +110,7 @@ std::vector<lensprof_store_row> KeyFilter::matching_rows(lensprof_store *store, 
             std::copy_n(camera.camera_model, sizeof filter.camera_model, filter.camera_model);
             std::copy_n(lens.lens, sizeof filter.lens, filter.lens);
             const auto rows = rows_of(store, db, filter);
-            for (const auto &row : rows)  // a name without maker stands for any maker's
+            for (const auto &row : rows)  // a name without maker matches any maker
                 if (seen.insert(row.id).second) all.push_back(row);
         }
     return all;
@@ -137,7 +139,7 @@ std::vector<StoredProfile> KeyFilter::profiles(const Databases &databases, const
 std::string KeyFilter::nothing_found(const std::string &db) const {
     const std::string &name = !camera_.empty() ? camera_ : !lens_.empty() ? lens_ : maker_;
     return "no profile" + (name.empty() ? std::string() : " for " + name) + " with this setting in " + store_path(db)
-           + "; `lensprof profile list` shows what there is";
+           + "; see `lensprof profile list`";
 }
 
 }  // namespace lensprof

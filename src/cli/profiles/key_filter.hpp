@@ -1,4 +1,4 @@
-// Options that choose profiles by what they are for.
+// Options that select profiles by camera, lens and setting.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace lensprof {
 
-// All rows that a listing function of the store has: others may add some between two calls.
+// All rows of a listing function of the store; other processes may add rows between two calls.
 template <typename Row, typename List>
 std::vector<Row> listed(const std::string &db, const List &list) {
     lensprof_error error{};
@@ -31,37 +31,37 @@ std::vector<Row> listed(const std::string &db, const List &list) {
     return rows;
 }
 
-// Camera, lens and setting as asked for; what is not given may be anything.
+// Camera, lens and setting from the command line; fields not given match anything.
 class KeyFilter {
 public:
     void add_options(Command &command);
 
     bool is_empty() const;
 
-    // Failure (usage) for names that would be cut where they are stored.
+    // Failure (usage) for names too long to be stored.
     void check_names() const;
     bool has_camera_or_lens() const { return !camera_.empty() || !lens_.empty(); }
 
-    // What was given, the rest unknown; `processing` where none was given.
+    // The given fields, the rest unknown; `processing` if none was given.
     lensprof_profile_key key(uint32_t processing) const;
-    // Camera, lens, unit and style alone, at any setting and processing.
+    // Only camera, lens, unit and style, for any setting and processing.
     KeyFilter without_setting() const;
 
     bool has_processing() const { return processing_.has_value(); }
 
-    // What was given in place of what the key has.
+    // Overrides fields of the key with the given ones.
     void put_into(lensprof_profile_key &key) const;
 
-    // Rows of the profiles that match, in the order of lensprof_store_list, and all damaged rows; `db` as given, for
-    // texts.
+    // Rows of the matching profiles, in the order of lensprof_store_list, and all damaged rows; `db` is the name for
+    // messages.
     std::vector<lensprof_store_row> rows(lensprof_store *store, const std::string &db) const;
 
-    // As rows(), but names of camera and lens may be written as lookups take them, and where none is that, be words of
+    // As rows(), but names of camera and lens may be written as lookups accept them or, if none matches, be words of
     // the names.
     std::vector<lensprof_store_row> matching_rows(lensprof_store *store, const std::string &db) const;
 
-    // The profiles with these ids in the first database, or where there are none those of matching_rows() in all of
-    // them, or `of_first` in the first that has any; Failure (not_found).
+    // The profiles with these ids in the first database or, without ids, those of matching_rows() in all databases, or
+    // with `of_first` in the first that has a match; Failure (not_found).
     std::vector<StoredProfile> profiles(const Databases &databases, const std::vector<int64_t> &ids,
                                         bool of_first) const;
 

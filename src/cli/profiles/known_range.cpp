@@ -11,7 +11,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kNames = 8;  // are printed, and how many more there are
+constexpr size_t kNames = 8;  // maximum printed, then the number of the others
 
 void take(double value, KnownRange::Ends &ends) {
     if (value == LENSPROF_UNKNOWN) return;

@@ -1,4 +1,4 @@
-// What is known of lenses and cameras, as ranges of their settings.
+// The stored range of settings of lenses and cameras.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace lensprof {
 
-// "24-70", or "50" where both ends are the same, or "-" where none is known.
+// "24-70", or "50" if both ends are equal, or "-" if unknown.
 std::string range_text(const double range[2]);
 
 // [24, 70], or null; infinity as in keys.
 Json range_json(const double range[2]);
 
-// Of profiles: their settings and M in the corner, smallest and largest; LENSPROF_UNKNOWN where none is known.
+// The minimum and maximum of the profiles' settings and of M in the corner; LENSPROF_UNKNOWN if none is known.
 struct KnownRange {
     using Ends = std::array<double, 2>;
     static constexpr Ends none = {LENSPROF_UNKNOWN, LENSPROF_UNKNOWN};

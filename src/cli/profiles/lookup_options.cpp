@@ -3,15 +3,17 @@
 namespace lensprof {
 
 void LookupOptions::add_options(Command &command) {
-    command.number("--crop-factor", crop_factor, crop_factors, "43.27 mm over the diagonal of the camera's sensor");
+    command.number("--crop-factor", crop_factor, crop_factors,
+                   "crop factor: 43.27 mm divided by the sensor diagonal; "
+                   "default from the table of cameras");
     command.choice(
         "--unknown-distance", distance_rule,
         {{"usual", LENSPROF_DISTANCE_USUAL},
          {"weakest", LENSPROF_DISTANCE_WEAKEST},
          {"farthest", LENSPROF_DISTANCE_FARTHEST}},
-        "where the distance is not known: usual, the mean falloff over the distances of most photographs "
-        "(default); weakest, the weakest of all stored distances, which never corrects too much; or farthest");
-    command.flag("--doubtful", doubtful, "predict also from profiles that were imported with a doubt");
+        "falloff if the focus distance is unknown: usual (default: the mean over common distances), weakest (of all "
+        "stored distances, never overcorrects) or farthest (distance)");
+    command.flag("--doubtful", doubtful, "also use profiles that were imported as doubtful");
 }
 
 lensprof_lookup_options LookupOptions::options() const {

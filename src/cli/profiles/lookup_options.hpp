@@ -1,4 +1,4 @@
-// Options of lookups in databases, beside what is looked up.
+// Options of lookups, in addition to the key.
 #pragma once
 
 #include <lensprof/lensprof.h>

@@ -25,7 +25,7 @@ const std::string &database(const Found &found, uint32_t index) {
     return index < found.databases.size() ? found.databases[index] : none;
 }
 
-// Which one, where there are several.
+// The database, if there are several.
 std::string in_database(const Found &found, uint32_t index) {
     return found.databases.size() > 1 ? " in " + database(found, index) : std::string();
 }
@@ -58,7 +58,7 @@ std::string describe_response(const Found &found) {
     }
 }
 
-// What a standard error is made of. The response's part is what the others leave.
+// The parts of a standard error. The response's part is what remains.
 std::string describe_parts(const lensprof_lookup &how) {
     std::string text;
     const double others = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma)),
@@ -69,7 +69,7 @@ std::string describe_parts(const lensprof_lookup &how) {
     return text.empty() ? text : " (falloff " + format("%.3f", how.falloff_sigma) + text + ")";
 }
 
-// Takes the sentence of a reason out of a text of several.
+// Removes the sentence of a reason from a text of several.
 void leave_out(uint32_t code, std::string &text) {
     const std::string sentence = lensprof_reason_text(code);
     const size_t at = text.find(sentence);
@@ -84,8 +84,7 @@ std::string describe_prediction(const Found &found) {
     const std::string where = in_database(found, how.falloff_store);
     if (how.exact) return format("stored as profile %lld", static_cast<long long>(how.id[0])) + where;
     return "predicted from " + counted(how.rows, "profile") + " of this lens" + where
-           + format(", the nearest (%lld) at %.2f of the 0.5 that are allowed", static_cast<long long>(how.id[0]),
-                    how.distance);
+           + format(", the nearest (%lld) at %.2f of the allowed 0.5", static_cast<long long>(how.id[0]), how.distance);
 }
 
 }  // namespace
@@ -139,7 +138,7 @@ Json lookup_json(const Found &found) {
 
 std::string describe_briefly(const Found &found) {
     const lensprof_lookup &how = found.how;
-    std::string others = how.reason;  // the parts of the error say these two
+    std::string others = how.reason;  // the parts of the error cover these two
     leave_out(LENSPROF_REASON_LOOKUP_USUAL_DISTANCE, others);
     leave_out(LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE, others);
     std::string text = how.exact ? format("falloff of profile %lld", static_cast<long long>(how.id[0]))
@@ -149,7 +148,7 @@ std::string describe_briefly(const Found &found) {
 }
 
 std::string describe_error(const lensprof_lookup &how) {
-    if (how.sigma == LENSPROF_UNKNOWN) return "the error of M is not known";
+    if (how.sigma == LENSPROF_UNKNOWN) return "the error of M is unknown";
     return format("M in the corner \u00b1 %.3f", how.sigma) + describe_parts(how);
 }
 
@@ -163,7 +162,7 @@ static std::string without_maker(const std::string &model, const std::string &ma
     return begins ? model.substr(length) : model;
 }
 
-// By how many letters of the model differ, at most half of them.
+// Ranked by the number of letters in which the model differs, at most half of them.
 static std::vector<std::string> nearest_cameras(const Databases &databases, const lensprof_profile_key &key) {
     std::vector<std::pair<size_t, std::string>> ranked;
     for (size_t i = 0; i < databases.size(); i++)
@@ -222,7 +221,7 @@ void print_lookup(const Found &found, std::ostream &out) {
     else
         out << "sigma     unknown: the profile does not state its error\n";
     if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);
-    if (*how.reason) out << "mind      " << how.reason << "\n";
+    if (*how.reason) out << "warning   " << how.reason << "\n";
 }
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// How a profile was found or predicted, for people and as JSON.
+// Reports how a profile was found or predicted, as text and as JSON.
 #pragma once
 
 #include <string>
@@ -13,25 +13,25 @@ namespace lensprof {
 struct Found {
     lensprof_lookup how;
     std::vector<std::string> databases;
-    bool response_is_given = false;  // by the command line: the lookup's is not used
+    bool response_is_given = false;  // by the command line: the response of the lookup is not used
 };
 
-// The same answer with a response that is given: without the error of the lookup's own and what is said of it.
+// The same answer with a given response, without the error and notes of the lookup's response.
 Found with_response_given(Found found);
 
 // docs/json.md, `lookup`.
 Json lookup_json(const Found &found);
 Json reason_codes_json(const lensprof_lookup &how);
 
-// "falloff predicted from 24 profiles, response typical of its kind (camera); ...": where the answer comes from, and
-// cautions that the parts of its error do not say. Equal for pictures that are answered alike.
+// "falloff predicted from 24 profiles, response typical of its kind (camera); ...": the source of the answer, and
+// warnings not covered by its error. Equal for pictures with the same answer.
 std::string describe_briefly(const Found &found);
 
 // "M in the corner +- 0.022 (falloff 0.004, distance 0.007, response 0.020)".
 std::string describe_error(const lensprof_lookup &how);
 
-// The three stored lenses, or cameras, whose names are nearest to one that `how` says is not stored; none for any other
-// answer.
+// The three stored lenses, or cameras, whose names are nearest to one that `how` reports as not stored; empty for other
+// answers.
 std::vector<std::string> nearest_names(const Databases &databases, const lensprof_profile_key &key,
                                        const lensprof_lookup &how);
 

@@ -1,4 +1,4 @@
-// `lensprof profile list | show`, and the verbs that have files of their own.
+// `lensprof profile list | show`, and the verbs with their own files.
 #include <algorithm>
 #include <optional>
 
@@ -26,7 +26,7 @@ std::string number_or(double value, const char *pattern) {
     return value == LENSPROF_UNKNOWN ? std::string("-") : format(pattern, value);
 }
 
-// One line for each row that cannot be listed, and the exit code for them.
+// Prints one line per row that cannot be listed, and returns the exit code for them.
 int report_damaged(lensprof_store *store, const std::vector<lensprof_store_row> &rows, Streams &streams) {
     ExitCode code = ExitCode::done;
     auto profile = new_profile();
@@ -91,7 +91,7 @@ int list(const ListOptions &o, Streams &streams) {
     return code;
 }
 
-// What `show` is asked for.
+// The options of `show`.
 struct ShowOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
@@ -101,7 +101,7 @@ struct ShowOptions {
     bool json = false, chart = false;
 };
 
-// One curve a profile where there are several, so that they can be compared.
+// One curve per profile if there are several, for comparison.
 int channel_of(const ShowOptions &o, size_t profiles) { return o.channel.value_or(profiles > 1 ? 1 : -1); }
 
 Json stored_json(const StoredProfile &stored) {
@@ -126,7 +126,7 @@ void print_profiles(const std::vector<StoredProfile> &profiles, bool json, Strea
     }
 }
 
-// A chart shows no curve of what was not measured, as by `bracket`.
+// A chart omits what was not measured, as by `bracket`.
 void keep_with_falloff(std::vector<StoredProfile> &profiles) {
     const int64_t first = profiles.front().id;
     const auto lacks = [](const StoredProfile &stored) {
@@ -135,11 +135,11 @@ void keep_with_falloff(std::vector<StoredProfile> &profiles) {
     profiles.erase(std::remove_if(profiles.begin(), profiles.end(), lacks), profiles.end());
     if (profiles.empty())
         throw Failure(ExitCode::not_found, "profile " + std::to_string(first)
-                                               + " has no falloff that a chart could show; measure it with `lensprof flat` "
-                                                 "or `lensprof build`");
+                                               + " has no falloff to draw; measure it with `lensprof flat` or "
+                                                 "`lensprof build`");
 }
 
-// The blob's own line, then the profile as one of a database.
+// The blob's own line, then the profile like one of a database.
 void print_blob(const std::string &path, const BlobStamp &stamp, const lensprof_profile &profile, bool json,
                 Streams &streams) {
     if (!json) {
@@ -155,12 +155,12 @@ void print_blob(const std::string &path, const BlobStamp &stamp, const lensprof_
 int show(const ShowOptions &o, Streams &streams) {
     if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(!o.blob.empty()) != 1)
         throw Failure(ExitCode::usage,
-                      "profile show: give either ids that `lensprof profile list` shows, or --camera, "
-                      "--lens and the like, or --blob");
+                      "profile show: give ids (see `lensprof profile list`), or --camera, --lens or other filters, or "
+                      "--blob");
     if (o.channel && !o.chart && o.chart_out.empty())
-        throw Failure(ExitCode::usage, "profile show: --channel belongs to --chart and --chart-out; add one of them");
+        throw Failure(ExitCode::usage, "profile show: --channel needs --chart or --chart-out; add one of them");
     if (!o.blob.empty() && !o.dbs.empty())
-        throw Failure(ExitCode::usage, "profile show: --blob reads a file of its own; leave --db out");
+        throw Failure(ExitCode::usage, "profile show: --blob does not read a database; omit --db");
     if (!o.chart_out.empty()) check_chart_name(o.chart_out);
     const std::vector<std::string> read = o.blob.empty() ? databases_of(o.dbs) : std::vector<std::string>{o.blob};
     for (const std::string &file : read)
@@ -193,28 +193,28 @@ int show(const ShowOptions &o, Streams &streams) {
 }
 
 void declare_list(Command &profile) {
-    Command command = profile.add("list", "the profiles of the database, a line each");
+    Command command = profile.add("list", "list the profiles of the database, one per line");
     auto o = std::make_shared<ListOptions>();
     declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
-    command.group("What to list");
+    command.group("Filters");
     o->filter.add_options(command);
     command.run([o](Streams &streams) { return list(*o, streams); });
 }
 
 void declare_show(Command &profile) {
-    Command command = profile.add("show", "all of some profiles, or of a blob");
+    Command command = profile.add("show", "show all data of profiles, or of a blob");
     auto o = std::make_shared<ShowOptions>();
-    command.profile_ids("ID", o->ids, "profiles to show");
-    declare_listed_databases(command, o->dbs, ": ids are of the first");
+    command.profile_ids("ID", o->ids, "ids of profiles to show; see `lensprof profile list`");
+    declare_listed_databases(command, o->dbs, "; ids refer to the first");
     declare_json(command, o->json);
-    command.flag("--chart", o->chart, "relative illuminance, M over r, as a chart and a table instead");
-    command.file("--chart-out", o->chart_out, "draw that chart into this .svg or .png");
+    command.flag("--chart", o->chart, "print the relative illuminance M over r as a chart and a table instead");
+    command.file("--chart-out", o->chart_out, "write this chart as .svg or .png");
     command.choice("--channel", o->channel, {{"red", 0}, {"green", 1}, {"blue", 2}, {"all", -1}},
-                   "in charts, of profiles with a falloff a channel: red, green, blue or all; default all for one "
-                   "profile, green for several");
-    command.file("--blob", o->blob, "a blob (docs/blob.md) to read instead of the database");
-    command.group("What to show, instead of ids");
+                   "channel of charts, for profiles with a falloff per channel: red, green, blue or all; default all "
+                   "for one profile, green for several");
+    command.file("--blob", o->blob, "read this blob (docs/blob.md) instead of the database");
+    command.group("Filters, instead of ids");
     o->filter.add_options(command);
     command.run([o](Streams &streams) { return show(*o, streams); });
 }
@@ -222,8 +222,7 @@ void declare_show(Command &profile) {
 }  // namespace
 
 void declare_profile(Command &program) {
-    Command profile =
-        program.add("profile", "list, show, change, remove, export, import, merge, check or count profiles");
+    Command profile = program.add("profile", "list, show, change, remove, export, import, merge or check profiles");
     declare_list(profile);
     declare_show(profile);
     declare_profile_names(profile);

@@ -11,7 +11,7 @@
 namespace lensprof {
 namespace {
 
-// Bytes: no profile packs to more.
+// Bytes: no packed profile is larger.
 constexpr uint64_t largest_blob = 1 << 20;
 
 // The CRC-32 is the last four bytes, the least significant first.
@@ -36,9 +36,9 @@ std::unique_ptr<lensprof_profile> read_blob(const std::string &path, BlobStamp &
     auto profile = new_profile();
     const lensprof_status status = lensprof_profile_unpack(blob.data(), blob.size(), profile.get());
     if (status == LENSPROF_ERROR_LAYOUT)
-        throw Failure(ExitCode::unreadable, path + ": is a blob of a newer lensprof; read it with that version");
+        throw Failure(ExitCode::unreadable, path + ": was written by a newer lensprof; read it with that version");
     if (status != LENSPROF_OK)
-        throw Failure(ExitCode::unreadable, path + ": is not a profile blob, or is damaged; copy it again, or write it "
+        throw Failure(ExitCode::unreadable, path + ": not a profile blob, or damaged; copy it again, or export it "
                                                    "again with `lensprof profile export`");
     stamp = stamp_of(reinterpret_cast<const unsigned char *>(blob.data()), blob.size());
     return profile;

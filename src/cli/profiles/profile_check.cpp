@@ -30,7 +30,7 @@ struct CheckOptions {
 };
 
 std::string range(const double *ends, const char *front, const char *end) {
-    if (ends[0] == LENSPROF_UNKNOWN) return "not known of any";
+    if (ends[0] == LENSPROF_UNKNOWN) return "unknown";
     const std::string one = format("%s%g%s", front, ends[0], end);
     return ends[0] == ends[1] ? one : one + " to " + format("%s%g%s", front, ends[1], end);
 }
@@ -53,7 +53,7 @@ void print_groups(const char *title, const lensprof_store_group *groups, uint32_
     uint32_t shown = 0;
     for (; shown < LENSPROF_STATS_GROUPS && groups[shown].profiles; shown++)
         out << format("%-12s %8u  %s\n", shown ? "" : title, groups[shown].profiles,
-                      *groups[shown].name ? groups[shown].name : "not known");
+                      *groups[shown].name ? groups[shown].name : "unknown");
     if (different > shown) out << format("%-12s %8s  and %u more\n", "", "", different - shown);
 }
 
@@ -114,8 +114,8 @@ int run_check(const CheckOptions &o, Streams &streams) {
                     << "\n";
         if (!faults.empty())
             streams.out
-                << "`lensprof profile remove` takes a damaged profile out; for the rest restore the file from a copy, "
-                   "or merge it into a new one\n";
+                << "Remove damaged profiles with `lensprof profile remove`; for other faults restore the file from a "
+                   "copy, or merge it into a new one\n";
     }
     return static_cast<int>(faults.empty() ? ExitCode::done : ExitCode::store);
 }
@@ -125,7 +125,7 @@ struct StatsOptions {
     bool json = false;
 };
 
-// In JSON the first database's, with those of the others in a list.
+// In JSON the first database is at the top level, the others in a list.
 int run_stats(const StatsOptions &o, Streams &streams) {
     const Databases databases(databases_of(o.dbs));
     Json first, others = Json::array();
@@ -153,10 +153,10 @@ int run_stats(const StatsOptions &o, Streams &streams) {
 
 void declare_profile_check(Command &profile) {
     Command command = profile.add(
-        "check", "read and check the whole database, or profiles against pictures",
-        "Lists everything that is wrong. Exit code 0 when nothing is, 6 otherwise. With --against, says which "
-        "of the profiles fits the pictures: 0 when one does better than no falloff correction, 4 when none "
-        "does. Writes nothing.");
+        "check", "check the whole database, or profiles against pictures",
+        "Lists all faults. Exit code 0 if no fault is found, else 6. With --against, reports which of the profiles "
+        "fits "
+        "the pictures: exit code 0 if one is better than no falloff correction, else 4. Writes nothing.");
     auto o = std::make_shared<CheckOptions>();
     declare_against(command, o->against);
     declare_db(command, o->db);
@@ -165,7 +165,7 @@ void declare_profile_check(Command &profile) {
 }
 
 void declare_profile_stats(Command &profile) {
-    Command command = profile.add("stats", "count what is in the database");
+    Command command = profile.add("stats", "print statistics of the database");
     auto o = std::make_shared<StatsOptions>();
     declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);

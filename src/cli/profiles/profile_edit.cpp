@@ -1,4 +1,4 @@
-// `lensprof profile set | remove`: profiles get another key, or are taken out. All of them or none.
+// `lensprof profile set | remove`: changes keys of profiles or removes profiles. All of them or none.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -50,8 +50,8 @@ struct RemoveOptions {
 int remove(RemoveOptions &o, Streams &streams) {
     if (o.ids.empty() == o.filter.is_empty())
         throw Failure(ExitCode::usage,
-                      "profile remove: give either ids that `lensprof profile list` shows, or --camera, "
-                      "--lens and the like with --yes");
+                      "profile remove: give ids (see `lensprof profile list`), or --camera, --lens or other filters "
+                      "with --yes");
     keep_once(o.ids);
     const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
     if (o.ids.empty()) {
@@ -60,7 +60,7 @@ int remove(RemoveOptions &o, Streams &streams) {
         if (!o.yes)
             throw Failure(ExitCode::usage,
                           "profile remove: would remove " + counted(o.ids.size(), "profile") + " of " + store_path(o.db)
-                              + "; look at them with `lensprof profile list` and the same options, then add --yes");
+                              + "; list them with `lensprof profile list` and the same options, then add --yes");
     }
     change_all(o.db, store.get(), o.ids, lensprof_store_remove);
     print_changed(o.ids, "removed", o.json, streams);
@@ -68,13 +68,13 @@ int remove(RemoveOptions &o, Streams &streams) {
 }
 
 void declare_remove(Command &profile) {
-    Command command = profile.add("remove", "take profiles out of the database");
+    Command command = profile.add("remove", "remove profiles from the database");
     auto o = std::make_shared<RemoveOptions>();
-    command.profile_ids("ID", o->ids, "profiles, as `lensprof profile list` shows them");
-    command.flag("--yes", o->yes, "remove all that match; without it the command counts them and removes none");
+    command.profile_ids("ID", o->ids, "ids of profiles; see `lensprof profile list`");
+    command.flag("--yes", o->yes, "remove all matching profiles; without it the command only counts them");
     declare_db(command, o->db);
     declare_json(command, o->json);
-    command.group("Which profiles, instead of ids");
+    command.group("Filters, instead of ids");
     o->filter.add_options(command);
     command.run([o](Streams &streams) { return remove(*o, streams); });
 }
@@ -91,23 +91,25 @@ struct SetOptions {
     bool json = false;
 };
 
-// A number that is given and cleared, a unit that is named and any.
+// Refuses a number that is both given and cleared, and --unit with --any-unit.
 void check_contradictions(const SetOptions &o) {
     lensprof_profile_key given = o.key.key(LENSPROF_PROCESSING_JPEG);
     given.crop_factor = o.crop_factor;
     for (double lensprof_profile_key::*number : o.unknown)
         if (given.*number != LENSPROF_UNKNOWN)
             throw Failure(ExitCode::usage,
-                          "profile set: --clear and the option of the same number contradict each other");
+                          "profile set: --clear and the option of the same name exclude each other; omit one of them");
     if (o.any_unit && *given.unit)
-        throw Failure(ExitCode::usage, "profile set: --unit and --any-unit contradict each other");
+        throw Failure(ExitCode::usage, "profile set: --unit and --any-unit exclude each other; omit one of them");
 }
 
 int set(SetOptions &o, Streams &streams) {
     if (o.ids.empty())
-        throw Failure(ExitCode::usage, "profile set: give the ids of profiles that `lensprof profile list` shows");
+        throw Failure(ExitCode::usage, "profile set: give the ids of profiles; see `lensprof profile list`");
     if (o.key.is_empty() && o.crop_factor == LENSPROF_UNKNOWN && o.unknown.empty() && !o.any_unit)
-        throw Failure(ExitCode::usage, "profile set: give what is to change, as --lens NAME or --clear distance");
+        throw Failure(ExitCode::usage,
+                      "profile set: nothing to change; give for example --lens NAME or --clear "
+                      "distance");
     o.key.check_names();
     check_contradictions(o);
     keep_once(o.ids);
@@ -129,21 +131,26 @@ int set(SetOptions &o, Streams &streams) {
 
 void declare_set(Command &profile) {
     Command command = profile.add("set", "change camera, lens or setting of stored profiles",
-                                  "Changes what stored profiles are for; what they hold stays.");
+                                  "Changes which camera, lens and setting stored profiles are for; their data stays "
+                                  "unchanged.");
     auto o = std::make_shared<SetOptions>();
-    command.profile_ids("ID", o->ids, "profiles, as `lensprof profile list` shows them");
+    command.profile_ids("ID", o->ids, "ids of profiles; see `lensprof profile list`");
     declare_db(command, o->db);
     declare_json(command, o->json);
-    command.group("What they are for; the rest stays");
+    command.group("New camera, lens and setting; default unchanged");
     o->key.add_options(command);
-    command.number("--crop-factor", o->crop_factor, crop_factors, "43.27 mm over the diagonal of the camera's sensor");
+    command.number("--crop-factor", o->crop_factor, crop_factors,
+                   "crop factor: 43.27 mm divided by the sensor "
+                   "diagonal");
     command.list("--clear", o->unknown,
                  {{"crop-factor", &lensprof_profile_key::crop_factor},
                   {"focal", &lensprof_profile_key::focal_mm},
                   {"aperture", &lensprof_profile_key::aperture},
                   {"distance", &lensprof_profile_key::distance_m}},
-                 "numbers that are not known, with commas: crop-factor, focal, aperture, distance");
-    command.flag("--any-unit", o->any_unit, "of any camera and lens of the model, no longer of a single one");
+                 "set these numbers to unknown, separated by commas: crop-factor, focal, aperture, distance");
+    command.flag("--any-unit", o->any_unit,
+                 "make the profile valid for all units of the model, no longer for a "
+                 "single one");
     command.run([o](Streams &streams) { return set(*o, streams); });
 }
 

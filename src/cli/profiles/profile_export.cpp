@@ -33,23 +33,25 @@ struct Options {
 };
 
 void declare(Command &command, Options &o) {
-    command.profile_ids("ID", o.ids, "profiles that `lensprof profile list` shows");
+    command.profile_ids("ID", o.ids, "ids of profiles; see `lensprof profile list`");
     command.file("-o,--output", o.output,
-                 "file to write; its name chooses the format. DNG opcodes go into a file that is there");
-    command.choice("--format", o.format, format_choices(true), "another format than the name's");
-    command.file("--blob", o.blob, "the same as --format blob -o FILE: for firmware to read in place (docs/blob.md)");
-    command.flag("--covariance", o.covariance, "blob: the covariance as well, which a camera has no use for");
-    command.flag("--all", o.all, "all profiles of the database");
+                 "output file; its name chooses the format; DNG opcodes are written into an existing file");
+    command.choice("--format", o.format, format_choices(true), "format of the output; default chosen by the file name");
+    command.file("--blob", o.blob,
+                 "write a blob for firmware to read in place (docs/blob.md); the same as --format "
+                 "blob -o FILE");
+    command.flag("--covariance", o.covariance, "write the covariance into the blob too, which cameras do not need");
+    command.flag("--all", o.all, "export all profiles of the database");
     command.flag("--split", o.split,
-                 "-o is a folder, and --format gives the format: a file for each lens, or, where a file holds one "
-                 "profile, for each profile");
+                 "write one file per lens, or per profile if the format holds only one, into the folder -o; needs "
+                 "--format");
     declare_foreign(command, o.foreign, true);
     command.number("--crop-factor", o.crop_factor, crop_factors,
-                   "43.27 mm over the sensor's diagonal, for profiles that do not know it; lensfun and lcp need it");
-    declare_listed_databases(command, o.dbs,
-                             ": ids and --all are of the first, other profiles of the first that has any");
+                   "crop factor (43.27 mm divided by the sensor diagonal) for profiles without one; needed by lensfun "
+                   "and lcp");
+    declare_listed_databases(command, o.dbs, "; ids and --all refer to the first, filters to the first with a match");
     declare_json(command, o.json);
-    command.group("Which profiles, instead of ids");
+    command.group("Filters, instead of ids");
     o.filter.add_options(command);
     command.footer(about_foreign(true));
 }
@@ -58,23 +60,23 @@ void check_options(Options &o) {
     if (!o.blob.empty() && !o.output.empty())
         throw Failure(
             ExitCode::usage,
-            "profile export: -o and --blob both name the file to be written; give one of them (-o FILE --format "
-            "blob says the same as --blob FILE)");
+            "profile export: -o and --blob both name the output file; give one of them (-o FILE --format blob equals "
+            "--blob FILE)");
     if (o.blob.empty() && o.output.empty())
-        throw Failure(ExitCode::usage, "profile export: name the file to be written with -o (or --blob)");
+        throw Failure(ExitCode::usage, "profile export: no output file; give it with -o (or --blob)");
     if (!o.blob.empty() && !o.format.empty() && o.format != "blob")
-        throw Failure(ExitCode::usage, "profile export: --blob and --format contradict each other; use -o");
+        throw Failure(ExitCode::usage, "profile export: --blob and --format exclude each other; use -o");
     if (!o.blob.empty()) o.output = o.blob, o.format = "blob";
     if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(o.all) != 1)
         throw Failure(ExitCode::usage,
-                      "profile export: give either ids that `lensprof profile list` shows, or --camera, "
-                      "--lens and the like, or --all");
+                      "profile export: give ids (see `lensprof profile list`), or --camera, --lens or other filters, "
+                      "or --all");
     if (o.split && o.format.empty())
-        throw Failure(ExitCode::usage, "profile export: --split needs --format, since -o names a folder");
+        throw Failure(ExitCode::usage, "profile export: --split needs --format, because -o is a folder; add --format");
     if (o.split && o.covariance)
-        throw Failure(ExitCode::usage, "profile export: --covariance is for one blob; leave --split out");
+        throw Failure(ExitCode::usage, "profile export: --covariance needs a single blob; omit --split");
     if (o.split && !o.blob.empty())
-        throw Failure(ExitCode::usage, "profile export: --split and --blob contradict each other; use --format blob");
+        throw Failure(ExitCode::usage, "profile export: --split and --blob exclude each other; use --format blob");
     if (o.split && path_exists(o.output) && !is_folder(o.output))
         throw Failure(ExitCode::usage, o.output + ": is a file; --split needs a folder");
     for (const std::string &file : databases_of(o.dbs))
@@ -82,7 +84,7 @@ void check_options(Options &o) {
             throw Failure(ExitCode::usage, o.output + ": is the profile database; give the output another name");
 }
 
-// One profile; its blob's size and checksum tell it from others.
+// One profile; size and checksum of its blob identify it.
 void export_blob(const Options &o, const StoredProfile &stored, Streams &streams) {
     const lensprof_profile &profile = *stored.profile;
     const BlobStamp stamp = write_blob(profile, o.covariance, o.output);
@@ -99,7 +101,7 @@ void export_blob(const Options &o, const StoredProfile &stored, Streams &streams
     if (o.covariance && !profile.covariance_size) streams.out << "no covariance stored; exported without it\n";
 }
 
-// What a format cannot hold and is not refused.
+// Reports what a format omits without being refused.
 void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen,
                    Streams &streams) {
     const bool is_mean = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP
@@ -107,11 +109,12 @@ void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<
     if (!is_mean) return;
     for (const StoredProfile &one : chosen)
         if (one.profile->vignettings == 3)
-            streams.err << "profile " << one.id << ": has a falloff for each channel, of which " << rule.name
-                        << " holds the mean\n";
+            streams.err << "profile " << one.id << ": its falloff differs per channel; " << rule.name
+                        << " stores the "
+                           "mean\n";
 }
 
-// Formats that need a crop factor take that of the command line where the profile has none.
+// Formats that need a crop factor use that of the command line if the profile does not have one.
 void complete_crop_factors(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen) {
     const bool needs_crop = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP;
     for (const StoredProfile &one : chosen) {
@@ -119,7 +122,7 @@ void complete_crop_factors(const Options &o, const ForeignRule &rule, const std:
         if (crop == LENSPROF_UNKNOWN) crop = o.crop_factor;
         if (needs_crop && crop == LENSPROF_UNKNOWN)
             throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(one.id)
-                                               + " is not known; give --crop-factor");
+                                               + " is unknown; give --crop-factor");
     }
 }
 
@@ -165,7 +168,8 @@ int run(Options &o, Streams &streams) {
     check_options(o);
     const ForeignRule &rule = format_to_write(o.output, o.format);
     if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
-        throw Failure(ExitCode::usage, "profile export: --covariance belongs to --format blob");
+        throw Failure(ExitCode::usage,
+                      "profile export: --covariance needs --format blob; add it, or omit --covariance");
     std::vector<std::string> files = databases_of(o.dbs);
     if (o.all) files.resize(1);
     const std::vector<StoredProfile> chosen = o.filter.profiles(Databases(files), o.ids, true);
@@ -188,8 +192,9 @@ int run(Options &o, Streams &streams) {
 }  // namespace
 
 void declare_profile_export(Command &profile) {
-    Command command = profile.add("export", "write profiles as files of other programs, or as blobs",
-                                  "Writes profiles as files of other programs, complete or not at all.");
+    Command command = profile.add("export", "export profiles as files of other programs, or as blobs",
+                                  "Writes profiles as files of other programs. If a profile cannot be exported, no "
+                                  "file is written.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

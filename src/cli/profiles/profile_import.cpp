@@ -21,10 +21,10 @@
 namespace lensprof {
 namespace {
 
-// What the command is asked for.
+// The options of the command.
 struct Options {
     std::vector<std::string> files;
-    KeyFilter key;  // of what files do not say themselves
+    KeyFilter key;  // for information that files do not contain
     ForeignOptions foreign;
     std::string db, format;
     bool json = false;
@@ -36,7 +36,7 @@ struct Input {
     const ForeignRule *rule;
 };
 
-// What one call imports.
+// State of one import.
 struct Import {
     lensprof_store *store = nullptr;
     std::string db, file;
@@ -47,7 +47,7 @@ struct Import {
     lensprof_error error{};
 };
 
-// Samples that a file has rounded: the numbers of their kind count.
+// Samples rounded by a file: the parameters of their kind are used.
 lensprof_status remake_curve(lensprof_response &response) {
     const std::vector<double> terms(response.emor, response.emor + response.modes);
     switch (response.kind) {
@@ -58,7 +58,7 @@ lensprof_status remake_curve(lensprof_response &response) {
     }
 }
 
-// The profile as it is stored here: what it holds is of another database.
+// The profile as stored here: ids it contains belong to another database.
 lensprof_status make_own(lensprof_profile &profile) {
     lensprof_status status = LENSPROF_OK;
     profile.provenance.prior_id = 0;
@@ -92,7 +92,7 @@ lensprof_status take(void *user, const lensprof_import_entry *entry) {
 
 lensprof_status ignore(void *, const lensprof_import_entry *) { return LENSPROF_OK; }
 
-// Files that hold a response or a falloff alone make one profile, whose key the command line gives.
+// Files with only a response or a falloff are combined into one profile, whose key the command line gives.
 std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector<Input> &inputs) {
     auto profile = new_profile();
     std::string response, falloff, names;
@@ -100,8 +100,8 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
         if (input.rule->holds == LENSPROF_HOLDS_PROFILES) continue;
         std::string &taken = input.rule->holds == LENSPROF_HOLDS_RESPONSE ? response : falloff;
         if (!taken.empty())
-            throw Failure(ExitCode::usage, input.file + ": holds a " + (&taken == &response ? "response" : "falloff")
-                                               + ", as " + taken + " does; import the one profile after the other");
+            throw Failure(ExitCode::usage, input.file + ": has a " + (&taken == &response ? "response" : "falloff")
+                                               + ", and so has " + taken + "; import the profiles one after the other");
         taken = input.file;
         names += (names.empty() ? "" : "; ") + std::filesystem::path(input.file).filename().string();
     }
@@ -111,7 +111,7 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
         if (input.rule->holds != LENSPROF_HOLDS_PROFILES) read_part(*input.rule, input.file, o.foreign, *profile);
     if (!*profile->key.camera_model && !*profile->key.lens)
         throw Failure(ExitCode::usage, (response.empty() ? falloff : response)
-                                           + ": does not say which camera and lens it is of; give --camera or --lens");
+                                           + ": does not name camera or lens; give --camera or --lens");
     set_text(profile->provenance.method, sizeof profile->provenance.method, "import");
     set_text(profile->provenance.software, sizeof profile->provenance.software,
              std::string("lensprof ") + lensprof_version());
@@ -120,7 +120,7 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
     return profile;
 }
 
-// A camera of a table, in place of the one that is there.
+// Stores a camera of a table, replacing an existing one.
 lensprof_status take_camera(void *user, const lensprof_camera_model *camera) {
     Import &import = *static_cast<Import *>(user);
     import.cameras++;
@@ -140,7 +140,7 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_
         } catch (const Failure &) {
             stop_if_interrupted();
             check(import.store_status, store_path(import.db),
-                  &import.error);  // the store's failure, and not the file's
+                  &import.error);  // a failure of the store, not of the file
             throw;
         }
     }
@@ -169,11 +169,11 @@ void print_import(const Import &import, size_t files, Streams &streams) {
                 << store_path(import.db) << "\n";
     if (import.cameras)
         streams.out << "with " << counted(import.cameras, "camera") << ": sensor sizes and built-in lenses\n";
-    if (import.known) streams.out << format("%u %s there already\n", import.known, import.known == 1 ? "was" : "were");
+    if (import.known) streams.out << format("%u %s stored already\n", import.known, import.known == 1 ? "was" : "were");
     if (!import.flagged.empty())
         streams.out << format(
-            "%zu are doubtful: %zu of them, which no lens has, were left out, the others stored with the "
-            "reason, and looked up only when asked for; --json lists them\n",
+            "%zu are doubtful: %zu of them are impossible for a lens and were left out; the others are stored with "
+            "the reason and used by lookups only with --doubtful; --json lists them\n",
             import.flagged.size(), refused);
 }
 
@@ -186,11 +186,11 @@ int run(const Options &o, Streams &streams) {
     const std::unique_ptr<lensprof_profile> of_parts = read_parts(o, inputs);
     if (!of_parts && !o.key.is_empty())
         throw Failure(ExitCode::usage,
-                      "profile import: these files say themselves whose profiles they hold; leave --camera, "
-                      "--lens and the like out");
+                      "profile import: these files already name camera and lens; omit --camera, --lens and similar "
+                      "options");
     Import import;
     import.db = o.db;
-    visit_all(import, inputs, of_parts.get(), ignore);  // before a database is made
+    visit_all(import, inputs, of_parts.get(), ignore);  // before a database is created
     const bool is_new = !path_exists(store_path(o.db));
     try {
         store_all(import, inputs, of_parts.get());
@@ -214,20 +214,20 @@ int run(const Options &o, Streams &streams) {
 }  // namespace
 
 void declare_profile_import(Command &profile) {
-    Command command = profile.add(
-        "import", "store what files of other programs hold",
-        "Stores what other programs' files hold, all of them or none. Their content, else their name, decides the "
-        "format.");
+    Command command =
+        profile.add("import", "import profiles from files of other programs",
+                    "Stores the profiles of other programs' files. If one file cannot be imported, nothing is stored.\n"
+                    "The format is identified from the content, else from the name.");
     auto o = std::make_shared<Options>();
     command.files("FILES", o->files,
-                  "files of profiles; or one with a response, one with a falloff, or both, for one profile");
+                  "profile files; or, for one profile, a file with a response, a file with a falloff, or both");
     command.require("FILES");
     command.choice("--format", o->format, format_choices(false),
-                   "of all the files, where it is not what they look like");
+                   "format of all files; default identified from content or name");
     declare_foreign(command, o->foreign, false);
-    declare_db(command, o->db, ", made where there is none");
+    declare_db(command, o->db, ", created if missing");
     declare_json(command, o->json);
-    command.group("Whose response or falloff it is");
+    command.group("Camera, lens and setting, for files that do not name them");
     o->key.add_options(command);
     command.footer(about_foreign(false));
     command.run([o](Streams &streams) { return run(*o, streams); });

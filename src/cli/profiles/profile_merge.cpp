@@ -20,19 +20,20 @@ struct Options {
     bool json = false;
 };
 
-// One of the databases to be merged.
+// One of the databases to merge.
 struct Other {
     std::string file;
     Store store;
     uint32_t added = 0, known = 0;
 };
 
-// All of them before a database is made or locked.
+// Opens all of them before a database is created or locked.
 std::vector<Other> open_others(const std::string &db, const std::vector<std::string> &files) {
     std::vector<Other> others;
     for (const std::string &file : files) {
         if (is_same_file(file, store_path(db)))
-            throw Failure(ExitCode::usage, file + ": is the database itself; name another one to be merged into it");
+            throw Failure(ExitCode::usage, file + ": is the target database itself; give another database to merge "
+                                                  "into it");
         others.push_back({file, open_store(file, LENSPROF_STORE_READ)});
     }
     return others;
@@ -64,7 +65,7 @@ int run(const Options &o, Streams &streams) {
         merged.push_back({{"file", other.file}, {"added", other.added}, {"known", other.known}});
         if (!o.json)
             streams.out << other.file << ": " << counted(other.added, "profile") << " added to " << store_path(o.db)
-                        << ", " << other.known << (other.known == 1 ? " was" : " were") << " there\n";
+                        << ", " << other.known << (other.known == 1 ? " was" : " were") << " already there\n";
     }
     if (o.json) print_json(Json{{"schema", 1}, {"merged", merged}}, streams.out);
     return 0;
@@ -75,12 +76,12 @@ int run(const Options &o, Streams &streams) {
 void declare_profile_merge(Command &profile) {
     Command command = profile.add(
         "merge", "add the profiles of other databases",
-        "Adds the profiles of other lensprof databases that are not there yet, with where they come from as it "
-        "is. All files or none.");
+        "Adds the profiles of other lensprof databases that are not yet stored, with their provenance. If one "
+        "file cannot be merged, nothing is added.");
     auto o = std::make_shared<Options>();
-    command.files("OTHER.db", o->files, "databases to read; they stay as they are");
+    command.files("OTHER.db", o->files, "databases to read; they are not changed");
     command.require("OTHER.db");
-    declare_db(command, o->db, ", made where there is none");
+    declare_db(command, o->db, ", created if missing");
     declare_json(command, o->json);
     command.run([o](Streams &streams) { return run(*o, streams); });
 }

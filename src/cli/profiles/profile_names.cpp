@@ -1,4 +1,4 @@
-// `lensprof profile lenses | cameras`: what there is, a line for each.
+// `lensprof profile lenses | cameras`: lists them, one per line.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -72,7 +72,7 @@ void print_names(const Databases &databases, const std::vector<Summaries> &all, 
         rows++;
     });
     out << (of_lenses ? counted(rows, "lens", "lenses") : counted(rows, "camera"));
-    out << (databases.size() > 1 ? ", of each database its own\n" : "\n");
+    out << (databases.size() > 1 ? ", listed per database\n" : "\n");
 }
 
 int run(const Options &o, bool of_lenses, Streams &streams) {
@@ -98,7 +98,7 @@ void declare(Command &profile, const char *verb, const char *brief, bool of_lens
     Command command = profile.add(verb, brief);
     auto o = std::make_shared<Options>();
     command.texts("PART", o->part,
-                  "a name, or words that are in it, as 24-70 canon; case, blanks and signs do not matter; default all");
+                  "a name or words in it, such as 24-70 canon; case, blanks and punctuation are ignored; default all");
     declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
     command.run([o, of_lenses](Streams &streams) { return run(*o, of_lenses, streams); });
@@ -107,8 +107,8 @@ void declare(Command &profile, const char *verb, const char *brief, bool of_lens
 }  // namespace
 
 void declare_profile_names(Command &profile) {
-    declare(profile, "lenses", "the lenses of the database, with the settings that are known", true);
-    declare(profile, "cameras", "the cameras of the profiles in the database", false);
+    declare(profile, "lenses", "list the lenses of the database, with the stored settings", true);
+    declare(profile, "cameras", "list the cameras of the profiles in the database", false);
 }
 
 }  // namespace lensprof

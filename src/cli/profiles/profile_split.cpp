@@ -13,14 +13,14 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t longest_name = 200;  // bytes, without the ending: file systems take 255
+constexpr size_t longest_name = 200;  // bytes, without extension: file systems allow 255
 
-// Without what file systems of other systems refuse. Bytes of UTF-8 stay.
+// Removes characters that other file systems refuse. UTF-8 is kept.
 std::string file_name_of(const std::string &text) {
     std::string name;
     for (const char c : text) name += c < 0 || (c >= ' ' && !std::strchr("/\\:*?\"<>|\x7f", c)) ? c : '-';
     while (name.size() > longest_name || (!name.empty() && (name.back() == '.' || name.back() == ' '))) {
-        while (name.size() > 1 && (name.back() & 0xC0) == 0x80) name.pop_back();  // the rest of a character
+        while (name.size() > 1 && (name.back() & 0xC0) == 0x80) name.pop_back();  // the rest of a UTF-8 character
         name.pop_back();
     }
     return name.empty() || name[0] == '.' ? "_" + name : name;
@@ -36,13 +36,13 @@ const char *ending_of(const ForeignRule &rule) {
     }
 }
 
-// Of the lens, else of the camera that has it built in.
+// The lens, else the camera with a built-in lens.
 std::string lens_name_of(const lensprof_profile_key &key) {
     if (*key.lens) return key.lens;
     return *key.camera_model ? camera_name(key.camera_maker, key.camera_model) : "unknown lens";
 }
 
-// What the profiles of one file share: the lens, and where a file is of one camera and sensor, these too.
+// The properties shared by the profiles of one file: the lens, and camera and sensor if the file has only one.
 std::string group_of(const ForeignRule &rule, const lensprof_profile_key &key) {
     std::string group = lens_name_of(key);
     if (rule.format == LENSPROF_FORMAT_LCP) {
@@ -53,7 +53,7 @@ std::string group_of(const ForeignRule &rule, const lensprof_profile_key &key) {
     return group;
 }
 
-// As file systems that ignore case see it.
+// As seen by a file system that ignores case.
 std::string folded(std::string name) {
     std::transform(name.begin(), name.end(), name.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -77,7 +77,7 @@ std::vector<SplitFile> write_split(const ForeignRule &rule, const std::string &f
     for (const StoredProfile &one : profiles) {
         const std::string group = group_of(rule, one.profile->key);
         if (rule.is_many) {
-            const bool is_exact = rule.format == LENSPROF_FORMAT_LCP;  // which tells names apart by case
+            const bool is_exact = rule.format == LENSPROF_FORMAT_LCP;  // which distinguishes names by case
             const auto [place, is_new] = file_of_group.try_emplace(is_exact ? group : folded(group), 0);
             if (is_new) place->second = add_file(group);
             files[place->second].profiles.push_back(&one);
@@ -85,7 +85,7 @@ std::vector<SplitFile> write_split(const ForeignRule &rule, const std::string &f
             files[add_file(group + " " + std::to_string(one.id))].profiles.push_back(&one);
         }
     }
-    std::vector<std::string> texts;  // before a folder is made
+    std::vector<std::string> texts;  // before a folder is created
     for (const SplitFile &file : files) {
         std::vector<const lensprof_profile *> content;
         std::vector<std::string> names;

@@ -1,4 +1,4 @@
-// `lensprof profile export --split`: a folder with a file for each lens.
+// `lensprof profile export --split`: writes one file per lens into a folder.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace lensprof {
 
-// A file that was written, and the profiles in it.
+// A written file, and its profiles.
 struct SplitFile {
     std::string path;
     std::vector<const StoredProfile *> profiles;
 };
 
-// Writes the profiles to the folder, made where there is none: a file for each lens, or, in a format of one profile,
-// for each profile. All of the files or none. Failure names the file.
+// Writes the profiles to the folder, which is created if missing: one file per lens or, if the format holds only one
+// profile, per profile. All files or none. Failure with the file name.
 std::vector<SplitFile> write_split(const ForeignRule &rule, const std::string &folder, const ForeignOptions &options,
                                    const std::vector<StoredProfile> &profiles);
 

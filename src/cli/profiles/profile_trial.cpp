@@ -14,11 +14,11 @@ namespace lensprof {
 namespace {
 
 constexpr double kMedianToSigma = 1.4826;
-constexpr double kExplainedSigmas = 5.0;  // what no model comes nearer to is two different things
+constexpr double kExplainedSigmas = 5.0;  // a pair that no model explains better shows two different objects
 constexpr double kLeastExplained = 3.0;   // levels
-constexpr size_t kFewestLinks = 5;        // whose scatter says anything
+constexpr size_t kFewestLinks = 5;        // with meaningful scatter
 
-// A number that belongs to a pair's number, independent of the order along images.
+// A hash of a pair's index, independent of the order along images.
 uint64_t pair_hash(uint64_t pair) { return mixed_bits((pair + 1) * splitmix_step); }
 
 // Evaluates a model at the ends of pairs.
@@ -49,7 +49,7 @@ public:
         d.sigma = std::sqrt(variance) / 255.0;
         return d;
     }
-    // What is left at both ends, levels, with ln of the ratio of the exposures.
+    // The residual at both ends, levels, and ln of the ratio of the exposures.
     std::array<double, 2> left(const lensprof_pair &pair, uint32_t channel, double log_exposure) const {
         const double ratio = falloff(pair, 0, channel) / falloff(pair, 1, channel) * std::exp(log_exposure);
         const lensprof_response &f = response(channel);

@@ -1,5 +1,5 @@
-// How well profiles explain pairs of overlapping pictures: exposures and white balances are fitted to one half of the
-// pairs, with the profile's response and falloff as they are, and the other half is measured.
+// Tests how well profiles explain pairs of overlapping pictures: exposures and white balances are fitted to one half of
+// the pairs, with response and falloff of the profile fixed, and the residual is measured on the other half.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +10,28 @@
 
 namespace lensprof {
 
-// Pairs to try on: exposures are fitted to `train`, `heldout` is measured.
+// Exposures are fitted to `train`, the residual is measured on `heldout`.
 struct TrialPairs {
     std::vector<lensprof_fit_image> images;
     std::vector<lensprof_pair> train, heldout;
     uint32_t channels = 3;
 };
 
-// Splits pairs by their numbers, the same every time. Left out of what is measured are pairs whose images no pair of
-// the other half joins.
+// Splits pairs by their indices, reproducibly. Held-out pairs whose images are not connected by pairs of the other half
+// are dropped.
 TrialPairs split_for_trial(std::vector<lensprof_fit_image> images, const std::vector<lensprof_pair> &pairs,
                            uint32_t channels);
 
-// What is tried.
+// A candidate.
 struct TrialModel {
-    const lensprof_profile *falloff = nullptr;  // its falloffs and gain grid; NULL: none
-    const lensprof_response *responses;         // of the channels; all of them the first where there is one
+    const lensprof_profile *falloff = nullptr;  // falloffs and gain grid; NULL: none
+    const lensprof_response *responses;         // per channel; all equal the first if there is one
     uint32_t response_count = 1;
 };
 
-// Levels of 255 that are left of the held-out pairs: of each side and channel of a pair.
+// Residuals of the held-out pairs, levels of 255: per side and channel of a pair.
 struct TrialErrors {
-    std::vector<double> squares;    // mean of each pair
+    std::vector<double> squares;    // mean per pair
     std::vector<double> absolutes;  // all, pair by pair
 };
 TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model);
@@ -39,7 +39,7 @@ TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model);
 // The pictures as they are.
 TrialErrors errors_as_they_are(const TrialPairs &pairs);
 
-// Of each held-out pair whether it counts: one of the models explains it. Others show two different things.
+// Whether each held-out pair counts: one of the models explains it. The others show two different objects.
 std::vector<bool> explained_pairs(const std::vector<TrialErrors> &tried);
 
 struct TrialFigures {
@@ -47,9 +47,9 @@ struct TrialFigures {
 };
 TrialFigures figures_of(const TrialErrors &errors, const std::vector<bool> &counts);
 
-// By how much the RMS of one is above that of another, levels, and the standard error of that: the larger of those that
-// pairs and the links between images say by their scatter. Curves that are stored in another form differ by less than
-// the last number.
+// The RMS of one model above that of another, levels, and the standard error of this difference: the larger of the
+// errors from the scatter of pairs and of image links. Curves stored in another form differ by less than the last
+// number.
 struct TrialDifference {
     double levels = 0.0, sigma = 0.0;
     bool is_clear() const { return levels > 2.0 * sigma && levels > 1e-3; }

@@ -32,13 +32,13 @@ void declare(Command &command, Options &o) {
     declare_databases(command, o.dbs);
     declare_json(command, o.json);
     command.footer(
-        "When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
-        "settings; the answer says from which, how far away they are, and how sure it is. The response is the camera's,\n"
-        "by its profiles with any lens, or the typical one of its kind. A setting that leaves several profiles open is\n"
-        "answered by the range of what is known.");
+        "If no profile is stored for the setting, the falloff is predicted from profiles of the same lens at\n"
+        "other settings; the answer states the profiles used, their distance, and the standard error. The\n"
+        "response is that of the camera, from its profiles with any lens, or the typical one of its kind. If\n"
+        "several profiles match, the answer is the range of the stored settings.");
 }
 
-// Profiles of another sensor are those of a lookup, which converts them.
+// Profiles of another sensor are left to a lookup, which converts them.
 void keep_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
     constexpr double same = 0.02;  // as lensprof_store_lookup
     const auto is_other = [=](const lensprof_store_row &row) {
@@ -47,7 +47,7 @@ void keep_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
     rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
 }
 
-// As lookups do.
+// As in lookups.
 void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
     const auto has_doubt = [](const lensprof_store_row &row) {
         return *row.provenance.doubt != 0 && !lensprof_provenance_doubts_response(&row.provenance);
@@ -88,7 +88,7 @@ void read_profile(const Databases &databases, size_t index, int64_t id, lensprof
     check(lensprof_store_get(databases.store(index), id, &profile, &error), databases.file(index), &error);
 }
 
-// The one profile that matches.
+// The single matching profile.
 void answer_stored(const Options &o, const Databases &databases, size_t index, int64_t id, Streams &streams) {
     auto profile = new_profile();
     read_profile(databases, index, id, *profile);
@@ -102,7 +102,7 @@ void answer_stored(const Options &o, const Databases &databases, size_t index, i
     print_profile(id, *profile, streams.out);
 }
 
-// What is known of the lens or camera, where the setting leaves open which of it is meant.
+// The stored range of the lens or camera, if the setting is ambiguous.
 void answer_range(const Options &o, const Databases &databases, const std::string &reason, Streams &streams) {
     KnownRange known;
     const auto all = matches(o, databases, o.filter.without_setting(), true);
@@ -133,14 +133,14 @@ struct Refusal {
     std::vector<std::string> nearest;
 };
 
-// More than one profile may be meant.
+// Several profiles may be meant.
 bool is_open(const lensprof_lookup &how) {
     const uint32_t reason = how.reason_code[0];
     return reason == LENSPROF_REASON_LOOKUP_FOCAL_MISSING || reason == LENSPROF_REASON_LOOKUP_APERTURE_MISSING
            || reason == LENSPROF_REASON_LOOKUP_SEVERAL_LENSES;
 }
 
-// The profile for the setting: stored, or between what is stored. False where the key leaves open which is meant.
+// The profile for the setting, stored or predicted. False if the key is ambiguous.
 bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Refusal &refusal, Streams &streams) {
     lensprof_lookup_options options = o.lookup.options();
     options.any_processing = !o.filter.has_processing();
@@ -154,8 +154,9 @@ bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Re
     if (status == LENSPROF_ERROR_NOT_FOUND && is_open(how)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND) {
         refusal.nearest = nearest_names(databases, key, how);
-        throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names()) + "; nor can it be predicted: "
-                                               + how.reason + describe_nearest(refusal.nearest));
+        throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names())
+                                               + "; the falloff cannot be predicted either: " + how.reason
+                                               + describe_nearest(refusal.nearest));
     }
     const Found found{how, databases.files()};
     if (o.json) {
@@ -207,9 +208,9 @@ int run(const Options &o, Streams &streams) {
 
 void declare_query(Command &program) {
     Command command = program.add(
-        "query", "look a profile up by camera, lens, focal length and aperture",
-        "Prints the profile for a camera, lens and setting: the newest that is stored, or one predicted from those of "
-        "the lens's other settings, and how sure it is.");
+        "query", "look up a profile by camera, lens, focal length and aperture",
+        "Prints the profile for a camera, lens and setting, with its standard error: the newest stored one, or "
+        "one predicted from other settings of the lens.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -18,7 +18,7 @@ std::string listed(const std::vector<int64_t> &ids) {
     return text;
 }
 
-// The profiles that are not clearly worse than the best, itself among them.
+// The profiles not clearly worse than the best, including it.
 std::vector<int64_t> as_good_as_best(const TrialReport &report) {
     std::vector<int64_t> ids;
     for (const Candidate &own : report.profiles)
@@ -29,7 +29,7 @@ std::vector<int64_t> as_good_as_best(const TrialReport &report) {
 std::string describe_response(const Candidate &own) {
     switch (own.response_from) {
     case ResponseOf::sensor: return "linear response";
-    case ResponseOf::kind: return "typical response of its kind of camera";
+    case ResponseOf::kind: return "typical response of this kind of camera";
     case ResponseOf::other: return "response of profile " + std::to_string(own.response_id);
     default: return "its own response";
     }
@@ -122,7 +122,7 @@ void print_trial(const TrialReport &report, std::ostream &out) {
                   (report.path == pictures ? pictures : report.path + ": " + pictures).c_str(),
                   report.pairs.train.size(), report.measured());
     if (report.measured() < report.counts.size())
-        out << format(" (%zu more, which nothing explains, left out)", report.counts.size() - report.measured());
+        out << format(" (%zu outliers left out)", report.counts.size() - report.measured());
     out << format("\n%-14s %7s %7s   %-18s levels of 255\n", "", "RMS", "median", "RMS above the best");
     for (size_t i = 0; i < report.profiles.size(); i++) {
         const Candidate &own = report.profiles[i];
@@ -145,8 +145,9 @@ void print_trial(const TrialReport &report, std::ostream &out) {
         out << "best           profile " << good[0] << "\n";
     else
         out << "best           profile " << report.profiles[report.best].id
-            << ", but these pictures do not tell profiles " << listed(good)
-            << " apart: they differ by less than twice the standard error\n";
+            << ", but these pictures cannot distinguish profiles " << listed(good)
+            << ": they differ by less than "
+               "twice the standard error\n";
 }
 
 }  // namespace lensprof

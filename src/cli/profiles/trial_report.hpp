@@ -1,4 +1,4 @@
-// What a trial of profiles on pictures found, compared and in words.
+// Result of comparing profiles on pictures, and its text.
 #pragma once
 
 #include <cstdint>
@@ -11,40 +11,40 @@
 
 namespace lensprof {
 
-// Where the response of a candidate is from.
+// Source of a candidate's response.
 enum class ResponseOf {
-    own,    // the profile
-    other,  // another profile, by which it does best
-    kind,   // the typical one of the kind of camera
-    sensor  // linear, for the pictures are
+    own,    // the profile itself
+    other,  // another profile, whose response fits best
+    kind,   // the typical response of the kind of camera
+    sensor  // linear, because the pictures are
 };
 
-// A profile, or none: no falloff.
+// A profile, or no falloff correction.
 struct Candidate {
-    int64_t id = 0;  // 0 of none
+    int64_t id = 0;  // 0 for no falloff correction
     std::string label;
     ResponseOf response_from = ResponseOf::kind;
-    int64_t response_id = 0;  // of another profile's
+    int64_t response_id = 0;  // of the other profile whose response is used
     std::vector<lensprof_response> responses;
     bool has_falloff = false;
     TrialErrors errors;
 
     TrialFigures figures;
     TrialDifference above_best;  // of the best profile
-    TrialDifference below_none;  // by how much better it is than none
+    TrialDifference below_none;  // improvement over no falloff correction
 };
 
 struct TrialReport {
-    std::string file, path;  // database, and what the pictures are called
+    std::string file, path;  // database, and the name of the pictures
     TrialPairs pairs;
-    std::vector<bool> counts;  // of the pairs that are measured
+    std::vector<bool> counts;  // of the measured pairs
     std::vector<Candidate> profiles;
     Candidate none;
     TrialFigures before;  // the pictures as they are
     size_t best = 0;      // of the profiles
 
     size_t measured() const;
-    size_t images() const;  // that have pairs
+    size_t images() const;  // with pairs
     bool is_as_good(const Candidate &own) const { return !own.above_best.is_clear(); }
     bool is_any_better() const;
 };
@@ -52,7 +52,7 @@ struct TrialReport {
 // Whether a profile has any falloff: a polynomial or a gain grid.
 bool has_falloff(const lensprof_profile &profile);
 
-// Fills in what is compared, from the errors.
+// Computes the comparison from the residuals.
 void compare(TrialReport &report);
 
 Json trial_json(const TrialReport &report);
