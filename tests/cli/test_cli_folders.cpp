@@ -116,7 +116,7 @@ void test_nearest_names(void **) {
 
 void test_help_tells_of_refused_pictures(void **) {
     const std::string help = must_exit(done, {"apply", "--help"});
-    assert_true(contains(help, "Exit code 5: pictures were refused") && contains(help, "default corrected, here"));
+    assert_true(contains(help, "Exit code 5: pictures were refused") && contains(help, "default corrected"));
 }
 
 // What EXIF does not say is what to give.
@@ -125,7 +125,7 @@ void test_missing_setting_is_named(void **) {
     const std::string file = make_picture("in/a.jpg", "Other 24mm");
     assert_refused(not_found, by_exif("out") + Words{file}, {"the focal length with --focal", "with --aperture"});
     assert_refused(not_found, by_exif("out") + Words{"--focal", "24", "--aperture", "8", file},
-                   {"name the lens as the database has it with --lens"});
+                   {"give the lens name used in the database with --lens"});
 }
 
 // Without -o they go to a folder here, which takes the place of nothing that is not by lensprof.
@@ -142,7 +142,7 @@ void test_output_by_default(void **) {
     assert_string_equal(first.out.c_str(), "corrected/a.jpg\n");
     assert_int_equal(again.code, done);
     assert_int_equal(other.code, usage);
-    assert_true(contains(other.err, "corrected/a.jpg: is there already and is not by lensprof"));
+    assert_true(contains(other.err, "corrected/a.jpg: exists and was not written by lensprof"));
     assert_int_equal(overwritten.code, done);
     assert_files(work("corrected"), {"a.jpg"});
 }
@@ -151,10 +151,10 @@ void test_named_pictures_are_all_or_none(void **) {
     lens_database();
     const std::string good = make_picture("in/a.jpg", "Good 35mm"), bad = make_picture("in/b.jpg", "Other 24mm");
     const std::string worse = make_picture("in/c.jpg", "Third 85mm");
-    assert_refused(not_found, by_exif("out") + Words{good, bad}, {bad, "; or leave it out with --skip"});
+    assert_refused(not_found, by_exif("out") + Words{good, bad}, {bad, "; or skip it with --skip"});
     assert_refused(not_found, by_exif("out") + Words{good, bad, worse},
                    {"lensprof: " + bad + ": no profile for ", "lensprof: " + worse + ": no profile for ",
-                    "2 of 3 pictures cannot be corrected, and none is; leave them out with --skip"});
+                    "2 of 3 pictures cannot be corrected, and nothing was written; use --skip to leave them out"});
     assert_files(work("out"), {});
     const Outcome outcome = run_words(by_exif("out") + Words{"--skip", good, bad});
     assert_int_equal(outcome.code, not_found);
@@ -191,7 +191,7 @@ void test_corrected_once(void **) {
         assert_int_equal(metadata.key.processing, LENSPROF_PROCESSING_CORRECTED);
         assert_string_equal(metadata.key.lens, "Good 35mm");
         assert_refused(not_found, corrected_into("twice", {once}),
-                       {once, "is corrected already, by lensprof", "--force-falloff"});
+                       {once, "already corrected, by lensprof", "--force-falloff"});
         must_exit(done, corrected_into("twice", {"--force-falloff", once}));
     }
     // Of a folder they are left out, which is no failure.

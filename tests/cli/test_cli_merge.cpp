@@ -144,7 +144,7 @@ void test_openexr(void **) {
     assert_refused(usage,
                    {"apply", "--profile", "1", "--db", work("c.db"), "--linear", "--linear-output", "exr", other, "-o",
                     work("light")},
-                   {"light/h0.exr", "made of another picture (h0.png)", "--overwrite"});
+                   {"light/h0.exr", "made from another picture (h0.png)", "--overwrite"});
     assert_refused(usage, {"align", "--merge", work("hdr.exr"), other, frames[0]}, {"hdr.exr", "--overwrite"});
 #ifdef LENSPROF_HAS_OPENEXR
     for (const std::string &name : {work("hdr"), work("light/h0")}) {

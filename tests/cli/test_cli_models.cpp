@@ -89,7 +89,8 @@ const double by_gamma_2 = grey / std::sqrt(corner_falloff(-0.2)), by_linear = gr
 // The first command: nothing is said but where to.
 void test_database_by_default(void **) {
     const std::string file = make_picture("a.png", "Camera", "JPEG 35mm");
-    assert_refused(usage, {"apply", "-o", work("out"), file}, {"say what to correct with", "no database"});
+    assert_refused(usage, {"apply", "-o", work("out"), file},
+                   {"no correction given and no database found", "--profile ID"});
     make_database();
     must_exit(done, {"apply", "-o", work("out"), file});
     assert_corner(work("out/a.png"), by_gamma_2);
@@ -158,7 +159,7 @@ void test_corrected_in_camera(void **) {
     for (const Words &how : {Words{"--lens", "JPEG 35mm"}, Words{"--profile", "2"}}) {
         const Outcome forced = run_words(Words{"apply", "--force-falloff", "-o", work("forced"), file} + how);
         assert_int_equal(forced.code, done);
-        assert_true(contains(forced.err, std::string("note: ") + file + ": " + by + ", and is once more"));
+        assert_true(contains(forced.err, std::string("note: ") + file + ": " + by + ", and is corrected again"));
         assert_corner(work("forced/a.jpg"), by_gamma_2);
     }
     must_exit(done, words + Words{"--processing", "jpeg", "-o", work("said"), file});
@@ -199,7 +200,7 @@ void test_several_databases(void **) {
     const std::string picture = make_picture("p.png", "Camera", "Lens 50mm");
     const Words apply = {"apply", "--overwrite", "--response", "srgb", "--crop-factor",
                          "1",     "-o",          work("out"),  picture};
-    assert_refused(usage, apply, {"--pto", "none is installed"});
+    assert_refused(usage, apply, {"--pto", "no database found"});
     make_lens("share/lensprof/lensfun.db", "Lens 50mm", -0.4);
     const std::string out = work("out/p.png");
     must_exit(done, apply);  // there is no database of one's own

@@ -302,7 +302,7 @@ void test_changed_pictures_are_named(void **) {
     write_picture(file_of(0), turned);
     const Outcome run = run_words(merging + Words{work("in/pano.pto"), "--json", "-o", work("out")});
     assert_int_equal(run.code, done);
-    assert_true(contains(run.err, "p0.tif: agrees with the pictures that overlap it"));
+    assert_true(contains(run.err, "p0.tif: agrees with the overlapping pictures"));
     const Json pictures = Json::parse(run.out)["pictures"];
     assert_true(pictures[0]["agreement"] < 0.5);
 }
@@ -331,7 +331,7 @@ void test_corrected_pictures_give_no_light(void **) {
     assert_true(!fs::exists(work("none")));
     const Outcome other = run_words(merging + Words{work("in/pano.pto"), "-o", work("out"), "--json", file_of(0)});
     assert_int_equal(other.code, done);
-    assert_true(contains(other.err, "its light is not used"));
+    assert_true(contains(other.err, "it is not merged"));
     assert_int_equal(Json::parse(other.out)["pictures"][0]["overlapping"].get<int>(), 1);
 }
 
@@ -356,7 +356,7 @@ void test_bad_merges(void **) {
         assert_true(!fs::exists(work("none")));
         const Outcome run = run_words(merging + Words{project, "--json", "-o", work("others"), file_of(0)});
         assert_int_equal(run.code, done);
-        assert_true(contains(run.err, "p1.tif: ") && contains(run.err, "its light is not used"));
+        assert_true(contains(run.err, "p1.tif: ") && contains(run.err, "it is not merged"));
         assert_int_equal(Json::parse(run.out)["pictures"][0]["overlapping"].get<int>(), 1);
     };
     write_picture(file_of(1), make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGBA));

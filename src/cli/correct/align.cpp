@@ -1,5 +1,5 @@
-// `lensprof align`: the frames of a sequence as if all had been taken with one exposure and white balance (Kim &
-// Pollefeys 2004, section 3).
+// `lensprof align`: converts the frames of a sequence to one exposure and white balance (Kim & Pollefeys 2004, section
+// 3).
 #include <algorithm>
 #include <filesystem>
 
@@ -26,7 +26,7 @@
 namespace lensprof {
 namespace {
 
-// Whose exposure and white balance all frames get.
+// The target exposure and white balance.
 enum class Target {
     first,
     last,
@@ -50,22 +50,24 @@ struct Options {
 };
 
 void declare(Command &command, Options &o) {
-    command.files("FRAMES", o.files, "pictures of one camera, in order; with --project default all of it");
+    command.files("FRAMES", o.files, "pictures of one camera, in order; with --project default all of its pictures");
     command.choice("--to", o.to, targets,
-                   "whose exposure and white balance all frames get: first, last, brightest, or mean (geometric)");
-    command.folder("-o,--output", o.output, "folder for the frames; aligned where none is given");
+                   "frame whose exposure and white balance all frames get: first, last, brightest, or mean (default: "
+                   "geometric mean of all)");
+    command.folder("-o,--output", o.output, "folder for the frames; default aligned");
     command.file(
         "--merge", o.merge,
-        "instead write one picture of the light in all frames (HDR), 32 bit float, as .tif or .exr; the camera stood still");
+        "write one picture merged from all frames (HDR, 32 bit float, .tif or .exr) instead; needs a stationary "
+        "camera");
     command.file("--project", o.pto,
-                 "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
-                 "Without it the camera stood still");
+                 "Hugin project with the orientations of the camera; the falloff is then estimated and corrected too; "
+                 "default none: a stationary camera");
     declare_fit(command, o.fit, {false, false});
     command.count("--pairs", o.pairs, 0, 1 << 24,
-                  "number of pairs; 0 = 300 a frame, at least 2000; without --project 10000 a frame");
-    command.count("--seed", o.seed, 0, UINT32_MAX, "of the sampling");
+                  "number of pairs; default 0 = 10000 per frame; with --project 300 per frame, at least 2000");
+    command.count("--seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");
     command.count("--max-side", o.max_side, 0, UINT32_MAX,
-                  "sample frames reduced to no less than this many pixels (800); 0 = full size");
+                  "sample frames reduced to at least this many pixels on the longer side; default 800; 0 = full size");
     declare_writing(command, o.kind);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -75,15 +77,15 @@ constexpr uint32_t image_flags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF
 constexpr uint32_t lens_flags =
     LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 
-// Where the camera looked. A sequence is aligned from nothing but its pictures: all is unknown, but for a falloff that
-// a camera that stands still does not show.
+// The project with the orientations. A sequence is aligned from its pictures alone: everything is free, except the
+// falloff, which a stationary camera does not show.
 Project sequence(const Options &o) {
     Project project = o.pto.empty() ? static_project(o.files, true) : read_project(o.pto);
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable,
-                      (o.pto.empty() ? project.files[0] : o.pto)
-                          + ": one frame alone has nothing to be aligned to; give at least two",
-                      LENSPROF_REASON_FEW_PAIRS);
+        throw Failure(
+            ExitCode::not_usable,
+            (o.pto.empty() ? project.files[0] : o.pto) + ": a single frame cannot be aligned; give at least two",
+            LENSPROF_REASON_FEW_PAIRS);
     demand_one_kind(project.files);
     project.reference = 0;
     for (uint32_t i = 0; i < project.images.size(); i++) {
@@ -95,7 +97,7 @@ Project sequence(const Options &o) {
     return project;
 }
 
-// The frames to write, as numbers of the project's images.
+// The frames to write, as indices of the project's images.
 std::vector<uint32_t> frames_of(const Options &o, const Project &project) {
     std::vector<uint32_t> frames;
     for (uint32_t i = 0; i < project.files.size() && (o.files.empty() || o.pto.empty()); i++) frames.push_back(i);
@@ -144,7 +146,7 @@ void check_merge(const Options &o, const Project &project) {
     check_merged_name(o.merge);
     const std::string folder = std::filesystem::path(absolute_path(o.merge)).parent_path().string();
     if (!is_folder(folder))
-        throw Failure(ExitCode::usage, o.merge + ": its folder is not there; make it, or give another name");
+        throw Failure(ExitCode::usage, o.merge + ": its folder does not exist; create it, or give another name");
     check_output_file(o.merge);
     std::vector<Correction> job(1);
     job[0].source = project.files[0], job[0].target = o.merge;
@@ -152,14 +154,14 @@ void check_merge(const Options &o, const Project &project) {
     check_older_outputs(job, o.kind, false);
 }
 
-// The frame whose metadata the merged picture has: the one that it looks like.
+// The frame whose metadata the merged picture gets: the one with its exposure.
 size_t frame_like(const std::vector<lensprof_exposure> &exposures, const lensprof_exposure &wanted) {
     for (size_t i = 0; i < exposures.size(); i++)
         if (exposures[i].ev == wanted.ev) return i;
     return 0;
 }
 
-// Outputs beside the frames they come from.
+// Outputs next to the frames they come from.
 std::vector<Correction> make_jobs(const Options &o, const Project &project, const std::vector<uint32_t> &frames) {
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
@@ -180,7 +182,7 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     return jobs;
 }
 
-// Frames, or the picture that they are merged into.
+// Writes the frames, or the merged picture.
 Corrected write_all(const Options &o, const std::vector<Correction> &jobs,
                     const std::vector<lensprof_exposure> &exposures, Progress &progress) {
     if (o.merge.empty()) {
@@ -216,13 +218,13 @@ Json report(const Options &o, const lensprof_fit_result &r, const Verdict &verdi
     return json;
 }
 
-// Frames that do not agree with the others have no exposure and stay as they are.
+// Frames that disagree with the others have no exposure and stay unchanged.
 void leave_out_unjoined(const Fitted &fitted, const Project &project, std::vector<uint32_t> &frames,
                         std::vector<Correction> &jobs, Streams &streams) {
     for (size_t n = frames.size(); n-- > 0;) {
         if (!std::isnan(fitted.exposures[frames[n]].ev)) continue;
         if (fitted.corrects())
-            warn(streams, project.files[frames[n]] + ": does not agree with the other frames, and is left out");
+            warn(streams, project.files[frames[n]] + ": left out: it disagrees with the other frames");
         frames.erase(frames.begin() + static_cast<ptrdiff_t>(n));
         jobs.erase(jobs.begin() + static_cast<ptrdiff_t>(n));
     }
@@ -235,7 +237,7 @@ int align(const Options &o, Streams &streams) {
     check_pictures(project, o.max_side);
     if (o.merge.empty()) check_output_folder(o.folder());
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    std::vector<double> white_shares;  // of the project's pictures
+    std::vector<double> white_shares;  // number of the project's pictures
     Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
     Verdict verdict = verdict_of(fitted.result);
     name_image(project.names, verdict);
@@ -256,12 +258,12 @@ int align(const Options &o, Streams &streams) {
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
-    if (!fitted.corrects() && o.pto.empty()) verdict.text += "; frames of a camera that moved need --project";
+    if (!fitted.corrects() && o.pto.empty()) verdict.text += "; frames of a moving camera need --project";
     if (!verdict.text.empty()) {
         if (fitted.corrects())
             warn(streams, item + ": " + verdict.text);
         else
-            tell(streams, item + ": not usable: " + verdict.text + "; nothing was written");
+            tell(streams, item + ": not usable: " + verdict.text + "; nothing written");
     }
     if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
     if (!o.json && !o.merge.empty() && !written.pictures.empty()) streams.out << o.merge << "\n";
@@ -273,15 +275,13 @@ int align(const Options &o, Streams &streams) {
 int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     check_max_side(o.max_side);
-    if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; name them");
+    if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; give at least two");
     if (!o.merge.empty() && !o.output.empty())
         throw Failure(ExitCode::usage,
-                      "--merge: writes one picture, and --output names a folder for frames; leave one of "
-                      "the two out");
+                      "--merge: writes one picture, but --output is a folder for frames; give one of them");
     if (!o.merge.empty() && !o.pto.empty())
         throw Failure(ExitCode::usage,
-                      "--merge: takes frames of a camera that stood still, and --project is of one "
-                      "that turned; leave one of the two out");
+                      "--merge: needs a stationary camera, but --project is for one that turned; give one of them");
     try {
         return align(o, streams);
     } catch (const Failure &failure) {
@@ -296,9 +296,8 @@ int run(const Options &o, Streams &streams) {
 }  // namespace
 
 void declare_align(Command &program) {
-    Command command = program.add(
-        "align", "frames of a sequence -> all with one exposure and white balance",
-        "Makes the frames of a sequence look as if all had been taken with one exposure and white balance.");
+    Command command = program.add("align", "match exposure and white balance of the frames of a sequence",
+                                  "Converts the frames of a sequence to one exposure and white balance.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -32,7 +32,7 @@
 namespace lensprof {
 namespace {
 
-// What pictures look like afterwards.
+// Exposure of the outputs.
 enum class Exposure {
     by_default,  // mean with a project, else keep
     mean,
@@ -40,9 +40,9 @@ enum class Exposure {
     keep
 };
 
-// What becomes of camera raw files.
+// Output for camera raw files.
 enum class RawOutput {
-    by_default,  // a DNG of a DNG, else a TIFF
+    by_default,  // DNG for a DNG, else TIFF
     dng,
     tif
 };
@@ -57,7 +57,7 @@ struct Options {
     bool seed_exif = false, merge = false, skip = false, json = false, progress = false, has_output = true;
     std::vector<std::string> files;
 
-    // The file that says the pictures' exposures, and the option that names it.
+    // The file with the exposures, and its option.
     const std::string &project() const { return pto.empty() ? exposures : pto; }
     const char *project_option() const { return pto.empty() ? "--model" : "--pto"; }
 };
@@ -70,88 +70,96 @@ struct LeftOut {
 struct Work {
     std::vector<Correction> jobs;
     std::vector<LeftOut> left_out;
-    std::vector<LeftOut> unjoined;      // that the result of the project is without
-    std::vector<PlacedCorrection> lit;  // of --merge: all images that say something of the light
-    lensprof_exposure mean{};           // what --output-exposure mean makes the pictures like
+    std::vector<LeftOut> unjoined;      // missing from the result of the project
+    std::vector<PlacedCorrection> lit;  // of --merge: all images that contribute
+    lensprof_exposure mean{};           // the target of --output-exposure mean
 };
 
 void declare_exposure(Command &command, Options &o) {
-    command.file("--pto", o.pto, "take exposures (and, without --profile or --from-db, the curves) from this project");
+    command.file("--pto", o.pto,
+                 "use the exposures (and, without --profile or --from-db, response and falloff) of "
+                 "this project");
     command.file("--model", o.exposures,
-                 "take exposures, response and falloff from this exposures.json of `build --exposures-out`");
-    command.folder("--images", o.images, "with --model: folder of the pictures, where they are elsewhere by now");
+                 "use exposures, response and falloff of this exposures.json of `build --exposures-out`");
+    command.folder("--images", o.images,
+                   "folder of the pictures, with --model, if they were moved; default as stored "
+                   "in the file");
     command.flag(
         "--seed-exif", o.seed_exif,
-        "with --model: write the exposure that each output has into its EXIF (ExposureTime), and a mark of that "
-        "into its XMP; best with --output-exposure keep");
+        "write the estimated exposure of each output into its EXIF (ExposureTime) and mark this in its XMP; needs "
+        "--model; best with --output-exposure keep");
     command.choice(
         "--output-exposure", o.exposure,
         {{"mean", Exposure::mean}, {"reference", Exposure::reference}, {"keep", Exposure::keep}},
-        "mean: all like the geometric mean of the project (default with --pto and --model); reference: like its "
-        "0 EV; keep: each its own (default without)");
+        "exposure of the outputs: mean (geometric mean of the project; default with --pto and --model), reference (0 "
+        "EV of the project) or keep (unchanged; default without a project)");
 }
 
 void declare(Command &command, Options &o) {
     o.model.add_options(command);
     declare_exposure(command, o);
-    command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
+    command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float");
     command.choice("--linear-output", o.linear_end, {{"tif", ".tif"}, {"exr", ".exr"}},
-                   "of --linear: tif (default), or exr, OpenEXR without metadata");
+                   "file format of --linear: tif (default) or exr (OpenEXR without metadata)");
     command.text("--shard", o.shard,
-                 "only a part of the pictures, for several machines at once: 2/5 is the second of five; outputs are "
-                 "as without");
+                 "correct only a part of the pictures, to distribute the work: 2/5 is the second of five parts; "
+                 "outputs do not depend on it; default all");
     command.flag(
         "--merge", o.merge,
-        "of --linear with --pto: the light of each picture in its own frame from all pictures of the project that "
-        "overlap it, also where it is white or black itself (HDR)");
+        "merge into each picture the irradiance of all overlapping pictures of the project, also where it is clipped "
+        "itself (HDR); needs --linear and --pto");
     command.choice(
         "--raw-output", o.raw_output, {{"dng", RawOutput::dng}, {"tif", RawOutput::tif}},
-        "of camera raw files: dng, a copy of the DNG with the falloff as an opcode, pixels untouched (default "
-        "for DNG); tif, a linear 16 bit TIFF in the camera's colours (default for others)");
-    command.flag("--simulate", o.kind.simulate, "put the falloff in instead of taking it out");
-    command.number("--strength", o.kind.strength, {0.0, 1.0}, "share of the falloff to take out, 0 to 1; default 1");
+        "output for camera raw files: dng (default for DNG: a copy with the falloff as an opcode, pixels unchanged) "
+        "or tif (default for others: a linear 16 bit TIFF in camera colours)");
+    command.flag("--simulate", o.kind.simulate, "add the falloff instead of correcting it");
+    command.number("--strength", o.kind.strength, {0.0, 1.0}, "share of the falloff to correct, 0 to 1; default 1");
     command.number("--gain-cap", o.kind.gain_cap, {1.0, 1e6},
-                   "corners get at most so many times their light, 1 or more, so that noise stays low; default no cap");
+                   "maximum gain of the falloff correction, 1 or more, to limit noise in the corners; default "
+                   "unlimited");
     command.flag("--dither", o.kind.dither,
-                 "ordered 8 x 8 dither in place of rounding, in pictures of 8 bit: no bands in skies");
+                 "use ordered 8 x 8 dither instead of rounding in 8 bit pictures, to avoid banding");
     command.flag(
         "--skip", o.skip,
-        "leave out pictures without a profile and those corrected already, and list them at the end, as is done "
-        "with those of folders; without it none is corrected where one that is named cannot be");
-    command.folder("-o,--output", o.output,
-                   "folder for the pictures; those of subfolders go to subfolders; default corrected, here");
-    command.file("--contact-sheet", o.sheet, "write an overview, before above after, as .png, .tif or .jpg");
+        "skip named pictures that have no profile or are already corrected, and list them at the end, as for folders; "
+        "default: nothing is written if a named picture cannot be corrected");
+    command.folder("-o,--output", o.output, "output folder, with the subfolders of the input; default corrected");
+    command.file("--contact-sheet", o.sheet,
+                 "write an overview of the pictures before and, below, after correction, "
+                 "as .png, .tif or .jpg");
     declare_writing(command, o.kind);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
     command.files("FILES", o.files,
-                  "pictures, or folders of them with their subfolders; with --pto default all of the project");
+                  "pictures and folders of pictures (with subfolders); with --pto or --model default all of the "
+                  "project");
     command.footer(
-        "Pictures keep format, depth, metadata and colour profile; a mark in their XMP says that lensprof corrected\n"
-        "them. Several are corrected at once, in strips of rows; interlaced PNG and progressive JPEG alone are held in\n"
-        "memory as a whole. All are opened first: when one cannot be, nothing is written. When one turns out to be\n"
-        "damaged later, those before it are written, it and those after it are not. Exit code 5: pictures were refused\n"
-        "(no profile, or corrected already): of pictures that are named none is corrected then; those of folders, and with\n"
-        "--skip all, are left out. An output is replaced where it was made of the same picture; one that is not by\n"
-        "lensprof only in a folder that is named with -o.");
+        "Outputs keep format, depth, metadata and colour profile of the picture; a mark in their XMP states\n"
+        "the correction by lensprof. Several pictures are corrected in parallel, in strips of rows; only\n"
+        "interlaced PNG and progressive JPEG are held in memory completely. All pictures are opened first:\n"
+        "if one cannot be opened, nothing is written. If one turns out to be damaged later, only those\n"
+        "before it are written. Exit code 5: pictures were refused, because they have no profile or are\n"
+        "already corrected. If one of them was named, nothing is written; those of folders, and with --skip\n"
+        "all of them, are left out. An existing output is replaced if it was made from the same picture; a\n"
+        "file not written by lensprof is replaced only in a folder given with -o.");
 }
 
-// A DNG stays one, with the falloff as an opcode, unless something is asked for that an opcode does not express.
+// A DNG stays a DNG with the falloff as an opcode, unless the options need more than an opcode can express.
 bool becomes_dng(const Options &o, const std::string &raw) {
     const CorrectionKind &kind = o.kind;
     const bool is_plain = !kind.linear && !kind.simulate && kind.strength == 1.0 && kind.gain_cap == 0.0
                           && o.project().empty() && o.sheet.empty();
     if (o.raw_output == RawOutput::dng && raw != "DNG")
-        throw Failure(ExitCode::usage, "--raw-output dng: takes DNG files, and one is a " + raw
-                                           + "; convert it to DNG first, or leave the option out");
+        throw Failure(ExitCode::usage, "--raw-output dng: needs DNG files, but one is a " + raw
+                                           + "; convert it to DNG first, or omit the option");
     if (o.raw_output == RawOutput::dng && !is_plain)
         throw Failure(ExitCode::usage,
-                      "--raw-output dng: an opcode is a falloff alone; leave out --linear, --simulate, --strength, "
-                      "--gain-cap, --pto and --contact-sheet, or give --raw-output tif");
+                      "--raw-output dng: an opcode stores only the falloff; omit --linear, --simulate, --strength, "
+                      "--gain-cap, --pto and --contact-sheet, or use --raw-output tif");
     return raw == "DNG" && is_plain && o.raw_output != RawOutput::tif;
 }
 
-// `named`: what the picture is called, with the folders below that of the outputs.
+// `named`: the name of the picture, with its folders below the output folder.
 std::string target_name(const Options &o, const NamedPicture &picture, const std::filesystem::path &named) {
     std::filesystem::path name = named;
     const auto raw = raw_kind(picture.file);
@@ -163,7 +171,7 @@ std::string target_name(const Options &o, const NamedPicture &picture, const std
     return (std::filesystem::path(o.output) / name).string();
 }
 
-// A picture of another shape is not the one the project was made with; another size of the same shape will do.
+// A picture with another aspect ratio is not one the project was made with; another size is accepted.
 void check_shape(const Project &project, uint32_t image, const std::string &file) {
     const auto &camera = project.images[image].camera;
     PictureSize size = read_size(file);
@@ -173,11 +181,11 @@ void check_shape(const Project &project, uint32_t image, const std::string &file
     if (project.models.empty() ? std::abs(shape / expected - 1.0) > 0.01 : !is_same)
         throw Failure(ExitCode::unreadable,
                       file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
-                          + format(" says %u x %u; use the pictures that the project was made with", camera.width,
+                          + format(" states %u x %u; use the pictures that the project was made with", camera.width,
                                    camera.height));
 }
 
-// A project without a result would change nothing, which nobody asks for on purpose.
+// A project without a result would change nothing; nobody wants that.
 void check_has_result(const Project &project) {
     for (const auto &image : project.images) {
         bool response = std::any_of(image.emor, image.emor + 5, [](double a) { return a != 0.0; });
@@ -186,10 +194,10 @@ void check_has_result(const Project &project) {
     }
     throw Failure(
         ExitCode::usage,
-        project.path + ": holds no response and no falloff; give the project that `lensprof build --pto-out` wrote");
+        project.path + ": has neither response nor falloff; give the project that `lensprof build --pto-out` wrote");
 }
 
-// The project, and where neither --profile nor --from-db is given the model in it.
+// The project and, without --profile and --from-db, its model.
 struct Source {
     std::unique_ptr<Project> project;
     std::unique_ptr<ImagesByFile> images;
@@ -200,13 +208,16 @@ struct Source {
 
 Source open_source(const Options &o) {
     Source source;
-    if (o.files.empty() && o.project().empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
+    if (o.files.empty() && o.project().empty())
+        throw Failure(ExitCode::usage,
+                      "no pictures to correct; give pictures "
+                      "or folders");
     source.models = std::make_unique<PictureModels>(o.model, o.project().empty());
     const bool from_store = source.models->are_used();
     if (!from_store && o.project().empty())
         throw Failure(ExitCode::usage,
-                      "say what to correct with: --profile ID, --from-db, --pto FILE or --model FILE; there is no "
-                      "database of your own yet, and none is installed");
+                      "no correction given and no database found; give --profile ID, --from-db, --pto FILE or --model "
+                      "FILE");
     if (!o.project().empty()) {
         source.project =
             std::make_unique<Project>(o.pto.empty() ? read_exposures(o.exposures, o.images) : read_project(o.pto));
@@ -216,13 +227,13 @@ Source open_source(const Options &o) {
     } else if (o.exposure == Exposure::mean || o.exposure == Exposure::reference) {
         throw Failure(ExitCode::usage, std::string("--output-exposure ")
                                            + (o.exposure == Exposure::mean ? "mean" : "reference")
-                                           + " needs the exposures of a project; give it with --pto or --model");
+                                           + " needs the exposures of a project; give the project with --pto or "
+                                             "--model");
     }
     return source;
 }
 
-// Where no profile is to be found by them, metadata that cannot be read are those of a picture that cannot be, which is
-// said of its pixels.
+// If no profile is looked up, an error in the metadata is ignored here: reading the pixels reports it.
 PictureMetadata metadata_of(const Options &o, const std::string &file) {
     try {
         return read_metadata(file);
@@ -232,26 +243,25 @@ PictureMetadata metadata_of(const Options &o, const std::string &file) {
     }
 }
 
-// NotThisOne for a picture that lensprof has corrected.
+// NotThisOne for a picture already corrected by lensprof.
 void check_mark(const Options &o, const std::string &file, const PictureMetadata &metadata) {
     const auto &mark = metadata.mark;
     if (o.model.force_falloff || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
     throw NotThisOne(ExitCode::not_found,
-                     file + ": is corrected already, " + metadata.corrected_by
-                         + "; correct that picture, or this one once more with --force-falloff",
+                     file + ": already corrected, " + metadata.corrected_by
+                         + "; give the original, or use --force-falloff to correct it again",
                      true);
 }
 
-// NotThisOne for a DNG whose opcodes correct the falloff.
+// NotThisOne for a DNG whose opcodes already correct the falloff.
 void check_opcodes(const Options &o, const std::string &file) {
     if (o.model.force_falloff || !has_falloff_opcode(file)) return;
     throw NotThisOne(ExitCode::not_found,
-                     file + ": its opcodes correct the falloff already; give --raw-output tif, which corrects the "
-                            "sensor's values without them",
+                     file + ": its opcodes already correct the falloff; use --raw-output tif, which ignores them",
                      true);
 }
 
-// The name of a model's image, by which the model takes the output for it; without folders where these lead out.
+// The name of a model's image, by which the model identifies the output; without folders if these lead outside.
 std::filesystem::path name_below(const std::string &name) {
     const auto path = std::filesystem::path(name).lexically_normal();
     const bool leads_out = path.is_absolute() || *path.begin() == "..";
@@ -281,18 +291,17 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
     return job;
 }
 
-// Pictures that are named are all wanted: all reasons are told, and nothing is written.
+// Named pictures are all wanted: all reasons are printed, and nothing is written.
 [[noreturn]] void fail_refused(const std::vector<NotThisOne> &refused, size_t count, Streams &streams) {
     if (refused.size() == 1)
-        throw Failure(refused[0].code,
-                      refused[0].what() + std::string(count > 1 ? "; or leave it out with --skip" : ""));
+        throw Failure(refused[0].code, refused[0].what() + std::string(count > 1 ? "; or skip it with --skip" : ""));
     for (const NotThisOne &one : refused) tell(streams, one.what());
     throw Failure(refused[0].code, std::to_string(refused.size()) + " of " + counted(count, "picture")
-                                       + " cannot be corrected, and none is; leave them out with --skip");
+                                       + " cannot be corrected, and nothing was written; use --skip to leave them out");
 }
 
-// Each image of the project that is part of its result. What keeps one that is not to be written itself from giving
-// light is said, and the others give theirs.
+// All images of the project in its result. An image that cannot be written itself still contributes; the reason is
+// printed.
 std::vector<PlacedCorrection> placed_images(const Options &o, const Source &source, const Work &work,
                                             Streams &streams) {
     std::vector<PlacedCorrection> placed;
@@ -312,7 +321,7 @@ std::vector<PlacedCorrection> placed_images(const Options &o, const Source &sour
             check_mergeable(file, layout);
         } catch (const Failure &failure) {
             if (written.count(i) || failure.code == ExitCode::interrupted) throw;
-            warn(streams, failure.what() + std::string("; its light is not used"));
+            warn(streams, failure.what() + std::string("; it is not merged"));
             continue;
         }
         Correction job;
@@ -325,7 +334,7 @@ std::vector<PlacedCorrection> placed_images(const Options &o, const Source &sour
 void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
     const size_t first = shard.first(pictures.size()), end = shard.end(pictures.size());
     if (first == end && !pictures.empty())
-        throw Failure(ExitCode::usage, format("--shard %u/%u: has none of the %zu pictures; give fewer parts",
+        throw Failure(ExitCode::usage, format("--shard %u/%u: contains none of the %zu pictures; use fewer parts",
                                               shard.number, shard.count, pictures.size()));
     pictures.erase(pictures.begin() + static_cast<std::ptrdiff_t>(end), pictures.end());
     pictures.erase(pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(first));
@@ -338,7 +347,7 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
     else
         pictures = named_pictures(o.files, o.output);
     take_shard(shard_of(o.shard), pictures);
-    if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
+    if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; give pictures or folders");
     Work work;
     lensprof_exposure_init(&work.mean);
     if (source.project) work.mean = mean_exposure(joined_exposures(*source.project, source.exposures));
@@ -353,8 +362,7 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
         }
         if (source.project && source.project->images[source.images->at(picture.file, o.project_option())].left_out) {
             const std::string reason =
-                picture.file
-                + ": is not part of the result, and its exposure is not known; it is not corrected: use the original";
+                picture.file + ": not corrected: the project has no exposure for it; use the original";
             warn(streams, reason);
             work.unjoined.push_back({picture.file, reason, false});
             continue;
@@ -394,7 +402,7 @@ Json left_out_json(const Work &work) {
     return list;
 }
 
-// Everything once, with the first picture of which it is true; of pictures that are answered alike the largest error.
+// Prints each note once, with the first picture it applies to; for pictures with the same answer the largest error.
 void say_notes(const std::vector<Correction> &jobs, Streams &streams) {
     struct Answer {
         const Correction *first, *least_sure;
@@ -426,8 +434,8 @@ Corrected merge(const Options &o, const Source &source, const Work &work, Progre
     return write_from_overlaps(*source.project, placed, work.lit, o.kind, progress);
 }
 
-// Pictures of several cameras look alike only where one response encodes them: that of the project's reference, or
-// where responses are of profiles that of the first picture.
+// Pictures of several cameras match only if one response encodes them: that of the project's reference or, if responses
+// come from profiles, that of the first picture.
 void encode_alike(const Source &source, std::vector<Correction> &jobs, Streams &streams) {
     auto encoding = source.has_model ? common_encoding(*source.project) : nullptr;
     const auto &first = jobs[0].model->response[0];
@@ -437,9 +445,9 @@ void encode_alike(const Source &source, std::vector<Correction> &jobs, Streams &
     if (!source.has_model && differ) encoding = std::make_shared<lensprof_response>(first);
     if (!encoding) return;
     for (Correction &job : jobs) job.encoding = encoding;
-    note(streams, source.project->path + ": is of several cameras; what is written is encoded by the response of "
-                      + (source.has_model ? std::string("the reference's") : jobs[0].source)
-                      + " (--output-exposure keep: each by its own)");
+    note(streams, source.project->path + ": has several cameras; all outputs are encoded with the response of "
+                      + (source.has_model ? std::string("the reference") : jobs[0].source)
+                      + " (use --output-exposure keep to encode each with its own)");
 }
 
 Corrected correct(const Options &o, const Source &source, Work &work, Streams &streams) {
@@ -468,36 +476,34 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
 void check_merge(const Options &o) {
     if (o.pto.empty() || !o.kind.linear)
         throw Failure(ExitCode::usage,
-                      "--merge: takes light from overlapping pictures; give their project with --pto, and --linear");
+                      "--merge: needs overlapping pictures and --linear; give their project with --pto, and --linear");
     if (o.model.profile || o.model.from_db || o.model.response)
         throw Failure(ExitCode::usage,
-                      "--merge: takes response and falloff of the project; leave out --profile, --from-db and the "
-                      "response");
+                      "--merge: uses response and falloff of the project; omit --profile, --from-db and the response");
     if (o.kind.simulate || o.kind.strength != 1.0 || o.kind.gain_cap != 0.0 || o.kind.dither || !o.sheet.empty())
         throw Failure(ExitCode::usage,
-                      "--merge: takes the falloff out as a whole, and writes light; leave out --simulate, --strength, "
+                      "--merge: corrects the falloff completely and writes irradiance; omit --simulate, --strength, "
                       "--gain-cap, --dither and --contact-sheet");
 }
 
 void check_project_options(const Options &o) {
     if (!o.pto.empty() && !o.exposures.empty())
-        throw Failure(ExitCode::usage, "--pto and --model: both say the exposures; give one of the two");
+        throw Failure(ExitCode::usage, "--pto and --model exclude each other: both give exposures; give one of them");
     if (o.seed_exif && o.linear_end == ".exr")
-        throw Failure(ExitCode::usage, "--seed-exif: OpenEXR holds no EXIF; give --linear-output tif, or leave it out");
+        throw Failure(ExitCode::usage, "--seed-exif: OpenEXR has no EXIF; use --linear-output tif, or omit the option");
     if (o.exposures.empty() && (!o.images.empty() || o.seed_exif))
         throw Failure(ExitCode::usage, std::string(o.seed_exif ? "--seed-exif" : "--images")
-                                           + ": is for the exposures of --model; give that, or leave it out");
+                                           + ": needs --model; give it, or omit the option");
 }
 
 int run(Options &o, Streams &streams) {
     check_project_options(o);
     if (!o.linear_end.empty() && !o.kind.linear)
-        throw Failure(ExitCode::usage,
-                      "--linear-output: is for --linear, which writes irradiance; give both or neither");
+        throw Failure(ExitCode::usage, "--linear-output: needs --linear; give both or neither");
     if (!o.sheet.empty() && format_of_name(o.sheet) == FileFormat::exr)
         throw Failure(
             ExitCode::usage,
-            o.sheet + ": OpenEXR holds light, and a contact sheet is a picture; give a name in .jpg, .png or .tif");
+            o.sheet + ": a contact sheet is not written as OpenEXR; give a name ending in .jpg, .png or .tif");
     if (o.merge) check_merge(o);
     o.model.puts_in = o.kind.simulate;
     o.has_output = !o.output.empty();
@@ -524,7 +530,8 @@ int run(Options &o, Streams &streams) {
 
 void declare_apply(Command &program) {
     Command command = program.add("apply", "correct pictures with a profile or a project",
-                                  "Corrects pictures: undoes falloff, exposure and white balance, and encodes again.");
+                                  "Removes falloff, exposure and white balance differences from pictures and encodes "
+                                  "them again.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -1,4 +1,4 @@
-// Pictures corrected in strips of rows, several at once.
+// Corrects pictures in strips of rows, several in parallel.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -21,32 +21,33 @@
 namespace lensprof {
 namespace {
 
-// Rows of a picture, as they were read and as they are written; `after` is empty where they change in place.
+// Rows of a picture, before and after correction; `after` is empty if they change in place.
 struct Strip {
     std::vector<uint8_t> before, after;
     lensprof_image written{};
 };
 
-// A picture that is complete beside its final name.
+// A finished picture under its temporary name.
 struct Finished {
     std::unique_ptr<PictureWriter> writer;
-    std::unique_ptr<OutputFile> copy;  // in its place, of a DNG
+    std::unique_ptr<OutputFile> copy;  // instead of it, for a DNG
     bool with_metadata = false;
 };
 
-// One picture on its way.
+// One picture in progress.
 class PictureCorrection {
 public:
     PictureCorrection(const Correction &job, const CorrectionKind &kind, bool thumbnails);
 
-    // All of it, with the pixels of every strip told to `done`; encoded on a thread of its own if `split`.
+    // Corrects the whole picture and reports the pixels of every strip to `done`; encodes on a separate thread if
+    // `split`.
     Finished run(bool split, Throughput &done);
 
     Thumbnail before, after;
 
 private:
-    bool make(Strip &strip);            // reads and corrects the next rows; false when there are no more
-    uint64_t take(const Strip &strip);  // writes them; returns their number of pixels
+    bool make(Strip &strip);            // reads and corrects the next rows; false at the end
+    uint64_t take(const Strip &strip);  // writes the rows; returns their number of pixels
 
     const Correction &job_;
     PictureReader reader_;
@@ -113,7 +114,7 @@ Finished PictureCorrection::run(bool split, Throughput &done) {
     return {std::move(writer_), nullptr, with_metadata};
 }
 
-// The falloff as an opcode; all else of the DNG stays as it is.
+// Adds the falloff as an opcode; everything else of the DNG stays unchanged.
 Finished copy_dng(const Correction &job) {
     auto output = std::make_unique<OutputFile>(job.target);
     write_opcodes(job.source, output->temporary(), *job.model);

@@ -19,7 +19,7 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
     for (const std::string &file : inputs) read.insert(one_name(file));
     for (const Correction &job : jobs) read.insert(one_name(job.source));
     for (Correction &job : jobs) {
-        PictureSize size = read_size(job.source);  // an unreadable picture shows before anything is written
+        PictureSize size = read_size(job.source);  // unreadable pictures fail before anything is written
         job.pixels = uint64_t(size.width) * size.height;
         const std::string target = one_name(job.target);
         if (target == one_name(job.source) || is_same_file(job.source, job.target))
@@ -27,7 +27,7 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
                           job.source + ": would be overwritten by its correction; give another folder with -o");
         if (read.count(target))
             throw Failure(ExitCode::usage,
-                          job.target + ": would overwrite a picture of the same call; give another folder with -o");
+                          job.target + ": would overwrite an input picture; give another folder with -o");
         if (!written.insert(target).second)
             throw Failure(ExitCode::usage,
                           job.target + ": two pictures would get this name; correct them one folder at a time");
@@ -36,7 +36,7 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
         throw Failure(ExitCode::usage, sheet + ": the contact sheet would overwrite a picture; give it another name");
 }
 
-// None: no picture, or without a mark.
+// Empty: not a picture, or without a mark.
 static std::optional<CorrectionMark> mark_of_older(const std::string &file) {
     if (!is_regular_file(file)) return std::nullopt;
     try {
@@ -54,23 +54,23 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
         const auto folder_of = [](const std::string &file) {
             return one_name(std::filesystem::path(absolute_path(file)).parent_path().string());
         };
-        const bool is_beside = folder_of(job.target) == folder_of(job.source);  // among somebody's pictures
+        const bool is_beside = folder_of(job.target) == folder_of(job.source);  // next to somebody's pictures
         if (!mark && (!replaces_unmarked || is_beside) && path_exists(job.target))
-            throw Failure(ExitCode::usage, job.target + ": is there already and is not by lensprof; give a folder "
-                                                        "with -o or another name, or --overwrite");
+            throw Failure(ExitCode::usage, job.target + ": exists and was not written by lensprof; give another "
+                                                        "folder with -o or another name, or use --overwrite");
         if (!mark || mark->digest.empty() || mark->digest == digest_of(job.source)) continue;
-        throw Failure(ExitCode::usage, job.target + ": is there already and was made of another picture ("
-                                           + mark->source + "); give another folder with -o, or --overwrite");
+        throw Failure(ExitCode::usage, job.target + ": exists and was made from another picture (" + mark->source
+                                           + "); give another folder with -o, or use --overwrite");
     }
 }
 
 void warn_of_written(const Correction &job, bool with_metadata, Progress &progress) {
     if (!job.copies_dng && format_of_name(job.target) == FileFormat::exr && read_metadata(job.source).orientation > 1)
-        progress.warn(job.target + ": lies as the sensor saw it, for OpenEXR has no EXIF orientation; turn it in your "
-                                   "program, or write TIFF");
+        progress.warn(job.target + ": written in sensor orientation, because OpenEXR has no EXIF orientation; rotate "
+                                   "it later, or write TIFF");
     if (!with_metadata)
         progress.warn(job.target + ": written without the metadata of " + job.source
-                      + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");
+                      + ", which lensprof does not support in BigTIFF; copy them with exiftool");
 }
 
 void add_speed(const Corrected &corrected, Json &json) {
@@ -80,8 +80,8 @@ void add_speed(const Corrected &corrected, Json &json) {
 }
 
 void declare_writing(Command &command, CorrectionKind &kind) {
-    command.flag("--overwrite", kind.overwrite, "replace outputs that were made of other pictures, too");
-    command.count("--threads", kind.threads, 0, 1024, "threads that correct pictures; 0 = all cores (default)");
+    command.flag("--overwrite", kind.overwrite, "replace existing files even if they were made from other pictures");
+    command.count("--threads", kind.threads, 0, 1024, "number of threads that correct pictures; default 0 = all cores");
 }
 
 }  // namespace lensprof

@@ -5,14 +5,14 @@
 
 namespace lensprof {
 
-// Grey values, 0..1, from which on a pixel counts, and counts in full; the same below white. Within 2 % of white the
-// coding of JPEG and the noise mix saturated pixels with others.
+// Grey values, 0..1, at which the weight of a pixel starts and is full; symmetric below white. Within 2 % of white,
+// JPEG coding and noise mix saturated pixels with others.
 static constexpr double none_below = 0.01, all_above = 0.06, all_below = 0.9, none_above = 0.98;
 
 size_t samples_of_light(const Picture &header, const std::string &file) {
     const size_t samples = lensprof_layout_samples(header.layout);
     if (samples != 1 && samples != 3)
-        throw Failure(ExitCode::usage, file + ": has transparency, which a merged picture has not; remove it");
+        throw Failure(ExitCode::usage, file + ": has transparency, which merged pictures do not support; remove it");
     return samples;
 }
 
@@ -48,7 +48,7 @@ LightWeights::LightWeights(const Correction &job) {
     for (size_t c = 0; c < 3; c++) {
         const lensprof_response &response = job.model->response[job.model->responses == 3 ? c : 0];
         for (int k = 0; k <= steps; k++) {
-            double slope = 0.0;  // of the light over the grey value
+            double slope = 0.0;  // of irradiance over grey value
             lensprof_response_invert(&response, static_cast<double>(k) / steps, &slope);
             weight_[c][static_cast<size_t>(k)] = slope > 0.0 ? std::pow(gain_of(job, c) / slope, 2) : 0.0;
         }

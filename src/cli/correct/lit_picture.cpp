@@ -4,7 +4,7 @@
 
 namespace lensprof {
 
-static constexpr double edge_px = 0.05;  // beyond the middles of the outermost pixels
+static constexpr double edge_px = 0.05;  // beyond the centres of the outermost pixels
 
 LitPicture::LitPicture(const PlacedCorrection &placed, const CorrectionKind &kind, const Project &project)
     : weights_(placed.job),

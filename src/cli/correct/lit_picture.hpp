@@ -1,4 +1,4 @@
-// A picture at full size, what it says about the light, and where it looks.
+// A full-size picture with its irradiance and its orientation.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 
 namespace lensprof {
 
-// A correction of an image of a project, by the model of the project.
+// The correction of an image of a project with the model of the project.
 struct PlacedCorrection {
     Correction job;
     uint32_t image;
 };
 
-// Full frame of the project -> pixels of a picture, which may be of another size.
+// Maps the full frame of the project to pixels of a picture, which may have another size.
 struct PixelScale {
     double x, y;
 
@@ -29,7 +29,7 @@ struct PixelScale {
     static double to_frame(double at, double scale) { return (at + 0.5) / scale - 0.5; }
 };
 
-// A picture at full size, and its light.
+// A full-size picture and its irradiance.
 class LitPicture {
 public:
     LitPicture(const PlacedCorrection &placed, const CorrectionKind &kind, const Project &project);
@@ -56,16 +56,17 @@ public:
             &vignetting_, lensprof_vignetting_r2(&vignetting_, width(), height(), x, y, nullptr), nullptr);
     }
 
-    // The grey value that a pixel would have, of the falloff, with so much light; above 1 for more light than white.
-    // Projects have one response.
+    // The grey value of a pixel with this falloff and irradiance; above 1 for irradiance beyond white. Projects have a
+    // single response.
     double recorded(size_t c, double light, double falloff) const {
         const double share = std::max(light * gain_[c] * falloff, 0.0);
-        if (share > 1.0) return share;  // more than white, which is no grey value
+        if (share > 1.0) return share;  // beyond white, not a grey value
         return curve_[static_cast<size_t>(std::lround(curve_steps * std::sqrt(share)))];
     }
 
 private:
-    static constexpr int curve_steps = 8192;  // of the square root of light, since responses are steepest next to black
+    static constexpr int curve_steps = 8192;  // tabulated over the square root of irradiance, because responses are
+                                              // steepest next to black
     const LightWeights weights_;
     const lensprof_camera camera_;
     const lensprof_vignetting vignetting_;
@@ -78,14 +79,14 @@ private:
     std::vector<uint8_t> mask_;
 };
 
-// Light at a place between four pixels, and how far all of them are from black and white.
+// Irradiance interpolated between four pixels, and how far all four are from clipping.
 struct Reading {
     double light[3], trust;
     bool is_white;
     uint32_t x, y;  // the nearest pixel
 };
 
-// False outside of the picture, and where a mask excludes any of the four.
+// False outside the picture, and if a mask excludes one of the four pixels.
 bool read_at(LitPicture &picture, const double xy[2], Reading &reading);
 
 }  // namespace lensprof

@@ -28,7 +28,7 @@ public:
     size_t samples() const { return samples_; }
     double ev() const { return job_.own.ev; }
 
-    // The next rows; `first` is the number of the first.
+    // Reads the next rows; `first` is the index of the first.
     void read(uint32_t first, uint32_t rows) {
         const Picture &h = header();
         before_.resize(h.row_bytes * rows);
@@ -47,7 +47,7 @@ public:
 
     const float *light(uint32_t x, uint32_t y) const { return &light_[(size_t(y) * header().width + x) * samples_]; }
 
-    // Of each channel; returns how far the pixel is from black and white.
+    // Irradiance per channel; returns how far the pixel is from clipping.
     double weights(uint32_t x, uint32_t y, double weight[3]) const {
         for (size_t c = 0; c < samples_; c++)
             weight[c] = weights_.at(c, grey_at(before_rows_, y, size_t(x) * samples_ + c));
@@ -82,7 +82,7 @@ void merge_pixel(const Frames &frames, uint32_t x, uint32_t y, float *merged) {
             sum[c] += certain * weight[c] * static_cast<double>(light[c]);
         }
     }
-    // Where no frame is certain of a channel: the brightest that is not white there, or the darkest of all.
+    // If no frame is unclipped in a channel: the brightest frame that is not white there, or the darkest of all.
     size_t other = frames.size() - 1;
     while (other > 0 && frames[other]->is_white(x, y)) other--;
     for (size_t c = 0; c < samples; c++)
@@ -94,8 +94,8 @@ void merge_pixel(const Frames &frames, uint32_t x, uint32_t y, float *merged) {
 void check_merged_name(const std::string &target) {
     const FileFormat format = format_of_name(target);
     if (format != FileFormat::tiff && format != FileFormat::exr)
-        throw Failure(ExitCode::usage, target + ": light has no bounds, and TIFF and OpenEXR alone hold it; give a name "
-                                                "in .tif or .exr");
+        throw Failure(ExitCode::usage, target + ": HDR is written only as TIFF or OpenEXR; give a name ending in .tif "
+                                                "or .exr");
 }
 
 void write_merged(const std::vector<Correction> &jobs, size_t like, const std::string &target, Progress &progress) {
@@ -106,7 +106,7 @@ void write_merged(const std::vector<Correction> &jobs, size_t like, const std::s
     for (const auto &frame : frames)
         if (frame->samples() != frames[0]->samples())
             throw Failure(ExitCode::usage,
-                          jobs[0].source + ": some frames are grey and others are not; give frames of one kind");
+                          jobs[0].source + ": some frames are grey and others in colour; give frames of one kind");
     const Picture header = header_of_result(frames[like]->header(), LENSPROF_SAMPLE_F32);
     PictureWriter writer(target, header, write_options(jobs[like], kind));
     std::stable_sort(frames.begin(), frames.end(), [](const auto &a, const auto &b) { return a->ev() < b->ev(); });

@@ -1,4 +1,4 @@
-// Frames of a camera that stood still -> one picture of the light in all of them.
+// Merges the frames of a stationary camera into one HDR picture.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace lensprof {
 
-// Writes the light of all frames, as 32 bit float TIFF or OpenEXR, to `target`: 1 is white of a picture of the exposure
-// `wanted` of the frames, brighter light is more. Every frame counts by how well it shows the light of a pixel: its
-// noise is the same at all grey values, so that 1/f'^2 of the response and its exposure weigh it; a pixel with a
-// channel next to black or white counts less and less, and not at all where it is that. What all frames have white is
-// as bright as the darkest of them says, or brighter; what all have black is from the brightest. Metadata are those of
-// frame `like`. Failure (usage) for frames with transparency.
+// Writes the merged irradiance of all frames to `target`, as 32 bit float TIFF or OpenEXR: 1 is white at the exposure
+// `wanted`, brighter irradiance is larger. Frames are weighted by how reliably they measure a pixel: noise is assumed
+// equal at all grey values, so the weight is 1/f'^2 of the response times the exposure; it fades towards black and
+// white and is zero if a channel is clipped. A pixel that is white in all frames gets the value of the darkest frame, a
+// lower bound; a pixel that is black in all frames gets that of the brightest. Metadata are those of frame `like`.
+// Failure (usage) for frames with transparency.
 void write_merged(const std::vector<Correction> &frames, size_t like, const std::string &target, Progress &progress);
 
-// Failure (usage) where `target` is neither by its name.
+// Failure (usage) if the name of `target` has neither extension.
 void check_merged_name(const std::string &target);
 
 }  // namespace lensprof

@@ -14,21 +14,22 @@
 namespace lensprof {
 namespace {
 
-// A light may differ by so much from a pixel's grey value; and from those of most about it, which noise does less.
+// Allowed difference of irradiance from a pixel's grey value, and from those of most surrounding pixels, where noise
+// averages out.
 constexpr double same_grey = 0.03, same_in_black = 0.01, same_share = 0.04;
 constexpr double most_agree = 0.6;
 constexpr int about_px = 2;
-// Grey values next to white ones from which on noise and coding may have made them of white.
+// Grey values near white that noise and coding may have made from white.
 constexpr double almost_white = 0.95;
 
-// Means of blocks tell whether pictures show the same at all; some px of misplacement do not matter to them.
+// Block means show whether pictures show the same scene; some px of misalignment do not matter.
 constexpr uint32_t block_px = 16;
 constexpr double same_block = 0.04, enough_agree = 0.5;
 
-constexpr int sight_steps = 24;                // of the places by which pictures are found to overlap
-constexpr uint32_t strip_rows = 4 * block_px;  // that a thread takes
+constexpr int sight_steps = 24;                // of the positions used to detect overlaps
+constexpr uint32_t strip_rows = 4 * block_px;  // processed by a thread at a time
 
-// The light of a picture, as it and others say.
+// Irradiance of a picture, from itself and from others.
 class Merge {
 public:
     Merge(const PlacedCorrection &placed, const CorrectionKind &kind, const Project &project)
@@ -55,7 +56,7 @@ public:
             double more[3];
             differences(x, y, reading, more);
             at(x, y) = agreement_of(x, y, more);
-            if (reading.trust == 0.0) return;     // black or white, which is not the light
+            if (reading.trust == 0.0) return;     // clipped: not a measurement
             const size_t c = own_.samples() / 2;  // green, or grey
             Block &block = blocks[size_t(y / block_px) * columns + x / block_px];
             block.difference += std::min(more[c], 1.0 - clamped_grey(x, y, c)), block.pixels++;
@@ -71,10 +72,10 @@ public:
             if (block.pixels) seen_++, same_ += std::fabs(block.difference / block.pixels) <= same_block;
     }
 
-    // Of what other pictures show of this one the share where they agree with it; NaN where they show nothing.
+    // Share of the area shown by other pictures in which they agree with this one; NaN if none overlaps.
     double share_same() const { return static_cast<double>(same_) / static_cast<double>(seen_); }
 
-    // What has been found, in the place of the picture's own light.
+    // Replaces the picture's own irradiance by the merged one.
     const std::vector<float> &result() {
         in_strips([&](uint32_t x, uint32_t y) {
             Sum *sum = &sums_[index(x, y)];
@@ -88,11 +89,11 @@ private:
     enum class Agreement : uint8_t {
         unseen,
         other,
-        near,  // as noise or a step beside it may explain
+        near,  // as noise or a nearby edge may explain
         same
     };
 
-    // Differences of what another picture shows, as this one would have recorded it.
+    // Differences of another picture's values, as this one would have recorded them.
     struct Block {
         double difference = 0.0;
         uint32_t pixels = 0;
@@ -130,13 +131,13 @@ private:
             other.weights(reading.x, reading.y, reading.trust, weight);
             add(x, y, reading.light, weight);
         } else if (reading.is_white && is_white(own_.largest(x, y))) {
-            // White in both: at least as bright as the darker picture says.
+            // White in both: at least as bright as in the darker picture.
             for (size_t c = 0; c < own_.samples(); c++)
                 own_.light(x, y)[c] = std::max(own_.light(x, y)[c], static_cast<float>(reading.light[c]));
         }
     }
 
-    // Whether a channel is white: by its grey value, or almost, among others that are.
+    // Whether a channel is white: by its grey value, or almost white next to white ones.
     bool ends_in_white(uint32_t x, uint32_t y, size_t c) const {
         if (is_white(own_.grey(x, y, c))) return true;
         if (own_.grey(x, y, c) < almost_white) return false;
@@ -154,14 +155,14 @@ private:
 
     double clamped_grey(uint32_t x, uint32_t y, size_t c) const { return std::clamp(own_.grey(x, y, c), 0.0, 1.0); }
 
-    // By how much this picture would have recorded more of such light than it did.
+    // Difference between the grey value this picture would have recorded for this irradiance and its actual value.
     void differences(uint32_t x, uint32_t y, const Reading &reading, double more[3]) const {
         const double falloff = own_.falloff(x, y);
         for (size_t c = 0; c < own_.samples(); c++)
             more[c] = own_.recorded(c, reading.light[c], falloff) - clamped_grey(x, y, c);
     }
 
-    // White fits all that is brighter.
+    // White is consistent with any brighter value.
     Agreement agreement_of(uint32_t x, uint32_t y, const double more[3]) const {
         Agreement all = Agreement::same;
         for (size_t c = 0; c < own_.samples(); c++) {
@@ -172,7 +173,7 @@ private:
         return all;
     }
 
-    // A step of light in shadows is as small as noise at one pixel, and is not about it.
+    // An edge in shadows is as small as noise at one pixel, but not in its surroundings.
     bool most_are_same(const std::vector<Agreement> &agreement, uint32_t x, uint32_t y) const {
         const auto width = static_cast<int>(own_.width()), height = static_cast<int>(own_.height());
         const auto left = std::max(static_cast<int>(x) - about_px, 0),
@@ -192,7 +193,7 @@ private:
     uint64_t seen_ = 0, same_ = 0;  // blocks of other pictures in this one
 };
 
-// Whether a picture shows any of the places of another one, its edges among them.
+// Whether a picture shows any of the sample positions of another one, including its edges.
 bool shows_any(const lensprof_camera &one, const lensprof_camera &other) {
     double direction[2], xy[2];
     for (int v = 0; v <= sight_steps; v++)
@@ -205,7 +206,7 @@ bool shows_any(const lensprof_camera &one, const lensprof_camera &other) {
     return false;
 }
 
-// One may lie between the places of the other.
+// One picture may lie between the sample positions of the other.
 bool overlap(const lensprof_camera &one, const lensprof_camera &other) {
     return shows_any(one, other) || shows_any(other, one);
 }
@@ -229,7 +230,7 @@ void check_mergeable(const std::string &file, std::optional<uint32_t> &layout) {
     const size_t samples = samples_of_light(header, file);
     if (layout && header.layout != *layout)
         throw Failure(ExitCode::usage, file + ": is " + (samples == 1 ? "grey" : "in colour")
-                                           + ", and others are not; merge pictures of one kind");
+                                           + ", but others are not; merge pictures of one kind");
     layout = header.layout;
 }
 
@@ -254,13 +255,13 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
         }
         if (!overlapping)
             progress.warn(placed.job.source
-                          + ": no other picture of the project overlaps it; its light is its own alone");
+                          + ": no other picture of the project overlaps it; nothing is merged into it");
         const double same = merge.share_same();
         if (same < enough_agree)
             progress.warn(
                 placed.job.source
-                + format(": agrees with the pictures that overlap it at %.0f %% of what they share alone; is it "
-                         "the picture that the project was fitted to?",
+                + format(": agrees with the overlapping pictures in only %.0f %% of the shared area; check that it is "
+                         "the picture the project was fitted to",
                          100.0 * same));
         write_light(placed.job, kind, merge, progress);
         corrected.pictures.push_back({{"file", placed.job.source},

@@ -1,4 +1,4 @@
-// Pictures of the light in them and in those that overlap them (HDR), each in its own frame.
+// Merges overlapping pictures (HDR), each in its own frame.
 #pragma once
 
 #include <optional>
@@ -8,19 +8,19 @@
 
 namespace lensprof {
 
-// Failure (usage) for a picture with transparency, and for one that is grey where others are not, or the other way
-// round: `layout` is that of the others, where there are any, and becomes this one's.
+// Failure (usage) for a picture with transparency, or if grey and colour pictures are mixed: `layout` is that of the
+// previous pictures, if any, and is set to that of this one.
 void check_mergeable(const std::string &file, std::optional<uint32_t> &layout);
 
-// Writes the light of each picture of `jobs`, as 32 bit float, on its own scale (`wanted`): that of its own pixels and
-// of all pictures that show the same place, each by how well it shows it: by 1/variance of the light, less and less
-// next to black and white, not at all where it is that. Where the project is off by some pixels, or something has
-// moved, the picture itself is right: another one counts where this one would have recorded its light with the grey
-// values that it has, within .03 of full scale, and within .01 in black at most places about it. White fits all that is
-// brighter. What masks of the project exclude of a picture does not count in others; in its own frame it stays. Warns
-// of pictures that no other overlaps, and of those whose blocks agree with less than half of what others show of them.
-// Memory, whatever the number: two pictures at full size, their light, and sums of 8 bytes a sample and one a pixel.
-// The same bytes for every number of threads.
+// Writes the irradiance of each picture of `jobs`, as 32 bit float, on its own scale (`wanted`): the mean of its own
+// pixels and of all pictures that show the same point, weighted by 1/variance of the irradiance, fading to zero weight
+// near black and white. If the project is misaligned by some pixels or something moved, the picture itself takes
+// precedence: another picture contributes only where this one would have recorded its irradiance with the grey values
+// that it has, within .03 of full scale, and in black areas within .01 at most surrounding points. White is consistent
+// with any brighter value. Areas masked in the project do not contribute to other pictures but stay in the picture's
+// own frame. Warns of pictures that no other overlaps, and of pictures whose blocks agree with less than half of the
+// overlapping ones. Memory use, regardless of the number of pictures: two full-size pictures, their irradiance, and
+// sums of 8 bytes per sample and one byte per pixel. The output bytes do not depend on the number of threads.
 Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCorrection> &jobs,
                               const std::vector<PlacedCorrection> &all, const CorrectionKind &kind, Progress &progress);
 

@@ -10,40 +10,41 @@
 namespace lensprof {
 
 void ModelOptions::add_options(Command &command) {
-    command.profile_id("--profile", profile, "id of the profile to use");
+    command.profile_id("--profile", profile, "use the profile with this id");
     command.flag("--from-db", from_db,
-                 "look each picture's profile up by its EXIF (default where nothing else is given and there is a "
-                 "database); between the settings that are stored its falloff is predicted, as by `lensprof query`");
-    declare_databases(command, dbs, "; --profile is of the first");
-    command.group("What takes the place of EXIF");
+                 "look up the profile of each picture by its EXIF (default if nothing else is given and a database "
+                 "exists); between stored settings the falloff is predicted, as by `lensprof query`");
+    declare_databases(command, dbs, "; --profile refers to the first");
+    command.group("Instead of EXIF");
     key.add_options(command);
     lookup.add_options(command);
-    command.group("The picture's curve");
+    command.group("Response of the pictures");
     command.word(
         "--response", "RESPONSE",
         [this](const std::string &word) {
             response.reset();
             if (word != "auto") response = response_of_word(word);
         },
-        "auto, the profile's (default), srgb, gamma:G, linear, film, or emor:a,b,... (EMoR coefficients)");
+        "response of the pictures: auto (default: that of the profile), srgb, gamma:G, linear, film, or emor:a,b,... "
+        "(EMoR coefficients)");
     command.flag(
         "--force-falloff", force_falloff,
-        "take out a falloff that, by what the picture says, was taken out before: by lensprof (the mark in its XMP), the "
-        "camera (maker notes; phones), or a raw converter");
+        "correct the falloff even if the metadata state that it was corrected before, by lensprof (mark in the XMP), "
+        "the camera (maker notes; phones) or a raw converter");
     command.group("Options");
 }
 
 PictureModels::PictureModels(const ModelOptions &options, bool by_default) : options_(options) {
     options.key.check_names();
     if (options.profile && options.from_db)
-        throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
+        throw Failure(ExitCode::usage, "--profile and --from-db exclude each other; give one of them");
     const auto files =
         options.profile && options.dbs.empty() ? std::vector<std::string>{store_path("")} : databases_of(options.dbs);
     const bool has_database = by_default && (!options.dbs.empty() || path_exists(files[0]));
     if (options.profile || options.from_db || has_database) databases_ = Databases(files);
 }
 
-// What EXIF says, then what the command line says. The sensor's size is that of the table of cameras, where it tells.
+// EXIF, overridden by the command line. The sensor size is that of the table of cameras, if listed.
 lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) const {
     lensprof_profile_key key = metadata.key;
     if (options_.force_falloff || options_.puts_in) key.processing = metadata.processing_before;
@@ -56,8 +57,8 @@ lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) cons
 
 [[noreturn]] static void fail_corrected(const std::string &file, const PictureMetadata &metadata) {
     throw NotThisOne(ExitCode::not_found,
-                     file + ": its falloff was corrected before, " + metadata.corrected_by
-                         + "; correct it all the same with --force-falloff",
+                     file + ": its falloff is already corrected, " + metadata.corrected_by
+                         + "; use --force-falloff to correct it anyway",
                      true);
 }
 
@@ -65,7 +66,7 @@ static bool is_corrected(const lensprof_profile_key &key, const PictureMetadata 
     return key.processing == LENSPROF_PROCESSING_CORRECTED && !metadata.corrected_by.empty();
 }
 
-// A profile of another processing has another response, or what is left of a falloff.
+// A profile of another processing has another response, or only the remaining falloff.
 void PictureModels::take_profile(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
     lensprof_error error{};
     check(lensprof_store_get(databases_.store(0), options_.profile, &profile, &error), databases_.file(0), &error);
@@ -76,13 +77,14 @@ void PictureModels::take_profile(const PictureMetadata &metadata, Correction &jo
     if (is_corrected(key, metadata)) fail_corrected(job.source, metadata);
     if (options_.response && own != LENSPROF_PROCESSING_CORRECTED && its != LENSPROF_PROCESSING_CORRECTED) return;
     const std::string is = processing_name(own), of = processing_name(its);
-    throw NotThisOne(ExitCode::usage, job.source + ": is taken as " + is + ", and profile "
-                                          + std::to_string(options_.profile) + " is of " + of
-                                          + " pictures; give --processing " + of + " where this one is " + of
-                                          + ", or its curve, as --response srgb");
+    throw NotThisOne(ExitCode::usage, job.source + ": is treated as " + is + ", but profile "
+                                          + std::to_string(options_.profile) + " is for " + of
+                                          + " pictures; give --processing " + of + " if this picture is " + of
+                                          + ", or its response, such as --response srgb");
 }
 
-// What the picture does not say is what to name; where it says all, its lens may be known by another name.
+// Suggests the options for data missing from the picture; if none is missing, the lens may be stored under another
+// name.
 static std::string missing_options(const lensprof_profile_key &key) {
     std::string options;
     const auto add = [&](bool is_missing, const char *option) {
@@ -91,7 +93,7 @@ static std::string missing_options(const lensprof_profile_key &key) {
     add(!*key.lens && !*key.camera_model, "the lens with --lens");
     add(key.focal_mm == LENSPROF_UNKNOWN, "the focal length with --focal");
     add(key.aperture == LENSPROF_UNKNOWN, "the aperture with --aperture");
-    return options.empty() ? "the lens as the database has it with --lens" : options;
+    return options.empty() ? "the lens name used in the database with --lens" : options;
 }
 
 void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
@@ -102,11 +104,11 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     const lensprof_status status = databases_.look_up(key, options, profile, how);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_corrected(key, metadata)) fail_corrected(job.source, metadata);
     if (status == LENSPROF_ERROR_NOT_FOUND)
-        throw NotThisOne(ExitCode::not_found,
-                         job.source + ": no profile for " + describe_key(key) + " in " + databases_.names() + " ("
-                             + how.reason + describe_nearest(nearest_names(databases_, key, how))
-                             + "); make one with `lensprof build`, name " + missing_options(key) + ", or a "
-                               "profile with --profile");
+        throw NotThisOne(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "
+                                                  + databases_.names() + " (" + how.reason
+                                                  + describe_nearest(nearest_names(databases_, key, how))
+                                                  + "); make one with `lensprof build`, give " + missing_options(key)
+                                                  + ", or give a profile with --profile");
     if (how.exact && how.falloff_store == 0)
         job.profile_id = how.id[0];
     else
@@ -120,14 +122,14 @@ void PictureModels::choose(const PictureMetadata &metadata, Correction &job) con
     if (options_.response) {
         profile->responses = 1;
         profile->response[0] = *options_.response;
-        profile->covariance_size = 0;  // of a response that is not there
+        profile->covariance_size = 0;  // of a missing response
     }
     if (metadata.may_be_linear && !options_.response && !options_.key.has_processing())
         job.note =
-            "nothing says whether this 16 bit TIFF is linear; it is taken as rendered (give --processing raw, or "
-            "jpeg, where you know)";
+            "this 16 bit TIFF is not marked as linear; it is treated as rendered (give --processing raw or jpeg to "
+            "state it)";
     if (options_.force_falloff && !options_.puts_in && !metadata.corrected_by.empty())
-        job.note = "its falloff was corrected before, " + metadata.corrected_by + ", and is once more";
+        job.note = "its falloff was already corrected, " + metadata.corrected_by + ", and is corrected again";
     job.model = profile;
     job.model_name = describe_key(profile->key);
 }

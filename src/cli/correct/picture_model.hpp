@@ -1,4 +1,4 @@
-// What each picture is corrected with: a profile by its number, or one that is looked up by EXIF.
+// The model that corrects each picture: a profile given by id, or one looked up by EXIF.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace lensprof {
 
-// Why one picture is not corrected, which is no reason not to correct the others.
+// Why one picture cannot be corrected; other pictures are still corrected.
 struct NotThisOne : Failure {
     NotThisOne(ExitCode exit_code, const std::string &text, bool already = false)
         : Failure(exit_code, text), corrected_already(already) {}
@@ -26,24 +26,24 @@ struct ModelOptions {
     std::vector<std::string> dbs;
     int64_t profile = 0;
     bool from_db = false, force_falloff = false;
-    bool puts_in = false;  // the falloff is to be put in: into a corrected picture, too
-    KeyFilter key;         // in place of EXIF's
+    bool puts_in = false;  // add the falloff, also to corrected pictures
+    KeyFilter key;         // overrides EXIF
     LookupOptions lookup;
-    std::optional<lensprof_response> response;  // in place of the profile's
+    std::optional<lensprof_response> response;  // overrides the profile
 
     void add_options(Command &command);
 };
 
-// The databases that models come from.
+// The databases of the models.
 class PictureModels {
 public:
-    // Failure (usage) for options that contradict each other. Without --profile and --from-db the databases are used
-    // where there is one and `by_default`.
+    // Failure (usage) for conflicting options. Without --profile and --from-db, existing databases are used if
+    // `by_default`.
     PictureModels(const ModelOptions &options, bool by_default);
 
     bool are_used() const { return !databases_.is_empty(); }
 
-    // Sets the model of a picture, what it is called and how it was found. NotThisOne where there is none that fits.
+    // Sets the model of a picture, its name and how it was found. NotThisOne if no model fits.
     void choose(const PictureMetadata &metadata, Correction &job) const;
 
 private:

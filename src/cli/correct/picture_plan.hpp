@@ -1,4 +1,4 @@
-// From a correction to the library's plan, and to what is written of it.
+// Converts a correction to the library's plan and to the header and metadata of the output.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace lensprof {
 
-// A plan in memory of its own.
+// A plan that owns its memory.
 class Plan {
 public:
     Plan(const lensprof_apply_options &options, const std::string &item)
@@ -25,10 +25,10 @@ private:
 
 lensprof_apply_options options_of(const Picture &source, const Correction &job, const CorrectionKind &kind);
 
-// The header of what becomes of a picture.
+// The header of the output.
 Picture header_of_result(const Picture &source, uint32_t sample);
 
-// Metadata of the source, and the mark of the correction.
+// The metadata of the source with the mark of the correction.
 WriteOptions write_options(const Correction &job, const CorrectionKind &kind);
 
 }  // namespace lensprof

@@ -4,7 +4,7 @@
 
 namespace lensprof {
 
-static constexpr double bent_px = 0.05;  // by which those between may be off a plane
+static constexpr double bent_px = 0.05;  // by which interpolated positions may deviate
 
 PlaceMap::PlaceMap(const LitPicture &from, const LitPicture &to)
     : from_(from.camera()),
@@ -47,7 +47,7 @@ void PlaceMap::between(size_t n, double u, double v, double xy[2]) const {
 bool PlaceMap::is_plane(size_t n) const {
     for (size_t corner : {n, n + 1, n + columns_, n + columns_ + 1})
         if (!nodes_[corner].is_seen) return false;
-    constexpr double inside[3][2] = {{0.5, 0.5}, {0.5, 0.0}, {0.0, 0.5}};  // where bends are largest
+    constexpr double inside[3][2] = {{0.5, 0.5}, {0.5, 0.0}, {0.0, 0.5}};  // where curvature is largest
     for (const auto &[u, v] : inside) {
         double straight[2], exact[2];
         between(n, u, v, straight);

@@ -1,4 +1,4 @@
-// From the pixels of a picture to the places of another one.
+// Maps the pixels of a picture to positions in another picture.
 #pragma once
 
 #include <vector>
@@ -7,21 +7,21 @@
 
 namespace lensprof {
 
-// Where another picture shows the pixels of one: computed at nodes, and between four of them where places lie on a
-// plane to bent_px; else, at the cut of a picture all around for one, for every pixel.
+// Positions in another picture of the pixels of this one. Computed at nodes and interpolated between four nodes if the
+// positions are planar to bent_px; else, such as at the seam of a full panorama, computed for every pixel.
 class PlaceMap {
 public:
     PlaceMap(const LitPicture &from, const LitPicture &to);
 
-    // The place may lie outside of the frame; false where the other camera does not look at all.
+    // The position may lie outside the frame; false if the point is not in front of the other camera.
     bool find(uint32_t x, uint32_t y, double xy[2]) const;
 
 private:
-    static constexpr uint32_t node_px = 8;  // between places that are computed
+    static constexpr uint32_t node_px = 8;  // between computed positions
 
     struct Node {
         double xy[2] = {};
-        bool is_seen = false, is_plane = false;  // is_plane: of the square of nodes from this one on
+        bool is_seen = false, is_plane = false;  // is_plane: whether the square of nodes starting here is planar
     };
 
     double x_of(size_t n) const { return static_cast<double>(n % columns_) * node_px; }

@@ -13,7 +13,7 @@ std::shared_ptr<const lensprof_profile> model_of_project(const Project &project,
     return profile;
 }
 
-// The project's, or the first image that its result is not without.
+// The reference of the project, or the first image of its result.
 static uint32_t joined_reference(const Project &project) {
     uint32_t reference = project.reference;
     for (uint32_t i = 0; i < project.images.size() && project.images[reference].left_out; i++)

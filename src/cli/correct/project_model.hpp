@@ -1,4 +1,4 @@
-// What a project with a result in it says about its pictures.
+// The model that a project with a result contains.
 #pragma once
 
 #include <memory>
@@ -11,15 +11,15 @@ namespace lensprof {
 // Response and falloff of an image.
 std::shared_ptr<const lensprof_profile> model_of_project(const Project &project, uint32_t image);
 
-// That of the reference, where images have several: what all are encoded by, so that they look alike. NULL where they
-// have one.
+// The response of the reference if the images have several: all outputs are encoded with it so that they look alike.
+// NULL if the images share one response.
 std::shared_ptr<const lensprof_response> common_encoding(const Project &project);
 
-// The project's exposures, relative to its reference, or where the result is without that to the first image that it
-// has.
+// The exposures of the project, relative to its reference or, if the result does not include it, to the first included
+// image.
 std::vector<lensprof_exposure> relative_to_joined(const Project &project);
 
-// Those of images that the result in the project is not without.
+// The exposures of the images included in the result.
 std::vector<lensprof_exposure> joined_exposures(const Project &project, const std::vector<lensprof_exposure> &all);
 
 }  // namespace lensprof

@@ -12,13 +12,13 @@ namespace lensprof {
 namespace {
 
 constexpr double usual_time_s = 1.0 / 60.0, usual_aperture = 2.8, usual_iso = 100.0,
-                 most_iso = 65535.0;  // of EXIF's tag
+                 most_iso = 65535.0;  // of the EXIF tag
 
 double exif_ev_of(double time_s, double aperture, double iso) {
     return std::log2(time_s * iso / 100.0 / (aperture * aperture));
 }
 
-// None where a picture cannot be read, which may be of another part of the work.
+// Empty if a picture cannot be read; it may belong to another part of the work.
 std::optional<double> stated_ev(const std::string &file) {
     try {
         return read_metadata(file).exif_ev;

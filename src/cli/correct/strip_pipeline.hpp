@@ -1,4 +1,4 @@
-// One thread makes what another takes, a few items ahead.
+// One thread produces items that another consumes, a few items ahead.
 #pragma once
 
 #include <condition_variable>
@@ -11,21 +11,21 @@
 
 namespace lensprof {
 
-// Items that go round between two threads: empty to the maker, full to the taker, in order. Neither waits for ever
-// for the other: who ends says so.
+// Items that circulate between two threads: empty to the producer, full to the consumer, in order. Neither side waits
+// forever: a side that ends signals it.
 template <class Item>
 class StripRing {
 public:
     explicit StripRing(size_t items) : items_(items) {}
 
-    // The next empty item; NULL when the taker has given up.
+    // The next empty item; NULL if the consumer has stopped.
     Item *empty() {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [&] { return made_ - taken_ < items_.size() || given_up_; });
         return given_up_ ? nullptr : &items_[made_ % items_.size()];
     }
 
-    // The next full one; NULL when there will be none.
+    // The next full item; NULL if there will be no more.
     Item *full() {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [&] { return made_ > taken_ || ended_; });
@@ -62,8 +62,8 @@ private:
     std::condition_variable changed_;
 };
 
-// Calls make(item), on another thread if `split`, until it returns false, and take(item) for every item it made, in
-// order. Throws what the first of the two to fail, in the order of the items, has thrown.
+// Calls make(item), on another thread if `split`, until it returns false, and take(item) for every item in order.
+// Throws the exception of whichever failed first in the order of the items.
 template <class Item, class Make, class Take>
 void make_and_take(bool split, const Make &make, const Take &take) {
     StripRing<Item> ring(split ? 3 : 1);
@@ -80,7 +80,7 @@ void make_and_take(bool split, const Make &make, const Take &take) {
     try {
         if (split) maker = std::thread(run);
     } catch (const std::system_error &) {
-        // no thread to be had
+        // no thread available
     }
     if (!maker.joinable()) {
         for (Item *item = ring.empty(); make(*item);) take(*item);
