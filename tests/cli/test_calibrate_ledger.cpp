@@ -33,8 +33,8 @@ void test_ended_within(void **) {
     save_text(file, "edited, and longer");
     Ledger again(work(""));
     assert_true(again.is_in_the_way(file));
-    assert_failure(ExitCode::usage, "a.png: was edited", [&] { again.begin(file, "2"); });
-    assert_failure(ExitCode::usage, "b.png: is there already", [&] { again.begin(other, "2"); });
+    assert_failure(ExitCode::usage, "a.png: was modified after", [&] { again.begin(file, "2"); });
+    assert_failure(ExitCode::usage, "b.png: exists and was not written by calibrate", [&] { again.begin(other, "2"); });
     again.remove(file);
     assert_true(text_of(file) == "edited, and longer");
 }
@@ -129,7 +129,7 @@ void test_edited_files(void **) {
         else
             touch("img002.png");
         const Outcome refused = run_words(calibrated(work("row")));
-        if (refused.code != usage || !contains(refused.err, file + ": was edited"))
+        if (refused.code != usage || !contains(refused.err, file + ": was modified after"))
             fail_msg("%s: exit code %d: %s", file.c_str(), refused.code, refused.err.c_str());
         assert_true(text_of(file) == "edited");
         json_of(calibrated(work("row"), {"--overwrite"}));
@@ -172,7 +172,7 @@ void test_two_at_once(void **) {
     fs::create_directory(work("out"));
     const int other = open(work("out").c_str(), O_RDONLY | O_DIRECTORY);
     assert_true(other >= 0 && flock(other, LOCK_EX | LOCK_NB) == 0);
-    assert_refused(failed, calibrated(work("row")), {"another calibrate is at work", "out"});
+    assert_refused(failed, calibrated(work("row")), {"another calibrate is using this folder", "out"});
     close(other);
     run_words(calibrated(work("row")));
     assert_true(fs::exists(work("out/calibrate.json")));

@@ -58,7 +58,7 @@ void test_edited_project(void **) {
     save_text(project, "garbage");
     const Json garbage = json_of(unstored());
     assert_int_equal(garbage["pictures"].size(), 3);
-    assert_left_out(garbage, "img000.png", "panorama img000 cannot be evened");
+    assert_left_out(garbage, "img000.png", "panorama img000 cannot be corrected");
 }
 
 // Nobody reads a picture for a while: what failed by that is tried again. (As root, permissions do not hinder reading:
@@ -127,7 +127,7 @@ void test_names_of_its_own(void **) {
     fs::rename(work("more/img000.jpg"), work("row/calibrate_sheet.jpg"));
     fs::rename(work("more/img001.jpg"), work("row/panorama_img000.jpg"));
     const Json json = json_of(unstored());
-    assert_left_out(json, "calibrate_sheet.jpg", "the name of a contact sheet");
+    assert_left_out(json, "calibrate_sheet.jpg", "the name of the contact sheet");
     assert_left_out(json, "panorama_img000.jpg", "no overlap");
     assert_false(fs::exists(work("out/panorama_img000.jpg")));
     assert_true(json["panoramas"][0]["name"] == "img000_2");
@@ -135,7 +135,7 @@ void test_names_of_its_own(void **) {
     assert_now(json_of(unstored()), false, 0, 0);
 }
 
-// A folder that cannot be listed is named. As root there is none: another user looks.
+// A folder that cannot list the folder is named. As root there is none: another user looks.
 void test_unlisted_folder(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -148,7 +148,7 @@ void test_unlisted_folder(void **) {
     });
     fs::permissions(work("row/closed"), fs::perms::owner_all);
     if (outcome.code != done) fail_msg("exit code %d: %s", outcome.code, outcome.err.c_str());
-    assert_left_out(Json::parse(outcome.out), "closed", "cannot be listed");
+    assert_left_out(Json::parse(outcome.out), "closed", "cannot list the folder");
 }
 
 // A file of the name calibrate.json does not hide a folder.
@@ -183,12 +183,12 @@ void test_sources(void **) {
     assert_int_equal(json["panoramas"][1]["result"]["prior"]["profile"], 1);
     const Json built = json_of({"build", work("row"), "--db", work("p.db"), "--json", "--no-store"});
     assert_true(built["prior"]["profile"].is_null());
-    assert_true(contains(built["prior"]["reason"], "holds these pictures already"));
+    assert_true(contains(built["prior"]["reason"], "already includes these pictures"));
     // Without its first picture the panorama is the same one.
     fs::remove(work("row/img000.png"));
     const Json again = json_of(calibrated(work("row")));
     assert_now(again, true, 1, 3);
-    assert_true(contains(again.dump(), "holds these pictures already"));
+    assert_true(contains(again.dump(), "already includes these pictures"));
 }
 
 }  // namespace

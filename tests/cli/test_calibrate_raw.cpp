@@ -33,9 +33,9 @@ void test_one_stem(void **) {
     other.push_back(0);
     save(folder + "/img004.NEF", other);
     const Json json = run_on(folder);
-    assert_true(contains(reason_of(json, "img002.png"), "img002.dng is taken in its place"));
-    assert_true(contains(reason_of(json, "img002.tif"), "img002.dng is taken in its place"));
-    assert_true(contains(reason_of(json, "img004.dng"), "as that of img004.NEF, which is taken in its place"));
+    assert_true(contains(reason_of(json, "img002.png"), "img002.dng is used instead"));
+    assert_true(contains(reason_of(json, "img002.tif"), "img002.dng is used instead"));
+    assert_true(contains(reason_of(json, "img004.dng"), "like that of img004.NEF, which is used instead"));
     assert_int_equal(json["found"], 9);
     assert_int_equal(json["found"].get<size_t>(), json["pictures"].size() + json["left_out"].size());
 }

@@ -125,7 +125,7 @@ void test_bad_input(void **) {
     fs::remove(work("one/img001.png"));
     const Json json = json_of({"calibrate", work("one"), "-o", work("out"), "--no-store", "--json"}, not_usable);
     assert_int_equal(json["left_out"].size(), 1);
-    assert_true(contains(json["left_out"][0]["reason"], "no overlap with another picture was found"));
+    assert_true(contains(json["left_out"][0]["reason"], "no overlap with another picture found"));
     save_text(work("notes.txt"), "x");
     assert_refused(usage, calibrated(work("notes.txt")), {"notes.txt"});
     assert_refused(usage, {"calibrate", work("one")}, {"-o"});

@@ -1,4 +1,4 @@
-// One odd picture is no reason to stop the whole job.
+// Keeps one bad picture from stopping the whole job.
 #pragma once
 
 #include <functional>
@@ -8,10 +8,11 @@
 
 namespace lensprof {
 
-// Whether others may go well: not where the disk, the database or an interrupt is the reason, or a file in the way.
+// Whether other steps may still succeed. False if the cause is the disk, the database, an interrupt or a file in the
+// way.
 bool is_of_pictures(const Failure &failure);
 
-// "" where a step went well, else why not. A Failure that is not of pictures is thrown.
+// Returns "" if the step succeeded, else the reason. Rethrows a Failure that does not concern pictures.
 std::string why_not(const std::function<void()> &step);
 
 }  // namespace lensprof

@@ -1,5 +1,4 @@
-// `lensprof calibrate`: pictures -> panoramas, profiles, corrected copies and what is to be said of them, in one
-// folder.
+// `lensprof calibrate`: finds panoramas, stores profiles, and writes corrected copies and a report into one folder.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -23,9 +22,9 @@ namespace lensprof {
 namespace {
 
 void declare(Command &command, CalibrateOptions &o) {
-    command.files("INPUT", o.inputs, "folders of pictures, with their subfolders, and pictures");
+    command.files("INPUT", o.inputs, "pictures and folders of pictures (with subfolders)");
     command.require("INPUT");
-    command.folder("-o,--output", o.output, "folder for all that is written");
+    command.folder("-o,--output", o.output, "output folder");
     command.require("--output");
     command.words(
         "--db", "FILE",
@@ -33,39 +32,42 @@ void declare(Command &command, CalibrateOptions &o) {
             o.store.dbs.push_back(word);
             o.store.db = o.store.dbs.front();
         },
-        "profile database; where it is given more than once profiles are stored in the first, and the others are read; "
-        "default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share");
+        "profile database; repeat to read several, profiles are stored in the first; default lensprof/profiles.db in "
+        "$XDG_DATA_HOME or ~/.local/share");
     command.flag("--no-store", o.store.no_store, "do not store profiles");
-    command.flag("--one-lens", o.one_lens, "take pictures of a panorama as of one camera and lens, whatever they say");
-    command.flag("--overwrite", o.overwrite, "replace files in the output folder that are not of an earlier calibrate");
-    command.count("--threads", o.threads, 0, 1024, "threads that correct pictures; 0 = all cores (default)");
+    command.flag("--one-lens", o.one_lens,
+                 "treat the pictures of a panorama as from one camera and lens, regardless "
+                 "of their EXIF");
+    command.flag("--overwrite", o.overwrite, "replace files in the output folder that calibrate did not write");
+    command.count("--threads", o.threads, 0, 1024, "number of threads that correct pictures; default 0 = all cores");
     declare_json(command, o.json);
     declare_progress(command, o.progress);
     command.footer(
         "Example: lensprof calibrate holiday -o holiday/calibrated\n"
-        "Every panorama in the folder is found, fitted, stored as a profile where it is one, and evened out. Pictures in\n"
-        "none are corrected by a profile of the databases, where there is one for their camera, lens and setting.\n"
-        "The output folder gets a corrected copy of each, under its own name; of each panorama a project\n"
-        "(panorama_NAME.pto, for Hugin) and a mosaic before and after (panorama_NAME.jpg); a contact sheet\n"
-        "(calibrate_sheet.jpg); and calibrate.json with all numbers and reasons. A second run does what is missing,\n"
-        "after an interrupt, too; what has changed is done again. Originals are never written to.\n"
-        "Exit code 0: something was corrected, and what was not is named; 4: nothing could be; 3: no picture can be read.");
+        "Finds all panoramas in the folder, fits them, stores their profiles if usable, and corrects them.\n"
+        "Other pictures are corrected with a profile of the databases for their camera, lens and setting, if\n"
+        "there is one. The output folder receives a corrected copy of each picture under its own name; per\n"
+        "panorama a project (panorama_NAME.pto, for Hugin) and a mosaic before and after\n"
+        "(panorama_NAME.jpg); a contact sheet (calibrate_sheet.jpg); and calibrate.json with all numbers and\n"
+        "reasons. A second run does only what is missing or has changed, also after an interrupt. Originals\n"
+        "are never modified. Exit code 0: something was corrected, and the rest is listed; 4: nothing could\n"
+        "be corrected; 3: no picture could be read.");
 }
 
-// Files that stand where something is to be written: before anything is computed.
+// Checks for files in the way of outputs before anything is computed.
 void check_in_the_way(const CalibrateOptions &o, const Inputs &inputs, const Ledger &ledger) {
     std::vector<std::string> wanted = sheet_names(o, inputs.pictures.size());
     wanted.insert(wanted.begin(), (std::filesystem::path(o.output) / summary_name).string());
     for (const InputPicture &picture : inputs.pictures) wanted.push_back(picture.target);
     for (const std::string &file : wanted) {
-        if (is_folder(file)) throw Failure(ExitCode::usage, file + ": is a folder; give another name with -o");
+        if (is_folder(file)) throw Failure(ExitCode::usage, file + ": is a folder; give another output folder with -o");
         if (!o.overwrite && !ledger.knows(file) && ledger.is_in_the_way(file))
-            throw Failure(ExitCode::usage, file + ": is there already and not of an earlier calibrate; give another "
-                                                  "folder with -o, or --overwrite");
+            throw Failure(ExitCode::usage, file + ": exists and was not written by calibrate; give another folder "
+                                                  "with -o, or use --overwrite");
     }
 }
 
-// Only where it has changed: a run that finds everything done changes nothing.
+// Writes only if it has changed: a run that finds everything done changes nothing.
 void write_summary(const CalibrateOptions &o, const Json &json, Ledger &ledger) {
     const std::string file = (std::filesystem::path(o.output) / summary_name).string();
     std::ostringstream text;
@@ -80,7 +82,7 @@ void write_summary(const CalibrateOptions &o, const Json &json, Ledger &ledger) 
     ledger.save();
 }
 
-// A database in the output folder needs no check before that is made.
+// A database in the output folder needs no check before the folder is created.
 void check_database(const CalibrateOptions &o) {
     const std::string folder = std::filesystem::path(absolute_path(o.store.db)).parent_path().string();
     if (o.store.db.empty() || is_folder(o.output) || one_name(folder) != one_name(o.output)) check_store(o.store);
@@ -97,7 +99,7 @@ int run(const CalibrateOptions &o, Streams &streams) {
     check_in_the_way(o, inputs, ledger);
     if (inputs.pictures.empty() && inputs.unreadable)
         throw Failure(ExitCode::unreadable,
-                      inputs.label + ": none of the pictures can be read: " + inputs.left_out[0].reason);
+                      inputs.label + ": no picture could be read; the first: " + inputs.left_out[0].reason);
     if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
     make_folder(o.output);
     lock.take();
@@ -121,17 +123,18 @@ int run(const CalibrateOptions &o, Streams &streams) {
         return p.summary["result"].is_object() && !p.summary["result"]["profile"].is_null();
     });
     if (!pictures.list.empty() || is_stored) return static_cast<int>(ExitCode::done);
-    tell(streams, inputs.label + ": nothing could be corrected; the reasons are in "
+    tell(streams, inputs.label + ": nothing could be corrected; see the reasons in "
                       + (std::filesystem::path(o.output) / summary_name).string()
-                      + ": give pictures that share a third, or a database that knows the lens");
+                      + ": give pictures that overlap by a third, or a database that contains the lens");
     return static_cast<int>(ExitCode::not_usable);
 }
 
 }  // namespace
 
 void declare_calibrate(Command &program) {
-    Command command = program.add("calibrate", "a folder of pictures -> profiles, corrected copies and a contact sheet",
-                                  "Does the whole job: finds overlaps, fits, stores, corrects and shows the result.");
+    Command command = program.add("calibrate", "calibrate and correct all pictures of a folder",
+                                  "Finds overlaps, fits and stores profiles, corrects the pictures and writes a "
+                                  "contact sheet.");
     auto o = std::make_shared<CalibrateOptions>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -33,7 +33,7 @@ using ByFile = std::map<std::string, CorrectedPicture>;
 
 using Reasons = std::map<std::string, std::string>;  // by file
 
-// By the project, whose images are found by their files: somebody may have edited it.
+// Uses the project and finds its images by file, because somebody may have edited it.
 void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     const std::string text = read_text(panorama.project, largest_text);
     const Project project = read_project(panorama.project);
@@ -45,7 +45,7 @@ void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons)
         const auto image = images.find(picture->file);
         if (!image || project.images[*image].left_out) {
             reasons[picture->file] = picture->file
-                                     + (image ? ": does not agree with the others of panorama " + panorama.name
+                                     + (image ? ": disagrees with the other pictures of panorama " + panorama.name
                                               : ": is not in " + panorama.project);
             continue;
         }
@@ -58,7 +58,7 @@ void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons)
     }
 }
 
-// Of the pictures of a panorama; those that its result is without get a reason.
+// For the pictures of a panorama; those missing from its result get a reason.
 void take_panorama(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     std::string why;
     if (panorama.evens()) {
@@ -69,12 +69,12 @@ void take_panorama(const Panorama &panorama, ByFile &corrected, Reasons &reasons
     }
     if (why.empty()) return;
     for (const InputPicture *picture : panorama.pictures)
-        reasons[picture->file] = picture->file + ": panorama " + panorama.name + " cannot be evened: " + why;
+        reasons[picture->file] = picture->file + ": panorama " + panorama.name + " cannot be corrected: " + why;
 }
 
-// By a profile of the databases; the reason why not, or "".
+// Uses a profile of the databases; returns the reason on failure, else "".
 std::string take_profile(const PictureModels &models, const InputPicture &picture, ByFile &corrected) {
-    if (!models.are_used()) return "there is no database of profiles yet";
+    if (!models.are_used()) return "no profile database exists yet";
     CorrectedPicture one{&picture, "", std::nullopt, "", job_of(picture)};
     try {
         models.choose(picture.metadata, one.job);
@@ -97,7 +97,7 @@ CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inpu
     for (const Panorama &panorama : panoramas.list) take_panorama(panorama, corrected, reasons);
     ModelOptions options;
     options.dbs = o.store.dbs;
-    if (!options.dbs.empty())  // the first is made when a profile is stored
+    if (!options.dbs.empty())  // created when the first profile is stored
         options.dbs.erase(std::remove_if(options.dbs.begin(), options.dbs.end(),
                                          [](const std::string &db) { return !path_exists(db); }),
                           options.dbs.end());
@@ -136,7 +136,8 @@ void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, L
             if (!is_of_pictures(failure)) throw;
             why = failure.what();
         }
-        // As many as are written were worked on in this order; the next one is the one that cannot be read.
+        // Pictures are processed in this order, so the count of written ones gives the index of the one that cannot be
+        // read.
         const auto next = std::find_if(jobs.begin(), jobs.end(),
                                        [&](const Correction &job) { return !ledger.is_written(job.target); });
         pictures.written += static_cast<uint32_t>(next - jobs.begin());

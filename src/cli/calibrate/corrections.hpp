@@ -10,27 +10,27 @@
 
 namespace lensprof {
 
-// One picture that is corrected, by this run or an earlier one.
+// A picture corrected by this run or an earlier one.
 struct CorrectedPicture {
     const InputPicture *picture;
-    std::string panorama;      // its name; "" where a profile of the databases was taken
-    std::optional<double> ev;  // beside the mean of the panorama, which it was made like
+    std::string panorama;      // its name; "" if a profile of the databases was used
+    std::optional<double> ev;  // relative to the mean of the panorama, to which it was matched
     std::string key;           // of the copy
     Correction job;
 };
 
 struct CorrectedPictures {
-    std::vector<CorrectedPicture> list;  // by name
+    std::vector<CorrectedPicture> list;  // sorted by name
     std::vector<LeftOutPicture> left_out;
     uint32_t written = 0;  // by this run
 };
 
-// What each picture is corrected with: the project of its panorama, as `apply --pto`, else a profile that a lookup
-// finds, as `apply`.
+// How each picture is corrected: with the project of its panorama, as `apply --pto` does, else with a looked-up
+// profile, as `apply` does.
 CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas);
 
-// Writes the copies that the ledger does not have. A picture that cannot be corrected is left out. InTheWay, before the
-// first is written, for a copy that somebody has edited and whose correction is another now.
+// Writes the copies missing from the ledger. A picture that cannot be corrected is left out. Throws InTheWay, before
+// the first copy is written, if a copy was modified by somebody and its correction has changed.
 void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, Ledger &ledger, Progress &progress);
 
 }  // namespace lensprof

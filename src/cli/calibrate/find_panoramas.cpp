@@ -1,4 +1,4 @@
-// Which pictures belong together.
+// Finds the panoramas.
 #include <algorithm>
 #include <filesystem>
 
@@ -14,7 +14,7 @@
 namespace lensprof {
 namespace {
 
-// One group of pictures, as the ledger has it.
+// One group of pictures, as stored in the ledger.
 struct Group {
     std::vector<const InputPicture *> pictures;
     std::string geometry;
@@ -24,7 +24,7 @@ struct Group {
 
 struct Groups {
     std::vector<Group> list;
-    std::map<std::string, std::string> unjoined, unreadable;  // by file: why
+    std::map<std::string, std::string> unjoined, unreadable;  // reason by file
 };
 
 std::string key_of(const std::vector<const InputPicture *> &pictures, const std::string &more) {
@@ -37,9 +37,9 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     Group group;
     for (const uint32_t number : found.pictures) group.pictures.push_back(all[number]);
     group.geometry = text_of_found(found);
-    // Through the ledger's text, so that a fit of recalled matches is the same to the byte.
+    // Converted through the ledger's text, so that a fit of recalled matches is identical to the byte.
     if (!read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches))
-        throw Failure(ExitCode::failed, "matches of pictures are not finite numbers; please report this");
+        throw Failure(ExitCode::failed, "internal error: matches of pictures are not finite; please report this");
     group.facts = {{"camera", found.kind == SceneKind::still   ? stood_still
                               : found.kind == SceneKind::plane ? "moved over a plane"
                                                                : "turned about one point"},
@@ -51,7 +51,7 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     return group;
 }
 
-// A Hugin project, which states paths from its folder on, cannot state such a name.
+// A Hugin project stores paths relative to its folder and cannot store such a name.
 bool has_odd_name(const InputPicture &picture, const std::string &output) {
     const auto stated =
         std::filesystem::path(absolute_path(picture.file)).lexically_proximate(absolute_path(output)).string();
@@ -65,8 +65,8 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
     Groups groups;
     for (const InputPicture *picture : given) {
         if (has_odd_name(*picture, o.output)) {
-            groups.unjoined[picture->file] = picture->file + ": has a quote or a line break in its path, which a Hugin "
-                                                             "project cannot state; rename it";
+            groups.unjoined[picture->file] = picture->file + ": its path has a quote or a line break, which a Hugin "
+                                                             "project cannot store; rename it";
             continue;
         }
         files.push_back(picture->file);
@@ -76,11 +76,12 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
     const Registration found = register_pictures(files, o.one_lens, progress);
     for (const auto &[number, why] : found.unreadable) groups.unreadable[files[number]] = why;
     for (const uint32_t number : found.alone)
-        groups.unjoined[files[number]] = files[number] + ": no overlap with another picture was found";
+        groups.unjoined[files[number]] = files[number] + ": no overlap with another picture found";
     for (const uint32_t number : found.foreign)
-        groups.unjoined[files[number]] =
-            files[number] + ": overlaps with others, and is "
-            + (o.one_lens ? "the only camera raw file among them, or the only one that is none" : of_another_body);
+        groups.unjoined[files[number]] = files[number] + ": overlaps others, but "
+                                         + (o.one_lens ? "it is the only camera raw file among them, or the only "
+                                                         "other picture"
+                                                       : of_another_body);
     for (const uint32_t number : found.apart)
         groups.unjoined[files[number]] = files[number] + ": " + joined_by_another_body;
     for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));
@@ -124,14 +125,15 @@ bool recall_reasons(const Json &list, const ByNotedFile &by_file, std::map<std::
     return true;
 }
 
-// A disk or network may have failed for a moment.
+// A disk or network error may be temporary.
 bool is_readable_now(const std::string &file) {
     ReadOptions options;
     options.max_side = 256;
     return why_not([&] { read_picture(file, options); }).empty();
 }
 
-// What the ledger has of these pictures; false where it has none, or where one can be read that could not be.
+// Takes the ledger's data on these pictures; false if they are missing, or if a picture that was unreadable can now be
+// read.
 bool recall(const Json &notes, const std::string &key, const std::vector<const InputPicture *> &all, Groups &groups) {
     if (!notes.is_object() || !notes.contains("registration") || notes["registration"].value("key", "") != key)
         return false;
@@ -156,7 +158,7 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
                            [](const auto &one) { return is_readable_now(one.first); });
 }
 
-// The name of an earlier panorama that has the key, or with `key` empty any of the pictures; "" where there is none.
+// The name of an earlier panorama with this key or, with an empty `key`, with any of the pictures; "" if not found.
 std::string earlier_name(const Json &notes, const std::string &key, const Group &group,
                          const std::set<std::string> &taken) {
     if (!notes.is_object() || !notes.contains("results")) return {};
@@ -174,13 +176,13 @@ std::string file_of(const CalibrateOptions &o, const std::string &name, const ch
     return (std::filesystem::path(o.output) / ("panorama_" + name + end)).string();
 }
 
-// By the first picture; where that name is taken by something else, with a number.
+// Named after the first picture, with a number if the name is used by something else.
 std::string new_name(const CalibrateOptions &o, const Group &group, const std::set<std::string> &taken,
                      const std::set<std::string> &targets, const Ledger &ledger) {
     std::string base = std::filesystem::path(group.pictures[0]->name).replace_extension().relative_path().string();
     std::replace(base.begin(), base.end(), '/', '-');
     for (char &c : base) c = static_cast<unsigned char>(c) < ' ' || c == '"' ? '_' : c;
-    const size_t last = base.rfind("..-");  // of a picture above the folder
+    const size_t last = base.rfind("..-");  // for a picture above the folder
     if (last != std::string::npos) base = base.substr(last + 3);
     if (base.size() > 100) base = base.substr(base.size() - 100);
     for (int number = 1;; number++) {
@@ -194,7 +196,7 @@ std::string new_name(const CalibrateOptions &o, const Group &group, const std::s
     }
 }
 
-// The names of earlier runs where they can be kept: by the pictures and what is asked for, then by any of the pictures.
+// Keeps the names of earlier runs if possible: by pictures and options, then by any of the pictures.
 std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<Group> &groups,
                                   const std::vector<std::string> &keys, const std::set<std::string> &targets,
                                   const Ledger &ledger) {
@@ -205,7 +207,7 @@ std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<G
             if (!names[n].empty()) continue;
             const std::string name = earlier_name(ledger.notes, is_exact ? keys[n] : "", groups[n], taken);
             const bool is_copy = targets.count(file_of(o, name, ".pto")) || targets.count(file_of(o, name, ".jpg"));
-            if (name.empty() || is_copy) continue;  // a new picture has that name
+            if (name.empty() || is_copy) continue;  // a new picture has this name
             names[n] = name;
             taken.insert(name);
         }
@@ -216,7 +218,7 @@ std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<G
     return names;
 }
 
-// A picture of its own; that of an earlier run, whose profile must not count for it a second time.
+// Prefers a picture of its own to that of an earlier run, whose profile must not count twice.
 std::string source_of(const Json &notes, const Group &group, const std::string &name) {
     const std::string known = ascii_path(name);
     if (notes.is_object() && notes.contains("results") && notes["results"].contains(known))

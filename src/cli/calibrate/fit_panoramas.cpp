@@ -17,7 +17,7 @@
 namespace lensprof {
 namespace {
 
-// Warnings among the lines of standard error, as texts.
+// The warnings in the lines of standard error.
 Json warnings_in(const std::string &lines) {
     const std::string start = "lensprof: warning: ";
     Json warnings = Json::array();
@@ -40,7 +40,7 @@ Project project_of(const Panorama &panorama) {
     return project;
 }
 
-// Fits and stores; the project's text goes to `outputs`, which are committed with the profile.
+// Fits and stores; the project text goes to `outputs`, which are committed with the profile.
 void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &project, Progress &progress) {
     std::ostringstream out, err;
     Streams streams{out, err};
@@ -56,9 +56,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     if (o.store.no_store) panorama.summary["not_stored"] = "--no-store";
     if (!o.store.no_store && !*exif.camera_model && !*exif.lens) {
         options.store.no_store = true;
-        panorama.summary["not_stored"] =
-            std::string("no EXIF says which camera and lens it was; `lensprof build` of the ")
-            + (project.by_matches ? "pictures" : "project") + " takes --camera and --lens";
+        panorama.summary["not_stored"] = std::string("EXIF does not name camera and lens; run `lensprof build` on the ")
+                                         + (project.by_matches ? "pictures" : "project") + " with --camera and --lens";
     }
     const lensprof_profile_key key = profile_key(options, project, metadata, streams);
     const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
@@ -81,8 +80,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     panorama.summary["result"] = result;
 }
 
-// A panorama that cannot be fitted is no reason to leave the others. Whether it can be may change where a picture could
-// not be read, so the next run asks again, and does not where the pictures do not serve.
+// A failed panorama does not stop the others. If a picture could not be read, the next run tries again; if the pictures
+// are unsuitable, it does not.
 void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Progress &progress) {
     Project project = project_of(panorama);
     ledger.begin(panorama.project, panorama.key);
@@ -101,7 +100,7 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
     ledger.finish(panorama.project);
     Json files = Json::array();
     for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(one_name(picture->file)));
-    std::ostringstream valid;  // names of files need not be UTF-8
+    std::ostringstream valid;  // file names need not be UTF-8
     print_json(panorama.summary, valid);
     panorama.summary = Json::parse(valid.str());
     ledger.notes["results"][ascii_path(panorama.name)] = {
@@ -133,7 +132,7 @@ bool is_stored(const CalibrateOptions &o, const Json &summary) {
     return all;
 }
 
-// The result of an earlier run, with its project, which is written again where somebody has removed it.
+// The result of an earlier run with its project, which is rewritten if somebody removed it.
 bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
     const Json &notes = ledger.notes;
     const std::string name = ascii_path(panorama.name);
@@ -141,7 +140,7 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
     const Json &known = notes["results"][name];
     if (known.value("key", "") != panorama.key || !is_stored(o, known["summary"])) return false;
     panorama.summary = known["summary"];
-    panorama.summary["project"] = panorama.project;  // the folder may be written in another way
+    panorama.summary["project"] = panorama.project;  // the folder may be spelled differently
     if (ledger.is_current(panorama.project, panorama.key)) return true;
     const std::string text = path_of_ascii(known["project"].get<std::string>());
     ledger.begin(panorama.project, panorama.key);
@@ -152,7 +151,7 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
     return true;
 }
 
-// The mosaic shows what the project says, which may have been edited since it was fitted.
+// The mosaic shows the current project, which may have been edited since the fit.
 void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
     const std::string text = read_text(panorama.project, largest_text), key = digest_of_text("preview\n" + text);
     if (ledger.is_current(panorama.preview, key)) return;

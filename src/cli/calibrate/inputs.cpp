@@ -24,13 +24,16 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
             throw Failure(
                 ExitCode::usage,
                 word
-                    + ": is no picture (.jpg, .png, .tif, camera raw) and no folder; for a project there is `lensprof build`");
+                    + ": is neither a picture (.jpg, .png, .tif, camera raw) nor a folder; use `lensprof build` for a "
+                      "project");
         if (one_name(word) == one_name(output))
-            throw Failure(ExitCode::usage, output + ": is the folder of the pictures; give another with -o");
+            throw Failure(ExitCode::usage, output + ": is the folder of the pictures; give another output folder with "
+                                                    "-o");
     }
 }
 
-// Of pictures of one folder that would have one copy the first is taken: img000.dng and img000.nef are both img000.tif.
+// Of pictures in one folder with the same copy name the first is used: img000.dng and img000.nef both become
+// img000.tif.
 void leave_out_doubles(Inputs &inputs) {
     std::map<std::string, const InputPicture *> first;
     std::vector<InputPicture> kept;
@@ -40,8 +43,8 @@ void leave_out_doubles(Inputs &inputs) {
         const auto [other, is_new] = first.try_emplace(one_name(picture.target), nullptr);
         if (!is_new && fs::path(other->second->file).parent_path() == file.parent_path()) {
             inputs.left_out.push_back({picture.file, picture.file + ": its corrected copy would be " + picture.target
-                                                         + ", as that of " + other->second->name
-                                                         + ", which is taken in its place; rename one"});
+                                                         + ", like that of " + other->second->name
+                                                         + ", which is used instead; rename one"});
             continue;
         }
         kept.push_back(std::move(picture));
@@ -50,7 +53,7 @@ void leave_out_doubles(Inputs &inputs) {
     inputs.pictures = std::move(kept);
 }
 
-// Pictures of two folders would have the same copy, or one would be written over a picture.
+// Refuses pictures of two folders with the same copy name, and copies that would overwrite a picture.
 void check_targets(const Inputs &inputs, const std::vector<NamedPicture> &named) {
     std::set<std::string> read;
     for (const NamedPicture &picture : named) read.insert(one_name(picture.file));
@@ -59,16 +62,15 @@ void check_targets(const Inputs &inputs, const std::vector<NamedPicture> &named)
         const std::string target = one_name(picture.target);
         if (read.count(target))
             throw Failure(ExitCode::usage, picture.file + ": its corrected copy would be " + picture.target
-                                               + ", which is a picture of this call; give another folder with -o");
+                                               + ", which is an input picture; give another folder with -o");
         const auto [other, is_new] = written.try_emplace(target, picture.file);
         if (!is_new)
-            throw Failure(ExitCode::usage,
-                          picture.file + " and " + other->second + ": both would be " + picture.target
-                              + "; give the folder above them, or calibrate them one folder at a time");
+            throw Failure(ExitCode::usage, picture.file + " and " + other->second + ": both would be " + picture.target
+                                               + "; give their parent folder, or calibrate one folder at a time");
     }
 }
 
-// The name of the copy: with another end where the file's does not state what is in it.
+// The name of the copy, with another extension if the file's does not match its content.
 std::string copy_name(const InputPicture &picture) {
     fs::path name = fs::path(picture.file).filename();
     if (picture.is_raw) return name.replace_extension(".tif").string();
@@ -80,7 +82,7 @@ std::string copy_name(const InputPicture &picture) {
     return name.replace_extension(end).string();
 }
 
-// Whether the copy would take the place of a contact sheet.
+// Whether the copy would overwrite a contact sheet.
 bool is_sheet(const InputPicture &picture, const std::string &output) {
     const fs::path target = one_name(picture.target);
     const std::string name = target.filename().string();
@@ -90,7 +92,7 @@ bool is_sheet(const InputPicture &picture, const std::string &output) {
     return false;
 }
 
-// Metadata, identity and copy in `folder`; the reason to leave it out, or "".
+// Sets metadata, identity and copy in `folder`; returns the reason to leave it out, or "".
 std::string look_at(InputPicture &picture, const fs::path &folder, bool &is_unreadable) {
     try {
         picture.is_raw = raw_kind(picture.file).has_value();
@@ -104,7 +106,7 @@ std::string look_at(InputPicture &picture, const fs::path &folder, bool &is_unre
     }
     const auto &mark = picture.metadata.mark;
     if (mark && mark->falloff == CorrectionMark::Falloff::removed)
-        return picture.file + ": is corrected already, " + picture.metadata.corrected_by + "; give the original";
+        return picture.file + ": already corrected, " + picture.metadata.corrected_by + "; give the original";
     return {};
 }
 
@@ -112,7 +114,7 @@ std::string look_at(InputPicture &picture, const fs::path &folder, bool &is_unre
 
 namespace {
 
-// Looks at them, several at once.
+// Examines the pictures in parallel.
 void look_at_all(const Photographs &list, const std::vector<NamedPicture> &named, const std::string &output,
                  Inputs &inputs, Progress &progress) {
     std::map<std::string, std::string> subfolders;
@@ -120,12 +122,12 @@ void look_at_all(const Photographs &list, const std::vector<NamedPicture> &named
     std::vector<InputPicture> all(list.files.size());
     std::vector<std::string> reasons(all.size());
     std::vector<char> unreadable(all.size(), 0);
-    for_each_parallel(static_cast<uint32_t>(all.size()), "looking at pictures", progress, [&](uint32_t i) {
+    for_each_parallel(static_cast<uint32_t>(all.size()), "scanning pictures", progress, [&](uint32_t i) {
         all[i].file = list.files[i], all[i].name = list.names[i];
         bool fails = false;
         reasons[i] = look_at(all[i], fs::path(output) / subfolders.at(all[i].file), fails);
         if (reasons[i].empty() && is_sheet(all[i], output))
-            reasons[i] = all[i].file + ": has the name of a contact sheet of this command; rename it";
+            reasons[i] = all[i].file + ": has the name of the contact sheet that calibrate writes; rename it";
         unreadable[i] = fails;
     });
     for (size_t i = 0; i < all.size(); i++) {
@@ -137,7 +139,7 @@ void look_at_all(const Photographs &list, const std::vector<NamedPicture> &named
     }
 }
 
-// Files in whose place another one of their name is taken.
+// Files replaced by another file with the same base name.
 void name_replaced(const std::vector<NamedPicture> &named, Inputs &inputs) {
     std::set<std::string> known;
     for (const NamedPicture &picture : named)
@@ -145,7 +147,7 @@ void name_replaced(const std::vector<NamedPicture> &named, Inputs &inputs) {
             const std::string other = fs::path(picture.file).replace_filename(name).string();
             if (!known.insert(other).second) continue;
             inputs.left_out.push_back(
-                {other, other + ": " + fs::path(picture.file).filename().string() + " is taken in its place"});
+                {other, other + ": " + fs::path(picture.file).filename().string() + " is used instead"});
             inputs.found++;
         }
 }

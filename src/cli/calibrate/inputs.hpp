@@ -1,4 +1,4 @@
-// The pictures that calibrate is given, and what is left out before anything is computed.
+// The input pictures of calibrate, and those left out before anything is computed.
 #pragma once
 
 #include <set>
@@ -16,24 +16,25 @@ struct LeftOutPicture {
 };
 
 struct InputPicture {
-    std::string file, name;  // name: what reports call it
+    std::string file, name;  // name: the name used in reports
     std::string target;      // its corrected copy
-    std::string identity;    // changes when the file does
-    bool is_raw = false;     // a camera raw file
+    std::string identity;    // changes whenever the file changes
+    bool is_raw = false;     // whether it is a camera raw file
     PictureMetadata metadata;
 };
 
 struct Inputs {
-    std::string label;                   // of all
-    std::vector<InputPicture> pictures;  // those that can be used
+    std::string label;                   // number of all pictures
+    std::vector<InputPicture> pictures;  // the usable pictures
     std::vector<LeftOutPicture> left_out;
     size_t found = 0, unreadable = 0;
 };
 
-// Pictures by the words of the command line, each once, without folders that an earlier calibrate has written. Left out
-// are copies, files that cannot be read, what lensprof has corrected, and of pictures of one folder that would have one
-// corrected copy all but the first; subfolders that cannot be listed are named there, too. Failure (usage) where
-// `output` is one of the folders, pictures of two folders would have one copy, or that would be a picture itself.
+// Resolves the words of the command line to pictures, each listed once; folders written by an earlier calibrate are
+// skipped. Left out are copies, unreadable files, pictures already corrected by lensprof, and all but the first of the
+// pictures of one folder that would share one corrected copy; subfolders that cannot be listed are reported in the same
+// list. Failure (usage) if `output` is one of the input folders, if pictures of two folders would share one copy, or if
+// a copy would overwrite an input.
 Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Progress &progress);
 
 constexpr const char *summary_name = "calibrate.json";

@@ -62,7 +62,7 @@ std::string without_slash(std::string path) {
 
 std::string digest_of_notes(const Json &notes) { return digest_of_text(lensprof_version() + notes.dump()); }
 
-// The first line of a ledger, which is an object; null for what is no ledger.
+// The first line of a ledger, an object; null if it is not a ledger.
 Json object_of(const std::string &text) {
     const Json json = Json::parse(text.substr(0, text.find('\n')), nullptr, false);
     const bool is_own = json.is_object() && json.contains("schema") && json["schema"] == schema;
@@ -76,7 +76,8 @@ bool has_ledger(const std::string &folder) {
     if (!is_regular_file(path)) return false;
     return why_not([&] {
                if (object_of(read_text(path, largest_text)).is_null())
-                   throw Failure(ExitCode::unreadable, path + ": is no record of calibrate");
+                   throw Failure(ExitCode::unreadable, path + ": is not a record of calibrate; delete it, or give "
+                                                              "another folder with -o");
            })
         .empty();
 }
@@ -92,10 +93,12 @@ FolderLock::~FolderLock() {
 void FolderLock::take() {
     if (file_ >= 0) return;
     file_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // not all have locks
+    if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+        return;  // not all file systems have
+                 // locks
     close(file_);
-    throw Failure(ExitCode::failed, folder_ + ": another calibrate is at work in it; wait for its end, or give another "
-                                              "folder with -o");
+    throw Failure(ExitCode::failed, folder_ + ": another calibrate is using this folder; wait until it ends, or give "
+                                              "another folder with -o");
 }
 
 Ledger::Ledger(const std::string &folder, bool overwrite)
@@ -123,8 +126,7 @@ void Ledger::read(const std::string &text) {
     saved_ = text;
 }
 
-// Files that a run has begun and not finished are its own where they have the stamp of a line; else what is there is
-// what was there before.
+// Files started but not finished by a run belong to it if they have the stamp of a line; else they existed before.
 void Ledger::settle(const Json &begun, const std::string &lines) {
     std::istringstream in(lines);
     std::map<std::string, std::string> stamps;
@@ -154,9 +156,9 @@ bool Ledger::is_in_the_way(const std::string &file) const {
 void Ledger::begin(const std::string &file, const std::string &key) {
     if (!overwrite_ && is_in_the_way(file))
         throw InTheWay(ExitCode::usage, file + ": "
-                                            + (knows(file) ? "was edited since it was written, and is another now"
-                                                           : "is there already and not of an earlier calibrate")
-                                            + "; move it away, or give --overwrite");
+                                            + (knows(file) ? "was modified after calibrate wrote it"
+                                                           : "exists and was not written by calibrate")
+                                            + "; move it away, or use --overwrite");
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) fs::remove(file, ignored);
     begun_[name_of(file)] = {key, ""};

@@ -8,7 +8,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kNumbers = 10;  // of a match: image, image, x, y, x, y, and the four of the map
+constexpr size_t kNumbers = 10;  // per match: image, image, x, y, x, y, and the four numbers of the map
 
 double rounded(double value, double steps) { return std::round(steps * value) / steps; }
 
@@ -21,7 +21,7 @@ bool are_numbers(const Json &list, size_t images) {
 
 }  // namespace
 
-// Flat; places to the hundredth of a px.
+// A flat array; positions to 0.01 px.
 Json json_of(const NotedMatches &matches) {
     Json list = Json::array();
     for (const lensprof_match &m : matches.list) {

@@ -1,4 +1,4 @@
-// Matches between pictures as the ledger keeps them.
+// Matches between pictures as stored in the ledger.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,12 @@ namespace lensprof {
 
 struct NotedMatches {
     std::vector<lensprof_match> list;
-    bool are_all = false;  // these, and not the cameras, say where pictures show the same
+    bool are_all = false;  // pictures are compared at these matches instead of through the cameras
 };
 
 Json json_of(const NotedMatches &matches);
 
-// What json_of wrote, of so many images; false where it is something else.
+// Parses the output of json_of for this number of images; false if the JSON is something else.
 bool read_noted(const Json &json, size_t images, NotedMatches &matches);
 
 }  // namespace lensprof

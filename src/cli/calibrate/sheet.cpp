@@ -23,13 +23,27 @@ constexpr uint32_t cell = 320, gap = 12, columns = 5, line = 22, label = 2 * lin
 constexpr double text_size = 16;                                                                   // px
 constexpr uint8_t background = 40;
 
-// A small copy, 8 bit RGB, the right way up.
+// A small copy, 8 bit RGB, upright.
 struct Small {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgb;
 };
 
-// Empty for a file that cannot be read: the copy may have been edited since.
+// EXIF orientation: the position of pixel (x, y) of the upright picture in the stored one of w x h.
+std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uint32_t h, uint32_t x, uint32_t y) {
+    switch (orientation) {
+    case 2: return {w - 1 - x, y};
+    case 3: return {w - 1 - x, h - 1 - y};
+    case 4: return {x, h - 1 - y};
+    case 5: return {y, x};
+    case 6: return {y, h - 1 - x};
+    case 7: return {w - 1 - y, h - 1 - x};
+    case 8: return {w - 1 - y, x};
+    default: return {x, y};
+    }
+}
+
+// Empty for an unreadable file: the copy may have been edited since.
 Small small_of(const std::string &file, uint16_t orientation) {
     ReadOptions read;
     read.max_side = cell;
@@ -60,7 +74,7 @@ double width_of(cairo_t *cr, const std::string &text) {
     return extents.x_advance;
 }
 
-// A text as wide as a cell at most: the middle of a longer one is left out.
+// Text at most as wide as a cell: the middle of a longer one is omitted.
 void draw_text(cairo_t *cr, double x, double y, const std::string &text) {
     std::string valid = one_line(text);
     for (size_t at = 0; at < valid.size();) {
@@ -90,7 +104,7 @@ std::string second_line(const CorrectedPicture &one) {
     return "falloff predicted by a lookup";
 }
 
-// Draws the labels with cairo, whose pixels are blue, green, red and a byte that is not used, in this machine's order.
+// Draws the labels with cairo, whose pixels are blue, green, red and an unused byte, in native order.
 void draw_labels(const CorrectedPicture *first, size_t count, uint32_t band, Picture &page) {
     const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, int(page.width), int(page.height)),
                           cairo_surface_destroy);

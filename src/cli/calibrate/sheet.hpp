@@ -1,11 +1,13 @@
-// Contact sheets whose pictures are named.
+// Contact sheets with picture names.
 #pragma once
 
 #include "cli/calibrate/corrections.hpp"
 
 namespace lensprof {
 
-// The sheets of these pictures: calibrate_sheet.jpg and, of more than a page holds, calibrate_sheet2.jpg and so on.
+// Writes the sheets of these pictures: calibrate_sheet.jpg and, if one page is not enough, calibrate_sheet2.jpg and so
+// on. Each picture is shown before and, below, after correction, upright according to EXIF, with name and exposure. A
+// sheet is kept if the ledger lists it with the same copies.
 std::vector<std::string> sheet_names(const CalibrateOptions &o, size_t pictures);
 
 // Every picture before and below it after, the right way up by EXIF's orientation, with its name and exposure. A sheet

@@ -19,7 +19,7 @@ double corner_of(const Json &result) {
     return corner;
 }
 
-// "profile 3 stored", "profiles 3, 4 stored"; empty where none is.
+// "profile 3 stored", "profiles 3, 4 stored"; empty if none is.
 std::string stored_text(const Json &result) {
     std::string ids;
     size_t count = 0;
@@ -40,9 +40,10 @@ std::string line_of(const Panorama &panorama) {
     const std::string reason = result["reason"].get<std::string>();
     if (!panorama.evens()) return text + "not usable: " + reason;
     const std::string stored = stored_text(result);
-    text += stored.empty() ? "evened, no profile stored" : stored;
+    text += stored.empty() ? "corrected, no profile stored" : stored;
     const double corner = corner_of(result);
-    if (corner > 0.0) text += format(", light in the corners %.2f (%+.2f EV)", corner, std::log2(corner));
+    if (corner > 0.0)
+        text += format(", relative illuminance in the corners %.2f (%+.2f EV)", corner, std::log2(corner));
     if (stored.empty() && !summary["not_stored"].is_null())
         return text + ": " + summary["not_stored"].get<std::string>();
     return reason.empty() ? text : text + "; " + reason;
@@ -64,7 +65,7 @@ void print_panoramas(const Panoramas &panoramas, std::ostream &out) {
     size_t members = 0, evened = 0;
     for (const Panorama &panorama : panoramas.list) members += panorama.pictures.size(), evened += panorama.evens();
     out << "panoramas " << panoramas.list.size();
-    if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << evened << " evened";
+    if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << evened << " corrected";
     out << "\n";
     const size_t count = panoramas.list.size(), shown = count <= most_panoramas ? count : most_panoramas - 1;
     for (size_t n = 0; n < shown; n++) out << shortened(one_line(line_of(panoramas.list[n]))) << "\n";
@@ -99,16 +100,16 @@ Json summary_json(const CalibrateOptions &o, const Inputs &inputs, const Panoram
 void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
                    const CorrectedPictures &pictures, std::ostream &out) {
     out << "read      " << counted(inputs.found, "picture");
-    if (inputs.unreadable) out << ", " << inputs.unreadable << " of which cannot be read";
+    if (inputs.unreadable) out << ", " << inputs.unreadable << " of them unreadable";
     out << "\n";
     print_panoramas(panoramas, out);
     size_t by_profile = 0;
     for (const CorrectedPicture &one : pictures.list) by_profile += one.panorama.empty();
     out << "corrected " << counted(pictures.list.size(), "picture");
-    if (by_profile) out << ", " << by_profile << " of which by profiles of the databases";
+    if (by_profile) out << ", " << by_profile << " of them with profiles of the databases";
     if (pictures.written < pictures.list.size())
-        out << (pictures.written ? format("; %u written now, the rest was done before", pictures.written)
-                                 : std::string("; all were done before"));
+        out << (pictures.written ? format("; %u written now, the rest in earlier runs", pictures.written)
+                                 : std::string("; all in earlier runs"));
     out << "\n";
     const std::vector<LeftOutPicture> left_out = all_left_out(inputs, pictures);
     if (!left_out.empty()) {

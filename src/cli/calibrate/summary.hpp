@@ -1,11 +1,11 @@
-// What calibrate found and wrote: for people in ten lines, for programs as an object.
+// Results of calibrate: a summary of about ten lines, and a JSON object.
 #pragma once
 
 #include "cli/calibrate/corrections.hpp"
 
 namespace lensprof {
 
-// docs/json.md, calibrate.json. The same after a run that found everything done.
+// See docs/json.md, calibrate.json. A run that found everything done gives the same object.
 Json summary_json(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
                   const CorrectedPictures &pictures);
 
