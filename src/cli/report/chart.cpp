@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char *channel_names[3] = {"red", "green", "blue"};
 
-// Radii of the table, as numbers of samples.
+// Radii of the table, as sample indices.
 constexpr size_t table_samples[] = {0, 25, 50, 75, 100};
 
 ChartCurve sample_curve(const StoredProfile &stored, uint32_t index) {
@@ -35,7 +35,7 @@ ChartCurve sample_curve(const StoredProfile &stored, uint32_t index) {
     return curve;
 }
 
-// What all profiles share makes the title (as far as it is known), the rest the label of each: parts of the key.
+// The title has the parts of the key that all profiles share (if known), the labels the rest.
 std::vector<std::string> label_profiles(const std::vector<StoredProfile> &profiles, std::string &title) {
     std::vector<KeyParts> keys;
     for (const StoredProfile &stored : profiles) keys.push_back(key_parts(stored.profile->key));
@@ -54,7 +54,7 @@ std::vector<std::string> label_profiles(const std::vector<StoredProfile> &profil
     return labels;
 }
 
-// Gain grids are no functions of the radius.
+// Gain grids are not functions of the radius.
 std::string note_of(const std::vector<StoredProfile> &profiles) {
     std::string ids;
     for (const StoredProfile &stored : profiles)
@@ -65,7 +65,7 @@ std::string note_of(const std::vector<StoredProfile> &profiles) {
     return (is_one ? "without the gain grid of profile " : "without the gain grids of profiles ") + ids;
 }
 
-// Text that any terminal and font renderer accepts: UTF-8 without control characters.
+// Text for any terminal and font renderer: UTF-8 without control characters.
 std::string printable(const std::string &text) {
     std::vector<char> field(text.size() + 1);
     set_text(field.data(), field.size(), text);
@@ -91,7 +91,7 @@ void print_plot(const Chart &chart, std::ostream &out) {
     const ChartAxis axis = chart_axis(chart);
     const int per_step = std::max(1, 20 / axis.steps), rows = axis.steps * per_step;
     std::vector<std::string> plot(size_t(rows + 1), std::string(columns + 1, ' '));
-    for (size_t k = chart.curves.size(); k-- > 0;)  // the first curve stands above the others
+    for (size_t k = chart.curves.size(); k-- > 0;)  // the first curve is drawn on top
         for (int column = 0; column <= columns; column++) {
             const double at = double(column) / columns * (chart_samples - 1);
             const size_t i = std::min(size_t(at), chart_samples - 2);
@@ -107,7 +107,7 @@ void print_plot(const Chart &chart, std::ostream &out) {
     std::string ruler(10 + columns + 1, '-'), labels(10 + columns + 5, ' ');
     ruler.replace(0, 10, "         +");
     const char *const words[] = {"r = 0", "0.25", "0.5", "0.75", "corner"};
-    const size_t starts[] = {6, 26, 45, 62, 79};  // the numbers stand below their ticks
+    const size_t starts[] = {6, 26, 45, 62, 79};  // the numbers are below their ticks
     for (size_t i = 0; i < 5; i++) {
         ruler[10 + i * columns / 4] = '+';
         labels.replace(starts[i], std::strlen(words[i]), words[i]);
@@ -158,8 +158,8 @@ Chart make_chart(const std::vector<StoredProfile> &profiles, int channel) {
     chart.note = note_of(profiles);
     if (chart.curves.size() > chart_max_curves)
         throw Failure(ExitCode::usage,
-                      format("a chart of %zu curves cannot be read, %zu are the most; choose fewer profiles, by their "
-                             "ids or with --focal, --aperture and the like, or one --channel",
+                      format("a chart of %zu curves is unreadable, the maximum is %zu; choose fewer profiles, by ids "
+                             "or with filters such as --focal and --aperture, or one --channel",
                              chart.curves.size(), chart_max_curves));
     return chart;
 }

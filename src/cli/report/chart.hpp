@@ -16,9 +16,9 @@ constexpr size_t chart_samples = 101;  // of a curve, at r = i/100
 constexpr size_t chart_max_curves = 24;
 
 struct ChartCurve {
-    int64_t id;         // of the profile; 0 = of a blob
+    int64_t id;         // id of the profile; 0 = from a blob
     int channel;        // 0..2; -1 = one curve for all channels
-    std::string label;  // what the curve does not share with the others
+    std::string label;  // what distinguishes the curve from the others
     double m[chart_samples];
     double sigma[chart_samples];  // standard errors of m
     bool has_sigma;
@@ -26,25 +26,25 @@ struct ChartCurve {
 
 struct Chart {
     std::string title;  // what the curves share
-    std::string note;   // what they leave out; empty = nothing
+    std::string note;   // what they omit; empty = nothing
     std::vector<ChartCurve> curves;
 };
 
-// Curves of these profiles, for those with three of one channel (0..2) or of all (-1). Failure (usage) when there are
-// more than can be told apart.
+// Curves of these profiles; for profiles with three curves that of one channel (0..2) or all (-1). Failure (usage) for
+// more curves than can be distinguished.
 Chart make_chart(const std::vector<StoredProfile> &profiles, int channel);
 
-// The chart in characters, every curve with a letter, and the table of M, its standard error and the loss in EV.
+// The chart as text, with a letter per curve, and the table of M, its standard error and the loss in EV.
 void print_chart(const Chart &chart, std::ostream &out);
 
 // The object of `profile show --chart --json`; docs/json.md describes it.
 Json chart_json(const Chart &chart);
 
-// Draws the chart into an SVG or PNG file, complete or not at all.
+// Writes the chart as an SVG or PNG file, completely or not at all.
 void draw_chart(const Chart &chart, const std::string &path);
 
-// The axis of M: from `low` to `high` in `steps` steps, round numbers; 0.5 to 1 unless curves reach higher or, with
-// their errors, lower, so that charts look alike.
+// The axis of M: from `low` to `high` in `steps` steps, round numbers; 0.5 to 1 unless curves exceed it or, with their
+// errors, fall below it, so that charts are comparable.
 struct ChartAxis {
     double low, high;
     int steps;

@@ -14,7 +14,7 @@ namespace {
 constexpr double plot_width = 520, plot_height = 360, left = 70, top = 64, bottom = 58, right_axis = 84;
 constexpr double key_width = 44, key_line = 20;
 
-// The chart's own measures: where values stand, and what the texts need.
+// Layout of the chart: positions of values, and space for text.
 struct Layout {
     const Chart *chart;
     ChartAxis axis;
@@ -57,7 +57,7 @@ void draw_grid(cairo_t *cr, const Layout &layout) {
     }
 }
 
-// The axis on the right: log2 M, in steps that leave room for the numbers.
+// The right axis: log2 M, in steps that leave room for the numbers.
 void draw_ev_axis(cairo_t *cr, const Layout &layout) {
     const double high = std::log2(layout.axis.high), low = std::log2(std::max(layout.axis.low, layout.axis.high / 64));
     double step = 0.125;
@@ -66,7 +66,7 @@ void draw_ev_axis(cairo_t *cr, const Layout &layout) {
     set_font(cr, text_size);
     for (double ev = step * std::floor(high / step); ev >= low; ev -= step) {
         const double y = layout.y(std::exp2(ev));
-        if (ev < high && y - layout.y(std::exp2(ev + step)) < text_size) continue;  // numbers would touch
+        if (ev < high && y - layout.y(std::exp2(ev + step)) < text_size) continue;  // labels would touch
         stroke_line(cr, left + plot_width, y, left + plot_width + 5, y);
         draw_text(cr, left + plot_width + 9, y + 4.5, format("%.3g", ev + 0.0), 0);
     }

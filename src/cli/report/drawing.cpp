@@ -20,12 +20,13 @@ struct Colour {
     double red, green, blue;
 };
 
-// Okabe & Ito's colours, which all kinds of colour vision tell apart, without their yellow, which is pale on white.
+// The colours of Okabe & Ito, distinguishable with all kinds of colour vision, without their yellow, which is pale on
+// white.
 constexpr Colour colours[] = {{0, 0.447, 0.698}, {0.835, 0.369, 0},     {0, 0.620, 0.451}, {0.800, 0.475, 0.655},
                               {0.902, 0.624, 0}, {0.337, 0.706, 0.914}, {0, 0, 0}};
 constexpr size_t colour_count = sizeof colours / sizeof *colours;
 
-// Five dashes and seven colours: no two of 35 curves look the same.
+// Five dashes and seven colours: 35 distinct curves.
 const std::vector<double> dashes[] = {{}, {8, 4}, {2, 3}, {10, 3, 2, 3}, {14, 4}};
 constexpr size_t dash_count = sizeof dashes / sizeof *dashes;
 
@@ -48,7 +49,7 @@ cairo_status_t append(void *text, const unsigned char *data, unsigned length) {
 void expect(cairo_status_t status, const std::string &path) {
     if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
     if (status != CAIRO_STATUS_SUCCESS)
-        throw Failure(ExitCode::failed, path + ": the chart cannot be drawn: " + cairo_status_to_string(status));
+        throw Failure(ExitCode::failed, path + ": cannot draw the chart: " + cairo_status_to_string(status));
 }
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
@@ -140,7 +141,8 @@ std::string drawing_of(const std::string &path, const std::function<DrawingSize(
 
 void check_chart_name(const std::string &path) {
     if (!has_extension(path, ".svg") && !has_extension(path, ".png"))
-        throw Failure(ExitCode::usage, path + ": a chart is written as .svg or .png; give a name that ends so");
+        throw Failure(ExitCode::usage, path + ": charts are written as .svg or .png; give a name with one of these "
+                                              "endings");
 }
 
 }  // namespace lensprof

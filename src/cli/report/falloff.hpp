@@ -10,10 +10,10 @@
 
 namespace lensprof {
 
-// False where all is light as the centre is: a falloff held at none, or not measured, as by `bracket`.
+// False if M is 1 everywhere: a falloff fixed at zero, or not measured, as by `bracket`.
 inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || v.k[1] != 0.0 || v.k[2] != 0.0; }
 
-// What a fit found, and how sure it is; key and origin are still empty.
+// The profile of a fit with its covariance; key and origin are still empty.
 inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit,
                                                     const lensprof_fit_options *options = nullptr, size_t images = 0) {
     auto profile = new_profile();
@@ -23,7 +23,7 @@ inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &f
     return profile;
 }
 
-// The same of a card, with the responses of its pictures.
+// The same for a card, with the responses of its pictures.
 inline std::unique_ptr<lensprof_profile>
 profile_of(const lensprof_flat_result &fit, const std::vector<lensprof_response> &responses, size_t images = 0) {
     auto profile = new_profile();

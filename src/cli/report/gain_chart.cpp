@@ -13,7 +13,7 @@ constexpr double plot_width = 480, plot_height = 300, left = 64, top = 64, botto
 constexpr double most_levels = 30.0;
 constexpr int points = 301;
 
-// The share of the pairs whose ends differ by less than `levels`; their variance is half of the squared difference.
+// The share of the pairs whose ends differ by less than `levels`; their variance is half the squared difference.
 std::vector<double> shares_of(const GainCurve &curve) {
     std::vector<double> levels;
     for (const double variance : curve.variances)
@@ -57,7 +57,7 @@ void draw_curve(cairo_t *cr, size_t number, const GainCurve &curve) {
     const std::vector<double> shares = shares_of(curve);
     cairo_save(cr);
     set_curve_pen(cr, number);
-    cairo_new_path(cr);  // a text leaves its end as one
+    cairo_new_path(cr);  // text leaves a current point
     for (int i = 0; i < points; i++) cairo_line_to(cr, x_of(most_levels * i / (points - 1)), y_of(shares[size_t(i)]));
     cairo_stroke(cr);
     const double y = top + plot_height - 16 - key_line * double(2 - number), x = left + plot_width - 230;

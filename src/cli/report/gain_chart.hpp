@@ -1,4 +1,4 @@
-// What a correction gains, as a figure: how much the colours of a point differ between the pictures that see it.
+// A chart of the improvement by a correction: how much the colours of a point differ between pictures.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@ namespace lensprof {
 
 struct GainCurve {
     std::string label;
-    std::vector<double> variances;  // of each pair of pictures; see colour_differences. NaN is passed over
+    std::vector<double> variances;  // per pair of pictures; see colour_differences. NaN is skipped
 };
 
-// The bytes of an SVG or PNG, by the end of `path`: the share of the pairs that differ by less than so many levels of
-// 255, of every curve. Failure (usage) for other names.
+// The bytes of an SVG or PNG, by the extension of `path`: for every curve, the share of pairs that differ by less than
+// a number of levels of 255. Failure (usage) for other names.
 std::string gain_chart(const std::string &path, const std::string &title, const std::vector<GainCurve> &curves);
 
 }  // namespace lensprof

@@ -16,7 +16,7 @@ Json number_or_null(double value) { return value == LENSPROF_UNKNOWN || !std::is
 
 namespace {
 
-// Distances can be infinite, which JSON has no number for.
+// Distances can be infinite, which JSON cannot represent.
 Json distance_json(double distance_m) { return std::isinf(distance_m) ? Json("infinity") : number_or_null(distance_m); }
 
 }  // namespace
@@ -27,7 +27,7 @@ Json covariance_json(const double *values, uint32_t n) {
     return rows;
 }
 
-// What a program plots: the curves' samples, whatever their kind.
+// Curve samples for plotting, for any kind.
 static Json samples_json(const lensprof_response *responses, uint32_t count) {
     Json values = Json::array();
     for (uint32_t c = 0; c < count; c++)
@@ -61,13 +61,13 @@ void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
     const float *end = grid.attenuation + grid.channels * grid.rows * grid.columns;
     const auto range = std::minmax_element(grid.attenuation, end);
     out << format("gain grid %u x %u nodes, %s; multiplies the falloff by %.3f to %.3f\n", grid.columns, grid.rows,
-                  grid.channels == 3 ? "one grid a channel" : "all channels", double(*range.first),
+                  grid.channels == 3 ? "one grid per channel" : "all channels", double(*range.first),
                   double(*range.second));
 }
 
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
-// 100 M at r, " +- " and its standard error where that is known; an error is never 0.0.
+// 100 M at r, " +- " and its standard error if known; an error is never printed as 0.0.
 std::string light_at(const lensprof_profile &profile, uint32_t curve, double r, bool &is_known) {
     double sigma;
     const double m = lensprof_profile_radial_falloff(&profile, curve, r, &sigma), percent = 100.0 * sigma;
@@ -83,7 +83,7 @@ void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
         const lensprof_vignetting &v = profile.vignetting[c];
         const char *channel = profile.vignettings == 3 ? channels[c] : "";
         if (!has_falloff(v)) {
-            out << "falloff" << channel << "   none: not measured, or held at none\n";
+            out << "falloff" << channel << "   none: not measured, or fixed at zero\n";
             continue;
         }
         out << "falloff" << channel
@@ -134,7 +134,7 @@ std::string hex_of(const std::string &text) {
     return hex;
 }
 
-// The bytes of a text that is not UTF-8, or of a list that holds such; null where there is nothing to keep.
+// The bytes of a text that is not UTF-8, or of a list with such texts; null if not needed.
 Json bytes_of(const Json &value) {
     if (value.is_string()) return is_utf8(value.get<std::string>()) ? Json() : Json(hex_of(value.get<std::string>()));
     if (!value.is_array()) return Json();
@@ -147,7 +147,7 @@ Json bytes_of(const Json &value) {
     return any ? list : Json();
 }
 
-// Beside every member that holds text that is not UTF-8 one with its bytes.
+// Adds to every member with text that is not UTF-8 one with its bytes.
 void keep_bytes(Json &json) {
     if (json.is_object()) {
         Json kept = Json::object();
@@ -183,12 +183,12 @@ namespace {
 
 Json numbers(const double *values, size_t count) { return std::vector<double>(values, values + count); }
 
-// Whether the fit is without an image, which then has no exposure.
+// Whether the fit left out an image, which then has no exposure.
 bool is_left_out(const BuildReport &report, size_t image) {
     return report.fit.left_out && image < report.quality.size() && !report.quality[image].joined;
 }
 
-// Exposure and quality of every image.
+// Exposure and quality per image.
 Json images_json(const BuildReport &report) {
     Json images = Json::array();
     for (size_t i = 0; i < report.names.size(); i++) {
@@ -241,10 +241,10 @@ const char *kind_from_name(KindFrom from) {
 }
 
 const char *describe_kind_from(KindFrom from) {
-    return from == KindFrom::option     ? "as asked for"
-           : from == KindFrom::pictures ? "by what the pictures say"
-           : from == KindFrom::none     ? "as no picture says which; --camera-kind does"
-                                        : "as most reconstructions are of; --camera-kind says another";
+    return from == KindFrom::option     ? "as requested"
+           : from == KindFrom::pictures ? "according to the pictures"
+           : from == KindFrom::none     ? "because no picture states the camera; use --camera-kind to change it"
+                                        : "typical of reconstructions; use --camera-kind to change it";
 }
 
 Json left_out_json(const BuildReport &report) {
@@ -253,7 +253,7 @@ Json left_out_json(const BuildReport &report) {
     return list;
 }
 
-// Of several lens settings what was found of each.
+// The results per lens setting, if there are several.
 Json settings_json(const BuildReport &report) {
     Json list = Json::array();
     for (const SettingReport &setting : report.settings) {
@@ -277,7 +277,7 @@ Json settings_json(const BuildReport &report) {
     return list;
 }
 
-// Where the exponent comes from, its standard error, and how strongly every parameter hangs on it.
+// The source of the exponent, its standard error, and the sensitivity of every parameter to it.
 Json gamma_json(const BuildReport &report) {
     const auto &fit = report.fit;
     Json correlation = Json::array();
@@ -295,7 +295,7 @@ Json gamma_json(const BuildReport &report) {
     return json;
 }
 
-// The stored profile that the fit was given; null where none was asked for.
+// The stored profile used as the prior; null if none was requested.
 Json prior_json(const BuildReport &report) {
     static const Json overruled[] = {Json::array(), Json::array(), {"response", "falloff"}, {"response"}, {"falloff"}};
     const uint32_t verdict = report.fit.profile_prior;
@@ -309,7 +309,7 @@ Json prior_json(const BuildReport &report) {
 
 }  // namespace
 
-// Of several cameras what was found of each.
+// The results per camera, if there are several.
 static Json cameras_json(const BuildReport &report) {
     Json list = Json::array();
     for (const CameraReport &camera : report.cameras) {
@@ -415,21 +415,21 @@ void print_exposures(const BuildReport &report, std::ostream &out) {
 void print_gamma(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     if (fit.gamma_from == LENSPROF_GAMMA_KNOWN) {
-        out << "gamma     known by what is held";
+        out << "gamma     known from the fixed parameters";
         if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR && fit.response.kind == LENSPROF_RESPONSE_LINEAR)
             out << ": a linear response, " << describe_kind_from(report.camera_kind.from);
         out << "\n";
         return;
     }
     const bool is_given = report.exposures_given && fit.gamma_from == LENSPROF_GAMMA_EXPOSURES;
-    out << "gamma     from " << (is_given ? "the exposures given" : gamma_name(fit.gamma_from));
+    out << "gamma     from " << (is_given ? "the given exposures" : gamma_name(fit.gamma_from));
     if (fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         out << " (of the kind " << camera_kind_name(report.camera_kind.kind) << ", "
             << describe_kind_from(report.camera_kind.from) << ")";
     if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
-    if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; no +- here holds its error)";
+    if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; the +- here exclude its error)";
     out << ": the common exponent of " << (report.has_falloff ? "exposure, falloff" : "exposure")
-        << " and response, which pictures leave open (docs/model.md)\n";
+        << " and response, which pictures alone do not determine (docs/model.md)\n";
 }
 
 void print_prior(const BuildReport &report, std::ostream &out) {
@@ -438,11 +438,11 @@ void print_prior(const BuildReport &report, std::ostream &out) {
     const uint32_t verdict = report.fit.profile_prior;
     out << "prior     " << (report.prior_is_composed ? "composed of profile " : "profile ") << report.prior_id
         << (report.prior_is_composed ? " and others of the lens and the camera" : "")
-        << (verdict == LENSPROF_PROFILE_PRIOR_USED ? ", which the result holds\n"
+        << (verdict == LENSPROF_PROFILE_PRIOR_USED ? ", used by the result\n"
             : verdict == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED
-                ? ", whose falloff the result holds; its response is overruled by the pictures\n"
+                ? ", whose falloff is used; its response is overruled by the pictures\n"
             : verdict == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED
-                ? ", whose response the result holds; its falloff is overruled by the pictures\n"
+                ? ", whose response is used; its falloff is overruled by the pictures\n"
                 : ", overruled by the pictures\n");
 }
 
@@ -457,22 +457,22 @@ std::string links_row(const std::vector<lensprof_link> &links) {
     return row + "\n";
 }
 
-// Of one lens setting, or of each.
+// For one lens setting, or for each.
 void print_falloffs(const BuildReport &report, std::ostream &out) {
     if (report.settings.empty()) print_vignettings(*profile_of(report.fit), out);
     for (const SettingReport &setting : report.settings) {
         if (!setting.found.images) continue;
         out << "setting   " << setting.label << format(", %s", counted(setting.found.images, "picture").c_str())
-            << (setting.found.usable ? "" : "; not a profile to store") << "\n";
+            << (setting.found.usable ? "" : "; not stored as a profile") << "\n";
         print_vignettings(*profile_of(result_of(report, setting)), out);
     }
 }
 
-// Of one camera, or of each, and what joins it to the reference's.
+// For one camera, or for each, with its connection to that of the reference.
 void print_responses(const BuildReport &report, std::ostream &out) {
     if (report.cameras.empty()) {
         if (report.fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
-            out << "response  typical of the kind of camera: the pictures do not show it\n";
+            out << "response  typical of the kind of camera: the pictures do not determine it\n";
         print_response(report.fit.response, out);
     }
     for (const CameraReport &camera : report.cameras) {
@@ -480,7 +480,7 @@ void print_responses(const BuildReport &report, std::ostream &out) {
         out << "camera    " << camera.label;
         if (found.images) out << format(", %s", counted(found.images, "picture").c_str());
         if (!found.joined)
-            out << (found.images ? "; not joined to the reference" : ": left out");
+            out << (found.images ? "; not connected to the reference" : ": left out");
         else if (camera.is_reference)
             out << ", with the reference";
         else
@@ -491,7 +491,7 @@ void print_responses(const BuildReport &report, std::ostream &out) {
         out << "\n";
         if (!found.images) continue;
         if (found.response_from == LENSPROF_FIT_RESPONSE_KIND)
-            out << "response  typical of the kind of camera: its pictures do not show it\n";
+            out << "response  typical of the kind of camera: its pictures do not determine it\n";
         print_response(found.response, out);
     }
 }
@@ -512,18 +512,18 @@ void print_build(const BuildReport &report, std::ostream &out) {
                   heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
     if (report.variance.pairs)
         out << format(
-            "colours   variance of a point's colour over its views %.1f before, %.1f by exposures alone, %.1f "
-            "by this result, levels squared\n",
+            "colours   variance of a point's colour over its views %.1f before, %.1f with exposures alone, %.1f with "
+            "this result, levels squared\n",
             report.variance.before, report.variance.exposures_only, report.variance.result);
     if (!report.links.empty()) out << links_row(report.links);
     if (report.register_s > 0.0) out << format("time      find overlaps %.2f s\n", report.register_s);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
     if (!fit.usable && fit.evens && report.has_falloff)
-        out << "EVENS OUT these pictures; not a profile to store: " << report.verdict.text << "\n";
+        out << "CORRECTS these pictures; not stored as a profile: " << report.verdict.text << "\n";
     else if (!fit.usable)
         out << "NOT USABLE: " << report.verdict.text << "\n";
     else if (!report.verdict.text.empty())
-        out << "mind      " << report.verdict.text << "\n";
+        out << "warning   " << report.verdict.text << "\n";
 }
 
 Json key_json(const lensprof_profile_key &key) {
@@ -607,7 +607,7 @@ std::string describe_key(const lensprof_profile_key &key) {
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;
     out << "profile   " << (id ? std::to_string(id) + ": " : std::string()) << describe_key(profile.key) << "\n";
-    if (*profile.key.unit) out << "unit      " << profile.key.unit << ", and no other\n";
+    if (*profile.key.unit) out << "unit      " << profile.key.unit << " only\n";
     if (profile.key.color_temperature_k != LENSPROF_UNKNOWN)
         out << format("light     %g K\n", profile.key.color_temperature_k);
     if (*profile.key.style) out << "style     " << profile.key.style << "\n";
@@ -616,7 +616,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method");
     if (p.prior_id) out << ", with profile " << p.prior_id << " as its prior";
-    if (p.forced) out << ", forced though not usable";
+    if (p.forced) out << ", stored with --force though not usable";
     out << ", " << p.images << " images, " << p.pairs << " pairs";
     if (p.heldout_rms != LENSPROF_UNKNOWN) out << format(", residual %.2f levels", p.heldout_rms);
     out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
@@ -637,7 +637,7 @@ TrueValues read_truth(const std::string &path, size_t images) {
     if (truth.ev.size() != images)
         throw Failure(ExitCode::unreadable,
                       path
-                          + format(": is the truth of %zu images, not of %zu; give that of this project",
+                          + format(": is for %zu images, not for %zu; give the truth.json of this project",
                                    truth.ev.size(), images));
     return truth;
 }
@@ -665,8 +665,12 @@ void print_comparison(const BuildReport &report, const TrueValues &truth, std::o
     }
     double gamma = square > 1e-6 && cross > 0 ? cross / square : 1.0;
     double ev_error = 0, ev_aligned = 0, m_error = 0, m_aligned = 0;
-    out << "\nrecovered next to true (aligned: with the exponent " << format("%.3f", gamma)
-        << " that pictures alone leave open taken out)\n";
+    out << "\n"
+           "recovered next to true (aligned: without the exponent "
+        << format("%.3f", gamma)
+        << ", which pictures "
+           "alone do not "
+           "determine)\n";
     out << "image      EV  recovered     true  aligned\n";
     for (size_t i = 0; i < n; i++) {
         ev_error = std::max(ev_error, std::abs(ev[i] - true_ev[i]));

@@ -1,4 +1,4 @@
-// The verdict of a fit as the command gives it: files in place of the numbers of images.
+// The verdict of a fit as reported by the command: with files instead of image numbers.
 #pragma once
 
 #include <string>
@@ -14,11 +14,11 @@ struct Verdict {
     std::string text;  // empty: usable, and no warning
     uint32_t code = LENSPROF_REASON_NONE;
     lensprof_item item{};
-    std::string file;  // of the item; of a shot that of its first picture
+    std::string file;  // of the item; for a shot, its first picture
     std::vector<double> values;
 };
 
-// The verdict of a result, lensprof_fit_result or lensprof_flat_result, as the library gives it.
+// The verdict of a result (lensprof_fit_result or lensprof_flat_result) as the library returns it.
 template <class Result>
 Verdict verdict_of(const Result &result) {
     return {result.reason,
@@ -28,11 +28,10 @@ Verdict verdict_of(const Result &result) {
             {result.reason_value, result.reason_value + result.reason_values}};
 }
 
-// Names the file of an image in place of its number, where the verdict is about one.
+// Replaces the number of an image by its file, if the verdict is about an image.
 void name_image(const std::vector<std::string> &names, Verdict &verdict);
 
-// Names the first picture of a shot in place of its number, where the verdict is about one; `shots` are those of the
-// pictures.
+// Replaces the number of a shot by its first picture, if the verdict is about a shot; `shots` has the shot per picture.
 void name_shot(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Verdict &verdict);
 
 // Adds reason, reason_code, reason_item and reason_values to an object; docs/json.md describes them.
