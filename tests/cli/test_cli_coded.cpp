@@ -227,7 +227,7 @@ void test_heif_of_false_size(void **) {
         declare(18000);
         assert_refused(unreadable, corrected_into("out", {path}), {path, "damaged"});
         declare(30000);
-        assert_refused(unreadable, corrected_into("out", {path}), {path, "30000 x 30000 pixels are too many"});
+        assert_refused(unreadable, corrected_into("out", {path}), {path, "30000 x 30000 pixels exceed the limit"});
         declare(0);
         assert_refused(unreadable, corrected_into("out", {path}), {path});
     }
@@ -238,7 +238,7 @@ void test_not_written(void **) {
     write_picture(work("a.png"), smooth());
     for (const char *name : {"sheet.webp", "sheet.heic", "sheet.jxl"})
         assert_refused(usage, corrected_into("out", {"--contact-sheet", work(name), work("a.png")}),
-                       {name, "does not write it; give a name in .tif, .png or .jpg"});
+                       {name, "does not write it; give a name ending in .tif, .png or .jpg"});
 }
 
 // The camera of a phone corrects the falloff before it writes any of these.

@@ -225,11 +225,11 @@ void test_refused(void **) {
     write_plain("in.dng", "w8");
     assert_refused(in, "is a BigTIFF");
     save(in, {'I', 'I', 42, 0, 8, 0, 0, 0, 0, 0, 8, 0, 0, 0});  // the first directory follows itself
-    assert_refused(in, "lead in a circle");
+    assert_refused(in, "circular");
     save(in, {'I', 'I', 42, 0, 0, 0, 0, 0});
-    assert_refused(in, "no directory");
+    assert_refused(in, "no image directory");
     save(in, {'M', 'M', 0, 42, 0, 0, 0, 8, 255, 255, 0});
-    assert_refused(in, "ends before");
+    assert_refused(in, "is cut off");
 }
 
 // Cut anywhere a file is refused, or, where only pixels are missing, read; changed anywhere it is one of the two.

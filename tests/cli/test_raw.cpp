@@ -279,7 +279,7 @@ void test_card(void **) {
             for (size_t c = 0; c < 3; c++) assert_true(std::fabs(mean[c] / 256 / (65535.0 * light[c]) - 1.0) < 2e-3);
         }
     assert_refused(not_found, {"apply", work("tif/card.tif"), "--db", db, "--profile", "1", "-o", work("again")},
-                   {"is corrected already"});
+                   {"already corrected"});
 }
 
 void test_build(void **) {
@@ -321,7 +321,7 @@ void test_calibrate(void **) {
     }
     assert_int_equal(json["found"], 7);
     assert_int_equal(json["left_out"].size(), 1);
-    assert_true(contains(json["left_out"][0]["reason"], "img002.png: img002.dng is taken in its place"));
+    assert_true(contains(json["left_out"][0]["reason"], "img002.png: img002.dng is used instead"));
 }
 
 void test_opcodes_are_not_doubled(void **) {
@@ -352,7 +352,7 @@ void test_mixed_and_pairs(void **) {
     fs::copy_file(path, work("pair/a.DNG")), fs::copy_file(work("tif/card.tif"), work("pair/a.tif"));
     const Outcome outcome = run_words({"apply", work("pair"), "--db", db, "--profile", "1", "-o", work("out")});
     assert_int_equal(outcome.code, done);
-    assert_true(contains(outcome.err, "a.DNG: is taken in place of a.tif"));
+    assert_true(contains(outcome.err, "a.DNG: used instead of a.tif"));
     assert_true(fs::exists(work("out/a.dng")) && !fs::exists(work("out/a.tif")));
 }
 
@@ -402,7 +402,7 @@ void test_preview(void **) {
     assert_same_pixels(read_raw_preview(work("preview.dng")), read_picture(work("preview.jpg")));
     save_dng("none.dng", dng);
     assert_failure(ExitCode::unreadable, "without a JPEG preview", [] { read_raw_preview(work("none.dng")); });
-    assert_failure(ExitCode::unreadable, "is no camera raw file", [] { read_raw_preview(work("preview.jpg")); });
+    assert_failure(ExitCode::unreadable, "not a camera raw file", [] { read_raw_preview(work("preview.jpg")); });
     const Bytes whole = load(work("preview.dng"));
     for (size_t keep = 0; keep < whole.size() - 2 * 160 * 120; keep += 97) {
         save(work("cut.dng"), Bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(keep)));

@@ -83,7 +83,7 @@ void test_packed_rows_that_lack(void **) {
         assert_true(read_picture(work(name)).width >= 156);  // LibRaw crops those of some cameras
         for (const size_t lacks : {1u, 10u, 200u, 5000u}) {
             write_bytes(name, Bytes(whole.begin(), whole.end() - static_cast<ptrdiff_t>(lacks)));
-            assert_failure(ExitCode::unreadable, "end before their time", [&] { read_picture(work(name)); });
+            assert_failure(ExitCode::unreadable, "are cut off", [&] { read_picture(work(name)); });
         }
     }
 }

@@ -19,7 +19,7 @@ std::optional<long> read_integer(const Exiv2::ExifData &exif, const char *key) {
     return datum->toLong();
 }
 
-// A datum as the bytes of the file, whatever type they are said to have.
+// A value as raw bytes of the file, whatever its type.
 class Block {
 public:
     Block(const Exiv2::Image &image, const char *key) : little_(image.byteOrder() == Exiv2::littleEndian) {
@@ -31,7 +31,7 @@ public:
 
     size_t size() const { return bytes_.size(); }
 
-    // Unsigned, `count` bytes from `at` on; 0 behind the end.
+    // Unsigned, `count` bytes starting at `at`; 0 beyond the end.
     uint32_t at(size_t at, size_t count) const {
         uint32_t value = 0;
         if (at + count > bytes_.size()) return 0;
@@ -45,7 +45,7 @@ private:
 };
 
 // Tags 0x4015 (what was done: version 0 has a size in its second word and the switch in its third), else 0x4016 and
-// 0x4018 (what the menu said, the sixth and the second word of four bytes), as ExifTool documents them.
+// 0x4018 (the menu setting, the sixth and the second word of four bytes), as documented by ExifTool.
 bool canon_corrects(const Exiv2::Image &image) {
     const Block done(image, "Exif.Canon.0x4015");
     if (done.size() >= 6 && done.at(0, 1) == 0 && done.at(0, 4) != 0) return done.at(4, 2) == 1;
@@ -75,7 +75,7 @@ std::string maker_notes(const Exiv2::Image &image) {
     return {};
 }
 
-// Formats of finished pictures. A TIFF or PNG with the notes of a camera was developed.
+// Formats of finished pictures. A TIFF or PNG with a camera's maker notes was developed.
 bool is_rendered(const Exiv2::Image &image) {
     static const char *const types[] = {"image/jpeg", "image/heic", "image/heif",
                                         "image/avif", "image/webp", "image/jxl"};
@@ -83,8 +83,8 @@ bool is_rendered(const Exiv2::Image &image) {
     return std::any_of(std::begin(types), std::end(types), [&](const char *type) { return own == type; });
 }
 
-// Programs that make JPEGs of raw files without regard to the camera's switches, and copy its notes. Those of the
-// makers follow the switches.
+// Programs that develop raw files regardless of the camera's switches but copy its notes. Those of the makers follow
+// the switches.
 bool is_of_converter(const Exiv2::Image &image) {
     static const char *const names[] = {"darktable",  "rawtherapee", "ufraw", "dcraw", "libraw",  "lightroom",
                                         "camera raw", "capture one", "dxo",   "on1 ",  "luminar", "rawstudio"};
@@ -97,7 +97,7 @@ bool is_of_converter(const Exiv2::Image &image) {
                        [&](const char *name) { return software.find(name) != std::string::npos; });
 }
 
-// Adobe's raw converters write their settings, and whether the pixels have them.
+// Adobe's raw converters write their settings, and whether they were applied to the pixels.
 bool has_adobe_profile(const Exiv2::XmpData &xmp) {
     const auto is = [&](const char *key, const char *value) {
         const auto datum = xmp.findKey(Exiv2::XmpKey(key));
@@ -107,7 +107,7 @@ bool has_adobe_profile(const Exiv2::XmpData &xmp) {
 }
 
 // DNG 1.7, "Opcode Lists": a count, then id, version, flags and size of each, big endian. 3 is FixVignetteRadial, 9
-// GainMap. A rendered picture that still has the list went through it.
+// GainMap. A rendered picture that still has the list was made by applying it.
 bool has_falloff_opcodes(const Exiv2::ExifData &exif) {
     for (const char *key : {"Exif.Image.OpcodeList2", "Exif.Image.OpcodeList3"}) {
         const auto datum = exif.findKey(Exiv2::ExifKey(key));

@@ -1,4 +1,4 @@
-// Whether the camera, or a raw converter, has taken out the lens's falloff before: what a picture says of it.
+// Detects from metadata whether the camera or a raw converter has already corrected the falloff.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@ class Image;
 
 namespace lensprof {
 
-// Who did and what says so, "in camera (Sony: vignetting correction)"; empty where nothing says so. Maker notes speak
-// of the camera's own JPEG: they say nothing of other files, nor of JPEGs whose Software is a raw converter, which
-// copies them from the raw file.
+// Who corrected it and the evidence, "in camera (Sony: vignetting correction)"; empty if nothing states it. Maker notes
+// describe only the camera's own JPEG, not other files or JPEGs whose Software is a raw converter, which copies the
+// notes from the raw file.
 std::string falloff_corrected_by(const Exiv2::Image &image, const lensprof_profile_key &key);
 
 }  // namespace lensprof

@@ -42,11 +42,11 @@ void warn_of_limits(const std::string &file, double own_ev, double wanted_ev, do
     if (change < darker && white > worth_a_word)
         warn(streams,
              file
-                 + format(": %.1f %% of it is white in some channel and becomes grey or coloured, %.1f EV darker; "
-                          "--to brightest keeps white",
+                 + format(": %.1f %% of it is clipped in some channel and turns grey or coloured, because it becomes "
+                          "%.1f EV darker; use --to brightest to keep white",
                           100.0 * white, -change));
     if (change > much_brighter)
-        warn(streams, file + format(": becomes %.1f EV brighter, and so does the noise of what is dark in it", change));
+        warn(streams, file + format(": becomes %.1f EV brighter, which amplifies the noise of its dark parts", change));
 }
 
 }  // namespace lensprof

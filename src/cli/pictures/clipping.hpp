@@ -1,4 +1,4 @@
-// What a sensor did not record cannot be made like another exposure.
+// Warnings for values that no exposure change can restore.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace lensprof {
 
-// Share of the pixels that are white (above 250 of 255) in some channel.
+// Share of pixels that are white (above 250 of 255) in some channel.
 double white_share(const Picture &picture);
 
-// Warns of what no exposure brings back when a frame changes from its own exposure to the wanted one: white that
-// becomes grey, and noise of what was dark.
+// Warns if changing a frame from its own to the wanted exposure turns white to grey or amplifies the noise of dark
+// areas.
 void warn_of_limits(const std::string &file, double own_ev, double wanted_ev, double white_share, Streams &streams);
 
 }  // namespace lensprof

@@ -23,7 +23,7 @@ void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, co
     if (frame_width == 0 || frame_height == 0) fail_damaged(request.path, size);
     if (frame_width > picture_max_side || frame_height > picture_max_side
         || pixel_bytes(picture) * frame_width * frame_height > picture_max_bytes)
-        fail_unsupported(request.path, size + " are too many; cut it into smaller pictures");
+        fail_unsupported(request.path, size + " exceed the limit; cut it into smaller pictures");
     picture.frame_width = frame_width;
     picture.frame_height = frame_height;
     picture.reduction = 1;
@@ -44,8 +44,8 @@ std::string size_text(uint64_t width, uint64_t height) {
 void check_stored(const std::string &path, const std::string &declared, uint64_t needed, uint64_t stored,
                   uint64_t expansion, uint64_t file_bytes) {
     if (expansion > 0 && stored < (needed + expansion - 1) / expansion)
-        fail_damaged(path, "it declares " + declared + ", which its " + std::to_string(std::min(stored, file_bytes))
-                               + " bytes of data cannot hold");
+        fail_damaged(path, "it declares " + declared + ", too many for its "
+                               + std::to_string(std::min(stored, file_bytes)) + " bytes of data");
 }
 
 LazyBytes make_lazy_bytes(size_t count) {
@@ -64,15 +64,16 @@ double convert_resolution(double value, PictureTraits::Unit from, PictureTraits:
 
 File open_for_reading(const std::string &path) {
     struct stat kind = {};
-    if (stat(path.c_str(), &kind) == 0 && !S_ISREG(kind.st_mode) && !S_ISDIR(kind.st_mode))  // would wait for a writer
-        throw Failure(ExitCode::unreadable, path + ": cannot read: is no file; give the name of a picture");
+    if (stat(path.c_str(), &kind) == 0 && !S_ISREG(kind.st_mode) && !S_ISDIR(kind.st_mode))  // would block until a
+                                                                                             // writer opens it
+        throw Failure(ExitCode::unreadable, path + ": cannot read: not a regular file; give the name of a picture");
     File file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file)
         throw Failure(ExitCode::unreadable,
-                      path + ": cannot read: " + system_text(errno) + "; check the name and its permissions");
+                      path + ": cannot read: " + system_text(errno) + "; check the file name and the permissions");
     struct stat status = {};
     if (fstat(fileno(file.get()), &status) != 0 || S_ISDIR(status.st_mode))
-        throw Failure(ExitCode::unreadable, path + ": cannot read: is a folder; give the name of a picture");
+        throw Failure(ExitCode::unreadable, path + ": cannot read: it is a folder; give the name of a picture");
     return file;
 }
 
@@ -107,7 +108,7 @@ void fail_memory(const std::string &path) {
 void fail_to_write(const std::string &path, const std::string &detail, int error_number) {
     throw Failure(ExitCode::failed,
                   path + ": cannot write: "
-                      + (error_number != 0 ? system_text(error_number) + "; check the disk's space and the permissions"
+                      + (error_number != 0 ? system_text(error_number) + "; check the free space and the permissions"
                                            : detail + "; write another format"));
 }
 

@@ -20,17 +20,17 @@ void set_coded_frame(Picture &picture, uint32_t width, uint32_t height, const Re
     set_frame(picture, width, height, request);
     if (pixel_bytes(picture) * width * height > coded_max_bytes)
         fail_unsupported(request.path,
-                         size_text(width, height) + " are too many of this format; convert it to TIFF first");
+                         size_text(width, height) + " exceed the limit of this format; convert it to TIFF first");
 }
 
 void fail_hdr(const std::string &path, const std::string &kind, const std::string &transfer) {
-    fail_unsupported(path, "is a " + kind + " picture of high dynamic range (" + transfer
-                               + " transfer), whose values are no camera's response to light; convert it to a TIFF or "
-                                 "PNG in sRGB, or to a linear TIFF, first");
+    fail_unsupported(path, "is a high dynamic range " + kind + " picture (" + transfer
+        + " transfer), whose values do not follow a camera response; convert it to a TIFF or PNG in sRGB, or to a "
+          "linear TIFF, first");
 }
 
 void fail_animated(const std::string &path, const std::string &kind) {
-    fail_unsupported(path, "is a " + kind + " animation; save one of its pictures as TIFF or PNG first");
+    fail_unsupported(path, "is a " + kind + " animation; save one of its frames as TIFF or PNG first");
 }
 
 std::vector<uint8_t> without_exif_mark(const uint8_t *bytes, size_t count) {

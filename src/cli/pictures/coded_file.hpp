@@ -15,23 +15,24 @@ namespace lensprof {
 
 namespace codec {
 
-// Most bytes of decoded pixels, as of a WebP in a TIFF: a few bytes may be a whole frame of one grey, so that a
-// header's size cannot be checked against the bytes that follow it.
+// Maximum bytes of decoded pixels, also for a WebP in a TIFF: a few bytes may encode a uniform frame, so the size in a
+// header cannot be checked against the file size.
 constexpr uint64_t coded_max_bytes = uint64_t(1) << 30;
 
-// What a file has besides its pixels.
+// Content of a file other than its pixels.
 struct CodedMetadata {
-    std::vector<uint8_t> exif, xmp, icc;  // exif: from its TIFF header on; empty where there is none
-    uint32_t width = 0, height = 0;       // as PictureReader gives them
-    uint16_t orientation = 0;             // the format's own, in EXIF's numbers, in place of EXIF's; 0 = it has none
-    bool is_camera_jpeg = false;          // holds a JPEG file that can be restored
+    std::vector<uint8_t> exif, xmp, icc;  // exif: starts at its TIFF header; empty if missing
+    uint32_t width = 0, height = 0;       // as PictureReader returns them
+    uint16_t orientation = 0;             // orientation of the format itself, in EXIF's numbering, replaces that of
+                                          // EXIF; 0 = none
+    bool is_camera_jpeg = false;          // contains a JPEG file that can be restored
 };
 
 CodedMetadata webp_metadata(const std::string &path);
 CodedMetadata heif_metadata(const std::string &path, const std::string &kind);
 CodedMetadata jxl_metadata(const std::string &path);
 
-// Rows of a picture that is decoded when the first one is asked for.
+// Rows of a picture that is decoded when the first row is requested.
 class DecodedSource : public RowSource {
 public:
     void read(uint8_t *row) override;
@@ -51,15 +52,15 @@ private:
 // set_frame, with the limits of these formats.
 void set_coded_frame(Picture &picture, uint32_t width, uint32_t height, const ReadRequest &request);
 
-// PQ and HLG (ITU-R BT.2100) code light for a display or a scene of absolute or very wide range.
+// Refuses PQ and HLG (ITU-R BT.2100), which encode light for a display or a scene of absolute or very wide range.
 [[noreturn]] void fail_hdr(const std::string &path, const std::string &kind, const std::string &transfer);
 [[noreturn]] void fail_animated(const std::string &path, const std::string &kind);
 
-// The EXIF block from its TIFF header on: some writers put the six bytes before it that stand there in a JPEG.
+// The EXIF block starting at its TIFF header: some writers add the six bytes that precede it in a JPEG.
 std::vector<uint8_t> without_exif_mark(const uint8_t *bytes, size_t count);
 
-// The same of an item of HEIF or a box of JPEG XL (ISO/IEC 23008-12, annex A.2.1): its first four bytes state how many
-// others precede the TIFF header. Empty where these do not lie within it.
+// The same for an item of HEIF or a box of JPEG XL (ISO/IEC 23008-12, annex A.2.1): its first four bytes state how many
+// others precede the TIFF header. Empty if that is out of range.
 std::vector<uint8_t> exif_of_item(const std::vector<uint8_t> &item);
 
 }  // namespace codec

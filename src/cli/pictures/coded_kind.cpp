@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr size_t most_start = 512;  // of a file: its first box, with the brands, is not larger
+constexpr size_t most_start = 512;  // of a file: enough for its first box with the brands
 
 // ISO/IEC 23008-12, annexes B and E, and AV1 Image File Format, 6: brands of still pictures and of sequences.
 constexpr struct {

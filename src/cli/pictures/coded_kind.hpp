@@ -1,4 +1,4 @@
-// Which picture file of HEIF's family, WebP or JPEG XL a file is, by its content: no decoder is needed for that.
+// Identifies HEIF family, WebP and JPEG XL files by content, without a decoder.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,13 @@ struct CodedKind {
     const char *name;   // "HEIC", "AVIF", "HEIF", "WebP", "JPEG XL"
 };
 
-// Nothing for other files, also for those that cannot be read.
+// Empty for other files, including unreadable ones.
 std::optional<CodedKind> coded_kind(const std::string &path);
 
-// By content or name: a copy of it cannot keep the end of its name.
+// By content or name. A corrected copy cannot keep this extension.
 bool is_read_alone(const std::string &path);
 
-// The format that a name ends for: .heic, .heif, .hif, .avif, .webp, .jxl in any case. These are read, not written.
+// The format of a file extension: .heic, .heif, .hif, .avif, .webp, .jxl in any case. These are read, not written.
 std::optional<CodedKind> coded_kind_of_name(const std::string &path);
 
 }  // namespace lensprof

@@ -27,7 +27,7 @@ codec::CodedMetadata read_blocks(const std::string &path, const CodedKind &kind)
     return codec::heif_metadata(path, kind.name);
 }
 
-// Holds what was read elsewhere.
+// Holds metadata read elsewhere.
 class CodedImage final : public Exiv2::Image {
 public:
     CodedImage(const CodedKind &kind, const codec::CodedMetadata &blocks)
@@ -55,7 +55,7 @@ public:
     bool is_of_camera() const { return is_of_camera_; }
 
 private:
-    // A block that is no EXIF counts as none, as in a JPEG.
+    // An invalid EXIF block counts as missing, as in a JPEG.
     void read_exif(const codec::CodedMetadata &blocks) {
         if (!blocks.exif.empty()) {
             const Exiv2::ByteOrder order =

@@ -17,7 +17,7 @@ namespace codec {
 
 namespace {
 
-// Rows of blocks that are in memory, in bytes.
+// Bytes of the rows of blocks held in memory.
 constexpr size_t window_bytes = size_t(1) << 20;
 
 // Bytes of the coefficients of all components.
@@ -35,7 +35,7 @@ uint64_t coefficient_bytes(const jpeg_compress_struct &info) {
 
 }  // namespace
 
-// In memory of libjpeg's, which ends with the picture. Rows from window_start on are in the window.
+// In libjpeg's memory pool, which ends with the picture. Rows from window_start on are in the window.
 struct CoefficientFile::Array {
     JDIMENSION rows, window_rows, window_start;
     JDIMENSION stored;  // rows from here on are not in the file: zero

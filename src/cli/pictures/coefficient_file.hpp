@@ -1,4 +1,4 @@
-// Where the coefficients of a JPEG wait that do not all fit in memory.
+// Storage for JPEG coefficients that do not all fit in memory.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@ namespace lensprof {
 
 namespace codec {
 
-// The best Huffman tables are known when all blocks are, so that libjpeg keeps the coefficients of the whole picture,
-// in "virtual arrays" which are all in memory as libjpeg is commonly built. Here those of a picture that has more
-// than jpeg_memory_bytes of them are in a file without a name, but for a few rows.
+// Optimal Huffman tables require all blocks, so libjpeg keeps the coefficients of the whole picture in "virtual
+// arrays", which common builds of libjpeg hold entirely in memory. Here the coefficients of a picture with more than
+// jpeg_memory_bytes of them are kept in an unnamed file, except for a few rows.
 class CoefficientFile {
 public:
-    // `beside`: a path in the folder that the file is made in.
+    // `beside`: a path in the folder where the file is created.
     explicit CoefficientFile(const std::string &beside) : beside_(beside) {}
     ~CoefficientFile();
     CoefficientFile(const CoefficientFile &) = delete;
     CoefficientFile &operator=(const CoefficientFile &) = delete;
 
-    // Before jpeg_start_compress, all else being set. `info` must not outlive this object's use; errors leave by its
-    // error_exit.
+    // Call before jpeg_start_compress, with all else set. `info` must not outlive this object's use; errors leave
+    // through its error_exit.
     void attach(jpeg_compress_struct &info);
 
 private:
@@ -38,7 +38,7 @@ private:
 
     std::string beside_;
     int file_ = -1;
-    uint64_t end_ = 0;  // bytes that the arrays so far take in the file
+    uint64_t end_ = 0;  // bytes used so far by the arrays in the file
 };
 
 }  // namespace codec

@@ -1,4 +1,4 @@
-// An overview picture: every picture before, and below it after.
+// An overview picture: each picture before and, below it, after correction.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace lensprof {
 
-// A small copy (box means, 8 bit RGB), gathered from a picture's rows.
+// A small copy (box means, 8 bit RGB), built from a picture's rows.
 class Thumbnail {
 public:
     Thumbnail() = default;
     Thumbnail(uint32_t picture_width, uint32_t picture_height);
 
-    // The picture's next rows.
+    // Adds the picture's next rows.
     void add(const lensprof_image &rows);
 
     uint32_t width = 0, height = 0;
@@ -25,18 +25,18 @@ private:
     void end_boxes();
 
     uint32_t picture_width_ = 0, picture_height_ = 0, step_ = 1, row_ = 0;
-    std::vector<double> sums_;  // of the boxes that row_ is in
+    std::vector<double> sums_;  // sums of the boxes of the current row_
 };
 
 class ContactSheet {
 public:
-    // Before anything is put in: how many pictures there will be.
+    // Sets the number of pictures; call before adding any.
     void reserve(size_t pictures);
 
-    // Threads: different pictures may be put in by different threads.
+    // Threads: different threads may add different pictures.
     void put(size_t picture, Thumbnail before, Thumbnail after);
 
-    // PNG.
+    // The sheet as PNG.
     void write(const std::string &path) const;
 
 private:

@@ -1,5 +1,5 @@
-// What lensprof did to a picture, as a mark in the picture's XMP: so that a falloff is not taken out twice, and that an
-// output is not taken for that of another picture.
+// A mark in a picture's XMP that records what lensprof did, so that a falloff is not corrected twice and an output is
+// not mistaken for that of another picture.
 #pragma once
 
 #include <optional>
@@ -14,30 +14,31 @@ namespace lensprof {
 // Properties of the namespace urn:lensprof:correction:1/ (docs/formats.md).
 struct CorrectionMark {
     enum class Falloff {
-        kept,     // exposure, white balance or encoding alone changed
-        removed,  // must not be removed again
+        kept,     // only exposure, white balance or encoding changed
+        removed,  // corrected: must not be corrected again
         added     // simulated
     };
 
     Falloff falloff = Falloff::kept;
     bool linear = false;                // proportional to light
-    bool is_exposure_measured = false;  // EXIF's exposure is what lensprof measured, and not what the camera states
+    bool is_exposure_measured = false;  // EXIF holds the exposure measured by lensprof, not the one stated by the
+                                        // camera
     std::string software;               // "lensprof 0.2.0"
-    std::string model;                  // what falloff and response are those of
-    std::string source;                 // name of the picture that it was made from, without folder
-    std::string digest;                 // of that file: digest_of
+    std::string model;                  // source of falloff and response
+    std::string source;                 // name of the source picture, without folder
+    std::string digest;                 // digest_of that file
 };
 
-// Sixteen hexadecimal digits (FNV-1a) of a file's size, its first and its last 64 KiB, which tell photographs apart.
-// Failure (unreadable).
+// Sixteen hexadecimal digits (FNV-1a) of a file's size and its first and last 64 KiB, enough to distinguish
+// photographs. Failure (unreadable).
 std::string digest_of(const std::string &path);
 
-// Once, before XMP is read or written.
+// Call once, before XMP is read or written.
 void register_correction_mark();
 
 std::optional<CorrectionMark> correction_mark_of(const Exiv2::XmpData &xmp);
 
-// In the place of an older one, of which a mark that keeps the falloff keeps what was said about that.
+// Replaces an older mark. A new mark that keeps the falloff retains the older mark's statement about it.
 void set_correction_mark(const CorrectionMark &mark, Exiv2::XmpData &xmp);
 
 }  // namespace lensprof

@@ -25,15 +25,15 @@ std::optional<double> read_f_number(const Exiv2::ExifData &exif) {
     return apex > 0 ? in_range(std::exp2(apex / 2), 1000) : std::nullopt;
 }
 
-// Exiv2 knows where the makers put it; the readable form is the number of the standard, the raw one often is not.
+// Exiv2 knows where makers store it; the readable form is the standard number, the raw one often is not.
 std::optional<double> read_iso(const Exiv2::ExifData &exif) {
     const auto datum = Exiv2::isoSpeed(exif);
     if (datum == exif.end()) return std::nullopt;
     return in_range(std::strtod(datum->print(&exif).c_str(), nullptr), 1e8);
 }
 
-// Cameras write one tag, or both; where these disagree (a program that the camera has no number for, bracketing by
-// hand) the one that says so is right.
+// Cameras write one tag or both; if they disagree (a program that the camera has no number for, manual bracketing), the
+// one stating manual exposure is right.
 bool read_is_manual(const Exiv2::ExifData &exif) {
     return read_number(exif, {"Exif.Photo.ExposureProgram", "Exif.Image.ExposureProgram"}) == kManual
            || read_number(exif, {"Exif.Photo.ExposureMode"}) == kManual;
@@ -54,9 +54,9 @@ void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata) {
 void write_exposure(const PictureMetadata &metadata, Exiv2::ExifData &exif) {
     set_rational(exif, "Exif.Photo.FNumber", metadata.key.aperture);
     set_rational(exif, "Exif.Photo.ExposureTime", metadata.exposure_time_s.value_or(LENSPROF_UNKNOWN));
-    const auto apex = exif.findKey(Exiv2::ExifKey("Exif.Photo.ShutterSpeedValue"));  // states the old time
+    const auto apex = exif.findKey(Exiv2::ExifKey("Exif.Photo.ShutterSpeedValue"));  // states the old exposure time
     if (metadata.exposure_time_s && apex != exif.end()) exif.erase(apex);
-    if (metadata.iso && *metadata.iso >= 0.5)  // 16 bits; 65535 stands for what is larger
+    if (metadata.iso && *metadata.iso >= 0.5)  // 16 bits; 65535 means a larger value
         exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::fmin(*metadata.iso, 65535)));
     if (!metadata.is_manual) return;
     exif["Exif.Photo.ExposureProgram"] = kManual;

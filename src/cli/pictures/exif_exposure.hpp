@@ -1,4 +1,4 @@
-// What EXIF says about the exposure: time, aperture, ISO, and whether they were set by hand.
+// The exposure in EXIF: time, aperture, ISO, and whether they were set manually.
 #pragma once
 
 #include <exiv2/exiv2.hpp>
@@ -10,7 +10,7 @@ namespace lensprof {
 // Fills exposure_time_s, f_number, iso, exif_ev and is_manual.
 void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata);
 
-// Writes what is known of them; the aperture is the key's.
+// Writes the known values; the aperture is taken from the key.
 void write_exposure(const PictureMetadata &metadata, Exiv2::ExifData &exif);
 
 }  // namespace lensprof

@@ -8,16 +8,17 @@
 
 namespace lensprof {
 
-// NaN when there is no value.
+// NaN if there is no value.
 double number(const Exiv2::Exifdatum &datum);
 
-// The first of the keys that is there; NaN when none is.
+// The first existing key; NaN if none exists.
 double read_number(const Exiv2::ExifData &exif, std::initializer_list<const char *> keys);
 
-// Above 0 and below the limit; NaN is not.
+// Whether the value is above 0 and below the limit; false for NaN.
 std::optional<double> in_range(double value, double below);
 
-// As the fraction with small terms that is within 1e-9 of the value; a value that is no positive number is left out.
+// Writes the value as the fraction with small terms that is within 1e-9 of it; values that are not positive are
+// skipped.
 void set_rational(Exiv2::ExifData &exif, const char *key, double value);
 
 }  // namespace lensprof

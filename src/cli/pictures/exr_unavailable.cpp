@@ -1,4 +1,4 @@
-// In place of the writer of OpenEXR, where the program is built without that library.
+// Replaces the OpenEXR writer if the program is built without that library.
 #include "cli/pictures/codec.hpp"
 
 namespace lensprof {
@@ -6,7 +6,7 @@ namespace lensprof {
 namespace codec {
 
 std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &, const std::string &) {
-    fail_to_hold(path, "this lensprof was built without OpenEXR; give a name in .tif");
+    fail_to_hold(path, "this lensprof was built without OpenEXR; give a name ending in .tif");
 }
 
 }  // namespace codec

@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint64_t most_meta_bytes = uint64_t(64) << 20;
 
-// Bytes that are read from the front. Beyond the end there are zeros, and `is_short` is set.
+// Reads bytes from the front. Beyond the end it returns zeros and sets `is_short`.
 struct Bytes {
     const uint8_t *at = nullptr;
     size_t count = 0;
@@ -69,7 +69,7 @@ std::optional<Box> find_box(Bytes bytes, const char *type) {
     return std::nullopt;
 }
 
-// The content of the file's meta box; empty where there is none.
+// The content of the file's meta box; empty if not found.
 std::vector<uint8_t> read_meta(const std::string &path) {
     const File file = open_for_reading(path);
     const uint64_t end = file_bytes(file.get());
@@ -93,7 +93,7 @@ std::vector<uint8_t> read_meta(const std::string &path) {
     return {};
 }
 
-// Numbers, from 1, of the properties of an item, in their order.
+// 1-based indices of an item's properties, in order.
 std::vector<size_t> properties_of(uint64_t item, Bytes ipma) {
     const uint64_t version = ipma.number(1), flags = ipma.number(3), entries = ipma.number(4);
     std::vector<size_t> properties;
@@ -133,8 +133,8 @@ HeifProperties combine(const std::vector<Box> &properties, const std::vector<siz
 
 }  // namespace
 
-// EXIF's numbers as those of a picture mirrored left and right first (2, 4, 5, 7) or not, turned clockwise by 0, 90,
-// 180 or 270 degrees then.
+// EXIF orientations as optional mirroring left and right (2, 4, 5, 7) followed by a clockwise rotation of 0, 90, 180 or
+// 270 degrees.
 uint16_t turned_anticlockwise(uint16_t orientation, unsigned quarters) {
     static constexpr uint16_t plain[] = {1, 8, 3, 6}, mirror[] = {2, 5, 4, 7};
     for (const auto &circle : {plain, mirror})

@@ -1,5 +1,4 @@
-// What a HEIF file states of its primary picture and libheif does not report, in versions before 1.16: private to
-// picture_heif.cpp.
+// Properties of a HEIF file's primary picture that libheif before 1.16 does not report: private to picture_heif.cpp.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +9,15 @@ namespace lensprof {
 namespace codec {
 
 struct HeifProperties {
-    uint16_t orientation = 1;  // that libheif gives the picture while it decodes, in EXIF's numbers
+    uint16_t orientation = 1;  // orientation that libheif applies while decoding, in EXIF's numbering
     bool is_grey = false;
 };
 
-// The defaults where the boxes cannot be read, which libheif reports.
+// Defaults if the boxes cannot be read; libheif reports that error.
 HeifProperties heif_properties(const std::string &path);
 
-// EXIF's number for what rotates by `quarters` quarter turns anticlockwise, or mirrors left and right, a picture that
-// `orientation` has turned already.
+// EXIF orientation after rotating by `quarters` quarter turns anticlockwise, or mirroring left and right, a picture
+// that already has `orientation`.
 uint16_t turned_anticlockwise(uint16_t orientation, unsigned quarters);
 uint16_t mirrored(uint16_t orientation);
 

@@ -1,4 +1,4 @@
-// In place of the reader of HEIC and AVIF, where the program is built without libheif.
+// Replaces the reader of HEIC and AVIF if the program is built without libheif.
 #include "cli/pictures/coded_file.hpp"
 
 namespace lensprof {
@@ -9,8 +9,8 @@ namespace {
 
 [[noreturn]] void fail_without(const std::string &path, const std::string &kind) {
     fail_unsupported(path, "is a picture in " + kind + ", and this lensprof was built without libheif; install "
-                           "libheif-dev and build it again, or convert the file to PNG, for instance with "
-                           "heif-convert");
+                                                       "libheif-dev and rebuild lensprof, or convert the file to PNG, "
+                                                       "for instance with heif-convert");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a picture's colour profile (ICC) says of its tone curve.
+// The tone curve according to a picture's colour profile (ICC).
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 namespace lensprof {
 
 enum class ToneCurve {
-    unknown,  // no profile, or one without curves that can be read (of tables, of printers)
+    unknown,  // no profile, or one without readable curves (tables, printers)
     linear,
     other
 };
 
-// By the tone curves of red, green and blue, or of grey, of profile[bytes].
+// From the tone curves of red, green and blue, or of grey, in profile[bytes].
 ToneCurve tone_curve_of(const uint8_t *profile, size_t bytes);
 
-// A profile of linear tone curves, for pictures in a camera's own colours (with the primaries of sRGB, as a profile
-// must have some; its description states that the colours are the camera's), or for grey ones.
+// A profile with linear tone curves for pictures in camera colours (with sRGB primaries, because a profile needs some;
+// its description states that the colours are those of the camera), or for grey pictures.
 std::vector<uint8_t> linear_profile(bool grey);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// In place of the reader of JPEG XL, where the program is built without libjxl.
+// Replaces the reader of JPEG XL if the program is built without libjxl.
 #include "cli/pictures/coded_file.hpp"
 
 namespace lensprof {
@@ -10,7 +10,7 @@ namespace {
 [[noreturn]] void fail_without(const std::string &path) {
     fail_unsupported(path,
                      "is a JPEG XL picture, and this lensprof was built without libjxl; install libjxl-dev and "
-                     "build it again, or convert the file to PNG, for instance with djxl");
+                     "rebuild lensprof, or convert the file to PNG, for instance with djxl");
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ namespace {
 
 using ExivImage = std::unique_ptr<Exiv2::Image>;  // 0.27 of Exiv2 has std::auto_ptr
 
-// Exiv2 takes its XMP namespaces away and puts them in again whenever it reads or writes XMP: what another thread
-// writes meanwhile loses its XMP without a word. One thread at a time reads or writes metadata.
+// Exiv2 unregisters and registers its XMP namespaces whenever it reads or writes XMP; anything another thread writes
+// meanwhile silently loses its XMP. Only one thread at a time reads or writes metadata.
 std::recursive_mutex &exiv2_mutex() {
     static std::recursive_mutex mutex;
     return mutex;
@@ -66,8 +66,7 @@ void prepare_exiv2() {
 }
 
 [[noreturn]] void fail_writing(const std::string &path, const std::exception &error) {
-    throw Failure(ExitCode::failed,
-                  path + ": cannot write metadata: " + error.what() + "; write another format, or without metadata");
+    throw Failure(ExitCode::failed, path + ": cannot write metadata: " + error.what() + "; write another format");
 }
 
 bool is_big_tiff(const std::string &path) {
@@ -86,7 +85,7 @@ void read_once(Exiv2::Image &image) {
 
 ExivImage open_image(const std::string &path) {
     prepare_exiv2();
-    codec::open_for_reading(path);  // for its errors, which say more than Exiv2's
+    codec::open_for_reading(path);  // for its errors, which are more specific than those of Exiv2
     const auto coded = coded_kind(path);
     try {
         if (coded && !raw_kind(path)) {
@@ -105,8 +104,8 @@ ExivImage open_image(const std::string &path) {
 
 // Reading.
 
-// EXIF text is ASCII by the standard; what is neither that nor UTF-8 is taken for Latin-1. Ends at the first NUL,
-// control characters become blanks, runs at both ends are cut.
+// EXIF text is ASCII by the standard; text that is neither ASCII nor UTF-8 is treated as Latin-1. It ends at the first
+// NUL, control characters become blanks, and surrounding blanks are removed.
 std::string clean_text(const std::string &raw) {
     std::string text;
     for (size_t i = 0; i < raw.size() && raw[i] != '\0';) {
@@ -126,7 +125,7 @@ std::string clean_text(const std::string &raw) {
     return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-// Cuts what is too long for the field, and notes it.
+// Truncates text too long for the field, and records this.
 template <size_t size>
 void store_text(const std::string &text, char (&field)[size], const char *option, PictureMetadata &metadata) {
     const size_t length = utf8_cut(text, size - 1);
@@ -146,7 +145,7 @@ bool begins_with_one(const std::string &text, const char *const (&starts)[count]
                        [&](const char *start) { return text.compare(0, std::strlen(start), start) == 0; });
 }
 
-// Not what cameras write when they do not know the lens, nor what Exiv2 says when it knows only the number.
+// Excludes what cameras write for an unknown lens, and what Exiv2 prints if it knows only the number.
 bool is_name(const std::string &text) {
     static const char *const nothing[] = {"n/a",     "N/A",     "None",    "none",   "Unknown",
                                           "unknown", "NO-LENS", "No lens", "0.0 mm", "0 mm"};
@@ -156,12 +155,12 @@ bool is_name(const std::string &text) {
     return !begins_with_one(text, nothing);
 }
 
-// "24.0-70.0 mm f/2.8", which many lenses are.
+// "24.0-70.0 mm f/2.8", which fits many lenses.
 bool is_numbers_alone(const std::string &name) {
     return name.find_first_not_of("0123456789.-/ mfF") == std::string::npos;
 }
 
-// By Nikon's numbers of the lens; empty where they are not there, or not known.
+// From Nikon's lens numbers; empty if missing or unknown.
 std::string read_nikon_lens(const Exiv2::ExifData &exif) {
     for (const char *key : {"Exif.NikonLd1.LensIDNumber", "Exif.NikonLd2.LensIDNumber", "Exif.NikonLd3.LensIDNumber"}) {
         const auto datum = exif.findKey(Exiv2::ExifKey(key));
@@ -182,7 +181,7 @@ std::string read_lens(const Exiv2::ExifData &exif) {
     return is_name(name) ? name : std::string();
 }
 
-// The rendering's name, as the makers' notes have it: in words where Exiv2 knows them.
+// The name of the picture style in the maker notes, as text if Exiv2 knows it.
 std::string read_style(const Exiv2::ExifData &exif) {
     for (const char *key :
          {"Exif.CanonPr.PictureStyle", "Exif.NikonPc.Name", "Exif.Fujifilm.FilmMode", "Exif.Sony1.ColorReproduction",
@@ -196,7 +195,7 @@ std::string read_style(const Exiv2::ExifData &exif) {
     return {};
 }
 
-// Serial numbers of camera and lens, as far as they are known: "BODY", "BODY/LENS" or "/LENS".
+// Serial numbers of camera and lens, as far as known: "BODY", "BODY/LENS" or "/LENS".
 std::string read_unit(const Exiv2::ExifData &exif) {
     const auto of_maker = Exiv2::serialNumber(exif);
     const std::string lens = read_text(exif, "Exif.Photo.LensSerialNumber");
@@ -207,7 +206,7 @@ std::string read_unit(const Exiv2::ExifData &exif) {
     return is_nothing(lens) ? unit : unit + "/" + lens;
 }
 
-// Maker notes print "3.5 m", "Infinity", "Unknown" and the like; beyond 10 km the number means something else.
+// Maker notes contain "3.5 m", "Infinity", "Unknown" or similar; above 10 km the number means something else.
 double parse_distance(const std::string &text) {
     if (text.compare(0, 5, "Infin") == 0) return INFINITY;
     char *end = nullptr;
@@ -229,8 +228,8 @@ double read_distance(const Exiv2::ExifData &exif) {
     return datum == exif.end() || datum == stated ? LENSPROF_UNKNOWN : parse_distance(clean_text(datum->print(&exif)));
 }
 
-// 43.27 mm over the sensor's diagonal, by the pixels' pitch; NaN where the sizes that EXIF states are not the
-// picture's: it was made smaller, or cut, and the pitch is no more that of its pixels.
+// 43.27 mm over the sensor diagonal, from the pixel pitch; NaN if the sizes in EXIF are not those of the picture: it
+// was resized or cropped, and the pitch is no longer that of its pixels.
 double read_pitched_crop(const Exiv2::ExifData &exif, PictureSize size) {
     const double unit = read_number(exif, {"Exif.Photo.FocalPlaneResolutionUnit"}) == 3 ? 10.0 : 25.4;  // mm: cm, inch
     const double width = read_number(exif, {"Exif.Photo.PixelXDimension"}),
@@ -243,9 +242,9 @@ double read_pitched_crop(const Exiv2::ExifData &exif, PictureSize size) {
                   : NAN;
 }
 
-// By the focal length's equivalent, which is rounded to whole mm; where the pixels' pitch agrees with that, or there is
-// no equivalent, by the pitch. A picture of few pixels may be one that was made smaller by a program that changed its
-// stated size, too: then the pitch alone is not believed.
+// From the 35 mm equivalent focal length, which is rounded to whole mm; if the pixel pitch agrees with it, or there is
+// no equivalent, from the pitch. A small picture may have been resized by a program that updated its stated size: then
+// the pitch alone is not trusted.
 double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm, PictureSize size) {
     constexpr double fewest_pixels = 3e6, same = 0.1;
     const double equivalent = read_number(exif, {"Exif.Photo.FocalLengthIn35mmFilm"}) / focal_mm;
@@ -259,8 +258,8 @@ double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm, PictureSiz
 
 // Writing.
 
-// Reads, changes and writes the metadata of a file in memory: Exiv2 does not notice a disk that is full. False when the
-// excerpt was not enough.
+// Reads, changes and writes the metadata of a file in memory, because Exiv2 does not detect a full disk. False if the
+// excerpt was not sufficient.
 bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
                   const std::function<void(Exiv2::Image &)> &change) {
     ExivImage image;
@@ -290,15 +289,15 @@ bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
     return excerpt.replace(edited.data(), edited.size());
 }
 
-// Without the pixels where that can be, so that memory does not grow with them.
+// Without the pixels if possible, so that memory does not grow with them.
 void edit_metadata(const std::string &path, const std::function<void(Exiv2::Image &)> &change) {
     prepare_exiv2();
     const auto excerpt = codec::excerpt_of(path);
     if (!excerpt || !edit_excerpt(path, *excerpt, change)) edit_excerpt(path, *codec::whole_file(path), change);
 }
 
-// Tags of the main directory that say how pixels are stored, where other things are in the file, or hold what is kept
-// by other means (ICC, XMP, IPTC).
+// Tags of the main directory that describe how pixels are stored, point to other parts of the file, or hold data kept
+// elsewhere (ICC, XMP, IPTC).
 bool is_structure(uint16_t tag) {
     static const uint16_t tags[] = {254, 255, 256, 257, 258, 259,   262,   263,   264,   265,   266,  273, 277,
                                     278, 279, 280, 281, 284, 288,   289,   290,   291,   292,   293,  317, 320,
@@ -314,7 +313,7 @@ bool is_other_picture(const std::string &group) {
     return begins_with_one(group, starts);
 }
 
-// Tags of the main directory that describe a mosaic and a DNG: no developed picture has them.
+// Tags of the main directory that describe a mosaic and a DNG; developed pictures do not have them.
 bool is_of_raw(uint16_t tag) { return tag == 33421 || tag == 33422 || (tag >= 50706 && tag <= 52600); }
 
 bool keep_exif(const Exiv2::Exifdatum &datum, const Exiv2::ExifData &target, bool to_tiff) {
@@ -322,7 +321,7 @@ bool keep_exif(const Exiv2::Exifdatum &datum, const Exiv2::ExifData &target, boo
     const uint16_t tag = datum.tag();
     if (is_other_picture(datum.groupName())) return false;
     if (datum.groupName() != "Image") return true;
-    if (to_tiff && tag == 531)  // position of chroma samples: there are none
+    if (to_tiff && tag == 531)  // position of chroma samples, which do not exist here
         return false;
     if (to_tiff && std::find(std::begin(resolution), std::end(resolution), tag) != std::end(resolution))
         return target.findKey(Exiv2::ExifKey("Exif.Image.XResolution")) == target.end();
@@ -344,7 +343,7 @@ Exiv2::ExifData merge_exif(const Exiv2::ExifData &source, const Exiv2::ExifData 
     return merged;
 }
 
-// Leaves out the thumbnail, and references to parts of the old file that are not copied.
+// Removes the thumbnail, and references to parts of the old file that are not copied.
 Exiv2::XmpData copy_xmp(const Exiv2::XmpData &source) {
     static const char *const gone[] = {"Xmp.xmp.Thumbnails", "Xmp.xmpNote.", "Xmp.Container.", "Xmp.GContainer."};
     Exiv2::XmpData copy;
@@ -354,7 +353,7 @@ Exiv2::XmpData copy_xmp(const Exiv2::XmpData &source) {
     return copy;
 }
 
-// Where sizes are stated they become those of the file.
+// Updates stated sizes to those of the file.
 void set_sizes(Exiv2::ExifData &exif, Exiv2::XmpData &xmp, uint32_t width, uint32_t height) {
     for (const bool x : {true, false}) {
         const uint32_t size = x ? width : height;
@@ -373,7 +372,7 @@ void set_text(Exiv2::ExifData &exif, const char *key, const char *text) {
     if (text[0] != '\0') exif[key] = std::string(text);
 }
 
-// What lensprof did is the last that was done.
+// The mark of lensprof describes the last correction.
 void set_corrected(const std::string &by_others, PictureMetadata &metadata) {
     metadata.processing_before = metadata.key.processing;
     const auto &mark = metadata.mark;
@@ -436,7 +435,7 @@ PictureMetadata read_metadata(const std::string &path) {
         metadata.mark = correction_mark_of(image->xmpData());
         metadata.orientation =
             static_cast<uint16_t>(in_range(read_number(exif, {"Exif.Image.Orientation"}), 9.0).value_or(1.0));
-        // what a raw file says of corrections is meant for its development
+        // corrections stated in a raw file are instructions for its development
         set_corrected(raw_kind(path) ? std::string() : falloff_corrected_by(*image, metadata.key), metadata);
     } catch (const std::exception &error) {
         fail_reading(path, error);

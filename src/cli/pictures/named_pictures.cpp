@@ -35,7 +35,7 @@ public:
         choose_of_pairs();
     }
 
-    // Files of one name but its end stand together now.
+    // Files with the same base name are adjacent now.
     void choose_of_pairs() {
         const auto stem = [](const NamedPicture &p) { return fs::path(p.file).replace_extension().string(); };
         std::map<std::string, std::vector<NamedPicture>> groups;
@@ -71,14 +71,14 @@ private:
                 found_.push_back({path, subfolder, true});
         }
         if (!error) return;
-        const std::string why = folder + ": cannot be listed: " + error.message();
+        const std::string why = folder + ": cannot list the folder: " + error.message();
         if (!unlisted_ || subfolder.empty()) throw Failure(ExitCode::unreadable, why);
         unlisted_->push_back({folder, why});
     }
 
     const std::string root_;
     std::vector<UnlistedFolder> *const unlisted_;
-    std::deque<std::string> folders_, links_;  // subfolders that are to be entered
+    std::deque<std::string> folders_, links_;  // subfolders to enter
     std::set<std::string> entered_;            // by file_identity
     std::vector<NamedPicture> found_;
 };
@@ -89,7 +89,7 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
                                          std::vector<UnlistedFolder> *unlisted) {
     std::vector<NamedPicture> pictures;
     for (const std::string &name : names) {
-        if (name.empty()) throw Failure(ExitCode::usage, "FILES: a name is empty; name a picture or a folder");
+        if (name.empty()) throw Failure(ExitCode::usage, "FILES: empty name; give a picture or a folder");
         if (!is_folder(name)) {
             pictures.push_back({name, "", false});
             continue;
@@ -99,7 +99,8 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
             throw Failure(
                 ExitCode::usage,
                 name
-                    + ": is a folder without pictures (.jpg, .png, .tif, .heic, .avif, .webp, .jxl, camera raw); name another");
+                    + ": is a folder without pictures (.jpg, .png, .tif, .heic, .avif, .webp, .jxl, camera raw); give "
+                      "another");
         pictures.insert(pictures.end(), walk.found().begin(), walk.found().end());
     }
     return pictures;
@@ -127,11 +128,10 @@ void note_instead(const NamedPicture &picture, Streams &streams) {
     if (picture.instead_of.empty()) return;
     std::string others;
     for (const std::string &other : picture.instead_of) others += (others.empty() ? "" : " and ") + other;
-    note(streams,
-         picture.file + ": is taken in place of " + others
-             + (is_raw_name(picture.file) ? ", since raw values are linear and the camera has corrected nothing in them"
-                                          : ", since this lensprof was built without LibRaw")
-             + "; name the other to take that");
+    note(streams, picture.file + ": used instead of " + others
+                      + (is_raw_name(picture.file) ? ", because raw values are linear and uncorrected"
+                                                   : ", because this lensprof was built without LibRaw")
+                      + "; give the other file explicitly to use it");
 }
 
 void demand_one_kind(const std::vector<std::string> &files) {
@@ -141,9 +141,10 @@ void demand_one_kind(const std::vector<std::string> &files) {
         std::string &first = raw_kind(file) ? raw : rendered;
         if (first.empty()) first = file;
         if (!raw.empty() && !rendered.empty())
-            throw Failure(ExitCode::usage, raw + ": is a camera raw file, and " + rendered
-                                               + " is not; give raw files alone, or others alone, since one response and "
-                                                 "falloff are estimated of all");
+            throw Failure(
+                ExitCode::usage,
+                raw + ": is a camera raw file, but " + rendered
+                    + " is not; give files of one kind, because one response and falloff are estimated for all");
     }
 }
 

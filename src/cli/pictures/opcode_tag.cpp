@@ -23,21 +23,23 @@ constexpr uint32_t most_opcode_bytes = 64u << 20;
 
 const char *text_of(TiffDefect defect) {
     switch (defect) {
-    case TiffDefect::not_tiff: return "is not a TIFF or DNG file; give one, since opcodes belong in these only";
-    case TiffDefect::big_tiff: return "is a BigTIFF, which has no opcodes in lensprof; convert it to classic TIFF";
-    case TiffDefect::no_directory: return "has no directory; give a complete file";
-    case TiffDefect::cut_off: return "ends before what its directory has; give the complete file";
-    case TiffDefect::pixels_cut_off: return "ends before the pixels that its directory has; give the complete file";
-    case TiffDefect::circle: return "has directories that lead in a circle, or over 256; give another file";
+    case TiffDefect::not_tiff: return "is not a TIFF or DNG file; give one, because only they store opcodes";
+    case TiffDefect::big_tiff:
+        return "is a BigTIFF, in which lensprof does not support opcodes; convert it to "
+               "classic TIFF";
+    case TiffDefect::no_directory: return "has no image directory; give a complete file";
+    case TiffDefect::cut_off: return "is cut off within its image directory; give the complete file";
+    case TiffDefect::pixels_cut_off: return "is cut off within its pixels; give the complete file";
+    case TiffDefect::circle: return "has circular or more than 256 image directories; give another file";
     }
     return "";
 }
 
-// A classic TIFF and the directory of its image. Reads what it is asked for and nothing else.
+// A classic TIFF and the directory of its image. Reads only what is requested.
 class TiffFile {
 public:
     explicit TiffFile(const std::string &path) : path_(path), file_(path, std::ios::binary) {
-        if (!file_) fail("cannot be opened: " + system_text(errno) + "; check the name and its permissions");
+        if (!file_) fail("cannot be opened: " + system_text(errno) + "; check the file name and the permissions");
         file_.seekg(0, std::ios::end);
         size_ = static_cast<uint64_t>(std::max<std::streamoff>(file_.tellg(), 0));
         try {
@@ -52,7 +54,7 @@ public:
     uint64_t size() const { return size_; }
     const TiffByteOrder &order() const { return reader_->order(); }
 
-    // The raw image's; in a plain TIFF the first. Its values and pixels are all in the file.
+    // The directory of the raw image, or the first of a plain TIFF. Its values and pixels are all in the file.
     const TiffDirectory &image() const { return image_; }
     bool is_raw() const { return raw_; }
 
@@ -62,11 +64,11 @@ public:
     std::vector<uint8_t> bytes_of(uint16_t tag) {
         const TiffEntry *entry = image_.find(tag);
         if (!entry || (entry->type != tiff_undefined && entry->type != tiff_byte)) return {};
-        if (entry->count > most_opcode_bytes) fail("has an opcode list of over 64 MiB; give another file");
+        if (entry->count > most_opcode_bytes) fail("has an opcode list larger than 64 MiB; give another file");
         return reader_->bytes(*entry);
     }
 
-    // All of it, in pieces.
+    // Copies the whole file, in pieces.
     void copy_to(std::ostream &target) {
         std::vector<char> piece(1 << 20);
         file_.clear();
@@ -74,7 +76,7 @@ public:
         for (uint64_t left = size_; left;) {
             const size_t bytes = static_cast<size_t>(std::min<uint64_t>(left, piece.size()));
             if (!file_.read(piece.data(), static_cast<std::streamsize>(bytes)))
-                fail("cannot be read to its end: " + system_text(errno) + "; check the disk");
+                fail("read error before the end of the file: " + system_text(errno) + "; check the disk");
             target.write(piece.data(), static_cast<std::streamsize>(bytes));
             left -= bytes;
         }
@@ -96,7 +98,7 @@ private:
         reader_->check_blocks(image_);
     }
 
-    // Sets raw_, too. Holds a few directories at a time, however many there are.
+    // Also sets raw_. Holds only a few directories at a time.
     TiffDirectory choose() {
         std::optional<TiffDirectory> first, preview, image;
         const auto look_at = [&](TiffDirectory directory) {
@@ -146,7 +148,7 @@ uint32_t mosaic_layout(TiffFile &file) {
     return UINT32_MAX;
 }
 
-// Bytes to be appended to a TIFF, in its byte order.
+// Bytes to append to a TIFF, in its byte order.
 class AppendedBytes {
 public:
     explicit AppendedBytes(const TiffByteOrder &order) : order_(order) {}
@@ -157,7 +159,7 @@ public:
     }
     void put(const uint8_t *bytes, size_t count) { bytes_.insert(bytes_.end(), bytes, bytes + count); }
 
-    // So that what follows is at an even place in the file that this is appended to.
+    // Aligns what follows to an even position in the file.
     void align(uint64_t file_bytes) { bytes_.resize(bytes_.size() + (file_bytes + bytes_.size()) % 2); }
 
     const std::vector<uint8_t> &bytes() const { return bytes_; }
@@ -167,8 +169,8 @@ private:
     std::vector<uint8_t> bytes_;
 };
 
-// The list, and after it the image's directory with the tag in its place, to be appended to the file. *place receives
-// where the directory will be.
+// The list, followed by the image's directory with the updated tag, to append to the file. *place receives the position
+// of the directory.
 std::vector<uint8_t> appendix(const TiffFile &file, uint16_t tag, const std::vector<uint8_t> &list, uint64_t *place) {
     AppendedBytes end(file.order());
     TiffEntry entry{tag, tiff_undefined, static_cast<uint32_t>(list.size()), {}, 0};
@@ -224,12 +226,11 @@ void write_opcode_list(const std::string &path_in, const std::string &path_out, 
     TiffFile file(path_in);
     const auto too_large = [&](uint64_t size) {
         if (size > UINT32_MAX)
-            throw Failure(ExitCode::failed,
-                          path_out + ": would have over 4 GiB, which a TIFF cannot; write a smaller map");
+            throw Failure(ExitCode::failed, path_out + ": would exceed 4 GiB, the limit of TIFF; write a smaller map");
     };
     too_large(file.size() + list.size() + 2);
     if (file.image().entries.size() >= UINT16_MAX)
-        throw Failure(ExitCode::unreadable, path_in + ": has a directory without room; give another file");
+        throw Failure(ExitCode::unreadable, path_in + ": its image directory cannot be extended; give another file");
     uint64_t place = 0;
     const std::vector<uint8_t> bytes = appendix(file, tag, list, &place);
     too_large(file.size() + bytes.size());
@@ -245,7 +246,7 @@ void write_opcode_list(const std::string &path_in, const std::string &path_out, 
     target.close();
     if (!target)
         throw Failure(ExitCode::failed, path_out + ": cannot write: " + system_text(errno ? errno : EIO)
-                                            + "; make room or check the folder");
+                                            + "; free some space or check the folder");
     output.commit();
 }
 

@@ -20,7 +20,7 @@ namespace lensprof {
 
 namespace {
 
-// Of pictures that are no camera raw files and none of coded_kind.
+// For pictures that are neither camera raw files nor of coded_kind.
 FileFormat format_of_content(const std::string &path) {
     const codec::File file = codec::open_for_reading(path);
     unsigned char start[12] = {};
@@ -39,7 +39,7 @@ FileFormat format_of_content(const std::string &path) {
         "first");
 }
 
-// What `read` does, with a text of its own where memory is not enough.
+// Runs `read`, with a specific message if memory is insufficient.
 template <class Read>
 auto reading(const std::string &path, const Read &read) -> decltype(read()) {
     try {
@@ -95,7 +95,8 @@ void check_held(const std::string &path, const Picture &picture) {
     const bool known = picture.layout <= LENSPROF_LAYOUT_RGBA && lensprof_sample_type_bytes(picture.sample) > 0;
     if (!sized || !known || picture.row_bytes < codec::pixel_bytes(picture) * picture.width
         || picture.pixels.size() / picture.height < picture.row_bytes)
-        throw Failure(ExitCode::failed, path + ": cannot write: no valid picture in memory; please report this");
+        throw Failure(ExitCode::failed, path + ": cannot write: internal error: invalid picture in memory; please "
+                                               "report this");
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ Picture read_raw_preview(const std::string &path, const ReadOptions &options) {
     const auto kind = raw_kind(path);
     if (!kind) {
         codec::open_for_reading(path);  // for its errors
-        codec::fail_unsupported(path, "is no camera raw file, and only these have a preview; give one");
+        codec::fail_unsupported(path, "not a camera raw file, which alone has a preview; give one");
     }
     return reading(path, [&] {
         const std::vector<uint8_t> bytes = codec::raw_preview_bytes(path, *kind);
@@ -173,16 +174,16 @@ FileFormat format_of_name(const std::string &path) {
     const auto format = known_format(path);
     if (format == FileFormat::exr && !can_write_exr())
         throw Failure(ExitCode::usage, path + ": this lensprof was built without OpenEXR; install libopenexr-dev and "
-                                              "build it again, or give a name in .tif");
+                                              "rebuild lensprof, or give a name ending in .tif");
     if (format) return *format;
     if (const auto coded = coded_kind_of_name(path))
         throw Failure(ExitCode::usage, path + ": lensprof reads " + coded->name
-                                           + " and does not write it; give a name in .tif, .png or .jpg");
-    throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif, .jpg or, for "
-                                                "light, .exr");
+                                           + " but does not write it; give a name ending in .tif, .png or .jpg");
+    throw Failure(ExitCode::usage, path + ": unknown picture format; give a name ending in .png, .tif, .jpg or, for "
+                                          "irradiance, .exr");
 }
 
-// The user knows the wanted name, not the temporary one.
+// The user knows the final name, not the temporary one.
 template <class Call>
 auto PictureWriter::named(const Call &call) -> decltype(call()) {
     try {

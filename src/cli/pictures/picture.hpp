@@ -1,8 +1,8 @@
-// Picture files: PNG, TIFF and JPEG in and out; camera raw files, HEIC, AVIF, WebP and JPEG XL in.
+// Picture files: reads and writes PNG, TIFF and JPEG; reads camera raw files, HEIC, AVIF, WebP and JPEG XL.
 //
-// Pixels come as the file stores them: pixel (0, 0) is the first one of the file, the EXIF orientation is kept but
-// not applied, no colour management. All functions throw Failure; its text names the file and the next step.
-// Threads: any function may run in several threads at once on different pictures.
+// Pixels are returned as stored: pixel (0, 0) is the first of the file, the EXIF orientation is kept but not applied,
+// and there is no colour management. All functions throw Failure with the file name and the next step. Threads: any
+// function may run in several threads concurrently on different pictures.
 #pragma once
 
 #include <array>
@@ -23,28 +23,29 @@ enum class FileFormat {
     png,
     tiff,
     jpeg,
-    raw,   // is read
-    exr,   // is written
-    heif,  // is read, as are the next two: HEIC, AVIF
+    raw,   // read only
+    exr,   // write only
+    heif,  // read only, like the next two: HEIC, AVIF
     webp,
     jxl
 };
 
-// What rewriting a picture must keep beside pixels and metadata. Each writer uses what its format can express.
+// Properties to keep when a picture is rewritten, other than pixels and metadata. Each writer uses what its format
+// supports.
 struct PictureTraits {
     enum class Unit {
         none,
         inch,
         centimetre,
         metre
-    };  // none: only the ratio of the two is meant
+    };  // none: only the ratio of the two is meaningful
     enum class Alpha {
         unspecified,
         associated,
         unassociated
     };
 
-    FileFormat format = FileFormat::png;        // of the file that was read
+    FileFormat format = FileFormat::png;        // of the source file
     double x_resolution = 0, y_resolution = 0;  // pixels per unit; 0 = not stated
     Unit resolution_unit = Unit::none;
     Alpha alpha = Alpha::unassociated;  // associated: colour is premultiplied
@@ -59,10 +60,10 @@ struct PictureTraits {
     uint16_t compression = 0;  // 0 = not a TIFF
     uint16_t orientation = 1;
 
-    // Values were rounded over blocks of pixels: JPEG, and HEIF, WebP and JPEG XL unless they are known to be lossless.
+    // Values were rounded over blocks of pixels: JPEG, and HEIF, WebP and JPEG XL unless known to be lossless.
     bool is_lossy = false;
 
-    // JPEG: the tables are kept as they are, which is the source's quality exactly.
+    // JPEG: the tables are kept unchanged, which preserves the exact quality of the source.
     std::vector<std::array<uint16_t, 64>> quantisation;  // luminance, then chrominance; natural order
     int chroma_step_x = 1, chroma_step_y = 1;            // pixels per chroma sample
     bool progressive = false;
@@ -70,11 +71,11 @@ struct PictureTraits {
 
 // A picture in memory: rows from top to bottom without gaps, samples in native byte order, aligned.
 struct Picture {
-    uint32_t width = 0, height = 0;              // of the pixels held
-    uint32_t frame_width = 0, frame_height = 0;  // of the file's full frame
-    uint32_t reduction = 1;                 // side in frame pixels of the square that one held pixel is the mean of
-    uint32_t sample = LENSPROF_SAMPLE_U8;   // lensprof_sample_type
-    uint32_t layout = LENSPROF_LAYOUT_RGB;  // lensprof_layout: GREY, GREY_ALPHA, RGB or RGBA
+    uint32_t width = 0, height = 0;              // of the stored pixels
+    uint32_t frame_width = 0, frame_height = 0;  // of the full frame of the file
+    uint32_t reduction = 1;                      // side, in frame pixels, of the square averaged into one stored pixel
+    uint32_t sample = LENSPROF_SAMPLE_U8;        // lensprof_sample_type
+    uint32_t layout = LENSPROF_LAYOUT_RGB;       // lensprof_layout: GREY, GREY_ALPHA, RGB or RGBA
     size_t row_bytes = 0;
     std::vector<uint8_t> pixels;  // row_bytes * height
     std::vector<uint8_t> icc;     // colour profile of the file, may be empty
@@ -84,40 +85,40 @@ struct Picture {
 };
 
 struct ReadOptions {
-    // 0 = full size. Otherwise every held pixel stands for a square of the frame, whose side is 1 or the largest even
-    // number that leaves the longer side of the picture at or above max_side. Its value is that of one block of 2 x 2
-    // pixels in the square, in different places from square to square: the mean of the middle two of the four (PNG and
-    // TIFF, all samples alike, alpha too), or what the inverse DCT makes of them, which is near their mean (JPEG). In a
-    // mean of the whole square every wrong pixel would have a share, and no square would be without one; so most held
-    // pixels are good ones. Held pixel (x, y) covers the frame's pixels from (x, y) * reduction on; up to reduction - 1
-    // columns and rows at the right and lower edge are left out.
+    // 0 = full size. Otherwise every stored pixel represents a square of the frame, whose side is 1 or the largest even
+    // number that keeps the longer side of the picture at or above max_side. Its value is that of one block of 2 x 2
+    // pixels in the square, at positions that vary from square to square: the mean of the middle two of the four (PNG
+    // and TIFF, all samples alike, alpha included), or the result of the inverse DCT, which is close to their mean
+    // (JPEG). In a mean of the whole square every bad pixel would have a share, and every square would have one; this
+    // way most stored pixels are good. Stored pixel (x, y) covers the frame's pixels from (x, y) * reduction on; up to
+    // reduction - 1 columns and rows at the right and lower edge are omitted.
     uint32_t max_side = 0;
 };
 
 struct WriteOptions {
-    std::string metadata_from;  // EXIF, IPTC and XMP are copied from this file, which may be the one written over
-    std::optional<CorrectionMark> mark;         // put in with that copy
+    std::string metadata_from;  // EXIF, IPTC and XMP are copied from this file, which may be the one being overwritten
+    std::optional<CorrectionMark> mark;         // added to that copy
     const PictureMetadata *metadata = nullptr;  // written as EXIF (after the copy)
-    int jpeg_quality = 0;                       // 1..100; 0 = the tables the picture was read with, else 95
+    int jpeg_quality = 0;                       // 1..100; 0 = the tables of the source, else 95
 };
 
-// Largest side, and most bytes of the pixels of a frame.
+// Maximum side, and maximum bytes of the pixels of a frame.
 constexpr uint32_t picture_max_side = 1u << 20;
 constexpr uint64_t picture_max_bytes = uint64_t(8) << 30;
 
-// Most bytes of coefficients that are held in memory while a JPEG is written. Those of larger pictures pass through a
-// file, which costs no more time where the system has memory to spare.
+// Maximum bytes of coefficients held in memory while a JPEG is written. Those of larger pictures pass through a file,
+// which takes no longer if the system has spare memory.
 constexpr uint64_t jpeg_memory_bytes = uint64_t(16) << 20;
 
-// Reads PNG (all kinds; palette, 1, 2 and 4 bits and transparent colours are expanded), TIFF (8 and 16 bit unsigned,
-// 32 bit float; grey or RGB, at most one extra sample; first page) or JPEG (grey, YCbCr, RGB), by content whatever the
-// name. 0 = black, also for min-is-white files. NaN and infinity in float files are kept.
-// Camera raw files (with LibRaw) are 16 bit RGB, or grey, of linear light in the camera's own colours, without white
-// balance: 0 is black, and exactly what is saturated is 65535. The frame is the sensor's visible area, unturned. A
-// mosaic that is reduced has channels of its 2 x 2 cells; at full size they are interpolated.
-// HEIC and AVIF (with libheif), WebP (libwebp) and JPEG XL (libjxl) have 8 bit, or 16 where the file has more, of the
-// full scale, or 32 bit float (JPEG XL); the primary one of several pictures, as it was before the file's own rotation
-// and mirroring, which are in traits.orientation. Animations and values of PQ and HLG are Failures.
+// Reads PNG (all kinds; palette, 1, 2 and 4 bits and transparent colours are expanded), TIFF (8 and 16 bit unsigned, 32
+// bit float; grey or RGB, at most one extra sample; first page) or JPEG (grey, YCbCr, RGB), identified by content. 0 =
+// black, also for min-is-white files. NaN and infinity in float files are kept. Camera raw files (with LibRaw) become
+// 16 bit RGB, or grey, of linear light in camera colours, without white balance: 0 is black, and 65535 means exactly
+// the saturated pixels. The frame is the visible area of the sensor, unrotated. A reduced mosaic has channels of its 2
+// x 2 cells; at full size they are interpolated. HEIC and AVIF (with libheif), WebP (libwebp) and JPEG XL (libjxl)
+// become 8 bit, or 16 if the file has more, of full scale, or 32 bit float (JPEG XL); the primary picture of several,
+// before the file's own rotation and mirroring, which are in traits.orientation. Animations and values of PQ and HLG
+// are Failures.
 Picture read_picture(const std::string &path, const ReadOptions &options = {});
 
 // The same without pixels: sizes (for these options), sample, layout, profile, traits.
@@ -129,7 +130,7 @@ bool can_read_heif();
 bool can_read_webp();
 bool can_read_jxl();
 
-// The largest JPEG that a camera raw file has in it, as a picture. Failure (unreadable) where there is none.
+// The largest JPEG embedded in a camera raw file, as a picture. Failure (unreadable) if not found.
 Picture read_raw_preview(const std::string &path, const ReadOptions &options = {});
 
 // Size of the full frame.
@@ -140,10 +141,10 @@ class RowSource;
 class RowSink;
 }  // namespace codec
 
-// A picture read from the top in strips of whole rows, full size. Held in memory is what the format's smallest unit
-// asks for, whatever the picture's height: a row of PNG, of JPEG those of a block, a strip of TIFF (compressed) or a
-// row of its tiles. An interlaced PNG is decoded as a whole, as are HEIC, AVIF, WebP and JPEG XL; of a progressive JPEG
-// all coefficients are.
+// A full-size picture read from the top in strips of whole rows. Memory holds only what the smallest unit of the format
+// needs, regardless of the height: a row of PNG, a row of blocks of JPEG, a strip of TIFF (compressed) or a row of its
+// tiles. An interlaced PNG is decoded as a whole, as are HEIC, AVIF, WebP and JPEG XL; of a progressive JPEG all
+// coefficients are held.
 class PictureReader {
 public:
     explicit PictureReader(const std::string &path);
@@ -151,8 +152,8 @@ public:
 
     const Picture &header() const;  // without pixels
 
-    // The next rows.height rows into `rows`, of the header's width, sample and layout. With the last one the rest of
-    // the file is checked.
+    // Reads the next rows.height rows into `rows`, of the header's width, sample and layout. With the last row the rest
+    // of the file is checked.
     void read(const lensprof_image &rows);
 
 private:
@@ -164,37 +165,37 @@ private:
 // Whether the program was built with OpenEXR.
 bool can_write_exr();
 
-// The XMP packet in an OpenEXR file that this program wrote; empty for any other file.
+// The XMP packet in an OpenEXR file written by this program; empty for other files.
 std::string exr_xmp_of(const std::string &path);
 
-// The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg, .exr in any case; otherwise, and for .exr where
-// that cannot be written, Failure (usage).
+// The format of a file name: .png, .tif, .tiff, .jpg, .jpeg, .exr in any case; for others, and for .exr if it cannot be
+// written, Failure (usage).
 FileFormat format_of_name(const std::string &path);
-bool is_picture_name(const std::string &path);  // it has the end of a picture that can be read
+bool is_picture_name(const std::string &path);  // it has the extension of a readable picture
 
-// Writes a picture in the format of the name, metadata included, complete or not at all. A sample type or layout that
-// the format cannot hold is a Failure (usage): PNG 8 and 16 bit, JPEG 8 bit without alpha, TIFF everything, OpenEXR 32
-// bit float (without metadata, which its readers do not look for).
-// TIFF keeps a lossless compression, other pictures get Deflate. A TIFF of 4 GB or more becomes a BigTIFF.
-// False when the picture is complete but without the metadata, because one of the files is a BigTIFF.
+// Writes a picture in the format of the name, metadata included, completely or not at all. Failure (usage) for a sample
+// type or layout that the format does not support: PNG 8 and 16 bit, JPEG 8 bit without alpha, TIFF everything, OpenEXR
+// 32 bit float (without metadata, which its readers ignore). TIFF keeps a lossless compression, other pictures get
+// Deflate. A TIFF of 4 GB or more becomes a BigTIFF. Returns false if the picture is complete but without metadata,
+// because one of the files is a BigTIFF.
 bool write_picture(const std::string &path, const Picture &picture, const WriteOptions &options = {});
 
-// The same in strips of whole rows from the top. Nothing is at `path` before commit(). A JPEG's coefficients, of
-// which the best Huffman tables need all, are in memory up to jpeg_memory_bytes, and beyond in a file without a name
-// in the same folder.
+// The same in strips of whole rows from the top. Nothing exists at `path` before commit(). The coefficients of a JPEG,
+// all of which are needed for optimal Huffman tables, are held in memory up to jpeg_memory_bytes, beyond that in an
+// unnamed file in the same folder.
 class PictureWriter {
 public:
-    // Of `header` sizes, sample, layout, profile and traits count, not the pixels.
+    // Uses sizes, sample, layout, profile and traits of `header`, not the pixels.
     PictureWriter(const std::string &path, const Picture &header, const WriteOptions &options = {});
     ~PictureWriter();
 
-    // The next rows.height rows.
+    // Writes the next rows.height rows.
     void write(const lensprof_image &rows);
 
-    // All rows were given: completes the file beside its final name and makes it durable. False as write_picture.
+    // After all rows: completes the file under a temporary name and makes it durable. Returns false like write_picture.
     bool finish();
 
-    void commit();  // gives the finished file its name
+    void commit();  // renames the finished file to its name
 
 private:
     template <class Call>

@@ -12,7 +12,7 @@ namespace codec {
 
 namespace {
 
-// Most bytes before the pixels; a file with more is of another make.
+// Maximum bytes before the pixels; a file with more has another layout.
 constexpr uint64_t start_max_bytes = uint64_t(64) << 20;
 
 constexpr size_t copy_bytes = size_t(1) << 20;
@@ -23,12 +23,15 @@ uint32_t big_endian(const uint8_t *p, int count) {
     return value;
 }
 
-// JPEG and PNG: metadata come first, and what follows is copied as it is.
+// JPEG and PNG: metadata come first, and the rest is copied unchanged.
 class PixelsLast final : public PictureExcerpt {
 public:
     PixelsLast(const std::string &path, std::FILE *file, uint64_t pixels, const std::vector<uint8_t> &end)
         : PictureExcerpt(path), pixels_(pixels), end_(end) {
-        if (!read_at(file, 0, static_cast<size_t>(pixels), bytes_)) fail_damaged(path, "it has become shorter");
+        if (!read_at(file, 0, static_cast<size_t>(pixels), bytes_))
+            fail_damaged(path,
+                         "it was truncated while being "
+                         "read");
         bytes_.insert(bytes_.end(), end.begin(), end.end());
     }
 
@@ -43,8 +46,8 @@ public:
     }
 
 private:
-    uint64_t pixels_;           // where they begin in the file
-    std::vector<uint8_t> end_;  // what stands for them in the excerpt
+    uint64_t pixels_;           // where they start in the file
+    std::vector<uint8_t> end_;  // their substitute in the excerpt
 };
 
 // The segments before the first scan (ITU-T T.81, annex B).
@@ -121,7 +124,7 @@ void Replacement::copy(uint64_t start, uint64_t bytes) {
     for (uint64_t done = 0; done < bytes;) {
         stop_if_interrupted();
         const size_t count = static_cast<size_t>(std::min<uint64_t>(copy_bytes, bytes - done));
-        if (!read_at(from_, start + done, count, buffer_)) fail_damaged(path_, "it has become shorter");
+        if (!read_at(from_, start + done, count, buffer_)) fail_damaged(path_, "it was truncated while being read");
         write(buffer_.data(), count);
         done += count;
     }

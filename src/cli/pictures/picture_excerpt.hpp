@@ -14,7 +14,7 @@ namespace lensprof {
 
 namespace codec {
 
-// A file that takes the place of another, which parts of it are copied from.
+// A file that replaces another, with parts copied from it.
 class Replacement {
 public:
     Replacement(const std::string &path, std::FILE *from);
@@ -31,18 +31,17 @@ private:
     std::vector<uint8_t> buffer_;
 };
 
-// Exiv2 holds the files that it changes in memory, several times. It gets a small file instead that has everything
-// but the coded pixels, which are then copied from the old file: the result is to the byte what Exiv2 makes of the
-// whole.
+// Exiv2 holds the files it changes in memory, several times. It gets a small file instead, with everything but the
+// coded pixels, which are then copied from the old file: the result is byte for byte what Exiv2 makes of the whole.
 class PictureExcerpt {
 public:
     virtual ~PictureExcerpt() = default;
 
     const std::vector<uint8_t> &bytes() const { return bytes_; }
 
-    // Replaces the file, complete or not at all, by one of the structure and metadata in `edited`, which is what
-    // became of bytes(). False, the file being as it was, when it is not clear where in it the pixels belong: do the
-    // same with the whole file. Throws Failure.
+    // Replaces the file, completely or not at all, by one with the structure and metadata of `edited`, the edited
+    // bytes(). Returns false, with the file unchanged, if the position of the pixels in it is unclear: then edit the
+    // whole file. Throws Failure.
     virtual bool replace(const uint8_t *edited, size_t size) const = 0;
 
 protected:
@@ -52,7 +51,7 @@ protected:
     std::vector<uint8_t> bytes_;
 };
 
-// The excerpt of a PNG, JPEG or TIFF that is laid out as this program writes them; else NULL.
+// The excerpt of a PNG, JPEG or TIFF with the layout that this program writes; else NULL.
 std::unique_ptr<PictureExcerpt> excerpt_of(const std::string &path);
 
 // The whole file.
@@ -61,7 +60,7 @@ std::unique_ptr<PictureExcerpt> whole_file(const std::string &path);
 // The parts of excerpt_of().
 std::unique_ptr<PictureExcerpt> excerpt_of_tiff(const std::string &path);
 
-// `count` bytes from `start` on; false when there are fewer.
+// `count` bytes from `start` on; false if there are fewer.
 bool read_at(std::FILE *file, uint64_t start, size_t count, std::vector<uint8_t> &bytes);
 
 }  // namespace codec

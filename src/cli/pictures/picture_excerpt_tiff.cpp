@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint16_t strip_offsets = 273, strip_byte_counts = 279;
 
-// Most bytes of directory and values.
+// Maximum bytes of directory and values.
 constexpr uint64_t directory_max_bytes = uint64_t(64) << 20;
 
 // A strip in the excerpt: even, as Exiv2 aligns strips to words.
@@ -20,7 +20,7 @@ constexpr uint32_t short_strip = 2;
 
 constexpr uint32_t header_bytes = 8;
 
-// Bytes of a TIFF that are changed in place. `origin`: where the first of them is in the file.
+// Bytes of a TIFF, changed in place. `origin`: position of the first one in the file.
 struct TiffBytes {
     std::vector<uint8_t> &bytes;
     TiffByteOrder order;
@@ -29,12 +29,12 @@ struct TiffBytes {
     void put(uint64_t place, size_t size, uint32_t value) {
         order.put(&bytes[static_cast<size_t>(place - origin)], size, value);
     }
-    // One of an entry's values, the first of which is at `place`.
+    // A value of an entry, whose first value is at `place`.
     void put_value(const TiffEntry &entry, uint64_t place, uint32_t i, uint32_t value) {
         const size_t size = tiff_type_bytes(entry.type);
         put(place + i * size, size, value);
     }
-    // Moves the offsets of values that are not in the directory itself, after `from` bytes were replaced by `to`.
+    // Adjusts the offsets of values outside the directory after `from` bytes were replaced by `to`.
     void move_values(const TiffDirectory &directory, uint32_t from, uint32_t to) {
         for (const TiffEntry &entry : directory.entries)
             if (!entry.inside()) put(entry.field, 4, order.get(entry.value, 4) - from + to);
@@ -48,7 +48,7 @@ struct StripNumbers {
     std::vector<uint32_t> values;
 };
 
-// A TIFF of one directory, which has strips.
+// A TIFF with one directory and strips.
 struct StripTiff {
     TiffDirectory directory{};
     StripNumbers starts, counts;
@@ -59,7 +59,7 @@ struct StripTiff {
     }
 };
 
-// False where the tag is missing or is not of these types.
+// False if the tag is missing or has another type.
 bool find_numbers(TiffReader &reader, const TiffDirectory &directory, uint16_t tag,
                   std::initializer_list<uint16_t> types, StripNumbers &found) {
     const TiffEntry *entry = directory.find(tag);
@@ -68,7 +68,7 @@ bool find_numbers(TiffReader &reader, const TiffDirectory &directory, uint16_t t
     return true;
 }
 
-// False when it is of another kind.
+// False if it has another layout.
 bool is_strip_tiff(TiffReader &reader, StripTiff &tiff) {
     tiff.directory = reader.first();
     if (tiff.directory.next != 0) return false;
@@ -167,7 +167,7 @@ bool TiffExcerpt::replace(const uint8_t *edited, size_t size) const {
     return true;
 }
 
-// Exiv2 changed values where they were.
+// Exiv2 changed values in place.
 void TiffExcerpt::replace_directory(std::vector<uint8_t> edited, const StripTiff &tiff) const {
     TiffBytes moved{edited, order_, 0};
     for (uint32_t i = 0; i < strips_.size(); ++i) tiff.put_strip(moved, i, strips_[i].start, strips_[i].bytes);
@@ -179,7 +179,7 @@ void TiffExcerpt::replace_directory(std::vector<uint8_t> edited, const StripTiff
     to.commit();
 }
 
-// Exiv2 wrote all anew: directories first, then the strips, each at an even place.
+// Exiv2 rewrote the file: directories first, then the strips, each at an even position.
 bool TiffExcerpt::replace_all(std::vector<uint8_t> edited, const StripTiff &tiff) const {
     const uint32_t pixels = tiff.starts.values[0];
     TiffBytes moved{edited, order_, 0};

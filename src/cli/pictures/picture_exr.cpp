@@ -1,4 +1,4 @@
-// OpenEXR, written alone: 32 bit float, one part of scan lines.
+// OpenEXR, write only: 32 bit float, one part of scan lines.
 #include <array>
 #include <exception>
 
@@ -21,7 +21,7 @@ namespace {
 
 using Names = std::vector<const char *>;
 
-// Of every sample of a pixel.
+// Per sample of a pixel.
 Names channel_names(uint32_t layout) {
     switch (layout) {
     case LENSPROF_LAYOUT_GREY: return {"Y"};
@@ -48,8 +48,8 @@ public:
         run([&] { file_ = std::make_unique<Imf::OutputFile>(path.c_str(), header_of(header, names_, xmp)); });
     }
 
-    // The library addresses a pixel by its place in the whole picture: the row is at its own y, and no other is asked
-    // for, whatever y is.
+    // The library addresses a pixel by its position in the whole picture: the pointer is shifted so that the row lies
+    // at its own y; no other row is accessed.
     void write(const uint8_t *row) override {
         Imf::FrameBuffer rows;
         const size_t pixel = names_.size() * sizeof(float);
@@ -72,7 +72,7 @@ public:
     }
 
 private:
-    // Colour times alpha, which is what OpenEXR files hold.
+    // Colour times alpha, as stored in OpenEXR files.
     const uint8_t *premultiplied(const uint8_t *row) {
         const auto *values = reinterpret_cast<const float *>(row);
         const size_t samples = names_.size();
@@ -104,7 +104,7 @@ private:
 
 std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &header, const std::string &xmp) {
     if (header.sample != LENSPROF_SAMPLE_F32)
-        fail_to_hold(path, "OpenEXR is written for light, 32 bit float, alone; give a name in .tif or .png");
+        fail_to_hold(path, "OpenEXR is written only for irradiance (32 bit float); give a name ending in .tif or .png");
     return std::make_unique<ExrSink>(path, header, xmp);
 }
 
@@ -119,7 +119,7 @@ std::string exr_xmp_of(const std::string &path) {
         const auto *xmp = file.header().findTypedAttribute<Imf::StringAttribute>(codec::xmp_attribute);
         return xmp ? xmp->value() : std::string();
     } catch (const std::exception &) {
-        return {};  // no such file, or a damaged one: without a mark
+        return {};  // missing or damaged file: no mark
     }
 }
 

@@ -1,4 +1,4 @@
-// HEIC and AVIF through libheif: the primary picture, put together of its tiles.
+// HEIC and AVIF through libheif: the primary picture, assembled from its tiles.
 #include <algorithm>
 #include <cstring>
 #include <exception>
@@ -24,12 +24,12 @@ using Owned = std::unique_ptr<T, void (*)(T *)>;
 void release(const heif_image_handle *handle) { heif_image_handle_release(handle); }
 void release_image(const heif_image *image) { heif_image_release(image); }
 
-// Its errors name no file, and which of them mean damage.
+// Its errors do not name the file or distinguish damage.
 class HeifErrors {
 public:
     HeifErrors(const std::string &path, const std::string &kind) : path_(path), kind_(kind) {}
 
-    // libheif is written in C++, and what its parts throw may come through.
+    // libheif is written in C++, and exceptions of its parts may propagate.
     template <class Call>
     void run(const Call &call) const {
         heif_error error = {};
@@ -66,7 +66,7 @@ private:
     std::string path_, kind_;
 };
 
-// Its plugins are loaded once.
+// Loads the plugins once.
 void prepare_libheif() {
 #if LIBHEIF_HAVE_VERSION(1, 14, 0)
     static std::once_flag once;
@@ -81,7 +81,7 @@ public:
         open_for_reading(path);  // for its errors
         context_.reset(heif_context_alloc());
         if (!context_) throw std::bad_alloc();
-        heif_context_set_max_decoding_threads(context_.get(), 0);  // several pictures at once are enough
+        heif_context_set_max_decoding_threads(context_.get(), 0);  // several pictures in parallel are enough
         errors_.run([&] { return heif_context_read_from_file(context_.get(), path.c_str(), nullptr); });
         heif_image_handle *handle = nullptr;
         errors_.check(heif_context_get_primary_image_handle(context_.get(), &handle));
@@ -95,7 +95,7 @@ public:
     uint16_t orientation() const { return properties_.orientation; }
     bool is_grey() const { return properties_.is_grey; }
     bool is_sideways() const { return properties_.orientation >= 5; }
-    uint32_t width() const { return is_sideways() ? turned_height() : turned_width(); }  // before it is turned
+    uint32_t width() const { return is_sideways() ? turned_height() : turned_width(); }  // before rotation
     uint32_t height() const { return is_sideways() ? turned_width() : turned_height(); }
 
     int bits() const {
@@ -138,7 +138,7 @@ std::vector<uint8_t> HeifFile::icc() const {
     return profile;
 }
 
-// The first one of a type; empty where there is none.
+// The first one of a type; empty if not found.
 std::vector<uint8_t> HeifFile::block(const char *type, const char *content_type) const {
     std::vector<heif_item_id> ids(
         static_cast<size_t>(std::max(heif_image_handle_get_number_of_metadata_blocks(handle(), type), 0)));
@@ -153,7 +153,7 @@ std::vector<uint8_t> HeifFile::block(const char *type, const char *content_type)
     return {};
 }
 
-// Without `strict_decoding` what is damaged is replaced by something similar.
+// Without `strict_decoding` damaged parts are replaced by similar content.
 Owned<const heif_image> HeifFile::decode(heif_chroma chroma) {
     const Owned<heif_decoding_options> options(heif_decoding_options_alloc(), heif_decoding_options_free);
     if (!options) throw std::bad_alloc();
@@ -161,13 +161,13 @@ Owned<const heif_image> HeifFile::decode(heif_chroma chroma) {
     heif_image *image = nullptr;
     errors_.run([&] { return heif_decode_image(handle(), &image, heif_colorspace_RGB, chroma, options.get()); });
     Owned<const heif_image> decoded(image, release_image);
-    heif_color_profile_nclx *nclx = nullptr;  // that of the coded picture, where the file has none of its own
+    heif_color_profile_nclx *nclx = nullptr;  // profile of the coded picture, unless the file has its own
     if (heif_image_get_nclx_color_profile(image, &nclx).code == heif_error_Ok) take_transfer(nclx);
     return decoded;
 }
 
-// Where the pixels of an unturned picture are in the turned one: `start` and what one column and one row further adds,
-// pixels and rows of the turned one.
+// Positions of the pixels of the unrotated picture in the rotated one: `start`, and the steps per column and per row,
+// in pixels and rows of the rotated one.
 struct Turned {
     int64_t start_x, start_y, column_x, column_y, row_x, row_y;
 };
@@ -240,7 +240,7 @@ void HeifSource::decode() {
         || heif_image_get_chroma_format(image_.get()) != (deep ? native : shallow)
         || static_cast<uint32_t>(is_sideways ? height : width) != header_.frame_width
         || static_cast<uint32_t>(is_sideways ? width : height) != header_.frame_height)
-        fail_damaged(path_, kind_ + ": libheif made another picture of it than it declares");
+        fail_damaged(path_, kind_ + ": libheif decodes a picture other than the declared one");
     white_ = (1u << bits) - 1;
 }
 
@@ -255,7 +255,7 @@ void HeifSource::copy_row(Sample *row) const {
     for (uint32_t x = 0; x < header_.frame_width; ++x, from += step) {
         Sample own[4];
         std::memcpy(own, from, static_cast<size_t>(pixel));
-        if (count < 3) own[1] = own[samples_ - 1];  // grey: red, green and blue are the same
+        if (count < 3) own[1] = own[samples_ - 1];  // grey: red, green and blue are equal
         for (uint32_t c = 0; c < count; ++c)
             *row++ = static_cast<Sample>((std::min<uint32_t>(own[c], white_) * uint64_t(full) + white_ / 2) / white_);
     }

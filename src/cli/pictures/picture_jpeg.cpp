@@ -24,7 +24,7 @@ namespace {
 constexpr int profile_marker = JPEG_APP0 + 2;
 constexpr int default_quality = 95;
 
-// Where libjpeg goes when something is wrong; `manager` comes first, so that a pointer to it is one to this.
+// Error handling of libjpeg; `manager` comes first, so that a pointer to it points to this.
 struct JpegState {
     jpeg_error_mgr manager;
     std::jmp_buf jump;
@@ -40,8 +40,8 @@ struct JpegState {
     std::longjmp(state->jump, 1);
 }
 
-// libjpeg only warns about damage and invents the missing pixels. Other warnings say that a file is unusual; bytes
-// before a marker, which some cameras write as padding, are among them.
+// libjpeg only warns about damage and invents the missing pixels. Other warnings are about unusual files, including
+// bytes before a marker, which some cameras write as padding.
 void on_message(j_common_ptr info, int level) {
     static const int damage[] = {JWRN_JPEG_EOF,       JWRN_HIT_MARKER,        JWRN_HUFF_BAD_CODE,
                                  JWRN_ARITH_BAD_CODE, JWRN_BOGUS_PROGRESSION, JWRN_MUST_RESYNC};
@@ -51,12 +51,12 @@ void on_message(j_common_ptr info, int level) {
 
 void on_output(j_common_ptr) {}
 
-// Within a call that goes through the whole picture; the caller then finds the interrupt itself.
+// For use within a call that processes the whole picture; the caller then checks the interrupt itself.
 void on_progress(j_common_ptr info) {
     if (interrupted()) std::longjmp(reinterpret_cast<JpegState *>(info->err)->jump, 1);
 }
 
-// After the object was created, which clears it.
+// Call after the object was created, which clears it.
 void watch_interrupts(j_common_ptr info, JpegState &state) {
     state.progress.progress_monitor = on_progress;
     info->progress = &state.progress;
@@ -117,9 +117,9 @@ struct JpegWriter {
 
 void read_quantisation(const jpeg_decompress_struct &info, PictureTraits &traits) {
     for (int i = 0; i < std::min(info.num_components, 2); ++i) {
-        const int number = info.comp_info[i].quant_tbl_no;  // as the file says: libjpeg has not looked at it yet
+        const int number = info.comp_info[i].quant_tbl_no;  // as in the file: libjpeg has not examined it yet
         const JQUANT_TBL *table = number >= 0 && number < NUM_QUANT_TBLS ? info.quant_tbl_ptrs[number] : nullptr;
-        if (!table) {  // comes later in the file: the writer's default will do
+        if (!table) {  // comes later in the file: the default of the writer is used
             traits.quantisation.clear();
             return;
         }
@@ -136,7 +136,7 @@ void read_traits(const jpeg_decompress_struct &info, PictureTraits &traits) {
     if (info.num_components == 3) {
         traits.chroma_step_x = std::max(1, info.comp_info[0].h_samp_factor / info.comp_info[1].h_samp_factor);
         traits.chroma_step_y = std::max(1, info.comp_info[0].v_samp_factor / info.comp_info[1].v_samp_factor);
-        if (traits.chroma_step_x * traits.chroma_step_y > 8)  // more than an interleaved scan may have
+        if (traits.chroma_step_x * traits.chroma_step_y > 8)  // more than an interleaved scan can have
             traits.chroma_step_x = traits.chroma_step_y = 2;
     }
     if (info.saw_JFIF_marker) {
@@ -165,7 +165,7 @@ void read_start(JpegReader &reader, Picture &picture) {
 
 void set_decoding(JpegReader &reader, const Picture &picture) {
     reader.info.scale_num = 1;
-    reader.info.scale_denom = picture.reduction > 1 ? 2 : 1;  // the inverse DCT averages almost for nothing
+    reader.info.scale_denom = picture.reduction > 1 ? 2 : 1;  // averaging in the inverse DCT costs almost nothing
     reader.info.out_color_space = picture.layout == LENSPROF_LAYOUT_GREY ? JCS_GRAYSCALE : JCS_RGB;
     reader.info.dct_method = JDCT_ISLOW;
     jpeg_calc_output_dimensions(&reader.info);
@@ -197,7 +197,7 @@ JpegSource::JpegSource(const ReadRequest &request) : path_(request.path), reader
     run([&] { read_start(reader_, header_); });
     const int components = reader_.info.num_components;
     if ((components != 1 && components != 3) || reader_.info.jpeg_color_space == JCS_UNKNOWN)
-        fail_unsupported(path_, "CMYK or unknown kind of colour; convert it to RGB first");
+        fail_unsupported(path_, "CMYK or unknown colour space; convert it to RGB first");
     header_.sample = LENSPROF_SAMPLE_U8;
     header_.layout = components == 1 ? LENSPROF_LAYOUT_GREY : LENSPROF_LAYOUT_RGB;
     set_frame(header_, reader_.info.image_width, reader_.info.image_height, request);

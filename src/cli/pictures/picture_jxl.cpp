@@ -1,4 +1,4 @@
-// JPEG XL through libjxl, whose decoder takes the file in parts and reports events on the way.
+// JPEG XL through libjxl, whose decoder takes the file in parts and reports events.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -17,9 +17,9 @@ namespace codec {
 namespace {
 
 constexpr size_t part_bytes = size_t(1) << 18;
-constexpr uint64_t working_max_bytes = uint64_t(2) << 30;  // libjxl decodes to floats, whatever it delivers
+constexpr uint64_t working_max_bytes = uint64_t(2) << 30;  // libjxl decodes to floats, regardless of the output type
 constexpr size_t box_max_bytes = size_t(64) << 20;         // of EXIF or XMP, which may be compressed
-constexpr int most_boxes = 1000;                           // that are looked through for a JPEG
+constexpr int most_boxes = 1000;                           // searched for a JPEG
 constexpr size_t box_first_bytes = size_t(64) << 10;
 
 uint64_t big_endian(const uint8_t *bytes, size_t count) {
@@ -28,7 +28,8 @@ uint64_t big_endian(const uint8_t *bytes, size_t count) {
     return value;
 }
 
-// Whether a container has what restores a JPEG file (ISO/IEC 18181-2, box jbrd), which may follow the picture's header.
+// Whether a container has the data to restore a JPEG file (ISO/IEC 18181-2, box jbrd), which may follow the picture's
+// header.
 bool has_jpeg(std::FILE *file) {
     std::vector<uint8_t> head;
     if (!read_at(file, 0, 4, head) || big_endian(head.data(), 4) != 12) return false;
@@ -47,15 +48,15 @@ class JxlFile {
 public:
     JxlFile(const std::string &path, int events);
 
-    // The next event that was asked for, up to JXL_DEC_SUCCESS.
+    // The next subscribed event, up to JXL_DEC_SUCCESS.
     JxlDecoderStatus next();
 
-    // The next event must be that one.
+    // Requires the next event to be this one.
     void expect(JxlDecoderStatus event) {
         if (next() != event) fail("its headers are out of order");
     }
 
-    // What every picture is asked for first; refuses what this program does not take.
+    // Common first steps for every picture; refuses unsupported ones.
     void read_head();
 
     void check(JxlDecoderStatus status) const {
@@ -69,7 +70,7 @@ public:
     bool is_box(const char *type, const JxlBoxType &own) const { return std::memcmp(own, type, sizeof own) == 0; }
     std::vector<uint8_t> icc() const;
 
-    // Contents of the boxes that name EXIF and XMP, up to the end of the file.
+    // Contents of the EXIF and XMP boxes, up to the end of the file.
     void read_boxes(std::vector<uint8_t> &exif, std::vector<uint8_t> &xmp);
 
 private:
@@ -83,7 +84,7 @@ private:
     std::string path_;
     File file_;
     std::unique_ptr<JxlDecoder, void (*)(JxlDecoder *)> decoder_{nullptr, JxlDecoderDestroy};
-    std::vector<uint8_t> part_;  // of the file, that the decoder has
+    std::vector<uint8_t> part_;  // of the file, held by the decoder
     bool is_at_end_ = false;
     JxlBasicInfo info_ = {};
     bool keeps_jpeg_ = false;
@@ -100,10 +101,10 @@ JxlFile::JxlFile(const std::string &path, int events) : path_(path), file_(open_
     JxlDecoderSetDecompressBoxes(decoder(), JXL_TRUE);  // fails where libjxl is built without Brotli
 }
 
-// The bytes that the decoder has left over, and the next ones of the file.
+// Passes the decoder its unused bytes and the next ones of the file.
 void JxlFile::take_more() {
     stop_if_interrupted();
-    if (is_at_end_) fail("its data end before the picture does");
+    if (is_at_end_) fail("its data end before the picture is complete");
     const size_t rest = JxlDecoderReleaseInput(decoder());
     part_.erase(part_.begin(), part_.end() - static_cast<ptrdiff_t>(rest));
     part_.resize(rest + part_bytes);
@@ -127,7 +128,7 @@ JxlDecoderStatus JxlFile::next() {
         case JXL_DEC_BOX_NEED_MORE_OUTPUT: {
             std::vector<uint8_t> &box = *box_;
             const size_t used = box.size() - JxlDecoderReleaseBoxBuffer(decoder());
-            if (box.size() >= box_max_bytes) fail("its EXIF or XMP is over 64 MiB");
+            if (box.size() >= box_max_bytes) fail("its EXIF or XMP is larger than 64 MiB");
             box.resize(2 * box.size());
             check(JxlDecoderSetBoxBuffer(decoder(), box.data() + used, box.size() - used));
             break;
@@ -155,7 +156,7 @@ void JxlFile::close_box() {
     box_ = nullptr;
 }
 
-// The last box may have no size. Whether the picture before it is complete shows when it is decoded.
+// The last box may have no size. Decoding shows whether the picture before it is complete.
 JxlDecoderStatus JxlFile::end_boxes() {
     if (box_) close_box();
     return JXL_DEC_SUCCESS;
@@ -179,8 +180,8 @@ void JxlFile::read_head() {
     if (is_named && colour.transfer_function == JXL_TRANSFER_FUNCTION_PQ) fail_hdr(path_, "JPEG XL", "PQ");
     if (is_named && colour.transfer_function == JXL_TRANSFER_FUNCTION_HLG) fail_hdr(path_, "JPEG XL", "HLG");
     if (is_named || info_.uses_original_profile || info_.exponent_bits_per_sample > 0) return;
-    // Colours in libjxl's own space, of a picture with an ICC profile, which libjxl does not go back to: it would make
-    // light of them, for which integers are too coarse.
+    // Colours in libjxl's own space, of a picture with an ICC profile that libjxl cannot convert back to: it would
+    // return linear light, for which integers are too coarse.
     colour = {};
     colour.color_space = info_.num_color_channels == 1 ? JXL_COLOR_SPACE_GRAY : JXL_COLOR_SPACE_RGB;
     colour.white_point = JXL_WHITE_POINT_D65;
@@ -200,7 +201,7 @@ void JxlFile::refuse_odd_kinds() const {
     }
 }
 
-// Of the pixels as they are delivered.
+// Format of the returned pixels.
 std::vector<uint8_t> JxlFile::icc() const {
     size_t size = 0;
     if (JxlDecoderGetICCProfileSize(decoder(), nullptr, JXL_COLOR_PROFILE_TARGET_DATA, &size) != JXL_DEC_SUCCESS)
@@ -231,7 +232,8 @@ public:
         if (uint64_t(info.xsize) * info.ysize * (info.num_color_channels + info.num_extra_channels) * sizeof(float)
             > working_max_bytes)
             fail_unsupported(request.path,
-                             size_text(info.xsize, info.ysize) + " are too many of JPEG XL; convert it to TIFF first");
+                             size_text(info.xsize, info.ysize) + " exceed the limit of JPEG XL; convert it to TIFF "
+                                                                 "first");
     }
 
 private:
@@ -248,7 +250,7 @@ void JxlSource::decode(uint8_t *pixels, size_t bytes) {
     jxl_.expect(JXL_DEC_NEED_IMAGE_OUT_BUFFER);
     size_t needed = 0;
     jxl_.check(JxlDecoderImageOutBufferSize(jxl_.decoder(), &format, &needed));
-    if (needed != bytes) jxl_.fail("libjxl makes another size of it than it declares");
+    if (needed != bytes) jxl_.fail("libjxl decodes a size other than the declared one");
     jxl_.check(JxlDecoderSetImageOutBuffer(jxl_.decoder(), &format, pixels, bytes));
     jxl_.expect(JXL_DEC_FULL_IMAGE);
 }

@@ -22,7 +22,7 @@ constexpr char profile_name[] = "ICC profile";
 // For photographs zlib's level 3 is twice as fast as its default 6 and gives smaller files.
 constexpr int compression_level = 3;
 
-// Where libpng goes when something is wrong.
+// Error handling of libpng.
 struct PngState {
     std::jmp_buf jump;
     char text[128] = "";
@@ -36,7 +36,7 @@ void on_error(png_structp png, png_const_charp text) {
     std::longjmp(state->jump, 1);
 }
 
-// What libpng warns about (odd profiles, unknown chunks) does not concern pixels; damage is an error here.
+// Warnings of libpng (odd profiles, unknown chunks) do not concern pixels; damage is an error here.
 void on_warning(png_structp, png_const_charp) {}
 
 bool little_endian() {
@@ -46,7 +46,8 @@ bool little_endian() {
     return first == 1;
 }
 
-// libpng refuses to write the sRGB profile of 1998, which many cameras and editors embed, for faults in its tags.
+// libpng refuses to write the sRGB profile of 1998, which many cameras and editors embed, because of faults in its
+// tags.
 void keep_profile_as_it_is(png_structp png) { png_set_option(png, PNG_SKIP_sRGB_CHECK_PROFILE, PNG_OPTION_ON); }
 
 struct PngReader {
@@ -112,7 +113,7 @@ uint64_t packed_bytes(const PngReader &reader) {
            / 8;
 }
 
-// Everything before the pixels; sets libpng to deliver 8 or 16 bit samples in one of our layouts.
+// Reads everything before the pixels; sets libpng to return 8 or 16 bit samples in one of our layouts.
 void read_start(PngReader &reader, Picture &picture, const ReadRequest &request) {
     png_structp png = reader.png;
     png_set_user_limits(png, picture_max_side, picture_max_side);
@@ -168,7 +169,7 @@ void PngSource::read(uint8_t *row) {
     std::memcpy(row, frame_.get() + next_++ * frame_row_bytes(), frame_row_bytes());
 }
 
-// An interlaced file has the whole frame seven times over, ever finer: it cannot be read row by row.
+// An interlaced file stores the whole frame seven times, increasingly fine: it cannot be read row by row.
 void PngSource::read_interlaced() {
     const size_t row_bytes = frame_row_bytes();
     frame_ = make_lazy_bytes(row_bytes * header_.frame_height);
@@ -209,7 +210,7 @@ void set_resolution(const PngWriter &writer, const PictureTraits &traits) {
                      traits.resolution_unit == Unit::none ? PNG_RESOLUTION_UNKNOWN : PNG_RESOLUTION_METER);
 }
 
-// Everything before the pixels.
+// Writes everything before the pixels.
 void write_start(const PngWriter &writer, const Picture &picture) {
     static const int colour_types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
                                        PNG_COLOR_TYPE_RGB_ALPHA};

@@ -1,4 +1,4 @@
-// Camera raw files: rows of linear light in the camera's own colours.
+// Camera raw files: rows of linear light in camera colours.
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/raw_file.hpp"
 #include "cli/pictures/raw_kind.hpp"

@@ -1,4 +1,4 @@
-// TIFF through libtiff. Its errors are return values; what it has to say arrives in a handler of each open file.
+// TIFF through libtiff. Its errors are return values; its messages arrive in a handler per open file.
 #include "cli/pictures/codec.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace codec {
 
 namespace {
 
-// A tile or strip of more bytes is a damaged header.
+// A larger tile or strip means a damaged header.
 constexpr uint64_t block_max_bytes = uint64_t(1) << 30;
 
 // Classic TIFF has 32 bit offsets; the rest of 4 GiB is for directory and metadata.
@@ -78,7 +78,7 @@ public:
         return TIFFGetFieldDefaulted(handle, tag, &value) ? value : default_value;
     }
 
-    // Bytes that the file has of a strip or tile.
+    // Bytes stored in the file for a strip or tile.
     uint64_t stored(uint32_t block) const { return std::min(TIFFGetStrileByteCount(handle, block), file_bytes()); }
     uint64_t file_bytes() const { return TIFFGetSizeProc(handle)(TIFFClientdata(handle)); }
 
@@ -86,15 +86,16 @@ public:
     TIFF *handle = nullptr;
 };
 
-// What a strip or tile of a compression can hold.
+// Limits of a strip or tile by compression.
 struct Limits {
-    uint64_t expansion;  // most bytes that it makes of one; 0 = any number, as a block of one grey has a few bytes
+    uint64_t expansion;           // maximum expansion per byte; 0 = unlimited, because a uniform block has a few bytes
     uint64_t least_bytes = 0;     // of a block
     uint32_t most_side = 0;       // of a block, in pixels; 0 = any
-    bool decodes_blocks = false;  // has a whole block in memory, also where rows are read
+    bool decodes_blocks = false;  // needs a whole block in memory, even if rows are read
 };
 
-// Nothing for compressions that no picture here can have: those of one, two or four bits a sample and of other colours.
+// Empty for compressions that no supported picture can have: those of one, two or four bits per sample and of other
+// colours.
 std::optional<Limits> limits_of(uint16_t compression) {
     constexpr uint64_t jpeg = 1366;  // a bit for 8 x 8 samples, 18 such blocks for 32 x 32 pixels of three
     switch (compression) {
@@ -118,8 +119,8 @@ std::optional<Limits> limits_of(uint16_t compression) {
     }
 }
 
-// A picture that its strips or tiles cannot hold is refused. Their own sizes count, not the file's: they may share
-// data.
+// Refuses a picture that its strips or tiles cannot contain. Their own sizes count, not that of the file: they may
+// share data.
 void check_stored_frame(const Tiff &tiff, const std::string &path, const Picture &picture, const Limits &limits) {
     const uint64_t needed = pixel_bytes(picture) * picture.frame_width * picture.frame_height;
     const uint32_t blocks = TIFFIsTiled(tiff.handle) ? TIFFNumberOfTiles(tiff.handle) : TIFFNumberOfStrips(tiff.handle);
@@ -161,7 +162,7 @@ void read_layout(const Tiff &tiff, const ReadRequest &request, Picture &picture)
     const unsigned samples = tiff.field<uint16_t>(TIFFTAG_SAMPLESPERPIXEL, 1);
     uint16_t photometric = 0;
     if (!TIFFGetField(tiff.handle, TIFFTAG_PHOTOMETRIC, &photometric))
-        fail_kind(request, "TIFF that does not say what its samples are");
+        fail_kind(request, "TIFF that does not declare the meaning of its samples");
     const bool jpeg = tiff.field<uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_JPEG;
     if (photometric == PHOTOMETRIC_YCBCR && jpeg) TIFFSetField(tiff.handle, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
     const bool grey = photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE;
@@ -198,7 +199,7 @@ void read_traits(const Tiff &tiff, Picture &picture) {
     if (TIFFGetField(tiff.handle, TIFFTAG_ICCPROFILE, &bytes, &profile)) picture.icc.assign(profile, profile + bytes);
 }
 
-// Inverts a row of a min-is-white file; its extra sample, if any, is left.
+// Inverts a row of a min-is-white file, except its extra sample.
 void invert_row(const Picture &picture, uint8_t *row) {
     const size_t samples = lensprof_layout_samples(picture.layout);
     for (size_t i = 0; i < picture.frame_width * samples; i += samples) {
@@ -216,7 +217,7 @@ void invert_row(const Picture &picture, uint8_t *row) {
 class BandReader {
 public:
     BandReader(const Tiff &tiff, const std::string &path, const Picture &picture, const Limits &limits);
-    void read(uint8_t *row);  // the next one
+    void read(uint8_t *row);  // the next row
 
 private:
     void read_band(uint32_t y, uint32_t rows);
@@ -234,7 +235,7 @@ private:
     const size_t block_pixel_bytes_;
     uint32_t block_width_ = 0, block_height_ = 0, next_ = 0;
     LazyBytes band_{nullptr, std::free};
-    std::unique_ptr<uint8_t[]> block_;  // not cleared: a damaged header may ask for much
+    std::unique_ptr<uint8_t[]> block_;  // not cleared: a damaged header may declare a large size
     size_t block_bytes_ = 0;
 };
 
@@ -275,7 +276,7 @@ void BandReader::check_block(uint64_t bytes) const {
 }
 
 void BandReader::fail() const {
-    fail_damaged(path_, tiff_.message.text[0] ? tiff_.message.text : "impossible size of a strip or tile");
+    fail_damaged(path_, tiff_.message.text[0] ? tiff_.message.text : "invalid size of a strip or tile");
 }
 
 void BandReader::read(uint8_t *row) {
@@ -336,7 +337,7 @@ private:
     std::unique_ptr<BandReader> reader_;
 };
 
-// m: no memory map, which would end the process when the file is cut while being read.
+// m: no memory map, which would crash the process if the file is truncated while being read.
 TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(request.path, "rm") {
     if (!tiff_.handle) fail_damaged(path_, tiff_.message.text);
     tiff_.message = Message();  // errors in tags that are not needed
@@ -418,7 +419,7 @@ private:
     const size_t row_bytes_;
     const uint32_t rows_per_strip_;
     Tiff tiff_;
-    std::vector<uint8_t> strip_;  // rows to be written; libtiff may scramble what it is given
+    std::vector<uint8_t> strip_;  // rows to write; libtiff may modify its input
     uint32_t strips_ = 0;
 };
 
@@ -441,12 +442,12 @@ void TiffSink::write(const uint8_t *row) {
 }
 
 void TiffSink::write_strip() {
-    errno = 0;  // an error that libtiff itself finds has no number
+    errno = 0;  // an error found by libtiff itself has no number
     if (TIFFWriteEncodedStrip(tiff_.handle, strips_++, strip_.data(), static_cast<tmsize_t>(strip_.size())) < 0) fail();
     strip_.clear();
 }
 
-// Closing writes the directory; whether that went well only the handler knows.
+// Closing writes the directory; only the handler knows whether that succeeded.
 void TiffSink::finish() {
     if (!strip_.empty()) write_strip();
     errno = 0;

@@ -1,4 +1,4 @@
-// WebP through libwebp: RIFF's chunks by its demultiplexer, the picture by its incremental decoder.
+// WebP through libwebp: RIFF chunks with its demultiplexer, pixels with its incremental decoder.
 #include <algorithm>
 #include <cstdio>
 #include <new>
@@ -15,27 +15,27 @@ namespace codec {
 
 namespace {
 
-constexpr size_t step_bytes = size_t(1) << 18;  // decoded between two looks at interrupts
+constexpr size_t step_bytes = size_t(1) << 18;  // decoded between two checks for interrupts
 
 const char *text_of(VP8StatusCode status) {
     switch (status) {
     case VP8_STATUS_BITSTREAM_ERROR: return "libwebp: bad bitstream";
     case VP8_STATUS_UNSUPPORTED_FEATURE: return "libwebp: unsupported feature";
     case VP8_STATUS_SUSPENDED:
-    case VP8_STATUS_NOT_ENOUGH_DATA: return "its data end before the picture does";
+    case VP8_STATUS_NOT_ENOUGH_DATA: return "its data end before the picture is complete";
     default: return "libwebp cannot decode it";
     }
 }
 
-// The whole file: the demultiplexer takes nothing less.
+// The whole file, because the demultiplexer needs it.
 std::vector<uint8_t> load(const std::string &path) {
     const File file = open_for_reading(path);
     const uint64_t size = file_bytes(file.get());
-    if (size > coded_max_bytes) fail_unsupported(path, "is a WebP picture of over 1 GiB; convert it to TIFF first");
+    if (size > coded_max_bytes) fail_unsupported(path, "is a WebP picture larger than 1 GiB; convert it to TIFF first");
     std::vector<uint8_t> bytes;
     if (size > 0) bytes.resize(static_cast<size_t>(size));
     if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
-        fail_damaged(path, "it has become shorter");
+        fail_damaged(path, "it was truncated while being read");
     return bytes;
 }
 
@@ -54,7 +54,7 @@ public:
     const WebPBitstreamFeatures &features() const { return features_; }
     const std::vector<uint8_t> &bytes() const { return bytes_; }
 
-    // Empty where there is none.
+    // Empty if missing.
     std::vector<uint8_t> chunk(const char *name) const {
         WebPChunkIterator found = {};
         std::vector<uint8_t> bytes;

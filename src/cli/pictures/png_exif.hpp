@@ -1,5 +1,5 @@
-// EXIF in a PNG's own chunk for it, eXIf (PNG 3rd edition, 11.3.4.5). Exiv2 reads it, but writes a text chunk in
-// hexadecimal instead, which is not part of the standard and which ExifTool does not edit.
+// EXIF in the PNG chunk eXIf (PNG 3rd edition, 11.3.4.5). Exiv2 reads it but writes a hexadecimal text chunk instead,
+// which is not part of the standard and which ExifTool does not edit.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@ namespace lensprof {
 
 namespace codec {
 
-// Of several values of one key the last remains: where EXIF stands in a text chunk as well, that of eXIf.
+// Of several values of one key the last is kept: if a text chunk has EXIF too, eXIf wins.
 void keep_last(Exiv2::ExifData &exif);
 
-// The image's EXIF as a TIFF structure, which it then is without; empty where it has none. Throws Exiv2's exceptions.
+// Removes the image's EXIF and returns it as a TIFF structure; empty if not found. Throws Exiv2's exceptions.
 std::vector<uint8_t> take_exif(Exiv2::Image &image);
 
-// A PNG file with EXIF in a chunk after its header; as it is where `exif` is empty.
+// Adds EXIF as a chunk after the header of a PNG file; unchanged if `exif` is empty.
 std::vector<uint8_t> with_exif(const uint8_t *png, size_t size, const std::vector<uint8_t> &exif);
 
 }  // namespace codec

@@ -34,7 +34,7 @@ struct Grid {
     uint64_t columns() const { return (width + block_width - 1) / block_width; }
     uint64_t rows() const { return (height + block_height - 1) / block_height; }
 
-    // Pixels of a block that are in the image. LibRaw breaks rows at the block's width, or at the image's if less.
+    // Pixels of a block within the image. LibRaw breaks rows at the block's width, or at the image's if less.
     uint64_t pixels_of(uint64_t block) const {
         const uint64_t top = block / columns() * block_height;
         return std::min<uint64_t>(block_width, width) * std::min<uint64_t>(block_height, height - top);
@@ -87,10 +87,10 @@ private:
                    bytes = reader.numbers(directory, grid.is_tiled ? tag_tile_bytes : tag_strip_bytes);
         const uint64_t count = grid.columns() * grid.rows();
         if (offsets.size() < count || bytes.size() < count)
-            fail_damaged(path_, std::to_string(count) + " strips or tiles are declared, and not all are there");
-        if (!grid.is_tiled && count > 1)  // LibRaw decodes the first and stops
+            fail_damaged(path_, std::to_string(count) + " strips or tiles are declared, but some are missing");
+        if (!grid.is_tiled && count > 1)  // LibRaw decodes only the first
             fail_unsupported(path_,
-                             "DNG of several strips of lossless JPEG, which LibRaw does not read; convert it with "
+                             "DNG with several lossless JPEG strips, which LibRaw does not read; convert it with "
                              "Adobe's DNG Converter, or develop it to a linear 16 bit TIFF");
         for (uint64_t i = 0; i < count; ++i) {
             const auto frame = frame_at(offsets[i], bytes[i]);
@@ -106,7 +106,7 @@ private:
         }
     }
 
-    // The frame of a lossless JPEG (ITU T.81, annex B: SOI, SOF3, DHT, SOS) within `size` bytes; nothing for others.
+    // The frame of a lossless JPEG (ITU T.81, annex B: SOI, SOF3, DHT, SOS) within `size` bytes; empty for others.
     std::optional<JpegFrame> frame_at(uint64_t offset, uint64_t size) {
         uint8_t head[4];
         const uint64_t end = offset + size;
@@ -139,8 +139,8 @@ private:
 RawBlocks check_raw_blocks(const std::string &path, uint32_t width, uint32_t height) {
     try {
         return BlockCheck(path).run(width, height);
-    } catch (const UnusableTiff &unusable) {  // others: LibRaw knows structures that are no TIFF
-        if (unusable.defect == TiffDefect::pixels_cut_off) fail_damaged(path, "its pixels end before their time");
+    } catch (const UnusableTiff &unusable) {  // others: LibRaw also supports files that are not a TIFF
+        if (unusable.defect == TiffDefect::pixels_cut_off) fail_damaged(path, "its pixels are cut off");
     }
     return {};
 }

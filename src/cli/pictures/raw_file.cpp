@@ -20,11 +20,11 @@ namespace codec {
 namespace {
 
 constexpr unsigned most_memory_mb = 2048;
-constexpr uint64_t most_expansion = 1024;  // pixels that one byte of a file can be: Deflate of two bytes each
-constexpr uint32_t colour_period = 12;     // columns after which the mosaics repeat: 2 (Bayer) and 6 (X-Trans)
+constexpr uint64_t most_expansion = 1024;  // maximum pixels per byte of a file: Deflate of two bytes each
+constexpr uint32_t colour_period = 12;     // columns after which mosaics repeat: 2 (Bayer) and 6 (X-Trans)
 constexpr uint16_t saturated = 65535;
 
-// Notes reads beyond the end, which LibRaw's bit readers answer with zeros, and how much of each block is read.
+// Detects reads beyond the end, which LibRaw's bit readers answer with zeros, and how much of each block is read.
 class CheckedStream final : public LibRaw_bigfile_datastream {
 public:
     explicit CheckedStream(const std::string &path) : LibRaw_bigfile_datastream(path.c_str()) {}
@@ -47,7 +47,7 @@ public:
         return status;
     }
 
-    // Forgets the block that the next bytes belong to. One of which less than half was needed is not what it was.
+    // Ends the current block. A block of which less than half was needed is damaged.
     void leave_block() {
         if (block_ != blocks.end() && (static_cast<uint64_t>(tell()) - block_->first) * 2 < block_->second)
             is_left_early = true;
@@ -58,7 +58,7 @@ public:
     std::function<void()> before_seek;
     bool is_left_early = false;
     bool is_past_end = false;
-    bool is_short = false;  // a block was not all there; some decoders ask for more than they need
+    bool is_short = false;  // a block was incomplete; some decoders request more than they need
 
 private:
     RawBlocks::const_iterator block_ = blocks.end();
@@ -67,18 +67,18 @@ private:
 int on_progress(void *, LibRaw_progress, int, int) { return interrupted() ? 1 : 0; }
 
 void on_memory_error(void *, const char *, const char *) {}
-void on_data_error(void *, const char *, int) {}  // error_count() has them; LibRaw's own prints
+void on_data_error(void *, const char *, int) {}  // error_count() reports errors; LibRaw's own handler prints
 
-// What LibRaw means, as a failure of ours.
+// Converts an error of LibRaw to a Failure.
 [[noreturn]] void fail_libraw(int status, const std::string &path, const std::string &kind) {
     stop_if_interrupted();
     switch (status) {
     case LIBRAW_UNSUFFICIENT_MEMORY: fail_memory(path);
     case LIBRAW_TOO_BIG:
     case LIBRAW_MEMPOOL_OVERFLOW:
-        fail_unsupported(path, "camera raw file (" + kind + ") that declares over "
-                                   + std::to_string(most_memory_mb) + " MB of pixels; copy it again, or develop it to a "
-                                     "linear 16 bit TIFF");
+        fail_unsupported(path, "camera raw file (" + kind + ") that declares more than "
+                                   + std::to_string(most_memory_mb)
+                                   + " MB of pixels; copy it again, or develop it to a linear 16 bit TIFF");
     case LIBRAW_FILE_UNSUPPORTED:
     case LIBRAW_NOT_IMPLEMENTED:
         fail_unsupported(path, "camera raw file (" + kind + ") that LibRaw " + LibRaw::version()
@@ -131,7 +131,7 @@ void RawFile::check(int status) const {
     if (status != LIBRAW_SUCCESS) fail_libraw(status, path_, kind_);
 }
 
-// Before memory is used for what a header declares.
+// Before memory is allocated for the declared size.
 void RawFile::check_size() const {
     const libraw_image_sizes_t &s = decoder_->data().sizes;
     const uint64_t pixels = uint64_t(s.raw_width) * s.raw_height;
@@ -140,7 +140,7 @@ void RawFile::check_size() const {
     if (s.width == 0 || s.height == 0) fail_damaged(path_, size_text(s.width, s.height));
 }
 
-// Kinds that are not one linear value a channel of light on a square grid.
+// Refuses kinds other than one linear value per channel on a square grid.
 void RawFile::refuse_odd_kinds() const {
     LibRaw &libraw = decoder_->libraw;
     const libraw_data_t &d = libraw.imgdata;
@@ -149,7 +149,7 @@ void RawFile::refuse_odd_kinds() const {
                                     + ", which lensprof does not read; develop it to a linear 16 bit TIFF first");
     };
     if (d.idata.is_foveon) refuse("a Foveon sensor");
-    if (libraw.is_fuji_rotated()) refuse("a sensor whose grid is turned by 45 degrees (Super CCD)");
+    if (libraw.is_fuji_rotated()) refuse("a sensor whose grid is rotated by 45 degrees (Super CCD)");
     if (libraw.is_sraw() || libraw.is_nikon_sraw())
         refuse("reduced size (sRAW), whose values the camera has processed");
     if (libraw.is_floating_point()) refuse("floating point values (a merged HDR)");
@@ -174,8 +174,8 @@ uint32_t RawFile::orientation() const {
     }
 }
 
-// LibRaw makes the room for the pixels, seeks their place in the file and decodes them. Where a decoder gives up it may
-// state nothing: what it has not written is black then, not what was in memory before.
+// LibRaw allocates the pixels, seeks to them in the file and decodes them. If a decoder gives up it may report nothing:
+// unwritten pixels are then black, not uninitialised.
 void RawFile::decode() {
     CheckedStream &stream = decoder_->stream;
     libraw_data_t &d = decoder_->data();
@@ -197,11 +197,11 @@ void RawFile::unpack() {
     const uint32_t declared_width = width(), declared_height = height();
     decode();
     const bool is_cut = decoder_->data().idata.dng_version != 0 && decoder_->stream.is_past_end;
-    if (is_cut || decoder_->libraw.error_count() > 0) fail_damaged(path_, "its pixels end before their time");
-    if (decoder_->stream.is_left_early) fail_damaged(path_, "its pixels need less than half of their bytes");
+    if (is_cut || decoder_->libraw.error_count() > 0) fail_damaged(path_, "its pixels are cut off");
+    if (decoder_->stream.is_left_early) fail_damaged(path_, "its pixels use less than half of the stored bytes");
     if (width() != declared_width || height() != declared_height)
-        fail_damaged(path_, size_text(width(), height()) + " where " + size_text(declared_width, declared_height)
-                                + " are declared");
+        fail_damaged(path_, size_text(width(), height()) + " instead of the declared "
+                                + size_text(declared_width, declared_height));
     make_linear();
 }
 
@@ -212,23 +212,23 @@ void RawFile::make_linear() {
     else if (raw.color3_image || raw.color4_image)
         make_linear_pixels();
     else
-        fail_unsupported(path_, "camera raw file (" + kind_ + ") whose pixels LibRaw does not give as integers; develop "
-                                "it to a linear 16 bit TIFF first");
+        fail_unsupported(path_, "camera raw file (" + kind_ + ") whose pixels LibRaw does not return as integers; "
+                                                              "develop it to a linear 16 bit TIFF first");
 }
 
 namespace {
 
-// Black and white of one channel at one place.
+// Black and white level of a channel at a position.
 struct Level {
     float black, scale;  // scale: 65535 over white - black
-    float white;         // from here on saturated
+    float white;         // saturated from here on
     uint16_t of(uint16_t v) const {
         if (v >= white) return saturated;
         return static_cast<uint16_t>(std::clamp((v - black) * scale + 0.5f, 0.0f, 65534.0f));
     }
 };
 
-// Saturation is where the file states it, below the nominal white of many cameras.
+// Saturation is as stated by the file, below the nominal white for many cameras.
 float saturation_of(const libraw_colordata_t &c, uint32_t channel, float white) {
     const auto stated = static_cast<float>(c.linear_max[channel & 3]);
     return stated > 0.6f * white && stated < white ? stated : white;
@@ -236,7 +236,7 @@ float saturation_of(const libraw_colordata_t &c, uint32_t channel, float white) 
 
 }  // namespace
 
-// A black level is a common one, one a channel and one a place of a repeating pattern, added up.
+// A black level is the sum of a common one, one per channel and one per position of a repeating pattern.
 void RawFile::make_linear_mosaic() {
     libraw_data_t &d = decoder_->data();
     const libraw_colordata_t &c = d.color;
@@ -315,7 +315,7 @@ void RawFile::halved_row(uint32_t y, uint16_t *rgb) const {
         }
 }
 
-// LibRaw copies what unpack() stored; black and white are those of the linear values by now.
+// LibRaw copies what unpack() stored; black and white are by now those of the linear values.
 void RawFile::demosaic() {
     if (!is_mosaic()) return;
     libraw_data_t &d = decoder_->data();
@@ -326,7 +326,7 @@ void RawFile::demosaic() {
     }
     check(decoder_->libraw.dcraw_process());
     if (d.sizes.width != d.sizes.iwidth || d.sizes.height != d.sizes.iheight || !d.image)
-        fail_damaged(path_, "LibRaw made another size of it");
+        fail_damaged(path_, "LibRaw decodes a size other than the declared one");
 }
 
 void RawFile::full_row(uint32_t y, uint16_t *samples) const {
@@ -378,12 +378,11 @@ std::vector<uint8_t> raw_preview_bytes(const std::string &path, const std::strin
     int status = libraw->open_datastream(&stream);
     stream.is_short = false;
     if (status == LIBRAW_SUCCESS) status = libraw->unpack_thumb();
-    if (status == LIBRAW_SUCCESS && stream.is_short) fail_damaged(path, "its preview ends before its time");
+    if (status == LIBRAW_SUCCESS && stream.is_short) fail_damaged(path, "its preview is cut off");
     const libraw_thumbnail_t &thumbnail = libraw->imgdata.thumbnail;
     if (status == LIBRAW_NO_THUMBNAIL || status == LIBRAW_UNSUPPORTED_THUMBNAIL
         || (status == LIBRAW_SUCCESS && (thumbnail.tformat != LIBRAW_THUMBNAIL_JPEG || !thumbnail.thumb)))
-        fail_unsupported(path,
-                         "camera raw file (" + kind + ") without a JPEG preview; take a JPEG of the same picture");
+        fail_unsupported(path, "camera raw file (" + kind + ") without a JPEG preview; use a JPEG of the same picture");
     if (status != LIBRAW_SUCCESS) fail_libraw(status, path, kind);
     const auto *bytes = reinterpret_cast<const uint8_t *>(thumbnail.thumb);
     return {bytes, bytes + thumbnail.tlength};

@@ -18,7 +18,7 @@ using namespace std::string_view_literals;
 constexpr uint16_t tag_photometric = 262, tag_make = 271, tag_dng_version = 50706;
 constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892;
 
-// Files that are no TIFF, by what they begin with.
+// Files that are not a TIFF, by their first bytes.
 constexpr struct {
     size_t at;
     std::string_view bytes;
@@ -33,7 +33,7 @@ constexpr struct {
               {0, "FOVb"sv, "Sigma X3F"},
               {0, "\0MRM"sv, "Minolta MRW"}};
 
-// Names of raw files, and the kind where the structure of a TIFF alone does not state it.
+// Extensions of raw files, and the kind if the TIFF structure alone does not determine it.
 constexpr struct {
     const char *extension, *kind;
 } names[] = {{"3fr", "Hasselblad 3FR"}, {"arw", "Sony ARW"},      {"cr2", "Canon CR2"},   {"cr3", "Canon CR3"},
@@ -44,7 +44,7 @@ constexpr struct {
              {"raw", "camera RAW"},     {"rw2", "Panasonic RW2"}, {"rwl", "Leica RWL"},   {"sr2", "Sony SR2"},
              {"srf", "Sony SRF"},       {"srw", "Samsung SRW"},   {"x3f", "Sigma X3F"}};
 
-// Raw files of TIFF's structure, by the maker that they state.
+// TIFF-based raw files, by their maker.
 constexpr struct {
     std::string_view maker;
     const char *kind;
@@ -128,7 +128,7 @@ std::optional<std::string> raw_kind(const std::string &path) {
                 throw UnusableTiff(TiffDefect::cut_off);
         });
         if (auto kind = kind_of_tiff(reader, path)) return kind;
-    } catch (const UnusableTiff &) {  // its reader reports what is wrong
+    } catch (const UnusableTiff &) {  // its reader reports the error
     }
     const char *named = kind_of_name(path);
     return named ? std::optional<std::string>(named) : std::nullopt;

@@ -1,4 +1,4 @@
-// Which camera raw file a file is, by its content: no decoder is needed for that.
+// Identifies camera raw files by content, without a decoder.
 #pragma once
 
 #include <optional>
@@ -6,11 +6,11 @@
 
 namespace lensprof {
 
-// "Nikon NEF", "DNG" and so on; nothing for other files, also for those that cannot be read. A file with the structure
-// of a TIFF is raw when it has an image of a mosaic or of linear raw values, or the name of a raw file.
+// "Nikon NEF", "DNG" and so on; empty for other files, including unreadable ones. A TIFF-based file is raw if it has a
+// mosaic or linear raw image, or the extension of a raw file.
 std::optional<std::string> raw_kind(const std::string &path);
 
-// Names that cameras give to raw files, in any case: .cr2, .nef, .dng and so on.
+// File extensions of camera raw files, in any case: .cr2, .nef, .dng and so on.
 bool is_raw_name(const std::string &path);
 bool is_dng_name(const std::string &path);
 

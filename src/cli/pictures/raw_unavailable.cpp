@@ -1,4 +1,4 @@
-// In place of the raw reader, where the program is built without LibRaw.
+// Replaces the raw reader if the program is built without LibRaw.
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/raw_file.hpp"
 
@@ -10,7 +10,8 @@ namespace {
 
 [[noreturn]] void fail_without(const std::string &path, const std::string &kind) {
     fail_unsupported(path, "camera raw file (" + kind + "), and this lensprof was built without LibRaw; install "
-                           "libraw-dev and build it again, or develop the file to a linear 16 bit TIFF");
+                                                        "libraw-dev and rebuild lensprof, or develop the file to a "
+                                                        "linear 16 bit TIFF");
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace codec {
 
 namespace {
 
-// Of every block of 2 x 2 pixels in two rows, of `row_samples` each, the mean of the middle two; put at the front of
-// the upper row. Not finite values stay so.
+// For every 2 x 2 block in two rows of `row_samples` each, the mean of the middle two values; written to the start of
+// the upper row. Values that are not finite stay so.
 template <class Sample, class Sum>
 void reduce_blocks(uint8_t *rows, size_t row_samples, size_t pixel, size_t count) {
     Sample *to = reinterpret_cast<Sample *>(rows);
@@ -27,7 +27,7 @@ void reduce_blocks(uint8_t *rows, size_t row_samples, size_t pixel, size_t count
         }
 }
 
-// Place below `count` of a fraction of 2^32.
+// Index below `count` for a fraction of 2^32.
 uint32_t place(uint32_t fraction, uint32_t count) { return static_cast<uint32_t>(uint64_t(fraction) * count >> 32); }
 
 }  // namespace
@@ -77,9 +77,9 @@ void RowReducer::halve_rows() {
         reduce_blocks<float, double>(scratch_.data(), row_samples, pixel, count);
 }
 
-// Multiples of the plane's generalised golden ratio (Roberts' R2 sequence) and of the golden ratio, as fractions of
-// 2^32, choose the block, so that the blocks of any few neighbouring pixels lie evenly about the middles of their
-// squares.
+// Multiples of the generalised golden ratio of the plane (Roberts' R2 sequence) and of the golden ratio, as fractions
+// of 2^32, select the block, so that the blocks of any few neighbouring pixels are spread evenly about the centres of
+// their squares.
 void RowReducer::choose_blocks() {
     for (auto &picks : picks_) picks.clear();
     for (uint32_t x = 0; x < picture_.width; ++x) {
@@ -96,7 +96,7 @@ void RowReducer::pick_from_row() {
     uint8_t *to = picture_.pixels.data() + emitted_ * picture_.row_bytes;
     const uint8_t *from = scratch_.data();
     for (const Pick &pick : picks_[block_row_]) {
-        if (pixel_bytes_ == 3)  // the usual size, known to the compiler
+        if (pixel_bytes_ == 3)  // the usual size, known at compile time
             std::memcpy(to + pick.x * size_t(3), from + pick.column * size_t(3), 3);
         else
             std::memcpy(to + pick.x * pixel_bytes_, from + pick.column * pixel_bytes_, pixel_bytes_);

@@ -10,14 +10,14 @@
 namespace lensprof {
 namespace {
 
-// The number at `at`, and where it ends.
+// The number at `at`, and its end.
 double take_number(const std::string &text, size_t &at) {
     double value = 0;
     for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; at++) value = value * 10 + (text[at] - '0');
     return value;
 }
 
-// Of the "16:9" in a text.
+// The ratio of the "16:9" in a text.
 std::optional<double> aspect_in(const std::string &text) {
     const size_t colon = text.find(':');
     if (colon == std::string::npos) return {};
@@ -27,7 +27,7 @@ std::optional<double> aspect_in(const std::string &text) {
     return width > 0 && height > 0 ? std::optional<double>(width / height) : std::nullopt;
 }
 
-// Of the pictures that the entry is for; none: of all.
+// Aspect of the pictures that the entry applies to; empty: all.
 std::optional<double> aspect_of(const lensprof_camera_model &camera) {
     for (const char *text : {camera.variant, camera.model, camera.other_model})
         if (const auto aspect = aspect_in(text)) return aspect;
@@ -50,7 +50,7 @@ std::vector<lensprof_camera_model> all_cameras(lensprof_store *store, const std:
     return cameras;
 }
 
-// What all formats of the picture's aspect agree on.
+// The value that all formats with the picture's aspect agree on.
 double crop_factor_of_format(const std::vector<lensprof_camera_model> &cameras, const lensprof_camera_model &camera,
                              double aspect) {
     constexpr double same_aspect = 0.02, same_crop = 0.005;
@@ -58,7 +58,7 @@ double crop_factor_of_format(const std::vector<lensprof_camera_model> &cameras, 
     for (const auto &other : cameras) {
         if (!is_format_of(other, camera)) continue;
         const auto its = aspect_of(other);
-        if (!its) return LENSPROF_UNKNOWN;  // told apart by something else
+        if (!its) return LENSPROF_UNKNOWN;  // distinguished by something else
         if (!(std::fabs(*its / aspect - 1) < same_aspect)) continue;
         if (crop != LENSPROF_UNKNOWN && std::fabs(crop / other.crop_factor - 1) > same_crop) return LENSPROF_UNKNOWN;
         crop = other.crop_factor;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint16_t tag_strip_offsets = 273, tag_strip_bytes = 279, tag_tile_offsets = 324, tag_tile_bytes = 325,
                    tag_sub_ifds = 330;
-constexpr uint32_t most_directories = 256;  // a chain that is longer leads in a circle
+constexpr uint32_t most_directories = 256;  // a longer chain is circular
 constexpr size_t header_bytes = 8, entry_bytes = 12;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The directories of a classic TIFF (revision 6.0, section 2), from a file or from memory. Every place and count that
-// a file declares is checked here, before it is used.
+// The directories of a classic TIFF (revision 6.0, section 2), from a file or memory. Every position and count declared
+// by a file is checked here before use.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace lensprof {
 
-// What makes a TIFF unusable.
+// Defects that make a TIFF unusable.
 enum class TiffDefect {
     not_tiff,
     big_tiff,
     no_directory,
-    cut_off,         // it ends before a directory or a value
+    cut_off,         // it ends before a directory or value
     pixels_cut_off,  // it ends before the end of a strip or tile
-    circle,          // directories that lead to each other, or over 256 of them
+    circle,          // circular directories, or more than 256
 };
 
 // Thrown by TiffReader.
@@ -30,7 +30,7 @@ struct UnusableTiff : std::exception {
 
 constexpr uint16_t tiff_byte = 1, tiff_short = 3, tiff_long = 4, tiff_undefined = 7, tiff_ifd = 13;
 
-// Bytes of a value of a type; 0 for a type that TIFF does not define.
+// Bytes of a value of this type; 0 for a type that TIFF does not define.
 uint32_t tiff_type_bytes(uint16_t type);
 
 struct TiffByteOrder {
@@ -42,27 +42,27 @@ struct TiffByteOrder {
 struct TiffEntry {
     uint16_t tag, type;
     uint32_t count;
-    uint8_t value[4];  // as in the file: the values, or the offset of values of over 4 bytes
-    uint64_t field;    // place of `value` in the file
+    uint8_t value[4];  // as in the file: the values, or the offset of values of more than 4 bytes
+    uint64_t field;    // position of `value` in the file
 
     uint64_t bytes() const { return uint64_t(count) * tiff_type_bytes(type); }
     bool inside() const { return bytes() <= 4; }
 };
 
 struct TiffDirectory {
-    uint64_t pointer;  // place in the file of the offset that leads here
+    uint64_t pointer;  // position in the file of the offset that points here
     uint64_t offset;
     std::vector<TiffEntry> entries;
-    uint32_t next;  // offset of the next directory of the chain; 0 ends it
+    uint32_t next;  // offset of the next directory of the chain; 0 at the end
 
-    const TiffEntry *find(uint16_t tag) const;  // NULL where there is none
+    const TiffEntry *find(uint16_t tag) const;  // NULL if not found
     uint64_t next_pointer() const { return offset + 2 + 12 * entries.size(); }
 };
 
 class TiffReader {
 public:
-    // Reads `count` bytes from `offset` on, all of which are below the size that the reader was given. What it throws
-    // comes out of the reader.
+    // Reads `count` bytes from `offset` on, all below the size given to the reader. Its exceptions propagate through
+    // the reader.
     using Read = std::function<void(uint64_t offset, uint8_t *bytes, size_t count)>;
 
     // Reads the header of a file of `size` bytes.
@@ -70,22 +70,22 @@ public:
 
     const TiffByteOrder &order() const { return order_; }
 
-    // The directory that the offset at `pointer` leads to.
+    // The directory that the offset at `pointer` points to.
     TiffDirectory directory(uint64_t pointer);
     TiffDirectory first() { return directory(4); }
 
-    // Pointers to the directories that its SubIFDs tag names; none where it has no such tag. A directory may have 65535
-    // entries, so a caller reads one after the other.
+    // Pointers to the directories of the SubIFDs tag; empty without the tag. A directory may have 65535 entries, so
+    // callers read them one at a time.
     std::vector<uint64_t> children(const TiffDirectory &directory) const;
 
-    // All values of a directory must be in the file; and the strips and tiles that it declares.
+    // Checks that all values of a directory, and the strips and tiles it declares, are within the file.
     void check_values(const TiffDirectory &directory) const;
     void check_blocks(const TiffDirectory &directory);
 
-    // Place in the file of an entry's values. They must all be in the file.
+    // Position in the file of an entry's values, which must all be within the file.
     uint64_t place(const TiffEntry &entry) const;
 
-    // The first `most` numbers of a tag of bytes, shorts or longs; none where it is missing or of another type.
+    // The first `most` numbers of a tag of bytes, shorts or longs; empty if it is missing or of another type.
     std::vector<uint32_t> numbers(const TiffDirectory &directory, uint16_t tag, uint32_t most = UINT32_MAX);
     uint32_t number(const TiffDirectory &directory, uint16_t tag, uint32_t otherwise);
 

@@ -1,4 +1,4 @@
-// In place of the reader of WebP, where the program is built without libwebp.
+// Replaces the reader of WebP if the program is built without libwebp.
 #include "cli/pictures/coded_file.hpp"
 
 namespace lensprof {
@@ -9,8 +9,8 @@ namespace {
 
 [[noreturn]] void fail_without(const std::string &path) {
     fail_unsupported(path,
-                     "is a WebP picture, and this lensprof was built without libwebp; install libwebp-dev and "
-                     "build it again, or convert the file to PNG, for instance with dwebp");
+                     "is a WebP picture, and this lensprof was built without libwebp; install libwebp-dev and rebuild "
+                     "lensprof, or convert the file to PNG, for instance with dwebp");
 }
 
 }  // namespace
