@@ -40,7 +40,7 @@ void test_damaged_databases(void **) {
         {"UPDATE cameras SET width=0", "0 x 240 pixels"},
         {"UPDATE cameras SET height=1000000000000", "320 x 1000000000000 pixels"},
         {"DELETE FROM cameras WHERE camera_id=2", "an image without a camera"},
-        {"DELETE FROM images WHERE image_id=9", "names image 9"},
+        {"DELETE FROM images WHERE image_id=9", "refers to image 9"},
         {"UPDATE images SET name='a.png' WHERE image_id=4", "has the image a.png twice"},
         {"UPDATE images SET name='' WHERE image_id=4", "an image without a name"},
         {"UPDATE keypoints SET rows=rows+1", "keypoints that are cut off"},
@@ -49,10 +49,11 @@ void test_damaged_databases(void **) {
         {"UPDATE keypoints SET rows=4, cols=3 WHERE image_id=3", "keypoints of 3 columns"},
         {"UPDATE keypoints SET data=NULL", "keypoints that are cut off"},
         {keypoints_sql(3, 2, {1, 2}), "the keypoints of an image twice"},
-        {"UPDATE keypoints SET data=" + blob_of<float>({NAN, 1, 7, 7}) + " WHERE image_id=9", "place is no number"},
+        {"UPDATE keypoints SET data=" + blob_of<float>({NAN, 1, 7, 7}) + " WHERE image_id=9",
+         "position is not a number"},
         {"UPDATE two_view_geometries SET rows=100", "matches that are cut off"},
         {"UPDATE two_view_geometries SET rows=rows*2, cols=1", "matches that are not pairs"},
-        {"UPDATE two_view_geometries SET pair_id=-5 WHERE config=2", "which it does not have"},
+        {"UPDATE two_view_geometries SET pair_id=-5 WHERE config=2", "which does not exist"},
         {"DELETE FROM two_view_geometries WHERE config=2;" + matches_sql(3, 7, 2, {0, 3}), "matches keypoint 3 of b b"},
         {"DELETE FROM two_view_geometries WHERE config=2;" + matches_sql(3, 7, 2, {0xFFFFFFFF, 0}),
          "matches keypoint 4294967295 of a.png"},
@@ -64,7 +65,7 @@ void test_damaged_databases(void **) {
         assert_unreadable(path, part, [&] { return read_colmap_database(path); });
     }
     const std::string path = make_database("damaged.db", "UPDATE two_view_geometries SET config=7");
-    assert_failure(ExitCode::not_usable, path + ": no point is seen", [&] { read_colmap_database(path); });
+    assert_failure(ExitCode::not_usable, path + ": no point is visible", [&] { read_colmap_database(path); });
 }
 
 void test_cut_databases(void **) {
@@ -103,7 +104,7 @@ void test_locked_database(void **) {
     const std::string path = make_database("database.db");
     OpenDatabase open(path);
     open.run("BEGIN EXCLUSIVE");
-    assert_unreadable(path, "another program writes to it", [&] { return read_colmap_database(path); });
+    assert_unreadable(path, "another program is writing to it", [&] { return read_colmap_database(path); });
 }
 
 void assert_model(const Reconstruction &r, size_t images) {
@@ -164,7 +165,7 @@ void test_gigantic_counts(void **) {
         Bytes first = whole;
         std::fill_n(first.begin(), 8, uint8_t{0xFF});
         save_anew(model + name, first);
-        assert_unreadable(model + name, "is to hold 18446744073709551615 items",
+        assert_unreadable(model + name, "declares 18446744073709551615 items",
                           [&] { return read_colmap_model(model); });
         save_anew(model + name, whole);
     }
@@ -176,14 +177,14 @@ void test_damaged_models(void **) {
     } cases[] = {
         {"/cameras.txt", "320 240", "0 240", "0 x 240"},
         {"/cameras.txt", "27 EQUI", "10 EQUI", "two cameras of the number 10"},
-        {"/cameras.txt", "320 240", "3e2 240", "line 2: '3e2' is not a whole number"},
+        {"/cameras.txt", "320 240", "3e2 240", "line 2: '3e2' is not an integer"},
         {"/images.txt", "\n5 1 0", "\n8 1 0", "two images of the number 8"},
-        {"/images.txt", " 27 z z", " 28 z z", "z z.png is of a camera that is not there"},
+        {"/images.txt", " 27 z z", " 28 z z", "z z.png refers to a camera that does not exist"},
         {"/images.txt", "30.5 40.5", "nan 40.5", "line 5: 'nan' is not a number"},
         {"/images.txt", "30.5 40.5 77", "30.5 40.5", "line 5: it has too few fields"},
         {"/points3D.txt", "8 1 5 0", "8 2 5 0", "feature 2 of image 8"},
         {"/points3D.txt", "8 1 5 0", "8 1 99 0", "feature 0 of image 99"},
-        {"/points3D.txt", "8 1 5 0", "8 1 5 -1", "'-1' is not a whole number"},
+        {"/points3D.txt", "8 1 5 0", "8 1 5 -1", "'-1' is not an integer"},
         {"/points3D.txt", "7 8 9", "7 8 inf", "'inf' is not a number"},
     };
     const std::string model = make_text_model("text");
@@ -198,7 +199,7 @@ void test_damaged_models(void **) {
     assert_unreadable(model, "has the image z z.png twice", [&] { return read_colmap_model(model); });
     save_text(model + "/images.txt", images);
     save_text(model + "/points3D.txt", "77 7 8 9 1 2 3 0 8 1\n78 7 8 9 1 2 3 0 5 0\n");
-    assert_failure(ExitCode::not_usable, model + ": no point is seen", [&] { read_colmap_model(model); });
+    assert_failure(ExitCode::not_usable, model + ": no point is visible", [&] { read_colmap_model(model); });
 }
 
 // The shapes of a model's features are those of its database, where that has the features.
@@ -218,7 +219,7 @@ void test_shapes_of_model(void **) {
     save_text(model + "/images.txt", replaced(text_of(model + "/images.txt"), "10.5 20.5", "10.5 20.7"));
     r = read_reconstruction(model, streams);
     assert_false(r.has_rotations);
-    assert_true(err.str().find(path + ": is not what " + model + " was made of") != std::string::npos);
+    assert_true(err.str().find(path + ": not used, because " + model + " was not made from it") != std::string::npos);
 }
 
 #define TEST(name) cmocka_unit_test_setup(name, empty_folder)

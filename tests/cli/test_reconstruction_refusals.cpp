@@ -59,7 +59,7 @@ void test_parts(void **) {
 // By its own name, and by that of its folder.
 void test_databases(void **) {
     std::string path = make_project("DELETE FROM two_view_geometries");
-    assert_refused(not_usable, build_of(path), {path, "no point is seen by two"});
+    assert_refused(not_usable, build_of(path), {path, "no point is visible in two"});
     path = make_database("work/project/database.db", "DELETE FROM cameras");
     for (const std::string &name : {path, work("project")})
         assert_refused(unreadable, build_of(name), {path, "camera"});
@@ -85,7 +85,7 @@ void test_models(void **) {
     for (const std::string &name : {model, work("project")})
         assert_refused(unreadable, build_of(name), {model + "/points3D.txt", "feature 1 of image 2"});
     save_text(model + "/points3D.txt", "1 0 0 5 0 0 0 0 1 0\n");
-    assert_refused(not_usable, build_of(model), {model, "no point is seen by two"});
+    assert_refused(not_usable, build_of(model), {model, "no point is visible in two"});
 }
 
 void test_other_programs(void **) {

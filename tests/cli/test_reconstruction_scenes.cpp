@@ -44,7 +44,7 @@ void test_opensfm(void **) {
         assert_int_equal(r.observations[1].colour[2], 7);
         assert_true((r.observations[1].shape[0][0] > 0.0f) == (version % 3 > 0));
         assert_false(r.images[0].has_centre);
-        assert_failure(ExitCode::unreadable, "does not say how large a.jpg is", [&] { settle_coordinates(r, {}); });
+        assert_failure(ExitCode::unreadable, "does not state the size of a.jpg", [&] { settle_coordinates(r, {}); });
     }
     save_text(in_folder("reconstruction.json"), opensfm_models);
     Reconstruction r = read_opensfm(path);
@@ -66,12 +66,12 @@ void test_damaged_opensfm(void **) {
     } cases[] = {
         {"_v2", "_v3", "version '3'"},
         {"_v2", "_v", "version ''"},
-        {"0.25", "0.51", "line 2: its place is outside"},
+        {"0.25", "0.51", "line 2: its position is outside"},
         {"0.25", "nan", "'nan' is not a number"},
         {"0.25", "1e999", "'1e999' is not a number"},
         {"\t255\t", "\t256\t", "a colour is not in 0..255"},
         {"\t255\t", "\t-1\t", "a colour is not in 0..255"},
-        {"\t3\t0.25", "\t99999999999\t0.25", "'99999999999' is not a whole number"},
+        {"\t3\t0.25", "\t99999999999\t0.25", "'99999999999' is not an integer"},
         {"\t7\t-1\t-1\n", "\n", "line 2: it has too few fields"},
         {"b b.jpg", "", "an image without a name"},
     };
@@ -80,9 +80,9 @@ void test_damaged_opensfm(void **) {
         assert_unreadable(path, part, read);
     }
     save_text(path, replaced(tracks_of(2), "b b.jpg\t17", "b b.jpg\t16"));
-    assert_failure(ExitCode::not_usable, path + ": no point is seen", [&] { read(); });
+    assert_failure(ExitCode::not_usable, path + ": no point is visible", [&] { read(); });
     save_text(path, replaced(tracks_of(2), "18", "17"));  // twice in one image
-    assert_failure(ExitCode::not_usable, path + ": no point is seen", [&] { read(); });
+    assert_failure(ExitCode::not_usable, path + ": no point is visible", [&] { read(); });
     save_text(path, tracks_of(2));
     for (const char *text : {"{}", "[1e999]", "[", "\xFF", "[{\"cameras\": {\"\xC3\": 1}}]"}) {
         save_text(models, text);
@@ -148,14 +148,14 @@ void test_damaged_bundler(void **) {
     const struct {
         const char *from, *to, *part;
     } cases[] = {
-        {"v0.3", "v0.2", "it is not of version 0.3"},
-        {"3 2\n", "4 2\n", "has 4 cameras, and "},
+        {"v0.3", "v0.2", "it is not version 0.3"},
+        {"3 2\n", "4 2\n", "has 4 cameras, but "},
         {"3 2\n", "3 4294967295\n", "points are missing"},
-        {"3 2\n", "3 99999999999\n", "'99999999999' is not a whole number"},
+        {"3 2\n", "3 99999999999\n", "'99999999999' is not an integer"},
         {"2 0 3 -4.5", "4000000000 0 3 -4.5", "it has too few fields"},
-        {"2 0 3 -4.5", "2 3 3 -4.5", "it names a camera that is not there"},
+        {"2 0 3 -4.5", "2 3 3 -4.5", "it refers to a camera that does not exist"},
         {"-4.5 3.5", "nan 3.5", "'nan' is not a number"},
-        {"-4.5 3.5", "1e300 3.5", "whose place is no number"},
+        {"-4.5 3.5", "1e300 3.5", "whose position is not a number"},
         {"2 -1 -3\n", "2 -1\n", "it has too few fields"},
     };
     for (const auto &[from, to, part] : cases) {
@@ -168,7 +168,7 @@ void test_damaged_bundler(void **) {
     cut_everywhere(path, 1, [&] { return read_bundler(path); });
     cut_everywhere(in_folder("list.txt"), 1, [&] { return read_bundler(path); });
     fs::remove(in_folder("list.txt"));
-    assert_unreadable(path, "the list of its images is not beside it", [&] { return read_bundler(path); });
+    assert_unreadable(path, "the list of its images is missing", [&] { return read_bundler(path); });
 }
 
 constexpr const char *alicevision = R"({"version": ["1", "2", "6"],
@@ -225,19 +225,17 @@ void test_damaged_scenes(void **) {
     const struct {
         const char *from[2], *to[2], *part;
     } cases[] = {
-        {{"\"12\", \"poseId\"", "\"id_view\": 12"},
-         {"\"5\", \"poseId\"", "\"id_view\": 5"},
-         "two views of the number 5"},
+        {{"\"12\", \"poseId\"", "\"id_view\": 12"}, {"\"5\", \"poseId\"", "\"id_view\": 5"}, "two views with the id 5"},
         {{"\"320\"", "320"}, {"\"9999999999\"", "9999999999"}, "z z.jpg has no size"},
         {{"\"320\"", "320"}, {"[]", "[]"}, "z z.jpg has no size"},
         {{"\"observationId\": \"12\"", "\"key\": 12, \"value\": {\"id_feat\""},
          {"\"observationId\": \"13\"", "\"key\": 13, \"value\": {\"id_feat\""},
-         "in view 13, which is not there"},
-        {{"\"10.5\"", "10.5"}, {"\"nan\"", "null"}, "an observation without a place"},
-        {{"[\"10.5\", \"2e1\"]", "[10.5, 20]"}, {"[\"10.5\"]", "{\"0\": 1}"}, "an observation without a place"},
+         "in view 13, which does not exist"},
+        {{"\"10.5\"", "10.5"}, {"\"nan\"", "null"}, "an observation without a position"},
+        {{"[\"10.5\", \"2e1\"]", "[10.5, 20]"}, {"[\"10.5\"]", "{\"0\": 1}"}, "an observation without a position"},
         {{"\"10.5\"", "10.5"}, {"1e999", "1e999"}, "a number that is too large"},
-        {{"\"structure\"", "\"structure\""}, {"\"other\"", "\"other\""}, "holds no structure"},
-        {{"\"views\"", "\"views\""}, {"\"other\"", "\"other\""}, "which is not there"},
+        {{"\"structure\"", "\"structure\""}, {"\"other\"", "\"other\""}, "has no structure"},
+        {{"\"views\"", "\"views\""}, {"\"other\"", "\"other\""}, "which does not exist"},
         {{"/far/z z.jpg", "z z.jpg"}, {"/far/y.jpg", "\\u0000"}, " "},
     };
     for (const auto &[from, to, part] : cases)

@@ -1,4 +1,4 @@
-// Bundler's .out (version 0.3): cameras, and points with the views that see them. Names of images are in a list.
+// Bundler's .out (version 0.3): cameras, and points with their views. Image names are in a separate list.
 #include <charconv>
 #include <cstring>
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 constexpr uint64_t kMostBytes = uint64_t(8) << 30;
 constexpr const char *kHeader = "# Bundle file";
 
-// list.txt beside it, or what is named as the file is but for its end.
+// list.txt next to it, or the name of the file with the extension of a list.
 std::string list_beside(const std::string &path) {
     const std::filesystem::path file(path);
     std::vector<std::string> tried;
@@ -28,8 +28,7 @@ std::string list_beside(const std::string &path) {
         const std::string above = (file.parent_path() / ".." / name).string();
         if (is_regular_file(above)) return above;
     }
-    throw Failure(ExitCode::unreadable,
-                  path + ": the list of its images is not beside it; put it there as " + tried[2]);
+    throw Failure(ExitCode::unreadable, path + ": the list of its images is missing; store it as " + tried[2]);
 }
 
 bool is_number(const std::string &text) {
@@ -46,7 +45,7 @@ std::string without_last_word(std::string line) {
     return line;
 }
 
-// A line of the list without the 0 and the focal length that Bundler puts behind a name; names may hold blanks.
+// A line of the list without the 0 and the focal length that Bundler appends to a name; names may contain blanks.
 std::string name_of(std::string line) {
     line.erase(line.find_last_not_of(" \t") + 1);
     const std::string one_less = without_last_word(line), two_less = without_last_word(one_less);
@@ -61,7 +60,7 @@ std::vector<std::string> read_list(const std::string &path) {
     return names;
 }
 
-// Centre -R^T t of rotation and translation, which have five lines; a camera of zeros was not placed.
+// Centre -R^T t of rotation and translation, which take five lines; a camera of zeros was not placed.
 void read_camera(FieldReader &fields, ReconstructionImage &image) {
     std::array<std::array<double, 3>, 5> rows;  // focal length and distortion, R, t
     for (auto &row : rows) {
@@ -73,7 +72,7 @@ void read_camera(FieldReader &fields, ReconstructionImage &image) {
         image.centre[d] = -(rows[1][d] * rows[4][0] + rows[2][d] * rows[4][1] + rows[3][d] * rows[4][2]);
 }
 
-// Position, colour, and the views: camera, feature, and place from the middle of the picture, y upwards.
+// Position, colour, and the views: camera, feature, and position relative to the picture's centre, y upwards.
 void read_point(FieldReader &fields, Reconstruction &found) {
     std::array<double, 3> position;
     if (!fields.next_line_of_values()) fields.fail("points are missing");
@@ -84,11 +83,11 @@ void read_point(FieldReader &fields, Reconstruction &found) {
         TrackObservation own;
         own.point = static_cast<uint32_t>(found.points.size());
         own.image = fields.whole<uint32_t>();
-        if (own.image >= found.images.size()) fields.fail("it names a camera that is not there");
-        own.feature = static_cast<uint32_t>(fields.whole<int32_t>());  // -1 where it has no number
+        if (own.image >= found.images.size()) fields.fail("it refers to a camera that does not exist");
+        own.feature = static_cast<uint32_t>(fields.whole<int32_t>());  // -1 if it has no index
         own.xy[0] = static_cast<float>(fields.number());
         own.xy[1] = -static_cast<float>(fields.number());
-        if (found.observations.size() == most_observations) fields.fail("it has one observation too many");
+        if (found.observations.size() == most_observations) fields.fail("it has too many observations");
         found.observations.push_back(own);
     }
     found.points.push_back(position);
@@ -109,13 +108,13 @@ Reconstruction read_bundler(const std::string &path) {
     for (const std::string &name : read_list(list)) found.images.push_back({name, 0, false, {}});
     FieldReader fields(path, '\0', kMostBytes);
     if (!fields.next_line() || fields.rest() != kHeader + std::string(" v0.3"))
-        fields.fail("it is not of version 0.3, which has the places of the features");
+        fields.fail("it is not version 0.3, which has the feature positions");
     if (!fields.next_line_of_values()) fields.fail("the number of cameras is missing");
     const auto cameras = fields.whole<uint32_t>(), points = fields.whole<uint32_t>();
     if (cameras != found.images.size())
-        throw Failure(ExitCode::unreadable, path + ": has " + std::to_string(cameras) + " cameras, and " + list
-                                                + " names " + std::to_string(found.images.size())
-                                                + " images; give the list that belongs to it");
+        throw Failure(ExitCode::unreadable, path + ": has " + std::to_string(cameras) + " cameras, but " + list
+                                                + " has " + std::to_string(found.images.size())
+                                                + " images; give the matching list");
     for (ReconstructionImage &image : found.images) read_camera(fields, image);
     for (uint32_t n = 0; n < points; n++) read_point(fields, found);
     settle_tracks(found);

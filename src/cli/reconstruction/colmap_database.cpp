@@ -21,11 +21,11 @@ namespace {
 
 constexpr int64_t kPairBase = 2147483647;     // pair_id = kPairBase * smaller image_id + larger image_id
 constexpr uint64_t kMostFeatures = 1u << 30;  // of all images
-// TwoViewGeometry's configurations that are verified: all but undefined, degenerate (0, 1) and watermark (7).
+// Verified configurations of TwoViewGeometry: all but undefined, degenerate (0, 1) and watermark (7).
 constexpr const char *kVerified = "2, 3, 4, 5, 6, 8, 9";
-constexpr int kWait_ms = 1000;  // for a program that writes to it
+constexpr int kWait_ms = 1000;  // waiting for a program that writes to it
 
-// The rows that one query finds.
+// The rows of a query.
 class Rows {
 public:
     Rows(sqlite3 *database, const std::string &path, const std::string &query) : database_(database), path_(path) {
@@ -45,7 +45,7 @@ public:
         const auto *text = reinterpret_cast<const char *>(sqlite3_column_text(statement_, column));
         return text ? std::string(text, static_cast<size_t>(sqlite3_column_bytes(statement_, column))) : std::string();
     }
-    // An array of 4-byte numbers; NULL with no bytes.
+    // An array of 4-byte numbers; NULL if it has no bytes.
     const uint8_t *bytes(int column, size_t &count) const {
         const void *blob = sqlite3_column_blob(statement_, column);
         count = static_cast<size_t>(sqlite3_column_bytes(statement_, column));
@@ -59,11 +59,10 @@ private:
         if (code == SQLITE_NOMEM) throw std::bad_alloc();
         if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
             throw Failure(ExitCode::unreadable,
-                          path_ + ": another program writes to it; wait until that has ended, or give a copy");
+                          path_ + ": another program is writing to it; wait until it ends, or give a copy");
         if (code == SQLITE_CANTOPEN && path_exists(path_ + "-wal"))
-            throw Failure(ExitCode::unreadable, path_ + ": its changes in " + path_
-                                                    + "-wal cannot be read here; copy both to a folder that can be "
-                                                      "written to");
+            throw Failure(ExitCode::unreadable,
+                          path_ + ": cannot read its changes in " + path_ + "-wal; copy both to a writable folder");
         throw Failure(ExitCode::unreadable, path_ + ": cannot be read as a COLMAP database ("
                                                 + sqlite3_errmsg(database_) + "); give an intact copy");
     }
@@ -78,8 +77,8 @@ struct Close {
 };
 using Database = std::unique_ptr<sqlite3, Close>;
 
-// COLMAP leaves its databases in the mode of a write-ahead log, in which SQLite writes two files beside even what it
-// only reads. Where there is no such log nobody has the file open, and SQLite may take it as one that does not change.
+// COLMAP leaves its databases in write-ahead log mode, in which SQLite creates two files next to a database even for
+// reading. Without such a log nobody has the file open, and SQLite can treat it as immutable.
 bool is_at_rest(const std::string &path) {
     constexpr size_t write_version = 18;  // byte of the header
     const std::string head = read_head(path, write_version + 1);
@@ -95,15 +94,14 @@ std::string address_of(const std::string &path) {
     return address + "?immutable=1";
 }
 
-// Only read, all of it as it is at one moment: a database that is still written to is left alone.
+// Read only, as a snapshot: a database that is still being written to is left alone.
 Database open_database(const std::string &path) {
     sqlite3 *opened = nullptr;
     const int code = is_at_rest(path) ? sqlite3_open_v2(address_of(path).c_str(), &opened,
                                                         SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr)
                                       : sqlite3_open_v2(path.c_str(), &opened, SQLITE_OPEN_READONLY, nullptr);
     Database database(opened);
-    if (code != SQLITE_OK)
-        throw Failure(ExitCode::unreadable, path + ": cannot be opened; give a file that can be read");
+    if (code != SQLITE_OK) throw Failure(ExitCode::unreadable, path + ": cannot be opened; give a readable file");
     sqlite3_busy_timeout(opened, kWait_ms);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     Rows(opened, path, "BEGIN").next();
@@ -119,12 +117,12 @@ struct Content {
     Database database;
     Reconstruction found;
     std::map<int64_t, uint32_t> image_of;  // by image_id
-    std::vector<uint64_t> first_feature;   // of each image, and the end
+    std::vector<uint64_t> first_feature;   // per image, and the end
 
     uint32_t image_at(int64_t id) const {
         const auto entry = image_of.find(id);
         if (entry == image_of.end())
-            fail_damaged(path, format("names image %lld, which it does not have", (long long)id));
+            fail_damaged(path, format("refers to image %lld, which does not exist", (long long)id));
         return entry->second;
     }
     uint64_t feature_count(uint32_t image) const { return first_feature[image + 1] - first_feature[image]; }
@@ -139,7 +137,7 @@ void read_images(Content &content) {
             fail_damaged(content.path,
                          "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
         if (!camera_of.emplace(cameras.whole(0), static_cast<uint32_t>(content.found.cameras.size())).second)
-            fail_damaged(content.path, "has two cameras of one number");
+            fail_damaged(content.path, "has two cameras with the same id");
         content.found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
     }
     Rows images(content.database.get(), content.path, "SELECT image_id, name, camera_id FROM images ORDER BY name");
@@ -148,14 +146,14 @@ void read_images(Content &content) {
         if (camera == camera_of.end()) fail_damaged(content.path, "has an image without a camera");
         if (content.found.images.size() == most_images) fail_damaged(content.path, "has too many images");
         if (!content.image_of.emplace(images.whole(0), static_cast<uint32_t>(content.found.images.size())).second)
-            fail_damaged(content.path, "has two images of one number");
+            fail_damaged(content.path, "has two images with the same id");
         ReconstructionImage image;
         image.name = images.text(1), image.camera = camera->second;
         content.found.images.push_back(image);
     }
 }
 
-// The layout of keypoints: rows of 2 (place), 4 (place, scale, angle) or 6 floats (place, affine shape).
+// Layout of keypoints: rows of 2 (position), 4 (position, scale, angle) or 6 floats (position, affine shape).
 struct Keypoints {
     const uint8_t *bytes;
     size_t columns;
@@ -163,7 +161,9 @@ struct Keypoints {
     void read(size_t row, TrackObservation &feature) const {
         float value[6] = {};
         std::memcpy(value, bytes + row * columns * sizeof(float), columns * sizeof(float));
-        for (int d = 0; d < 2; d++) feature.xy[d] = value[d] - 0.5f;  // COLMAP: the first pixel's middle is (.5, .5)
+        for (int d = 0; d < 2; d++)
+            feature.xy[d] = value[d] - 0.5f;  // COLMAP: the centre of the first pixel is (.5,
+                                              // .5)
         if (columns == 4) {
             const float c = value[2] * std::cos(value[3]), s = value[2] * std::sin(value[3]);
             feature.shape[0][0] = c, feature.shape[0][1] = -s, feature.shape[1][0] = s, feature.shape[1][1] = c;
@@ -178,10 +178,10 @@ struct Keypoints {
 void check_table(const std::string &path, int64_t rows, int64_t columns, size_t bytes, const char *what) {
     if (rows < 0 || columns < 0 || rows > int64_t(kMostFeatures) || columns > 64
         || uint64_t(rows) * uint64_t(columns) * 4 != bytes)
-        fail_damaged(path, std::string("has ") + what + " that are cut off");
+        fail_damaged(path, std::string("has ") + what + " that are truncated");
 }
 
-// What the pages of a file can hold; those of its log may come on top.
+// Maximum content of the pages of a file; its log may add more.
 uint64_t most_bytes(const std::string &path) { return file_bytes(path) + file_bytes(path + "-wal"); }
 
 void count_features(Content &content) {
@@ -192,7 +192,7 @@ void count_features(Content &content) {
     while (rows.next()) {
         check_table(content.path, rows.whole(1), rows.whole(2), static_cast<size_t>(rows.whole(3)), "keypoints");
         if (rows.whole(2) != 2 && rows.whole(2) != 4 && rows.whole(2) != 6 && rows.whole(1) > 0)
-            fail_damaged(content.path, "has keypoints of " + std::to_string(rows.whole(2)) + " columns");
+            fail_damaged(content.path, "has keypoints with " + std::to_string(rows.whole(2)) + " columns");
         const uint32_t image = content.image_at(rows.whole(0));
         if (is_counted[image]) fail_damaged(content.path, "has the keypoints of an image twice");
         const auto bytes = static_cast<uint64_t>(rows.whole(3));
@@ -232,7 +232,7 @@ JoinedSets join_matches(const Content &content) {
     return joined;
 }
 
-// The keypoints of a row of image_id, cols, data, which count_features has seen.
+// Reads the keypoints of a row of image_id, cols, data, already checked by count_features.
 Keypoints keypoints_of(const Rows &rows, const Content &content) {
     size_t bytes = 0;
     const Keypoints keypoints{rows.bytes(2, bytes), static_cast<size_t>(rows.whole(1))};
@@ -241,7 +241,7 @@ Keypoints keypoints_of(const Rows &rows, const Content &content) {
     return keypoints;
 }
 
-// Observations of every feature that a match joins to another, the points numbered by their first feature.
+// Observations of every feature connected to another by a match; points are numbered by their first feature.
 void take_tracks(Content &content, JoinedSets joined) {
     const size_t count = content.first_feature.back();
     std::vector<bool> is_matched(count);
@@ -285,7 +285,7 @@ bool is_colmap_database(const std::string &path) {
                     "'keypoints', 'two_view_geometries')");
         return tables.next() && tables.whole(0) == 4;
     } catch (const Failure &) {
-        return true;  // perhaps: reading it says what is wrong
+        return true;  // possibly; reading it reports the error
     }
 }
 

@@ -1,5 +1,5 @@
 // COLMAP's sparse model: cameras, images and points3D, binary or text. Rigs and frames of newer versions are not read:
-// images.bin has the pose of every image all the same.
+// images.bin still has the pose of every image.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -17,14 +17,14 @@ namespace lensprof {
 namespace {
 
 constexpr uint64_t kMostBytes = uint64_t(4) << 30;
-// Parameters of the camera models 0, 1, 2, ... (COLMAP, src/colmap/sensor/models.h).
+// Number of parameters of the camera models 0, 1, 2, ... (COLMAP, src/colmap/sensor/models.h).
 constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4, 6, 2};
 
 [[noreturn]] void fail_damaged(const std::string &file, const std::string &what) {
     throw Failure(ExitCode::unreadable, file + ": " + what + "; give an intact COLMAP model");
 }
 
-// Numbers of a binary file, which is little-endian.
+// Reads numbers of a little-endian binary file.
 class Bytes {
 public:
     explicit Bytes(const std::string &file) : file_(file), content_(read_text(file, kMostBytes)) {}
@@ -37,25 +37,25 @@ public:
     }
     std::string next_text() {
         const size_t end = content_.find('\0', at_);
-        if (end == std::string::npos) fail_damaged(file_, "is cut off");
+        if (end == std::string::npos) fail_damaged(file_, "is truncated");
         const std::string text = content_.substr(at_, end - at_);
         at_ = end + 1;
         return text;
     }
-    // The number of items to come, of at least `bytes_each`.
+    // Reads the number of following items, of at least `bytes_each`.
     uint64_t next_count(uint64_t bytes_each) {
         const auto count = next<uint64_t>();
         if (count > (content_.size() - at_) / bytes_each)
-            fail_damaged(file_, "is to hold " + std::to_string(count) + " items, and is too short for them");
+            fail_damaged(file_, "declares " + std::to_string(count) + " items, but is too short for them");
         return count;
     }
     const char *take(size_t bytes) {
-        if (bytes > content_.size() - at_) fail_damaged(file_, "is cut off");
+        if (bytes > content_.size() - at_) fail_damaged(file_, "is truncated");
         at_ += bytes;
         return content_.data() + at_ - bytes;
     }
     void demand_end() const {
-        if (at_ != content_.size()) fail_damaged(file_, "holds more than its counts say");
+        if (at_ != content_.size()) fail_damaged(file_, "has more data than its counts declare");
     }
 
 private:
@@ -70,7 +70,7 @@ struct PosedImage {
 };
 
 struct Model {
-    std::map<uint32_t, ReconstructionCamera> cameras;  // by their numbers in the files
+    std::map<uint32_t, ReconstructionCamera> cameras;  // by their ids in the files
     std::map<uint32_t, PosedImage> images;
 };
 
@@ -84,7 +84,7 @@ ReconstructionCamera camera_of(const std::string &file, uint64_t width, uint64_t
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
-// The centre -R^T t of world-to-camera rotation and translation.
+// The centre -R^T t of the world-to-camera rotation and translation.
 void place(const std::array<double, 4> &q, const std::array<double, 3> &t, ReconstructionImage &image) {
     const double w = q[0], n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!std::isfinite(n) || n == 0.0) return;
@@ -101,12 +101,12 @@ void place(const std::array<double, 4> &q, const std::array<double, 3> &t, Recon
 
 void add_camera(const std::string &file, uint32_t id, const ReconstructionCamera &camera, Model &model) {
     if (!model.cameras.emplace(id, camera).second)
-        fail_damaged(file, "has two cameras of the number " + std::to_string(id));
+        fail_damaged(file, "has two cameras with the id " + std::to_string(id));
 }
 
 PosedImage &add_image(const std::string &file, uint32_t id, Model &model) {
     const auto [own, is_new] = model.images.emplace(id, PosedImage());
-    if (!is_new) fail_damaged(file, "has two images of the number " + std::to_string(id));
+    if (!is_new) fail_damaged(file, "has two images with the id " + std::to_string(id));
     return own->second;
 }
 
@@ -117,7 +117,7 @@ void read_binary_cameras(const std::string &file, Model &model) {
         const auto kind = bytes.next<int32_t>();
         const auto width = bytes.next<uint64_t>(), height = bytes.next<uint64_t>();
         if (kind < 0 || kind >= int32_t(std::size(kParameters)))
-            fail_damaged(file, "has a camera model of the number " + std::to_string(kind) + ", which is not known");
+            fail_damaged(file, "has the unknown camera model " + std::to_string(kind));
         bytes.take(sizeof(double) * static_cast<size_t>(kParameters[kind]));
         add_camera(file, id, camera_of(file, width, height), model);
     }
@@ -139,7 +139,7 @@ void read_binary_images(const std::string &file, Model &model) {
         own.places.resize(bytes.next_count(24));
         for (auto &xy : own.places) {
             for (double &x : xy) x = bytes.next<double>();
-            bytes.next<uint64_t>();  // its point, which points3D says again
+            bytes.next<uint64_t>();  // its point, also given by points3D
         }
     }
     bytes.demand_end();
@@ -210,7 +210,7 @@ void read_text_points(const std::string &file, const Add &add) {
     }
 }
 
-// "cameras" -> the path of cameras.bin, or of cameras.txt; empty where there is neither.
+// "cameras" -> the path of cameras.bin or cameras.txt; empty if neither exists.
 std::string model_file(const std::string &folder, const char *name) {
     for (const char *end : {".bin", ".txt"})
         if (is_regular_file(folder + "/" + name + end)) return folder + "/" + name + end;
@@ -233,7 +233,8 @@ void take_images(const Model &model, const std::string &file, Reconstruction &fo
               [&](uint32_t a, uint32_t b) { return model.images.at(a).image.name < model.images.at(b).image.name; });
     for (const uint32_t id : order) {
         const PosedImage &own = model.images.at(id);
-        if (!camera_of.count(own.camera_id)) fail_damaged(file, own.image.name + " is of a camera that is not there");
+        if (!camera_of.count(own.camera_id))
+            fail_damaged(file, own.image.name + " refers to a camera that does not exist");
         image_of[id] = static_cast<uint32_t>(found.images.size());
         found.images.push_back(own.image);
         found.images.back().camera = camera_of[own.camera_id];
@@ -262,13 +263,13 @@ Reconstruction read_colmap_model(const std::string &folder) {
         for (const Sight &sight : sights) {
             const auto own = model.images.find(sight.image);
             if (own == model.images.end() || sight.feature >= own->second.places.size())
-                fail_damaged(points, "names feature " + std::to_string(sight.feature) + " of image "
-                                         + std::to_string(sight.image) + ", which is not there");
+                fail_damaged(points, "refers to feature " + std::to_string(sight.feature) + " of image "
+                                         + std::to_string(sight.image) + ", which does not exist");
             if (found.observations.size() == most_observations) fail_damaged(points, "has too many observations");
             TrackObservation observation;
             observation.point = static_cast<uint32_t>(found.points.size());
             observation.image = image_of.at(sight.image), observation.feature = sight.feature;
-            for (int d = 0; d < 2; d++)  // COLMAP: the first pixel's middle is (.5, .5)
+            for (int d = 0; d < 2; d++)  // COLMAP: the centre of the first pixel is (.5, .5)
                 observation.xy[d] = static_cast<float>(own->second.places[sight.feature][d] - 0.5);
             found.observations.push_back(observation);
         }

@@ -12,10 +12,10 @@ FieldReader::FieldReader(const std::string &file, char separator, uint64_t most_
     : file_(file), separator_(separator) {
     demand_ordinary(file);
     if (file_bytes(file) > most_bytes)
-        throw Failure(ExitCode::unreadable, file + ": has " + std::to_string(file_bytes(file)) + " bytes, and "
-                                                + std::to_string(most_bytes) + " are the most; give a smaller one");
+        throw Failure(ExitCode::unreadable, file + ": has " + std::to_string(file_bytes(file)) + " bytes, but at most "
+                                                + std::to_string(most_bytes) + " are supported; give a smaller file");
     stream_.open(file);
-    if (!stream_) throw Failure(ExitCode::unreadable, file + ": cannot be opened; give a file that can be read");
+    if (!stream_) throw Failure(ExitCode::unreadable, file + ": cannot be opened; give a readable file");
 }
 
 bool FieldReader::next_line() {

@@ -1,4 +1,4 @@
-// Files of lines whose fields are separated, read line by line.
+// Reads files of lines with separated fields, line by line.
 #pragma once
 
 #include <charconv>
@@ -8,18 +8,18 @@
 
 namespace lensprof {
 
-// Every failure is (unreadable) and names file and line.
+// Every Failure is (unreadable) and names file and line.
 class FieldReader {
 public:
-    // separator: '\0' for blanks, as many as there are. Failure for a file that cannot be read or is too large.
+    // separator: '\0' for any number of blanks. Failure for a file that is unreadable or too large.
     FieldReader(const std::string &file, char separator, uint64_t most_bytes);
 
-    bool next_line();            // also an empty one; false at the end
-    bool next_line_of_values();  // the next one that is neither empty nor begins with #
+    bool next_line();            // also empty lines; false at the end
+    bool next_line_of_values();  // the next line that is neither empty nor starts with #
 
-    bool has_more() const;  // fields in the line
+    bool has_more() const;  // number of fields in the line
     std::string text();
-    std::string rest();  // of the line, separators and all
+    std::string rest();  // the rest of the line, with separators
     double number();     // finite
 
     template <class Whole>
@@ -27,7 +27,7 @@ public:
         const std::string field = text();
         Whole number = 0;
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-        if (error != std::errc() || end != field.data() + field.size()) fail_at(field, "a whole number");
+        if (error != std::errc() || end != field.data() + field.size()) fail_at(field, "an integer");
         return number;
     }
 

@@ -14,7 +14,7 @@ SceneJson read_json_file(const std::string &path) {
         return SceneJson::parse(read_text(path, most_bytes));
     } catch (const SceneJson::parse_error &error) {
         throw Failure(ExitCode::unreadable,
-                      path + ": is not JSON at byte " + std::to_string(error.byte) + "; give an intact file");
+                      path + ": not valid JSON at byte " + std::to_string(error.byte) + "; give an intact file");
     } catch (const SceneJson::exception &) {
         throw Failure(ExitCode::unreadable, path + ": has a number that is too large; give an intact file");
     }

@@ -1,4 +1,4 @@
-// JSON of programs that reconstruct.
+// JSON files of reconstruction programs.
 #pragma once
 
 #include <array>
@@ -9,25 +9,25 @@
 
 namespace lensprof {
 
-// Sorted by name, not in the order of the file: that one takes the square of the number of members to read.
+// Sorted by name, not in file order, because an ordered object takes quadratic time to read.
 using SceneJson = nlohmann::json;
 
-// Failure (unreadable) names the file.
+// Failure (unreadable) with the file name.
 SceneJson read_json_file(const std::string &path);
 
-// A member that may be a number or, as AliceVision writes them, a text of one; -1 where it is not there or neither.
+// A member that is a number or, as AliceVision writes it, a string of one; -1 if it is missing or neither.
 int64_t whole_at(const SceneJson &object, const char *name);
 
-// Such a number; NAN where it is neither.
+// The same as a real number; NAN if it is neither.
 double real_of(const SceneJson &value);
 
-// A member's text, also of a whole number; empty where it is not there.
+// A string member, or an integer as text; empty if missing.
 std::string text_at(const SceneJson &object, const char *name);
 
-// Three numbers, those that are not there NAN.
+// Three numbers, NAN for missing ones.
 std::array<double, 3> vector_at(const SceneJson &object, const char *name);
 
-// A member that is an object, or an array; else an empty one.
+// A member that is an object or an array; else an empty one.
 const SceneJson &object_at(const SceneJson &object, const char *name);
 const SceneJson &list_at(const SceneJson &object, const char *name);
 

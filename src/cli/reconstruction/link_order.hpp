@@ -1,4 +1,4 @@
-// Which images show the same, and an order in which those that do are near each other.
+// Links between images that share points, and an order that keeps linked images close together.
 #pragma once
 
 #include <map>
@@ -9,13 +9,14 @@
 
 namespace lensprof {
 
-// Two images, the smaller number first, and how many points or matches they have in common.
+// Two images, the smaller index first, and the number of points or matches they share.
 using LinkWeights = std::map<std::pair<uint32_t, uint32_t>, uint32_t>;
 
-// Of all images that share points. Points that more than 64 images see say little of which are alike, and do not count.
+// Links of all images that share points. Points seen by more than 64 images contain little information on similarity
+// and are ignored.
 LinkWeights common_points(const Reconstruction &reconstruction);
 
-// The images breadth first, along the links with most in common.
+// The images in breadth-first order, following the strongest links first.
 std::vector<uint32_t> order_by_links(uint32_t images, const LinkWeights &links);
 
 }  // namespace lensprof

@@ -16,18 +16,18 @@ namespace lensprof {
 namespace {
 
 constexpr double kUsualAngle = 0.2618;  // 15 degrees, in radians
-constexpr double kUsualShare = 0.05;    // of common points, of views that count as little
-constexpr size_t kLongTrack = 12;       // an observation of a longer track is paired with some of the others alone:
-constexpr size_t kFewImages = 300;      // of which all links are kept; of more
-constexpr uint32_t kMostLinks = 20;     // an image's links with most weight, and a few
-constexpr size_t kNext = 3, kFar = 6;   // the next ones in the order of the images, and others
+constexpr double kUsualShare = 0.05;    // share of common points whose views are downweighted as much
+constexpr size_t kLongTrack = 12;       // an observation of a longer track is paired only with some of the others:
+constexpr size_t kFewImages = 300;      // whose links are all kept; of more
+constexpr uint32_t kMostLinks = 20;     // the strongest links of an image, and a few
+constexpr size_t kNext = 3, kFar = 6;   // the next ones in image order, and others
 
-// A number in (0, 1] that belongs to another.
+// A pseudo-random number in (0, 1] for another number.
 double fraction_of(uint64_t value) {
     return (static_cast<double>(mixed_bits(value + splitmix_step) >> 11) + 1.0) / 9007199254740992.0;
 }
 
-// How many points two images have in common, as a share of those that either has.
+// Points that two images have in common, as a share of the points of either.
 class Shares {
 public:
     explicit Shares(const Reconstruction &r) : points_(r.images.size()), common_(common_points(r)) {
@@ -44,7 +44,7 @@ private:
     const LinkWeights common_;
 };
 
-// Between two views of a point, radians; none without poses.
+// Angle between two views of a point, radians; empty without poses.
 std::optional<double> view_angle(const Reconstruction &r, const TrackObservation &a, const TrackObservation &b) {
     const ReconstructionImage &i = r.images[a.image], &j = r.images[b.image];
     if (!i.has_centre || !j.has_centre || r.points.empty() || !is_finite(r.points[a.point])) return {};
@@ -54,11 +54,11 @@ std::optional<double> view_angle(const Reconstruction &r, const TrackObservation
         dot += x * y, square_a += x * x, square_b += y * y;
     }
     const double cosine = dot / (std::sqrt(square_a) * std::sqrt(square_b));
-    if (!std::isfinite(cosine)) return {};  // in one place, or too far
+    if (!std::isfinite(cosine)) return {};  // at one position, or too far
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-// How far apart two views of a point are, where 1 is usual.
+// Distance of two views of a point, where 1 is usual.
 class ViewDistance {
 public:
     explicit ViewDistance(const Reconstruction &r) : r_(r), shares_(r) {}
@@ -74,7 +74,7 @@ private:
     const Shares shares_;
 };
 
-// The pairs of each image that come first.
+// The pairs of each image with the highest rank.
 class Choice {
 public:
     Choice(size_t images, size_t most) : best_(images), most_(most) {}
@@ -107,7 +107,7 @@ private:
     size_t most_;
 };
 
-// Calls offer(a, b) for pairs of a track's observations from `first` to `last`: all of them, or of a long track some.
+// Calls offer(a, b) for pairs of a track's observations from `first` to `last`: all of them, or some for a long track.
 template <class Offer>
 void pair_track(size_t first, size_t last, const Offer &offer) {
     const size_t count = last - first;
@@ -126,7 +126,7 @@ void pair_track(size_t first, size_t last, const Offer &offer) {
 
 using Map = std::array<std::array<double, 2>, 2>;
 
-// From the surroundings of one feature to those of the other: B A^-1; none where a shape is not known or flat.
+// The map between the surroundings of two features: B A^-1; empty if a shape is unknown or degenerate.
 std::optional<Map> map_of_shapes(const TrackObservation &from, const TrackObservation &to) {
     const auto &a = from.shape, &b = to.shape;
     const double determinant = double(a[0][0]) * a[1][1] - double(a[0][1]) * a[1][0];
@@ -141,8 +141,8 @@ std::optional<Map> map_of_shapes(const TrackObservation &from, const TrackObserv
     return scale > 0.0 && std::isfinite(scale) ? std::optional<Map>(map) : std::nullopt;
 }
 
-// The links that stay where images have many: of every image those with most weight, and those that are needed for all
-// to hang together. Images that are tied to hundreds of others make the fit's equations dense.
+// The links kept if images have many: the strongest per image, and those needed to connect all images. Images linked to
+// hundreds of others make the equations of the fit dense.
 std::set<uint32_t> links_to_keep(const std::vector<std::pair<uint32_t, uint32_t>> &links,
                                  const std::vector<double> &weights, size_t images) {
     std::vector<uint32_t> order(links.size()), kept_of(images);
@@ -160,7 +160,7 @@ std::set<uint32_t> links_to_keep(const std::vector<std::pair<uint32_t, uint32_t>
     return kept;
 }
 
-// Leaves the pairs of such links; `pairs` are by images.
+// Keeps the pairs of these links; `pairs` are sorted by images.
 void thin_links(const Reconstruction &r, const ViewDistance &distance, std::vector<ObservationPair> &pairs) {
     if (r.images.size() <= kFewImages) return;
     std::vector<std::pair<uint32_t, uint32_t>> links;

@@ -1,5 +1,5 @@
-// OpenSfM's and OpenDroneMap's tracks.csv: features of every picture, the track of each, and their colours; and
-// reconstruction.json beside it: where the cameras and the points are.
+// tracks.csv of OpenSfM and OpenDroneMap: features of every picture with track and colour; and reconstruction.json next
+// to it: positions of cameras and points.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,14 +23,14 @@ namespace {
 constexpr uint64_t kMostBytes = uint64_t(64) << 30;  // of tracks.csv, which is read line by line
 constexpr const char *kHeader = "OPENSFM_TRACKS_VERSION_v";
 
-// Version 0 has no size of the feature, 1 has one, and 2 segmentation and instance after the colour.
+// Version 0 has no feature size, 1 has one, and 2 has segmentation and instance after the colour.
 int version_of(const std::string &path) {
     const std::string head = read_head(path, 4096);
     if (head.compare(0, std::strlen(kHeader), kHeader) != 0) return 0;
     const std::string number = head.substr(std::strlen(kHeader), head.find_first_of("\r\n") - std::strlen(kHeader));
     if (number != "0" && number != "1" && number != "2")
-        throw Failure(ExitCode::unreadable, path + ": has tracks of version '" + short_name(number)
-                                                + "', which is not known; write version 2");
+        throw Failure(ExitCode::unreadable,
+                      path + ": unknown version '" + short_name(number) + "' of tracks; write version 2");
     return number[0] - '0';
 }
 
@@ -64,23 +64,23 @@ void read_tracks(const std::string &path, Tracks &tracks) {
         const std::string image = fields.text();
         own.image = number_of(image, tracks.image_of);
         if (own.image == found.images.size()) {
-            if (found.images.size() == most_images) fields.fail("it names one image too many");
+            if (found.images.size() == most_images) fields.fail("it has too many images");
             found.images.push_back({image, 0, false, {}});
         }
         own.point = number_of(fields.text(), tracks.point_of);
         own.feature = static_cast<uint32_t>(fields.whole<int32_t>());
         for (float &x : own.xy) {
             x = static_cast<float>(fields.number());
-            if (std::fabs(x) > 0.5001f) fields.fail("its place is outside the picture");
+            if (std::fabs(x) > 0.5001f) fields.fail("its position is outside the picture");
         }
         if (version > 0) own.shape[0][0] = own.shape[1][1] = std::max(0.0f, static_cast<float>(fields.number()));
         own.colour = colour_of(fields);
-        if (found.observations.size() == most_observations) fields.fail("it has one observation too many");
+        if (found.observations.size() == most_observations) fields.fail("it has too many observations");
         found.observations.push_back(own);
     }
 }
 
-// The centre -R^T t, by the angle-axis vector of the world-to-camera rotation (Rodrigues).
+// The centre -R^T t, from the angle-axis vector of the world-to-camera rotation (Rodrigues).
 void place(const SceneJson &shot, ReconstructionImage &image) {
     std::array<double, 3> v = vector_at(shot, "rotation");
     const std::array<double, 3> t = vector_at(shot, "translation");
@@ -105,12 +105,12 @@ void take_sizes(const SceneJson &model, std::map<std::string, uint32_t> &camera_
     }
 }
 
-// Centres and positions are of the model with most shots: each has a scene of its own.
+// Centres and positions come from the model with most shots, because each model has its own coordinate system.
 void take_models(const std::string &path, Tracks &tracks) {
     const SceneJson all = read_json_file(path);
     if (!all.is_array())
         throw Failure(ExitCode::unreadable,
-                      path + ": is not a list of reconstructions; give OpenSfM's reconstruction.json");
+                      path + ": not a list of reconstructions; give OpenSfM's reconstruction.json");
     std::map<std::string, uint32_t> camera_of;
     const SceneJson *largest = nullptr;
     for (const SceneJson &model : all) {
@@ -151,7 +151,7 @@ Reconstruction read_opensfm(const std::string &path) {
     Reconstruction &found = tracks.found;
     found.kind = "OpenSfM tracks", found.path = path;
     found.coordinates = ImageCoordinates::upright_centred, found.has_colours = true;
-    found.cameras.emplace_back();  // of images that no reconstruction has
+    found.cameras.emplace_back();  // of images in no reconstruction
     read_tracks(path, tracks);
     const std::string model = (std::filesystem::path(path).parent_path() / "reconstruction.json").string();
     if (is_regular_file(model)) take_models(model, tracks);

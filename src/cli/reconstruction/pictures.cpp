@@ -30,12 +30,12 @@ size_t count_found(const Reconstruction &r, const std::string &folder) {
     }));
 }
 
-// The size as EXIF's orientation turns it.
+// The size after EXIF orientation.
 ReconstructionCamera upright_size(const ReconstructionCamera &stored, uint16_t orientation) {
     return orientation >= 5 && orientation <= 8 ? ReconstructionCamera{stored.height, stored.width} : stored;
 }
 
-// From px of the upright picture to those of the stored one, by EXIF's orientation.
+// Converts px of the upright picture to px of the stored one, by EXIF orientation.
 void turn_back(const ReconstructionCamera &upright, uint16_t orientation, float xy[2]) {
     const float u = xy[0], v = xy[1], right = float(upright.width) - 1.0f - u, down = float(upright.height) - 1.0f - v;
     const float turned[9][2] = {{u, v}, {u, v},     {right, v},    {right, down}, {u, down},
@@ -43,7 +43,7 @@ void turn_back(const ReconstructionCamera &upright, uint16_t orientation, float 
     if (orientation < 9) std::copy(turned[orientation], turned[orientation] + 2, xy);
 }
 
-// Failure for two images of one file: folders of their names are missing.
+// Failure if two images have the same file: the subfolders of their names are missing.
 void check_each_once(const Reconstruction &r, const std::vector<std::string> &files) {
     std::map<std::string, size_t> image_of;
     for (size_t i = 0; i < files.size(); i++) {
@@ -51,7 +51,7 @@ void check_each_once(const Reconstruction &r, const std::vector<std::string> &fi
         if (!is_new)
             throw Failure(ExitCode::unreadable, files[i] + ": would be both " + r.images[other->second].name + " and "
                                                     + r.images[i].name
-                                                    + "; give the folder that has the folders of their names");
+                                                    + "; give the folder that contains the subfolders of their names");
     }
 }
 
@@ -64,23 +64,23 @@ Frame frame_of(const Reconstruction &r, const ReconstructionImage &image, const 
     const ReconstructionCamera &stated = r.cameras[image.camera];
     if (file.empty()) {
         if (!stated.width)
-            throw Failure(ExitCode::unreadable, r.path + ": does not say how large " + image.name
-                                                    + " is; give its pictures with --images, or reconstruction.json "
-                                                      "beside it");
+            throw Failure(ExitCode::unreadable,
+                          r.path + ": does not state the size of " + image.name
+                              + "; give its pictures with --images, or put reconstruction.json next to it");
         return {stated, 1};
     }
     const Picture header = read_header(file, {});
     const PictureMetadata metadata = read_metadata(file);
     if (metadata.mark && metadata.mark->falloff == CorrectionMark::Falloff::removed)
-        throw Failure(ExitCode::unreadable, file + ": is a copy that lensprof has corrected; give the folder of the "
-                                                   "originals with --images");
+        throw Failure(ExitCode::unreadable, file + ": already corrected by lensprof; give the folder of the originals "
+                                                   "with --images");
     Frame frame{{header.frame_width, header.frame_height}, 1};
     if (r.coordinates == ImageCoordinates::upright_centred) frame.orientation = metadata.orientation;
     const ReconstructionCamera own = upright_size(frame.stored, frame.orientation);
     if (stated.width && (stated.width != own.width || stated.height != own.height))
         throw Failure(ExitCode::unreadable,
                       file + format(": is %u x %u pixels, but ", own.width, own.height) + r.path
-                          + format(" says %u x %u, so that it was resized or turned since; give the pictures that were "
+                          + format(" states %u x %u: it was resized or rotated since; give the pictures that were "
                                    "matched",
                                    stated.width, stated.height));
     return frame;
@@ -99,15 +99,15 @@ void settle(const Reconstruction &r, const Frame &frame, TrackObservation &own) 
             throw Failure(ExitCode::unreadable,
                           r.path + format(": has a feature at %.1f, %.1f in ", double(own.xy[0]), double(own.xy[1]))
                               + r.images[own.image].name
-                              + format(", which is %u x %u pixels; give the pictures that were matched", upright.width,
-                                       upright.height));
+                              + format(", which has only %u x %u pixels; give the pictures that were matched",
+                                       upright.width, upright.height));
     turn_back(upright, frame.orientation, own.xy);
 }
 
 }  // namespace
 
 std::string picture_of_name(const std::string &folder, const std::string &name) {
-    const std::string whole = (fs::path(folder) / name).string();  // an absolute name as it is
+    const std::string whole = (fs::path(folder) / name).string();  // an absolute name unchanged
     const std::string last = (fs::path(folder) / fs::path(name).filename()).string();
     const bool is_elsewhere = fs::path(name).is_absolute() || !is_regular_file(whole);
     return is_elsewhere && is_regular_file(last) ? last : whole;
@@ -133,8 +133,8 @@ std::vector<std::string> find_pictures(const Reconstruction &r, const std::strin
     const std::string counts = format(": %zu of its %zu pictures, the first ", r.images.size() - most, r.images.size());
     throw Failure(ExitCode::unreadable,
                   r.path + counts + missing + ", are not in "
-                      + (most || !folder.empty() ? best : std::string("its folder, or images beside it"))
-                      + (folder.empty() ? "; give their folder with --images" : "; give the folder that holds all")
+                      + (most || !folder.empty() ? best : std::string("its folder or the images folder next to it"))
+                      + (folder.empty() ? "; give their folder with --images" : "; give the folder that contains all")
                       + (most ? ", or list the images to use with --image-list" : ""));
 }
 

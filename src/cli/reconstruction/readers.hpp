@@ -1,5 +1,5 @@
-// The files of structure-from-motion programs. Every reader throws Failure (unreadable), which names the file, for one
-// that is damaged, and (not_usable) for one in which no two images share a point.
+// Readers for files of structure-from-motion programs. All throw Failure with the file name: (unreadable) for a damaged
+// file, (not_usable) if no two images share a point.
 #pragma once
 
 #include <string>
@@ -8,26 +8,25 @@
 
 namespace lensprof {
 
-// COLMAP's database.db: points are what its verified matches join. True of a file that is one, or of a database that
-// cannot be read.
+// COLMAP's database.db: points are connected sets of verified matches. is_database is true for such a file, and for a
+// database that cannot be read.
 bool is_colmap_database(const std::string &path);
-bool is_database(const std::string &path);  // of SQLite, COLMAP's or not
+bool is_database(const std::string &path);  // any SQLite database
 Reconstruction read_colmap_database(const std::string &path);
 
-// A folder of cameras, images and points3D, .bin or .txt.
+// A folder with cameras, images and points3D, .bin or .txt.
 bool is_colmap_model(const std::string &folder);
 Reconstruction read_colmap_model(const std::string &folder);
 
-// Takes the shapes of a model's features from the database that it was made of. False, and nothing changed, where that
-// has other features.
+// Copies the feature shapes of a model from the database it was made from. Returns false, without changes, if the
+// features differ.
 bool take_shapes(const std::string &database, Reconstruction &model);
 
-// OpenSfM's tracks.csv, with colours, and camera centres and points of reconstruction.json beside it where that is
-// there.
+// OpenSfM's tracks.csv, with colours, and camera centres and points from reconstruction.json next to it, if present.
 bool is_opensfm_tracks(const std::string &path);
 Reconstruction read_opensfm(const std::string &tracks);
 
-// Bundler's .out, and beside it the list of its images, a name a line: list.txt, or a name that ends in .list.txt.
+// Bundler's .out, and next to it the list of its images, one name per line: list.txt, or a name ending in .list.txt.
 bool is_bundler(const std::string &path);
 Reconstruction read_bundler(const std::string &path);
 

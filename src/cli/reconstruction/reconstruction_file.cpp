@@ -31,7 +31,7 @@ std::string below(const std::string &folder, const std::string &name) {
     return (std::filesystem::path(folder) / name).lexically_normal().string();
 }
 
-// The largest of the models in folder/0, folder/1, ...; empty if there is none. `models` is their number.
+// The largest of the models in folder/0, folder/1, ...; empty if not found. `models` is their number.
 std::string numbered_model(const std::string &folder, size_t &models) {
     std::string best;
     uint64_t most = 0;
@@ -52,7 +52,7 @@ std::string model_folder(const std::string &folder, size_t &models) {
     return model.empty() ? numbered_model(folder, models) : model;
 }
 
-// What a folder holds under its usual name, of which the first counts; empty: nothing.
+// Files of a folder under their usual names, the first of which is used; empty: none.
 std::string file_in(const std::string &folder) {
     for (const char *name : {"database.db", "tracks.csv", "opensfm/tracks.csv", "bundle.out", "bundle/bundle.out",
                              "sfm_data.json", "sfm.sfm", "cameras.sfm"}) {
@@ -68,7 +68,7 @@ Reconstruction read_model(const std::string &folder, Streams &streams) {
         const std::string database = below(folder, name);
         if (!is_colmap_database(database)) continue;
         if (!take_shapes(database, model))
-            note(streams, database + ": is not what " + folder + " was made of, and is not read");
+            note(streams, database + ": not used, because " + folder + " was not made from it");
         break;
     }
     return model;
@@ -106,11 +106,11 @@ Reconstruction read_reconstruction(const std::string &path, Streams &streams) {
     if (model.empty()) {
         const std::string file = is_in_folder ? file_in(path) : path;
         const Format *format = format_of(file);
-        return format ? format->read(file) : read_colmap_database(file);  // which says what it lacks
+        return format ? format->read(file) : read_colmap_database(file);  // which reports what is missing
     }
     if (models > 1)
-        note(streams, path + ": has " + std::to_string(models) + " models, and the largest is read, " + model
-                          + "; database.db itself has all images");
+        note(streams, path + ": has " + std::to_string(models) + " models; reading the largest, " + model
+                          + ". database.db has all images");
     return read_model(model, streams);
 }
 

@@ -1,5 +1,5 @@
-// AliceVision's .sfm and OpenMVG's sfm_data.json. Both are JSON of views, poses and structure; AliceVision writes
-// numbers as texts, OpenMVG keys and values of maps.
+// AliceVision's .sfm and OpenMVG's sfm_data.json. Both are JSON with views, poses and structure; AliceVision writes
+// numbers as strings, OpenMVG keys and values of maps.
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -14,43 +14,43 @@ namespace lensprof {
 namespace {
 
 [[noreturn]] void fail_damaged(const std::string &path, const std::string &what) {
-    throw Failure(ExitCode::unreadable, path + ": " + what + "; write it again, with structure and observations");
+    throw Failure(ExitCode::unreadable, path + ": " + what + "; export it again, with structure and observations");
 }
 
 struct Views {
     Reconstruction found;
-    std::map<std::string, uint32_t> image_of;                // by number of the view
-    std::map<std::string, std::array<double, 3>> centre_of;  // by number of the pose
-    std::map<std::string, std::string> pose_of;              // by number of the view
+    std::map<std::string, uint32_t> image_of;                // by id of the view
+    std::map<std::string, std::array<double, 3>> centre_of;  // by id of the pose
+    std::map<std::string, std::string> pose_of;              // by id of the view
 };
 
 void add_view(const std::string &id, const std::string &name, int64_t width, int64_t height, Views &views) {
     Reconstruction &found = views.found;
     const std::string &path = found.path;
-    if (id.empty() || name.empty()) fail_damaged(path, "has a view without a number or without a name");
+    if (id.empty() || name.empty()) fail_damaged(path, "has a view without id or name");
     if (width < 0 || height < 0 || width > most_image_side || height > most_image_side || !width != !height)
-        fail_damaged(path, short_name(name) + " has no size that pictures have");
+        fail_damaged(path, short_name(name) + " has no valid size");
     if (!views.image_of.emplace(id, static_cast<uint32_t>(found.images.size())).second)
-        fail_damaged(path, "has two views of the number " + short_name(id));
+        fail_damaged(path, "has two views with the id " + short_name(id));
     found.images.push_back({name, static_cast<uint32_t>(found.cameras.size()), false, {}});
     found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
 }
 
-// px; 0 where the file does not say it.
+// px; 0 if not stated
 int64_t side_of(const SceneJson &view, const char *name) { return view.contains(name) ? whole_at(view, name) : 0; }
 
 void add_observation(const std::string &view, int64_t feature, const SceneJson &place, double scale, Views &views) {
     Reconstruction &found = views.found;
     const auto image = views.image_of.find(view);
     if (image == views.image_of.end())
-        fail_damaged(found.path, "has an observation in view " + short_name(view) + ", which is not there");
+        fail_damaged(found.path, "has an observation in view " + short_name(view) + ", which does not exist");
     TrackObservation own;
     own.point = static_cast<uint32_t>(found.points.size()), own.image = image->second;
     own.feature = feature < 0 ? 0 : static_cast<uint32_t>(feature);
     for (size_t d = 0; d < 2; d++) {
         const double x = d < place.size() ? real_of(place[d]) : NAN;
-        if (!std::isfinite(x)) fail_damaged(found.path, "has an observation without a place");
-        own.xy[d] = static_cast<float>(x);  // as VLFeat's SIFT gives it: the first pixel's middle is (0, 0)
+        if (!std::isfinite(x)) fail_damaged(found.path, "has an observation without a position");
+        own.xy[d] = static_cast<float>(x);  // as in VLFeat's SIFT: the centre of the first pixel is (0, 0)
     }
     if (scale > 0.0) own.shape[0][0] = own.shape[1][1] = static_cast<float>(scale);
     found.observations.push_back(own);
@@ -66,15 +66,14 @@ void place_images(Views &views) {
 }
 
 Reconstruction finished(Views &views, const SceneJson &structure) {
-    if (structure.empty())
-        fail_damaged(views.found.path, "holds no structure, so that no points say where images show the same");
+    if (structure.empty()) fail_damaged(views.found.path, "has no structure, and so no points that connect images");
     place_images(views);
     settle_tracks(views.found);
     sort_images(views.found);
     return std::move(views.found);
 }
 
-// What a file of JSON holds at its top, without reading it as a whole.
+// The top-level members of a JSON file, without reading it completely.
 bool has_members(const std::string &path, const char *const *names, const char *end) {
     const std::string ending(end);
     if (path.size() < ending.size() || path.compare(path.size() - ending.size(), ending.size(), ending) != 0)
@@ -128,7 +127,7 @@ Reconstruction read_openmvg(const std::string &path) {
     for (const SceneJson &entry : list_at(all, "views")) {
         const SceneJson &view = object_at(object_at(object_at(entry, "value"), "ptr_wrapper"), "data");
         const std::string id = text_at(view, "id_view");
-        // Below the folder of all, even where it begins with a slash.
+        // Relative to the common folder, even with a leading slash.
         std::string folder = text_at(view, "local_path");
         if (!root.empty()) folder.erase(0, folder.find_first_not_of('/'));
         const auto name = std::filesystem::path(folder) / text_at(view, "filename");

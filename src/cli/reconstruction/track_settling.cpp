@@ -13,12 +13,12 @@ namespace lensprof {
 
 namespace {
 
-// Names that can be those of files, each once, and places that are numbers.
+// Requires valid, unique file names and numeric positions.
 void check(const Reconstruction &r) {
     const auto fail = [&](const std::string &what) {
         throw Failure(ExitCode::unreadable, r.path + ": " + what + "; give an intact file");
     };
-    if (r.images.size() > most_images) fail("has " + std::to_string(r.images.size()) + " images, which are too many");
+    if (r.images.size() > most_images) fail("has " + std::to_string(r.images.size()) + " images, more than supported");
     std::unordered_set<std::string> names;
     for (const ReconstructionImage &image : r.images) {
         if (image.name.empty() || image.name.find('\0') != std::string::npos) fail("has an image without a name");
@@ -26,7 +26,7 @@ void check(const Reconstruction &r) {
     }
     for (const TrackObservation &own : r.observations)
         if (!std::isfinite(own.xy[0]) || !std::isfinite(own.xy[1]))
-            fail("has a feature in " + short_name(r.images[own.image].name) + " whose place is no number");
+            fail("has a feature in " + short_name(r.images[own.image].name) + " whose position is not a number");
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ void settle_tracks(Reconstruction &reconstruction) {
     reconstruction.points = std::move(positions);
     if (all.empty())
         throw Failure(ExitCode::not_usable,
-                      reconstruction.path + ": no point is seen by two of its images; match the pictures first",
+                      reconstruction.path + ": no point is visible in two of its images; match the pictures first",
                       LENSPROF_REASON_FEW_PAIRS);
 }
 

@@ -17,15 +17,15 @@ namespace lensprof {
 namespace {
 
 constexpr double degrees = 180.0 / M_PI;
-constexpr size_t most_matches = 40;   // of a link that take part, spread over its overlap
-constexpr double widest_deg = 140.0;  // angle of view of a lens that shows lines straight
+constexpr size_t most_matches = 40;   // matches used per link, spread over its overlap
+constexpr double widest_deg = 140.0;  // maximum angle of view of a rectilinear lens
 constexpr double last_scale = 0.001;  // of the loss, as a share of the longer side
-constexpr double fits = 0.0012;       // of the same: a panorama whose links are farther off may be a plane
+constexpr double fits = 0.0012;       // of the same: a panorama with larger residuals may be a plane
 
 using Match = std::pair<cv::Point2d, cv::Point2d>;
 using Matches = std::vector<Match>;
 
-// Every cell of a grid over the first frame gives its first match, until there are enough.
+// Every cell of a grid over the first frame contributes its first match, until there are enough.
 Matches spread(const Matches &matches, const PictureOptics &first) {
     constexpr int cells = 8;
     Matches left = matches, chosen;
@@ -55,7 +55,7 @@ Eigen::Vector3d ray(const PictureOptics &picture, double hfov_deg, const cv::Poi
         .normalized();
 }
 
-// From the rays of the first picture to those of the second (Kabsch 1976).
+// Rotation from the rays of the first picture to those of the second (Kabsch 1976).
 Eigen::Matrix3d rotation_between(const PictureOptics &first, double first_hfov, const PictureOptics &second,
                                  double second_hfov, const Matches &matches) {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
@@ -66,7 +66,7 @@ Eigen::Matrix3d rotation_between(const PictureOptics &first, double first_hfov, 
     return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 
-// The camera model's angles, from the rotation of the world to the camera.
+// The angles of the camera model, from the world-to-camera rotation.
 void set_angles(lensprof_camera &camera, const Eigen::Matrix3d &turn) {
     camera.yaw_deg = std::atan2(turn(2, 0), turn(2, 2)) * degrees;
     camera.pitch_deg = -std::asin(std::clamp(turn(2, 1), -1.0, 1.0)) * degrees;
@@ -81,7 +81,7 @@ Eigen::Matrix3d turn_of(const lensprof_camera &camera) {
            * about(-camera.yaw_deg, Eigen::Vector3d::UnitY());
 }
 
-// What is estimated: of every lens the angle of view and a, b, c, of every picture its angles and place.
+// The unknowns: angle of view and a, b, c per lens, angles and position per picture.
 constexpr Eigen::Index lens_unknowns = 4, picture_unknowns = 6, camera_unknowns = lens_unknowns + picture_unknowns;
 
 double &value(lensprof_camera &c, Eigen::Index k) {
@@ -92,11 +92,11 @@ double &value(lensprof_camera &c, Eigen::Index k) {
 }
 
 constexpr double difference_steps[camera_unknowns] = {1e-4, 1e-5, 1e-5, 1e-5, 1e-4, 1e-4, 1e-4, 1e-5, 1e-5, 1e-5};
-// How far they are from the first guess, degrees and shares; nothing is known of angles.
-constexpr double known_hfov = 0.05, unknown_hfov = 0.6, usual_hfov_deg = 45.0;  // of the angle's logarithm
+// Prior standard deviations from the first guess, degrees and shares; angles are free.
+constexpr double known_hfov = 0.05, unknown_hfov = 0.6, usual_hfov_deg = 45.0;  // of the logarithm of the angle
 constexpr double expected_sigmas[camera_unknowns] = {0.0, 0.02, 0.05, 0.02, 1e4, 1e4, 1e4, 1.0, 1.0, 1.0};
 
-// How far the place that the first camera sees is from where the second one shows it, px.
+// Distance of a point seen by the first camera from its position in the second one, px.
 bool residual(const lensprof_camera &first, const lensprof_camera &second, const Match &match, Eigen::Vector2d &r) {
     double direction[2];
     if (!lensprof_camera_unproject(&first, match.first.x, match.first.y, direction)
@@ -118,10 +118,10 @@ public:
     FoundCameras run();
 
 private:
-    // A link's part of the normal equations, over the unknowns that it touches.
+    // A link's part of the normal equations, over its unknowns.
     struct Part {
         Eigen::Index count = 0, column[2 * camera_unknowns] = {}, unknown[2 * camera_unknowns] = {};
-        int end[2 * camera_unknowns] = {};  // the picture that the unknown is of, 0 or 1
+        int end[2 * camera_unknowns] = {};  // the picture of the unknown, 0 or 1
         Eigen::Matrix<double, 2 * camera_unknowns, 2 *camera_unknowns> normal =
             Eigen::Matrix<double, 2 * camera_unknowns, 2 * camera_unknowns>::Zero();
         Eigen::Matrix<double, 2 * camera_unknowns, 1> right = Eigen::Matrix<double, 2 * camera_unknowns, 1>::Zero();
@@ -148,17 +148,18 @@ private:
 
     const std::vector<PictureOptics> &pictures_;
     const std::vector<PictureLink> &links_;
-    std::vector<Matches> matches_;  // of every link
+    std::vector<Matches> matches_;  // per link
     uint32_t lenses_ = 1;
-    std::vector<double> first_hfov_, hfov_, hfov_sigma_;  // of every lens: the first guess, and what is expected
-    size_t root_ = 0;                                     // the picture that is held
-    std::vector<std::pair<size_t, bool>> tree_;           // links in the order pictures join by them; true: backwards
+    std::vector<double> first_hfov_, hfov_, hfov_sigma_;  // per lens: the first guess, and the expectation
+    size_t root_ = 0;                                     // the fixed picture
+    std::vector<std::pair<size_t, bool>> tree_;           // links in the order in which pictures are added; true:
+                                                          // backwards
     std::vector<lensprof_camera> cameras_;
-    std::vector<Eigen::Index> column_;  // of every unknown of the lenses, then of the pictures; -1: held
+    std::vector<Eigen::Index> column_;  // per unknown of the lenses, then of the pictures; -1: fixed
     Eigen::Index columns_ = 0;
 };
 
-// The tree of the strongest links, from the picture with most matches.
+// The tree of the strongest links, starting at the picture with most matches.
 void CameraFit::find_order() {
     std::vector<size_t> strength(pictures_.size());
     for (const PictureLink &link : links_)
@@ -181,9 +182,9 @@ void CameraFit::find_order() {
     }
 }
 
-// Expected is what the metadata say, or a usual angle. The first guess is near that, or anywhere where they say
-// nothing: the one with which the links fit best when the pictures are put one to the next. Links that close a loop
-// tell most, and only where the steps are fine.
+// The expectation is the angle of the metadata, or a usual one. The first guess is near it or, without metadata, the
+// angle with which the links fit best when the pictures are added one after another. Links that close a loop are most
+// informative, but only with fine steps.
 void CameraFit::find_angles_of_view() {
     std::vector<std::vector<double>> known(lenses_);
     for (const PictureOptics &p : pictures_)
@@ -194,7 +195,7 @@ void CameraFit::find_angles_of_view() {
             hfov_[lens] = std::min(median(known[lens]), widest_deg), hfov_sigma_[lens] = known_hfov;
     const bool all_known = std::none_of(known.begin(), known.end(), [](const auto &k) { return k.empty(); });
     constexpr double guess_scale = 0.01;
-    constexpr size_t most_links = 300, match_step = 4;  // evenly chosen ones say enough
+    constexpr size_t most_links = 300, match_step = 4;  // an even selection suffices
     choose_unknowns(false, false);
     double least = 1e300;
     for (double factor = all_known ? 0.9 : 0.07; factor < (all_known ? 1.1 : 3.0); factor *= 1.01) {
@@ -227,9 +228,9 @@ void CameraFit::start(const std::vector<double> &hfov) {
     for (size_t i = 0; i < pictures_.size(); i++) set_angles(cameras_[i], turn[i]);
 }
 
-// As if the held picture looked straight at the plane. Where X = (x, y, 1) is a place of the plane and K the camera's
-// matrix, a picture at T sees it at K R (X - T), so that its homography H from the held one has
-// K^-1 H K0 ~ R [e1 e2 (-Tx, -Ty, 1 - Tz)].
+// Assumes that the fixed picture looks straight at the plane. With X = (x, y, 1) a point of the plane and K the camera
+// matrix, a picture at T sees it at K R (X - T), so its homography H from the fixed one satisfies K^-1 H K0 ~ R [e1 e2
+// (-Tx, -Ty, 1 - Tz)].
 void CameraFit::start_before_plane() {
     const auto lens = [&](size_t i) {
         const PictureOptics &p = pictures_[i];
@@ -275,7 +276,7 @@ void CameraFit::choose_unknowns(bool is_distorted, bool is_plane) {
         } else {
             const bool is_root = static_cast<size_t>(of_pictures / picture_unknowns) == root_;
             const Eigen::Index k = of_pictures % picture_unknowns;
-            // A plane stands before the panorama's middle, so that the held picture may look at it from aside.
+            // The plane is in front of the panorama's centre, so the fixed picture may look at it obliquely.
             is_free = k < 3 ? !is_root || (is_plane && k < 2) : is_plane && !is_root;
         }
         if (is_free) column_[static_cast<size_t>(u)] = columns_++;
@@ -295,7 +296,7 @@ double CameraFit::px(size_t link, double share) const {
     return share * std::max(second.width, second.height);
 }
 
-// What the expected values cost; its part of the normal equations is added where they are asked for.
+// The cost of deviations from the expectations; adds its part of the normal equations if requested.
 double CameraFit::expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen::VectorXd *right) const {
     double sum = 0.0;
     std::vector<bool> done(static_cast<size_t>(columns_));
@@ -318,7 +319,7 @@ double CameraFit::expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen
     return sum;
 }
 
-// Of every link_step-th link every match_step-th match.
+// Uses every match_step-th match of every link_step-th link.
 double CameraFit::cost(double scale, size_t link_step, size_t match_step) const {
     double sum = expectation(nullptr, nullptr);
     Eigen::Vector2d r;
@@ -332,7 +333,7 @@ double CameraFit::cost(double scale, size_t link_step, size_t match_step) const 
     return sum;
 }
 
-// The unknowns that a link touches.
+// The unknowns of a link.
 CameraFit::Part CameraFit::part_of(size_t link) const {
     const uint32_t *p = links_[link].picture;
     Part part;
@@ -375,7 +376,7 @@ void CameraFit::move(const Eigen::VectorXd &by) {
             if (const Eigen::Index c = column(i, k); c >= 0) value(cameras_[i], k) += by[c];
 }
 
-// Of all links, on all cores; summed in their order, whatever the number of threads.
+// Sums over all links on all cores, in their order, so that the number of threads does not matter.
 void CameraFit::add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const {
     std::vector<Part> parts(links_.size());
     for_each_item(static_cast<uint32_t>(links_.size()), thread_count(0), [&](uint32_t n, uint32_t) {
@@ -392,7 +393,7 @@ void CameraFit::add_matches(double scale, std::vector<Eigen::Triplet<double>> &n
         }
 }
 
-// False when no step makes the cost clearly smaller.
+// False if no step reduces the cost clearly.
 bool CameraFit::step(double scale, double &damping) {
     std::vector<Eigen::Triplet<double>> normal;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(columns_);
@@ -447,7 +448,7 @@ std::vector<double> CameraFit::residuals() const {
     return result;
 }
 
-// From the picture as it is stored to what is shown by EXIF's orientation.
+// From the stored picture to the upright one, by EXIF orientation.
 Eigen::Matrix3d upright(uint16_t orientation) {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     if (orientation == 3) turn << -1, 0, 0, 0, -1, 0, 0, 0, 1;
@@ -456,8 +457,8 @@ Eigen::Matrix3d upright(uint16_t orientation) {
     return turn;
 }
 
-// Turns all cameras so that their horizontal axes are level, and what they look at is in front. A picture of the
-// scene upside down stays so.
+// Rotates all cameras so that their horizontal axes are level and their view is in front. A picture of the scene upside
+// down stays so.
 void CameraFit::level() {
     Eigen::Matrix3d across = Eigen::Matrix3d::Zero();
     Eigen::Vector3d down = Eigen::Vector3d::Zero(), ahead = Eigen::Vector3d::Zero();
@@ -468,7 +469,7 @@ void CameraFit::level() {
         ahead += turn.row(2).transpose();
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(across);
-    // Where all look the same way, their axes do not say which way is up.
+    // If all look the same way, their axes do not determine which way is up.
     Eigen::Vector3d axis = axes.eigenvalues()[1] > 0.02 * axes.eigenvalues()[2]
                                ? Eigen::Vector3d(axes.eigenvectors().col(0))
                                : Eigen::Vector3d(down.normalized());
@@ -482,7 +483,7 @@ void CameraFit::level() {
     for (lensprof_camera &c : cameras_) set_angles(c, turn_of(c) * world.transpose());
 }
 
-// From where the cameras are now. The distortion joins when all else is nearly right.
+// Starts from the current cameras. The distortion is added once all else is nearly right.
 double CameraFit::fit(bool is_plane) {
     choose_unknowns(false, is_plane);
     descend(0.1);

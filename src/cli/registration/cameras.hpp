@@ -23,21 +23,21 @@
 
 namespace lensprof {
 
-// What is known of a picture beforehand. Pictures of one `lens` share angle of view and distortion.
+// Prior knowledge of a picture. Pictures with the same `lens` share angle of view and distortion.
 struct PictureOptics {
     uint32_t width = 0, height = 0, lens = 0;
-    std::optional<double> hfov_deg;  // by its metadata
+    std::optional<double> hfov_deg;  // according to its metadata
     uint16_t orientation = 1;        // of EXIF
 };
 
 struct FoundCameras {
     SceneKind kind = SceneKind::panorama;
-    std::vector<lensprof_camera> cameras;  // of every picture
-    std::vector<double> link_residuals;    // median of every link, as a share of the longer side
+    std::vector<lensprof_camera> cameras;  // per picture
+    std::vector<double> link_residuals;    // median per link, as a share of the longer side
 };
 
-// Of pictures that are one group. Longitude 0 is in the middle of what they show, and the horizon level where they turn
-// about an upright axis.
+// Estimates the cameras of one group of pictures. Longitude 0 is at the centre of the panorama, and the horizon is
+// level if the cameras turn about an upright axis.
 FoundCameras find_cameras(const std::vector<PictureOptics> &pictures, const std::vector<PictureLink> &links);
 
 }  // namespace lensprof

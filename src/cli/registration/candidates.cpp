@@ -11,13 +11,13 @@ namespace {
 
 constexpr uint32_t all_pairs_up_to = 8;  // pictures
 constexpr uint32_t next_to = 2;          // pictures before and after
-constexpr size_t enough_links = 20;      // of a picture: no more are looked for by way of it
+constexpr size_t enough_links = 20;      // maximum further candidates per picture
 constexpr uint32_t most_alike = 12;      // pictures most like one
 constexpr int words = 64;
-constexpr size_t sample_size = 20000;  // descriptors that the words are made of
+constexpr size_t sample_size = 20000;  // descriptors that the visual words are made from
 constexpr int rounds = 10;             // of k-means
 
-// Of every row the word that is nearest.
+// The nearest word per row.
 std::vector<Eigen::Index> nearest_words(const Rows &centres, const Descriptors &rows) {
     const Eigen::VectorXf half = 0.5f * centres.rowwise().squaredNorm();
     const Rows scores = (rows * centres.transpose()).rowwise() - half.transpose();
@@ -26,7 +26,7 @@ std::vector<Eigen::Index> nearest_words(const Rows &centres, const Descriptors &
     return nearest;
 }
 
-// Descriptors of all pictures, evenly chosen.
+// Evenly selected descriptors of all pictures.
 Rows chosen_descriptors(const std::vector<Features> &pictures) {
     size_t total = 0, number = 0;
     for (const Features &p : pictures) total += static_cast<size_t>(p.descriptors.rows);
@@ -38,7 +38,7 @@ Rows chosen_descriptors(const std::vector<Features> &pictures) {
     return chosen;
 }
 
-// Centres of k-means, from evenly chosen descriptors on.
+// Centres of k-means, starting from evenly selected descriptors.
 Rows find_words(const std::vector<Features> &pictures) {
     const Rows sample = chosen_descriptors(pictures);
     Rows centres(words, descriptor_length);
@@ -59,7 +59,7 @@ Rows find_words(const std::vector<Features> &pictures) {
     return centres;
 }
 
-// Sums of the differences from the nearest words, each of length 1, and the whole of length 1.
+// Sums of the differences from the nearest words, each normalised to length 1, and the whole too.
 Eigen::VectorXf aggregate(const Rows &centres, const Features &picture) {
     Rows sum = Rows::Zero(words, descriptor_length);
     if (picture.descriptors.rows > 0) {
@@ -70,7 +70,7 @@ Eigen::VectorXf aggregate(const Rows &centres, const Features &picture) {
             sum.row(w) += rows.row(i) - centres.row(w);
         }
     }
-    for (int w = 0; w < words; w++) sum.row(w).normalize();  // a word that nothing is near stays 0
+    for (int w = 0; w < words; w++) sum.row(w).normalize();  // a word without descriptors stays 0
     Eigen::VectorXf whole = Eigen::Map<Eigen::VectorXf>(sum.data(), sum.size());
     whole.normalize();
     return whole;
@@ -89,7 +89,7 @@ void add_most_alike(const std::vector<Features> &pictures, std::set<PicturePair>
     for (uint32_t i = 0; i < count; i++) {
         const Eigen::VectorXf alike = all * all.row(i).transpose();
         std::iota(order.begin(), order.end(), 0u);
-        const auto end = order.begin() + std::min(count, most_alike + 1);  // itself among them
+        const auto end = order.begin() + std::min(count, most_alike + 1);  // including itself
         std::partial_sort(order.begin(), end, order.end(), [&](uint32_t a, uint32_t b) {
             return alike[a] > alike[b] || (alike[a] == alike[b] && a < b);
         });

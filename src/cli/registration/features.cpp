@@ -12,8 +12,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double longer_side = 1200.0;  // px, about what the longer side is reduced to
-constexpr double contrast = 0.01;       // of SIFT: smooth pictures have none that are stronger
+constexpr double longer_side = 1200.0;  // px, approximate longer side after reduction
+constexpr double contrast = 0.01;       // of SIFT: smooth pictures have no stronger ones
 
 float sample_at(const uint8_t *samples, uint32_t type, size_t i) {
     switch (type) {
@@ -44,8 +44,8 @@ cv::Mat reduced_grey(PictureReader &reader, uint32_t reduction) {
     return grey;
 }
 
-// In 8 bits, stretched from the darkest to the brightest thousandth, so that dark pictures keep their texture.
-// Samples proportional to light are taken by their square roots, as they would be displayed.
+// 8 bit, stretched from the darkest to the brightest thousandth, so that dark pictures keep their texture. Linear
+// samples are converted by square roots, close to how they are displayed.
 cv::Mat stretched(cv::Mat grey, bool is_linear) {
     if (is_linear) {
         cv::max(grey, 0.0f, grey);
@@ -93,7 +93,7 @@ Features find_features(const std::string &file, uint32_t most) {
     std::vector<cv::KeyPoint> points;
     cv::Mat descriptors;
     cv::SIFT::create(static_cast<int>(most), 3, contrast)->detectAndCompute(grey, cv::noArray(), points, descriptors);
-    // A strict order, so that the result does not depend on how the detector found them.
+    // A strict order, so that the result does not depend on the detector's order.
     std::vector<int> order(points.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](int a, int b) {

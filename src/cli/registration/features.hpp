@@ -1,4 +1,4 @@
-// What registration recognises in a picture: SIFT features of a reduced grey version of it.
+// SIFT features of a reduced grey version of a picture.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace lensprof {
 struct Features {
     uint32_t width = 0, height = 0;   // of the full frame, as stored
     std::vector<cv::Point2d> places;  // px of the full frame; pixel (0, 0) has its centre at (0, 0)
-    cv::Mat descriptors;              // a row each: square roots of a SIFT descriptor of sum 1, so of length 1
+    cv::Mat descriptors;              // one row per feature: square roots of a SIFT descriptor of sum 1, so of length 1
 };
 
-// Descriptors in the words of Eigen, whose products are faster than OpenCV's.
+// Descriptors as Eigen matrices, whose products are faster than those of OpenCV.
 constexpr int descriptor_length = 128;
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Descriptors = Eigen::Map<const Rows>;
@@ -24,10 +24,10 @@ inline Descriptors descriptors_of(const Features &picture) {
     return Descriptors(picture.descriptors.ptr<float>(), picture.descriptors.rows, descriptor_length);
 }
 
-// At most so many features of each of `pictures`: 3000 of few and 800 of many, which take 400 kB.
+// Maximum number of features per picture of `pictures`: 3000 for few and 800 for many, which take 400 kB.
 uint32_t most_features_of(size_t pictures);
 
-// Features of a picture, about `most` of them, the largest first. Throws Failure for a picture that cannot be read.
+// Features of a picture, about `most` of them, largest first. Failure for an unreadable picture.
 Features find_features(const std::string &file, uint32_t most);
 
 // The square roots of descriptors, scaled to sum 1 (Arandjelovic & Zisserman 2012): Euclidean distances between them

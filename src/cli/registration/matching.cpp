@@ -14,26 +14,26 @@
 namespace lensprof {
 namespace {
 
-constexpr float ratio = 0.8f;        // Lowe's: of the distances to the nearest and the second nearest feature
-constexpr double tolerance = 0.003;  // of the longer side: how far a match may be from the homography
-// Brown & Lowe 2007, equation 13, with shares of their own: of unrelated pictures no homography held more than 7 of 90
-// matches; of related ones with little overlap 10 to 20.
+constexpr float ratio = 0.8f;        // Lowe's ratio of the distances to the nearest and second nearest feature
+constexpr double tolerance = 0.003;  // of the longer side: maximum distance of a match from the homography
+// Brown & Lowe 2007, equation 13, with our own shares: for unrelated pictures no homography held more than 7 of 90
+// matches; for related ones with little overlap 10 to 20.
 constexpr size_t fewest_matches = 10;
 constexpr double fewest_by_chance = 6.0, share_of_matches = 0.1;
-constexpr double still = 0.002;       // of the longer side: less than a camera that moves or turns moves the picture
-constexpr size_t still_by_moved = 3;  // times as many stayed as moved with each other, where the camera stood still
+constexpr double still = 0.002;       // of the longer side: less than the movement by a camera that moves or rotates
+constexpr size_t still_by_moved = 3;  // ratio of stationary to moving matches for a stationary camera
 constexpr int most_draws = 3000;      // of four matches for a homography
-constexpr int most_rounds = 5;        // of matching: what is linked says what to look at next
+constexpr int most_rounds = 5;        // of matching: links found determine the next candidates
 
 using Match = std::pair<int, int>;
 
-// Every feature of `a` whose nearest one in `b` passes the ratio test, and is nearest to none more than to it. Products
-// of descriptors of length 1 are 1 - distance^2 / 2.
+// Every feature of `a` whose nearest one in `b` passes the ratio test and is not nearer to another. For descriptors of
+// length 1 the product is 1 - distance^2 / 2.
 std::vector<Match> match(const Features &first, const Features &second) {
     std::vector<Match> found;
     const Descriptors a = descriptors_of(first), b = descriptors_of(second);
     if (a.rows() < 2 || b.rows() < 2) return found;
-    constexpr Eigen::Index block = 256;  // rows whose products stay in the cache
+    constexpr Eigen::Index block = 256;  // rows whose products fit in the cache
     std::vector<int> taken(static_cast<size_t>(b.rows()), -1);
     std::vector<float> nearest(static_cast<size_t>(b.rows()), -2.0f);
     Rows products;
@@ -60,7 +60,7 @@ std::vector<Match> match(const Features &first, const Features &second) {
 
 using Places = std::vector<std::pair<cv::Point2d, cv::Point2d>>;
 
-// The homography that most matches follow; empty where chance explains as many.
+// The homography supported by most matches; empty if chance explains as many.
 std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matches, double longer_side) {
     if (matches.size() < fewest_matches) return std::nullopt;
     std::vector<cv::Point2d> from, to;
@@ -78,7 +78,7 @@ std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matche
     return is_chance ? std::nullopt : std::optional(std::move(found));
 }
 
-// Where places are in the first frame.
+// Positions in the first frame.
 cv::Rect2d box_of(const Places &places) {
     cv::Point2d low = places[0].first, high = low;
     for (const auto &[from, to] : places) {
@@ -88,8 +88,9 @@ cv::Rect2d box_of(const Places &places) {
     return {low.x, low.y, high.x - low.x, high.y - low.y};
 }
 
-// Whether places that stayed are those of a scene: many more than moved with each other, over the frame, and where
-// these are, which then repeat themselves. What is fixed to the frame, as a dashboard is, has its own part of it.
+// Whether stationary positions belong to a scene: many more than moved together, spread over the frame and the area of
+// the moved ones, which then come from repetitive objects. Something fixed to the frame, such as a dashboard, occupies
+// its own part of it.
 bool is_still_scene(const Places &stayed, const Places &moved, const Features &picture) {
     if (stayed.size() < fewest_matches || stayed.size() < still_by_moved * moved.size()) return false;
     const cv::Rect2d box = box_of(stayed);
@@ -99,9 +100,9 @@ bool is_still_scene(const Places &stayed, const Places &moved, const Features &p
            && 2 * static_cast<size_t>(outside) <= moved.size();
 }
 
-// By what moved from frame to frame; or, where that shows nothing, by all: what is fixed to the frame, a date stamp, a
-// logo or dirt, matches in every pair of pictures. Nothing moves where the camera stood still, but that matches of
-// things which repeat themselves may agree by chance.
+// Uses what moved between frames; or, if that shows nothing, everything: what is fixed to the frame (a date stamp, a
+// logo, dirt) matches in every pair of pictures. Nothing moves with a stationary camera, except that matches of
+// repetitive objects may agree by chance.
 std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
     const Features &a = pictures[pair.first], &b = pictures[pair.second];
     const double longer_side = std::max(std::max(a.width, a.height), std::max(b.width, b.height));
@@ -119,7 +120,7 @@ std::optional<PictureLink> link(const std::vector<Features> &pictures, const Pic
     return found;
 }
 
-// What stayed in a picture, by its link of a still scene with most matches.
+// The stationary positions of a picture, by its still link with most matches.
 struct Stayed {
     size_t matches = 0;
     cv::Rect2d box;
@@ -128,14 +129,14 @@ struct Stayed {
 std::vector<Stayed> what_stayed(size_t pictures, const std::vector<PictureLink> &links) {
     std::vector<Stayed> stayed(pictures);
     for (const PictureLink &link : links)
-        for (const uint32_t picture : link.picture)  // at the same places of both
+        for (const uint32_t picture : link.picture)  // at the same positions in both
             if (link.is_scene && link.matches.size() > stayed[picture].matches)
                 stayed[picture] = {link.matches.size(), box_of(link.matches)};
     return stayed;
 }
 
-// Links of what moved between pictures that links of what stayed join, with far more matches and at the same places: of
-// things that repeat themselves, by chance.
+// Removes moving links between pictures connected by still ones with far more matches at the same positions: chance
+// matches of repetitive objects.
 void drop_chance(size_t pictures, std::vector<PictureLink> &links) {
     const std::vector<uint32_t> groups =
         groups_of(pictures, links, [](const PictureLink &link) { return link.is_scene; });
@@ -152,7 +153,7 @@ void drop_chance(size_t pictures, std::vector<PictureLink> &links) {
     links.erase(std::remove_if(links.begin(), links.end(), is_chance), links.end());
 }
 
-// Still links of pictures that are linked by what moves: the camera did not stand still.
+// Removes still links of pictures connected by moving ones: the camera was not stationary.
 void drop_still(size_t pictures, std::vector<PictureLink> &links) {
     std::vector<bool> moves(pictures);
     for (const PictureLink &link : links)

@@ -5,14 +5,14 @@
 namespace lensprof {
 namespace {
 
-// The first image whose `number` is that of image i.
+// The first image with the same `number` as image i.
 uint32_t first_of(const std::vector<ProjectImage> &images, uint32_t ProjectImage::*number, uint32_t i) {
     uint32_t first = 0;
     while (images[first].*number != images[i].*number) first++;
     return first;
 }
 
-// ` a0.1`, or ` a=3` where the value is that of image 3.
+// ` a0.1`, or ` a=3` if the value is linked to image 3.
 std::string shared(const char *name, double value, uint32_t i, uint32_t first) {
     return i == first ? format(" %s%.17g", name, value) : format(" %s=%u", name, first);
 }

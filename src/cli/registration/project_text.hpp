@@ -1,4 +1,4 @@
-// Hugin projects of pictures that are in none.
+// Writes Hugin projects for pictures without one.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace lensprof {
 
-// The same place in two images, px of their frames.
+// The same point in two images, px of their frames.
 struct ControlPoint {
     uint32_t image[2];
     double xy[2][2];
@@ -18,12 +18,12 @@ struct ControlPoint {
 struct ProjectImage {
     lensprof_camera camera;
     std::string name;     // without quotes and control characters
-    uint32_t lens = 0;    // images of one number are linked in response and falloff,
+    uint32_t lens = 0;    // images with the same number are linked in response and falloff,
     uint32_t optics = 0;  // and in angle of view and distortion
 };
 
-// A project without photometric values; its `v` lines ask for those of all images, relative to the first one.
-// `comment` is its first line.
+// A project without photometric values; its `v` lines free those of all images, relative to the first. `comment` is the
+// first line.
 std::string new_project_text(const std::string &comment, const std::vector<ProjectImage> &images,
                              const std::vector<ControlPoint> &points = {});
 

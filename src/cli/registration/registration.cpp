@@ -20,11 +20,11 @@
 namespace lensprof {
 namespace {
 
-constexpr double unfit = 0.005;         // median residual of a link that the cameras do not fit, of the longer side
-constexpr size_t points_per_link = 10;  // that a project is given
-// Matches of a link whose pictures are compared where they match, and of all links of a project.
+constexpr double unfit = 0.005;         // median residual of a link not explained by the cameras, of the longer side
+constexpr size_t points_per_link = 10;  // given to a project
+// Maximum matches of a link compared at matches, and of all links of a project.
 constexpr size_t fewest_matches_kept = 20, most_matches = 200, most_in_all = 200000;
-constexpr double smallest_turn = 0.05;  // determinant of a map that two pictures of a scene may have, or its inverse
+constexpr double smallest_turn = 0.05;  // maximum determinant (or inverse) of a map between two pictures of a scene
 
 std::optional<double> hfov_by_metadata(const PictureMetadata &metadata, const Features &picture) {
     const lensprof_profile_key &key = metadata.key;
@@ -43,7 +43,7 @@ void add_points(const PictureLink &link, std::vector<ControlPoint> &points) {
     }
 }
 
-// The matches of a link, with the homography's derivative at each: how the surroundings are turned and scaled.
+// The matches of a link, with the derivative of the homography at each: how the surroundings are rotated and scaled.
 void add_matches(const PictureLink &link, size_t most, std::vector<lensprof_match> &matches) {
     const cv::Matx33d &h = link.homography;
     const size_t count = link.matches.size(), wanted = std::min(count, most);
@@ -58,7 +58,7 @@ void add_matches(const PictureLink &link, size_t most, std::vector<lensprof_matc
     }
 }
 
-// The project of the pictures of one group; `links` are numbered as they are in the group.
+// The project of one group; `links` use the group's indices.
 FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<PictureOptics> &optics,
                         const std::vector<PictureLink> &links) {
     FoundProject project;
@@ -74,7 +74,7 @@ FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<Picture
     const auto fits_link = [&](size_t n) { return found.link_residuals[n] <= unfit; };
     for (size_t n = 0; n < links.size(); n++) project.unfit += !fits_link(n);
     const size_t most = std::clamp(most_in_all / std::max<size_t>(1, links.size()), fewest_matches_kept, most_matches);
-    // Scenes are planes only nearly: what stands out of one is elsewhere, and matches know where.
+    // Scenes are only nearly planar: what stands out is shifted, and matches have the actual positions.
     project.by_matches = found.kind == SceneKind::plane || !project.cameras_fit();
     for (size_t n = 0; n < links.size(); n++) {
         const bool fits = fits_link(n);
@@ -101,10 +101,10 @@ std::vector<PictureLink> links_within(const std::vector<PictureLink> &links, con
 struct RegisteredPicture {
     Features features;
     PictureMetadata metadata;
-    std::string failure;  // why it cannot be read
+    std::string failure;  // reason if it cannot be read
 };
 
-// Metadata and features of every picture.
+// Metadata and features per picture.
 std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, Progress &progress) {
     std::vector<RegisteredPicture> pictures(files.size());
     const uint32_t most = most_features_of(files.size());
@@ -121,8 +121,8 @@ std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, P
     return pictures;
 }
 
-// Pictures of the same camera, processing and size, upright or not, have one number, in the order they are met; with
-// `as_one` all raw files, and all others.
+// Numbers bodies: pictures with the same camera, processing and size, upright or not, have one number, in order of
+// appearance; with `as_one` all raw files have one, and all others.
 std::vector<uint32_t> bodies_of(const std::vector<std::string> &files, const std::vector<RegisteredPicture> &pictures,
                                 bool as_one) {
     std::map<std::tuple<bool, std::string, std::string, uint32_t, uint32_t, uint32_t>, uint32_t> found;
@@ -138,7 +138,8 @@ std::vector<uint32_t> bodies_of(const std::vector<std::string> &files, const std
     return bodies;
 }
 
-// Pictures of the same camera, lens, focal length, processing and size have one number, in the order they are met.
+// Numbers lenses: pictures with the same camera, lens, focal length, processing and size have one number, in order of
+// appearance.
 std::vector<uint32_t> lenses_of(const std::vector<RegisteredPicture> &pictures, const std::vector<uint32_t> &numbers) {
     using Setting = std::tuple<std::string, std::string, std::string, double, uint32_t, uint32_t, uint32_t>;
     std::map<Setting, uint32_t> found;
@@ -153,7 +154,7 @@ std::vector<uint32_t> lenses_of(const std::vector<RegisteredPicture> &pictures, 
     return lenses;
 }
 
-// Of some pictures, by their numbers.
+// Selects pictures by index.
 std::vector<PictureOptics> optics_of(const std::vector<RegisteredPicture> &pictures,
                                      const std::vector<uint32_t> &numbers) {
     const std::vector<uint32_t> lenses = lenses_of(pictures, numbers);
@@ -166,8 +167,7 @@ std::vector<PictureOptics> optics_of(const std::vector<RegisteredPicture> &pictu
     return optics;
 }
 
-// Which pictures are of projects, and their groups: a body takes part in a group where two of its pictures there
-// overlap.
+// The pictures in projects, and their groups: a body takes part in a group if two of its pictures in it overlap.
 class Grouping {
 public:
     Grouping(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links)
@@ -180,7 +180,7 @@ public:
     uint32_t group(uint32_t picture) const { return groups_[picture]; }
 
 private:
-    // Takes pictures of bodies without a part in their group out; false where there are none. That may cut groups.
+    // Removes pictures of bodies that do not take part in their group; false if not found. This may split groups.
     bool drop(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links) {
         std::set<std::pair<uint32_t, uint32_t>> parts;  // groups and bodies
         for (const PictureLink &link : links)
@@ -199,14 +199,14 @@ private:
     std::vector<uint32_t> groups_;
 };
 
-// Pictures that overlap with another.
+// Pictures that overlap another.
 std::vector<bool> which_meet(size_t pictures, const std::vector<PictureLink> &links) {
     std::vector<bool> meets(pictures);
     for (const PictureLink &link : links) meets[link.picture[0]] = meets[link.picture[1]] = true;
     return meets;
 }
 
-// Takes links between raw files and others away: no project has both.
+// Removes links between raw files and others: no project mixes them.
 void part_raw(const std::vector<std::string> &files, std::vector<PictureLink> &links) {
     std::vector<bool> is_raw;
     for (const std::string &file : files) is_raw.push_back(raw_kind(file).has_value());
@@ -214,7 +214,7 @@ void part_raw(const std::vector<std::string> &files, std::vector<PictureLink> &l
     links.erase(std::remove_if(links.begin(), links.end(), parts), links.end());
 }
 
-// Pictures that are in no project, by what they overlap with.
+// Pictures in no project, by what they overlap.
 void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, const std::vector<bool> &meets,
                  const std::vector<RegisteredPicture> &pictures, Registration &result) {
     std::set<uint32_t> taken;  // bodies
@@ -262,13 +262,13 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Prog
 bool can_register() { return true; }
 
 Registration register_pictures(const std::vector<std::string> &files, bool as_one, Progress &progress) {
-    cv::setNumThreads(1);  // every thread of ours has a picture of its own
+    cv::setNumThreads(1);  // each of our threads processes one picture
     try {
         return registered(files, as_one, progress);
     } catch (const cv::Exception &error) {
         if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
         throw Failure(ExitCode::failed,
-                      "finding overlaps failed in OpenCV: " + std::string(error.what()) + "; please report this");
+                      "OpenCV failed to find overlaps: " + std::string(error.what()) + "; please report this");
     }
 }
 

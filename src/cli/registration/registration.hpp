@@ -1,4 +1,4 @@
-// Pictures in no project: which overlap, and the cameras that took them, as Hugin projects.
+// Registration of pictures without a project: finds overlaps and cameras, as Hugin projects.
 #pragma once
 
 #include <cstdint>
@@ -16,42 +16,42 @@ namespace lensprof {
 
 enum class SceneKind {
     panorama,  // the camera turned about one point
-    plane,     // it moved, over a scene that is nearly a plane
-    still      // neither: frames of a tripod, a bracket, which show no falloff
+    plane,     // it moved over a scene that is nearly a plane
+    still      // neither: frames from a tripod or a bracket, which do not show the falloff
 };
 
-// Pictures that overlap, directly or through others. Of each camera there are at least two, which its own pictures
-// join.
+// A group of pictures that overlap, directly or through others. Each camera has at least two, connected by its own
+// pictures.
 struct FoundProject {
-    std::vector<uint32_t> pictures;  // their numbers, ascending; the members below are in this order
+    std::vector<uint32_t> pictures;  // indices, ascending; the members below use this order
     SceneKind kind = SceneKind::panorama;
     std::vector<lensprof_camera> cameras;
-    std::vector<uint32_t> lenses;  // those of one camera and size, with one lens at one focal length, have one number
-    std::vector<uint32_t> bodies;  // those of one camera, processing and size (upright or not) have one number
-    std::vector<ControlPoint> points;     // a few of every link that the cameras fit
-    std::vector<lensprof_match> matches;  // of the links that they do not fit, or of all
-    bool by_matches = false;              // these, and not the cameras, say where pictures show the same
-    uint32_t links = 0, unfit = 0;        // pictures that show the same; those of them that the cameras do not fit
+    std::vector<uint32_t> lenses;      // equal for pictures of one camera and size, with one lens at one focal length
+    std::vector<uint32_t> bodies;      // equal for pictures of one camera, processing and size (upright or not)
+    std::vector<ControlPoint> points;  // a few per link that the cameras explain
+    std::vector<lensprof_match> matches;  // of the links that the cameras do not explain, or of all links
+    bool by_matches = false;              // pictures are compared at these matches, not through the cameras
+    uint32_t links = 0, unfit = 0;        // overlapping pairs of pictures, and the number that the cameras do not
+                                          // explain
     double residual = 0.0;                // median over the links that fit, as a share of the longer side
 
-    uint32_t whole = 0;  // one number where pictures that are of no project join them
+    uint32_t whole = 0;  // equal for groups that are connected only by pictures of no group
 
     bool cameras_fit() const { return 2 * unfit <= links; }
 };
 
 struct Registration {
-    std::vector<FoundProject> projects;  // the one with most pictures first; still cameras last
-    std::vector<uint32_t> alone;         // pictures that overlap with no other,
-    // And those that overlap with pictures of other cameras alone: of a camera of which no two others overlap, and of
-    // one of which others do.
+    std::vector<FoundProject> projects;  // largest first; stationary cameras last
+    std::vector<uint32_t> alone;         // pictures that overlap no other,
+    // And those that overlap only pictures of other cameras: with a camera whose own pictures do not overlap, or do.
     std::vector<uint32_t> foreign, apart;
-    std::vector<std::pair<uint32_t, std::string>> unreadable;  // and why
+    std::vector<std::pair<uint32_t, std::string>> unreadable;  // and the reasons
 };
 
-// Whether this program was built with what registration needs.
+// Whether this program was built with registration (OpenCV).
 bool can_register();
 
-// Of several cameras, processings and sizes, unless `as_one` takes all as of one; raw files and others never are one.
+// Groups by camera, processing and size, unless `as_one` treats all as one; raw files are never mixed with others.
 // Failure (usage) without OpenCV.
 Registration register_pictures(const std::vector<std::string> &files, bool as_one, Progress &progress);
 

@@ -1,4 +1,4 @@
-// In place of the registration, where the program is built without OpenCV.
+// Replaces the registration if the program is built without OpenCV.
 #include "cli/program/error.hpp"
 #include "cli/registration/registration.hpp"
 
@@ -9,8 +9,8 @@ bool can_register() { return false; }
 Registration register_pictures(const std::vector<std::string> &files, bool, Progress &) {
     throw Failure(ExitCode::usage,
                   (files.empty() ? std::string("pictures") : files[0])
-                      + ": this lensprof was built without OpenCV, which finds the overlaps of pictures; install "
-                        "libopencv-dev and build it again, or give a Hugin project (docs/hugin.md)");
+                      + ": this lensprof was built without OpenCV, which is needed to find overlaps; install "
+                        "libopencv-dev and rebuild lensprof, or give a Hugin project (docs/hugin.md)");
 }
 
 }  // namespace lensprof
