@@ -151,7 +151,7 @@ void test_local_tones_are_refused(void **) {
     assert_false(bool(json["usable"]));
     assert_string_equal(std::string(json["reason_code"]).c_str(), "patterns");
     assert_string_equal(std::string(json["files"][0]["tones"]["mapped"]).c_str(), "local");
-    assert_refused(not_usable, {"response", file, "--db", work("a.db")}, {"surroundings", "nothing was stored"});
+    assert_refused(not_usable, {"response", file, "--db", work("a.db")}, {"mapped locally", "nothing was stored"});
     assert_false(fs::exists(work("a.db")));
     const Json forced = json_of({"response", file, "--db", work("a.db"), "--force", "--json"}, not_usable);
     assert_int_equal(int64_t(forced["profile"]), 1);
@@ -166,7 +166,7 @@ void test_stored(void **) {
         shot.corrects = corrects;
         const std::string file = save_shot("shot.dng", take(shot)), db = work(corrects ? "b.db" : "a.db");
         const std::string out = must_exit(done, {"response", file, "--db", db});
-        assert_true(contains(out, corrects ? "corrected by the camera" : "as the lens made it"));
+        assert_true(contains(out, corrects ? "corrected by the camera" : "not corrected"));
         assert_true(contains(out, "stored    profile 1"));
         const Json stored = json_of({"profile", "show", "1", "--db", db, "--json"});
         assert_string_equal(std::string(stored["key"]["camera_model"]).c_str(), "TestCam 1");
@@ -196,7 +196,7 @@ void test_several(void **) {
     assert_true(bool(json["files"][1]["falloff"]["corrected"]));
     taken[1].dng.model = "TestCam 2";
     save_shot("b.dng", taken[1]);
-    assert_refused(usage, {"response", a, b, "--no-store"}, {"b.dng: is by another camera"});
+    assert_refused(usage, {"response", a, b, "--no-store"}, {"b.dng: comes from another camera"});
 }
 
 // The camera's JPEG beside the raw file, where that has none, and the one that is named.
@@ -209,16 +209,17 @@ void test_jpeg_beside(void **) {
     write_jpeg_file(work("IMG_1.JPG"), taken.rendered, {95, 1, 1});
     const Outcome beside = run_words({"response", work("IMG_1.dng"), "--no-store"});
     assert_int_equal(beside.code, done);
-    assert_true(contains(beside.err, "IMG_1.JPG is taken"));
+    assert_true(contains(beside.err, "; using " + work("IMG_1.JPG")));
     fs::rename(work("IMG_1.JPG"), work("other.jpg"));
     const Words named = {"response", work("IMG_1.dng"), "--jpeg", work("other.jpg"), "--no-store", "--json"};
     assert_true(std::fabs(error_of(json_of(named), shot)) <= 0.01);
     assert_refused(usage, named + Words{"--jpeg", work("other.jpg")}, {"--jpeg"});
     write_jpeg_file(work("other.jpg"), take(good_shot(9)).rendered, {95, 1, 1});
     assert_refused(not_usable, {"response", work("IMG_1.dng"), "--jpeg", work("other.jpg"), "--no-store"},
-                   {"other.jpg: does not show what the raw file shows"});
+                   {"other.jpg: does not match the raw file"});
     write_picture(work("other.png"), taken.rendered);
-    assert_refused(usage, {"response", work("IMG_1.dng"), "--jpeg", work("other.png"), "--no-store"}, {"is no JPEG"});
+    assert_refused(usage, {"response", work("IMG_1.dng"), "--jpeg", work("other.png"), "--no-store"},
+                   {"is not a JPEG"});
     assert_refused(unreadable, {"response", work("IMG_1.dng"), "--jpeg", work("none.jpg"), "--no-store"}, {"none.jpg"});
 }
 
@@ -229,10 +230,10 @@ void test_bad_input(void **) {
     const Taken good = take(shot);
     shot.exposure = 1e-4;
     assert_refused(not_usable, {"response", save_shot("black.dng", take(shot)), "--no-store"},
-                   {"black.dng", "of the grey values"});
+                   {"black.dng", "of the grey value range"});
     shot.exposure = 1e4;
     assert_refused(not_usable, {"response", save_shot("white.dng", take(shot)), "--no-store"},
-                   {"white.dng", "too few places"});
+                   {"white.dng", "too few areas"});
     const Json none = json_of(respond(work("white.dng")), not_usable);
     assert_string_equal(std::string(none["reason_code"]).c_str(), "few_pairs");
     assert_true(none["response"].is_null());
@@ -246,13 +247,13 @@ void test_bad_input(void **) {
     Taken other = good;
     other.rendered = take(good_shot(9)).rendered;
     assert_refused(not_usable, {"response", save_shot("other.dng", other), "--no-store"},
-                   {"does not show what the raw file"});
+                   {"does not match the raw file"});
     const Bytes whole = load(save_shot("shot.dng", good));
     save(work("cut.dng"), Bytes(whole.begin(), whole.begin() + 20000));
     assert_refused(unreadable, {"response", work("cut.dng"), "--no-store"}, {"cut.dng"});
     assert_refused(usage, {"response", work("shot.dng"), work("shot.dng"), "--no-store"}, {"shot.dng", "given twice"});
     write_jpeg_file(work("plain.jpg"), good.rendered, {95, 1, 1});
-    assert_refused(unreadable, {"response", work("plain.jpg"), "--no-store"}, {"is no camera raw file"});
+    assert_refused(unreadable, {"response", work("plain.jpg"), "--no-store"}, {"not a camera raw file"});
     assert_refused(unreadable, {"response", work("missing.dng"), "--no-store"}, {"missing.dng"});
     assert_refused(usage, {"response", work("shot.dng"), "--no-store", "--db", work("a.db")}, {"--no-store"});
 }

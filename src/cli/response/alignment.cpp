@@ -13,12 +13,12 @@ namespace {
 
 constexpr double perceptual = 1.0 / 2.2;
 constexpr int coarse_side = 80, fine_side = 1024;
-constexpr int half_window = 6;           // px of a level, of the window that structure is normalised in
-constexpr float least_contrast = 0.01f;  // of the perceptual scale: below is noise
+constexpr int half_window = 6;           // px: side of a level, and of the window for normalising structure
+constexpr float least_contrast = 0.01f;  // on the perceptual scale: below it is noise
 
 double half_diagonal(const Plane &p) { return 0.5 * std::hypot(p.width, p.height); }
 
-// Averages of `count` equal parts of a row, with the shares of the pixels that two parts have in common.
+// Averages of `count` equal parts of a row, sharing pixels on boundaries proportionally.
 void average_row(const std::vector<float> &row, std::vector<float> &parts) {
     const double step = double(row.size()) / double(parts.size());
     for (size_t i = 0; i < parts.size(); i++) {
@@ -85,7 +85,7 @@ private:
     std::vector<double> sums_;
 };
 
-// Without local mean and contrast, which exposure, curve and falloff change; and how much of it has contrast.
+// Removes local mean and contrast, which exposure, curve and falloff change; returns the share with contrast.
 Plane normalised(const Plane &plane, double *texture) {
     const WindowSums sums(plane, false), squares(plane, true);
     Plane out = plane;
@@ -144,7 +144,7 @@ double correlation_of(const Level &level, const Alignment &alignment) {
     return own > 0.0 && other > 0.0 ? both / std::sqrt(own * other) * std::min(1.0, share / 0.8) : 0.0;
 }
 
-// The scale under which the rendered picture is as wide, or as high, as the frame: the smaller one.
+// The scale at which the rendered picture is as wide, or as high, as the frame: the smaller one.
 double covering_scale(const Picture &raw, const Picture &rendered) {
     const double fit = std::min(double(raw.width) / rendered.width, double(raw.height) / rendered.height);
     return fit * std::hypot(rendered.width, rendered.height) / std::hypot(raw.width, raw.height);
@@ -191,7 +191,7 @@ void add_row(const Level &level, const Alignment &a, int y, Normal &h, Gradient 
     }
 }
 
-// Holds what a picture with little texture at the edges leaves open.
+// Constrains parameters that a picture with little texture at the edges does not determine.
 void refine(const Level &level, bool bends, Alignment &a) {
     for (int round = 0; round < 12; round++) {
         stop_if_interrupted();

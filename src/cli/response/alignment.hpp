@@ -1,7 +1,7 @@
-// Where the places of a rendered picture lie in the raw frame that it was made of.
+// Aligns a rendered picture with the raw frame it was made from.
 //
-// Cameras render a part of the frame: some pixels less at every edge, less still where the aspect differs, at another
-// size, and bent where they take out the lens's distortion.
+// Cameras render only a part of the frame: some pixels are cut off at every edge, more if the aspect ratio differs; the
+// picture is scaled, and warped if the camera corrects distortion.
 #pragma once
 
 #include <vector>
@@ -21,24 +21,24 @@ struct Plane {
 // raw = shift + scale p (1 + k1 |p|^2 + k2 |p|^4).
 struct Alignment {
     double shift[2] = {0, 0}, scale = 1.0, k1 = 0.0, k2 = 0.0;
-    double correlation = 0.0;  // of the local structure of both, aligned
-    double texture = 0.0;      // share of the frame that has any
+    double correlation = 0.0;  // correlation of the local structure of both, aligned
+    double texture = 0.0;      // share of the frame with structure
 
     void map(double x, double y, double raw[2]) const;
 };
 
-// The green or only channel on a perceptual scale, averaged to `side` pixels on the longer side (or as it is, where it
-// has fewer). `exponent`: of the power that makes linear values perceptual, 1 for rendered ones.
+// The green or only channel on a perceptual scale, reduced to `side` pixels on the longer side (unless it has fewer).
+// `exponent`: of the power function that makes linear values perceptual, 1 for rendered ones.
 Plane structure_of(const Picture &picture, int side, double exponent);
 
-// By Gauss-Newton on the locally normalised structure (Lucas & Kanade 1981), from coarse to fine; the coarsest start is
-// the best of a grid of scales and shifts. `rendered` is turned as the raw frame is.
+// Gauss-Newton on the locally normalised structure (Lucas & Kanade 1981), coarse to fine; the coarsest level starts
+// from the best of a grid of scales and shifts. `rendered` has the orientation of the raw frame.
 Alignment align_pictures(const Picture &raw, const Picture &rendered);
 
-// The same on the coarsest level alone, for trying how a picture is turned.
+// The same on the coarsest level only, to determine the orientation of a picture.
 Alignment align_coarsely(const Picture &raw, const Picture &rendered);
 
-// `picture` (8 bit) turned by `quarters` clockwise.
+// `picture` (8 bit) rotated clockwise by `quarters` quarter turns.
 Picture turned(const Picture &picture, int quarters);
 
 }  // namespace lensprof

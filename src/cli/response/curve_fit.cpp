@@ -15,15 +15,15 @@ namespace {
 constexpr int inner = curve_knots - 1;
 constexpr double power = 2.2;
 constexpr double least_light = 1e-7;
-constexpr double least_noise = 0.25 / 255.0;  // of a mean over a square: JPEG's own
+constexpr double least_noise = 0.25 / 255.0;  // of a mean over a square: from JPEG coding
 constexpr double white_edge = 254.0 / 255.0;
-constexpr double robust_at = 3.0;  // noises
-constexpr double rough_at = 0.3;   // range over mean, of light in a place
+constexpr double robust_at = 3.0;  // in units of the noise
+constexpr double rough_at = 0.3;   // range over mean of irradiance in an area
 constexpr int of_picture = 13;     // unknowns: 9 of A, 3 of q, s
 constexpr double colour_sigma = 1.0, falloff_sigma = 1.0, saturation_sigma = 0.3;
 constexpr double bend_sigma = 0.06, level_sigma = 1.0;
 
-// f is smooth but at its dark end, where slopes of different cameras differ by orders of magnitude.
+// f is smooth except at its dark end, where slopes of cameras differ by orders of magnitude.
 double bend_sigma_at(int i) { return bend_sigma * (1.0 + 24.0 / (1.0 + i)); }
 
 struct Interval {
@@ -43,7 +43,7 @@ double radial(const Rendering &rendering, double r2) {
     return std::exp(std::clamp(r2 * (q[0] + r2 * (q[1] + r2 * q[2])), -5.0, 5.0));
 }
 
-// Up to 2 knots and 3 of A's row for each channel, 3 of q, s.
+// Up to 2 knots and 3 of A's row per channel, 3 of q, s.
 struct Row {
     std::array<int, 3 * 5 + 4> at{};
     std::array<double, 3 * 5 + 4> slope{};
@@ -61,7 +61,7 @@ double rise(const CurveFit &fit, int i) {
     return fit.knots[static_cast<size_t>(i + 1)] - fit.knots[static_cast<size_t>(i)];
 }
 
-// The mean of f over a place differs from f of its mean light by the light's variance.
+// The mean of f over an area differs from f of its mean irradiance by an amount that depends on the variance.
 double rough_factor(const Place &place) { return 1.0 + std::pow(place.roughness / rough_at, 2); }
 
 class Solver {
@@ -103,10 +103,10 @@ private:
     const FitRequest &request_;
     int size_ = 0;
     std::array<double, curve_knots> prior_rise_{};
-    mutable std::vector<std::array<double, 3>> gains_;  // of every picture, that A is relative to
+    mutable std::vector<std::array<double, 3>> gains_;  // per picture, the scale that A is relative to
 };
 
-// The prior's curve, and gains of the channels by the light that it sees.
+// The curve of the prior, and gains of the channels from the irradiance it gives.
 CurveFit Solver::start() const {
     CurveFit fit;
     for (int i = 0; i <= curve_knots; i++)
@@ -130,7 +130,7 @@ CurveFit Solver::start() const {
     return fit;
 }
 
-// `share` of the derivatives of f in a channel, without those of q.
+// Adds `share` of the derivatives of f in a channel, without those of q.
 void Solver::add_curve(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel, double share,
                        Row &row) const {
     const double x = at.light[channel], slope = at.slope[channel];
@@ -164,7 +164,7 @@ Row Solver::row_of(const CurveFit &fit, const Place &place, const Prediction &at
     return row;
 }
 
-// ln of every rise: twice its second difference about the prior's, and itself.
+// ln of every rise: its second difference relative to the prior, twice, and itself.
 double Solver::prior_cost(const CurveFit &fit) const {
     double sum = 0.0;
     std::array<double, curve_knots> off{};
@@ -205,7 +205,7 @@ double Solver::cost_of(const CurveFit &fit) const {
 void Solver::add_curve_prior(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const {
     const auto off = [&](int i) { return std::log(rise(fit, i)) - prior_rise_[static_cast<size_t>(i)]; };
     const auto add = [&](const std::array<double, 3> &factors, int first, double residual, double weight) {
-        std::array<double, 4> slope{};  // of knots first .. first + 3, by the rises between them
+        std::array<double, 4> slope{};  // of knots first .. first + 3, from the rises between them
         for (int i = 0; i < 3; i++) {
             if (factors[static_cast<size_t>(i)] == 0.0) continue;
             const double by_rise = factors[static_cast<size_t>(i)] / rise(fit, first + i);
@@ -266,7 +266,7 @@ void Solver::equations(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd 
     add_picture_prior(fit, h, g);
 }
 
-// A step that would make f fall is shortened for its knots: each rise keeps a fifth at least.
+// Shortens a step that would make f fall: each rise keeps at least a fifth.
 CurveFit Solver::moved(const CurveFit &fit, const Eigen::VectorXd &step) const {
     CurveFit to = fit;
     const auto change = [&](int knot) { return knot < 1 || knot > inner ? 0.0 : step(knot - 1); };
@@ -319,7 +319,7 @@ void Solver::solve(CurveFit &fit, int rounds) const {
     }
 }
 
-// By the median of what is left, of every chroma no less than of smaller ones.
+// From the median residual, increasing with chroma.
 void Solver::estimate_noise(CurveFit &fit) const {
     std::array<std::vector<double>, chroma_bins> left;
     for (const Place &place : request_.places) {
@@ -378,7 +378,7 @@ double CurveFit::sigma(const Place &place) const {
     return noise[static_cast<size_t>(chroma_bin(place))] * rough_factor(place);
 }
 
-// White says that the response has reached it, and no more.
+// White only shows that the response has reached its maximum.
 double CurveFit::weight(const Place &place, const Prediction &at, size_t channel, double *residual) const {
     *residual = 0.0;
     if (place.use[channel] == Place::none) return 0.0;
@@ -441,7 +441,7 @@ CurveFit fit_curve(const FitRequest &request) {
     return fit;
 }
 
-// 5 x 4 of the frame.
+// 5 x 4 regions of the frame.
 int region_of(const Place &place) {
     return std::clamp(static_cast<int>(place.across * 5.0f), 0, 4)
            + 5 * std::clamp(static_cast<int>(place.down * 4.0f), 0, 3);

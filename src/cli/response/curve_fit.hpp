@@ -21,51 +21,52 @@ namespace lensprof {
 constexpr int curve_knots = 64;  // intervals of f
 
 struct Rendering {
-    std::array<double, 9> colour = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // A, rows of the rendered channels
+    std::array<double, 9> colour = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // A, one row per rendered channel
     std::array<double, 3> falloff = {0, 0, 0};                   // q
     double saturation = 0.0;                                     // s
 };
 
-// Of a place: light and f of every channel, and the rendered grey values.
+// At an area: irradiance and f per channel, and the rendered grey values.
 struct Prediction {
     std::array<double, 3> light{}, curve{}, slope{}, grey_value{};
-    double grey = 0.0;  // what saturation is about
+    double grey = 0.0;  // the grey axis of the saturation
 };
 constexpr std::array<double, 3> grey_weights = {0.299, 0.587, 0.114};  // of Y in JPEG (ITU-R BT.601)
 
-// Chroma is weighed by how well the model follows it: hues that a camera shifts count for little.
+// Chroma is weighted by how well the model explains it: hues that a camera shifts get a low weight.
 constexpr int chroma_bins = 5;
 
 struct CurveFit {
     std::array<double, curve_knots + 1> knots{};  // f at (i / curve_knots)^2.2
-    std::vector<Rendering> renderings;            // of every picture
-    std::array<double, chroma_bins> noise{};      // of a place, grey value 0..1, by chroma
+    std::vector<Rendering> renderings;            // per picture
+    std::array<double, chroma_bins> noise{};      // of an area, grey value 0..1, by chroma
     double cost = 0.0;
     std::vector<double> knot_covariance;  // (curve_knots - 1)^2, of the inner knots
 
-    // f(x); beyond white on with its last slope.
+    // f(x); linear extrapolation beyond white.
     double eval(double x, double *slope) const;
     Prediction predict(const Place &place) const;
-    // Of a channel's residual: that of the chroma, more for a rough place, whose mean is not that of its mean light.
+    // Noise of a channel's residual: that of the chroma, larger for an uneven area, where the mean of f is not f of the
+    // mean.
     double sigma(const Place &place) const;
-    // The weight of a channel's residual, and the residual in grey values; 0 where it does not count.
+    // The weight of a channel's residual, and the residual in grey values; 0 if it does not count.
     double weight(const Place &place, const Prediction &predicted, size_t channel, double *residual) const;
 
     lensprof_response response() const;
     // q = ln ln( I(208) / I(48) ), which moves with ln gamma (docs/model.md).
     double gauge() const;
-    // By the covariance of the knots.
+    // From the covariance of the knots.
     double gauge_sigma() const;
 };
 
-// Regions of the frame, for errors by leaving each out in turn: places near each other are wrong alike.
+// Regions of the frame, for jackknife errors: neighbouring areas have similar errors.
 constexpr int region_count = 20;
 constexpr int leave_none = -1, leave_rougher = region_count, leave_colourful = region_count + 1;
 int region_of(const Place &place);
 
-// `pictures`: how many there are; `prior`: the typical response that unseen levels lean on. By Levenberg-Marquardt,
-// robust. `start`: of an earlier fit of the same pictures, whose noise stays; or null. `left_out`: places that do not
-// count: none, or all of a region (0..region_count - 1), the rougher or the more colourful half.
+// `pictures`: number of pictures; `prior`: the typical response that unmeasured levels are drawn to. Robust
+// Levenberg-Marquardt. `start`: an earlier fit of the same pictures, whose noise is kept; or null. `left_out`: areas to
+// leave out: none, all of a region (0..region_count - 1), or the more uneven or more colourful half.
 struct FitRequest {
     const std::vector<Place> &places;
     uint32_t pictures = 1, channels = 3;

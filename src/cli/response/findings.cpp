@@ -17,14 +17,13 @@ constexpr uint32_t least_places = 300;  // with a grey value
 constexpr size_t least_in_region = 20;
 constexpr int map_columns = 12, map_rows = 9;
 constexpr double least_in_cell = 8.0;  // values, of each half
-// Error of ln gamma for every EV of a map that tones mapped by their surroundings leave: the curve takes the rest of it
-// (measured: 1.4 to 2.2).
+// Error of ln gamma per EV of the map left by local tone mapping: the curve absorbs the rest (measured: 1.4 to 2.2).
 constexpr double by_pattern = 2.0;
-constexpr double least_correction = 0.02;  // of the light
-// What the places have in common, and no leaving out of regions tells: rendering by blocks, rounding of colours, noise
-// that a camera takes out.
+constexpr double least_correction = 0.02;  // of irradiance
+// Errors common to all areas, which a jackknife does not show: block-wise rendering, rounding of colours, denoising by
+// the camera.
 constexpr double common_sigma = 0.004;
-constexpr double scatter_unseen = 0.5;  // of ln gamma, of what is not shown
+constexpr double scatter_unseen = 0.5;  // of ln gamma, for levels that are not measured
 const double gauge_range = std::log(208.0 / 48.0);
 
 double gamma_of(double gauge) { return std::exp(gauge) / gauge_range; }
@@ -33,14 +32,14 @@ bool is_used(const Place &place) {
     return place.use[0] == Place::grey || place.use[1] == Place::grey || place.use[2] == Place::grey;
 }
 
-// Light of the rendering over that of the sensor.
+// Irradiance of the rendering over that of the sensor.
 double radial_gain(const Rendering &rendering, double radius) {
     const double r2 = radius * radius;
     return std::exp(r2 * (rendering.falloff[0] + r2 * (rendering.falloff[1] + r2 * rendering.falloff[2])));
 }
 
-// Standard errors by leaving out a region at a time: of the gauge, and of ln of every file's corner. The gauge's has in
-// it by how much smooth and neutral places alone give another one: there the model is right, elsewhere nearly.
+// Jackknife standard errors over regions: of the gauge, and of ln of every file's corner. That of the gauge includes
+// its change when only smooth and neutral areas are used, for which the model is exact.
 struct Spread {
     double gauge = 0.0;
     std::vector<double> corners;
@@ -75,7 +74,7 @@ Spread leave_out(const FitRequest &request, const CurveFit &fit, const std::vect
     return spread;
 }
 
-// A map of residuals over the frame, from one half of the places and from the other: what both have is no noise.
+// A map of residuals over the frame, from each half of the areas: what both show is not noise.
 struct HalfMaps {
     struct Sums {
         double levels = 0.0, ev = 0.0, weight = 0.0, count = 0.0;
@@ -155,13 +154,13 @@ std::string few_text(const FileFindings &file) {
     const PlacesOf &f = file.from;
     return file.file
            + format(
-               ": too few places are smooth and between black and white in both pictures (%u; of %u squares of the "
-               "rendered picture %u are black, %u white and %u saturated in the raw file); take a picture with "
-               "all brightnesses and smooth areas of each",
+               ": too few areas are smooth and unclipped in both pictures (%u; of %u squares of the rendered picture "
+               "%u are black, %u white and %u saturated in the raw file); take a picture with smooth areas of all "
+               "brightnesses",
                file.places, f.squares, f.black, f.white, f.saturated);
 }
 
-// Of ln gamma, where the darkest or brightest part between levels 48 and 208 is not shown: cameras differ there.
+// Error of ln gamma if the darkest or brightest part between levels 48 and 208 is not measured: cameras differ there.
 double unseen_sigma(const ResponseReport &report) {
     const auto light = [&](double level) {
         return std::log(std::max(lensprof_response_invert(&report.response, level / 255.0, nullptr), 1e-9));
@@ -171,7 +170,7 @@ double unseen_sigma(const ResponseReport &report) {
     return range > 0.0 ? scatter_unseen * (1.0 - seen / range) : scatter_unseen;
 }
 
-// Of files one by one: their exponents, and what those scatter beyond their errors.
+// For individual files: their exponents, and scatter beyond their errors.
 double scatter_of_files(const std::vector<std::vector<Place>> &places, const lensprof_response &prior,
                         ResponseReport &report) {
     double mean = 0.0, scatter = 0.0, stated = 0.0;

@@ -1,4 +1,4 @@
-// What the fit says of the camera: its response, how sure that is, and whether the rendering is one curve at all.
+// Result of the fit: the camera's response, its errors, and whether the rendering uses a single curve.
 #pragma once
 
 #include <string>
@@ -12,21 +12,20 @@
 
 namespace lensprof {
 
-// Of a map of residuals over the frame, levels of 255: above it tones were mapped by their surroundings, or may have
-// been.
+// Limits of the map of residuals over the frame, levels of 255: above it tones were mapped locally, or may have been.
 constexpr double strong_pattern = 1.2, weak_pattern = 0.5;
 
-// Of one raw file.
+// Result for one raw file.
 struct FileFindings {
-    std::string file, rendered;  // rendered: the JPEG beside it; empty = embedded
-    PlacesOf from;               // without places
+    std::string file, rendered;  // rendered: the separate JPEG; empty = embedded
+    PlacesOf from;               // without areas
     uint32_t places = 0;
-    double radius = 0.0;                      // largest r of a place, half diagonals of the frame
-    double corner = 1.0, corner_sigma = 0.0;  // light of the rendering over that of the sensor at that r; centre 1
-    double pattern_levels = 0.0, pattern_ev = 0.0;  // of a map over the frame that is not radial, RMS
-    double noise_levels = 0.0;                      // of a place, neutral colours
-    double white_ev = 0.0;  // by how much the sensor's saturation of a neutral is above the rendering's white
-    double gamma = 0.0, gamma_sigma = 0.0;  // of this file alone
+    double radius = 0.0;                      // largest r of an area, half diagonals of the frame
+    double corner = 1.0, corner_sigma = 0.0;  // irradiance of the rendering over that of the sensor at that r; centre 1
+    double pattern_levels = 0.0, pattern_ev = 0.0;  // RMS of the non-radial map over the frame
+    double noise_levels = 0.0;                      // of an area, neutral colours
+    double white_ev = 0.0;  // EV between the white of the rendering and the sensor's saturation, for a neutral
+    double gamma = 0.0, gamma_sigma = 0.0;  // from this file alone
     Rendering rendering;
 
     // Whether the camera brightened the corners.
@@ -36,25 +35,25 @@ struct FileFindings {
 struct ResponseReport {
     std::vector<FileFindings> files;
     lensprof_response response{};
-    double gamma = 0.0;  // of the curve x^(1/gamma) with its ratio of light at 208 and 48
+    double gamma = 0.0;  // of the curve x^(1/gamma) with the same ratio of irradiance at 208 and 48
     double log_gamma_sigma = LENSPROF_UNKNOWN;
-    double lowest = 0.0, highest = 0.0;  // grey levels of 255 that places show, 1 in 100 beyond each
-    uint32_t tenths = 0;                 // of the grey values that are shown
+    double lowest = 0.0, highest = 0.0;  // range of measured grey levels of 255, without 1 in 100 at each end
+    uint32_t tenths = 0;                 // share of the grey values that are measured
     bool shows_white = false;            // the rendering reaches white before the sensor saturates
-    bool is_corrected = false;           // of most files
+    bool is_corrected = false;           // for most files
     bool usable = false;
     Verdict verdict;
     double load_s = 0.0, solve_s = 0.0;
     int64_t profile_id = 0;
 };
 
-// Fits all files together, and each alone where there are several. Failure (not_usable) where there are too few places.
+// Fits all files together, and each alone if there are several. Failure (not_usable) for too few areas.
 void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_response &prior, ResponseReport &report);
 
 // The file with the strongest map.
 const FileFindings &most_patterned(const ResponseReport &report);
 
-// Whether it is a response to store, and what is to be minded: sets `usable` and `verdict`.
+// Judges whether the response may be stored, and warnings: sets `usable` and `verdict`.
 void judge(ResponseReport &report);
 
 Json response_report_json(const ResponseReport &report);

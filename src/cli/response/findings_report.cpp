@@ -50,16 +50,16 @@ Json file_json(const FileFindings &file) {
 
 void print_file(const FileFindings &file, std::ostream &out) {
     const PlacesOf &f = file.from;
-    out << format("picture   %s: %s of %u x %u px, %u places, %.2f levels from the curve\n", file.file.c_str(),
+    out << format("picture   %s: %s of %u x %u px, %u areas, %.2f levels from the curve\n", file.file.c_str(),
                   file.rendered.empty() ? "its preview" : file.rendered.c_str(), f.width, f.height, file.places,
                   file.noise_levels);
     out << format(
-        "          falloff %s: %.3f +- %.3f of the sensor's light at r = %.2f; tones %s: a map of %.2f levels is left\n",
-        file.is_corrected() ? "corrected by the camera" : "as the lens made it", file.corner, file.corner_sigma,
-        file.radius,
-        file.pattern_levels > strong_pattern ? "mapped by their surroundings"
-        : file.pattern_levels > weak_pattern ? "perhaps mapped by their surroundings"
-                                             : "of one curve",
+        "          falloff %s: %.3f +- %.3f of the sensor's light at r = %.2f; tones %s: a map of %.2f levels "
+        "remains\n",
+        file.is_corrected() ? "corrected by the camera" : "not corrected", file.corner, file.corner_sigma, file.radius,
+        file.pattern_levels > strong_pattern ? "locally mapped"
+        : file.pattern_levels > weak_pattern ? "possibly locally mapped"
+                                             : "globally mapped",
         file.pattern_levels);
     out << format("          white %.2f EV below the saturation of the sensor\n", file.white_ev);
 }
@@ -91,13 +91,13 @@ void print_response_report(const ResponseReport &report, std::ostream &out) {
     print_response(report.response, out);
     out << format("gamma     %.3f +- %.3f (levels 48 to 208; standard error of ln gamma %.3f)\n", report.gamma,
                   report.gamma * report.log_gamma_sigma, report.log_gamma_sigma);
-    out << format("levels    %.0f to %.0f of 255 are shown; white %s\n", report.lowest, report.highest,
-                  report.shows_white ? "as well" : "is extrapolated");
+    out << format("levels    %.0f to %.0f of 255 are measured; white %s\n", report.lowest, report.highest,
+                  report.shows_white ? "is measured" : "is extrapolated");
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!report.usable)
         out << "NOT USABLE: " << report.verdict.text << "\n";
     else if (!report.verdict.text.empty())
-        out << "mind      " << report.verdict.text << "\n";
+        out << "warning   " << report.verdict.text << "\n";
 }
 
 }  // namespace lensprof

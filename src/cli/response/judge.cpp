@@ -1,4 +1,4 @@
-// Whether what was found is the response of a camera.
+// Judges whether the result is the response of a camera.
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
@@ -38,14 +38,14 @@ void judge(ResponseReport &report) {
     if (report.tenths < 4)
         return refuse(
             report, LENSPROF_REASON_FEW_GREYS,
-            format(
-                "only %u of ten parts of the grey values are shown; take a picture with all brightnesses and smooth areas of each",
-                report.tenths),
+            format("only %u of ten parts of the grey value range are covered; take a picture with smooth areas of all "
+                   "brightnesses",
+                   report.tenths),
             {double(report.tenths)});
     if (noise > most_scatter)
         return refuse(report, LENSPROF_REASON_SCATTER,
-                      format("the rendered picture is %.1f levels away from any curve of the raw values; it may be of "
-                             "another shot, or developed otherwise",
+                      format("the rendered picture deviates by %.1f levels from any curve of the raw values; it may "
+                             "be another shot, or developed differently",
                              noise),
                       {noise});
     if (pattern.pattern_levels > strong_pattern)
@@ -53,13 +53,13 @@ void judge(ResponseReport &report) {
             report, LENSPROF_REASON_PATTERNS,
             named
                 + format(
-                    "tones were mapped by their surroundings (a map of %.1f levels over the frame is left); switch "
-                    "D-Lighting, Auto Lighting Optimizer, DRO, HDR and the like off",
+                    "tones were mapped locally (a map of %.1f levels over the frame remains); switch off D-Lighting, "
+                    "Auto Lighting Optimizer, DRO, HDR and similar functions",
                     pattern.pattern_levels),
             {pattern.pattern_ev, pattern.pattern_levels});
     if (report.log_gamma_sigma > most_gamma_sigma)
         return refuse(report, LENSPROF_REASON_UNDETERMINED,
-                      format("the exponent is known within %.0f %% only; take a picture with all brightnesses",
+                      format("the exponent is known only to %.0f %%; take a picture with all brightnesses",
                              100.0 * report.log_gamma_sigma),
                       {});
     const auto mind = [&](uint32_t code, const std::string &text, std::vector<double> values) {
@@ -67,17 +67,15 @@ void judge(ResponseReport &report) {
         report.verdict.code = code, report.verdict.text = text, report.verdict.values = std::move(values);
     };
     if (pattern.pattern_levels > weak_pattern)
-        mind(
-            LENSPROF_REASON_WEAK_PATTERNS,
-            named
-                + format(
-                    "a map of %.1f levels over the frame is left; the camera may have mapped tones by their surroundings",
-                    pattern.pattern_levels),
-            {pattern.pattern_ev, pattern.pattern_levels});
+        mind(LENSPROF_REASON_WEAK_PATTERNS,
+             named
+                 + format("a map of %.1f levels over the frame remains; the camera may have mapped tones locally",
+                          pattern.pattern_levels),
+             {pattern.pattern_ev, pattern.pattern_levels});
     if (report.lowest > 48.0 || report.highest < 208.0)
         mind(LENSPROF_REASON_MISSING_GREYS,
-             format("grey levels %.0f to %.0f are shown; beyond them the response is that of a typical camera, "
-                    "continued",
+             format("only grey levels %.0f to %.0f are measured; beyond them the response is that of a typical "
+                    "camera, continued",
                     report.lowest, report.highest),
              {report.lowest / 255.0, report.highest / 255.0});
 }

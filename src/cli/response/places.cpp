@@ -10,13 +10,13 @@
 namespace lensprof {
 namespace {
 
-constexpr double squares_across = 240.0;  // of the longer side, where the picture has 4 px for each
+constexpr double squares_across = 240.0;  // on the longer side, if the picture has 4 px for each
 constexpr uint32_t least_square = 4;      // px
 constexpr int level_bins = 24;
 constexpr size_t most_a_bin = 1200;  // places
 constexpr double least_agreement = 0.4, least_texture = 0.02;
 constexpr uint8_t first_white = 254;    // JPEG rings at the edge of white
-constexpr float most_chroma = 0.7f;     // beyond, a channel may have been cut at 0 when colours were made
+constexpr float most_chroma = 0.7f;     // beyond it, a channel may have been clipped at 0 by the colour conversion
 constexpr float most_roughness = 1.0f;  // range of the raw green over its mean
 constexpr double last_grey = 250.0, least_grey = 1.5;  // means of a square
 
@@ -26,7 +26,7 @@ struct Candidate {
     uint32_t column, row;
 };
 
-// The part of the raw frame that a square covers.
+// The area of the raw frame covered by a square.
 struct RawPart {
     double mean[3] = {0, 0, 0};
     double least = 1e9, most = 0.0;  // of green
@@ -43,7 +43,7 @@ Grid grid_of(const Picture &rendered) {
     return {side, rendered.width / side, rendered.height / side};
 }
 
-// Bilinear, at (x, y) px of the picture held.
+// Bilinear, at (x, y) px of the stored picture.
 void add_sample(const Picture &raw, uint32_t channels, double x, double y, RawPart &part) {
     if (!(x >= 0.0 && y >= 0.0 && x <= raw.width - 1.0 && y <= raw.height - 1.0)) {
         part.is_inside = false;
@@ -76,7 +76,7 @@ public:
 
     const Grid &grid() const { return grid_; }
 
-    // A place, or nothing; counts why.
+    // An area, or nothing, counting the reasons.
     bool take(uint32_t column, uint32_t row, PlacesOf &counts, Candidate &out) {
         out.column = column_ = column, out.row = row_ = row;
         if (!read_rendered(out.place, counts)) return false;
@@ -146,7 +146,7 @@ private:
     uint32_t column_ = 0, row_ = 0;
 };
 
-// What is beside a square counts, too: halos of sharpening reach that far.
+// The surroundings of a square count too: sharpening halos reach that far.
 void add_surroundings(const Grid &grid, std::vector<Candidate> &candidates) {
     std::vector<float> green(size_t(grid.columns) * grid.rows, -1.0f);
     for (const Candidate &c : candidates) green[size_t(c.row) * grid.columns + c.column] = c.place.raw[1];
@@ -162,7 +162,7 @@ void add_surroundings(const Grid &grid, std::vector<Candidate> &candidates) {
     }
 }
 
-// Of every grey level the smoothest half, and not too many.
+// Keeps the smoothest half of every grey level, up to a maximum.
 std::vector<Place> smoothest(std::vector<Candidate> &candidates, uint32_t &rough) {
     std::vector<std::vector<const Candidate *>> bins(level_bins);
     for (const Candidate &c : candidates) {
@@ -191,7 +191,7 @@ std::vector<Place> smoothest(std::vector<Candidate> &candidates, uint32_t &rough
     return places;
 }
 
-// How the rendered picture is turned: as the frame, unless another turn fits clearly better.
+// The rotation of the rendered picture: that of the frame, unless another fits clearly better.
 int find_turn(const Picture &raw, const Picture &rendered) {
     const Alignment as_is = align_coarsely(raw, rendered);
     if (as_is.correlation > 0.6 || as_is.texture < least_texture) return 0;
@@ -208,14 +208,14 @@ void check_kinds(const Picture &raw, const Picture &rendered, const std::string 
     if (std::max(rendered.width, rendered.height) < least_rendered_side)
         throw Failure(ExitCode::not_usable,
                       name
-                          + format(": %u x %u px are too few to compare with the raw file (%u on the longer side are "
-                                   "enough); give the camera's JPEG of the same picture with --jpeg",
+                          + format(": %u x %u px are too few to compare with the raw file (the longer side needs %u); "
+                                   "give the camera's JPEG of the same picture with --jpeg",
                                    rendered.width, rendered.height, least_rendered_side),
                       LENSPROF_REASON_FEW_PAIRS);
     if (raw.layout != LENSPROF_LAYOUT_GREY && rendered.layout == LENSPROF_LAYOUT_GREY)
         throw Failure(ExitCode::not_usable,
-                      name + ": is black and white, and the raw file has colours; which mixture of them it shows is not "
-                             "known. Take a picture in a colour style", LENSPROF_REASON_UNDETERMINED);
+                      name + ": is black and white, but the raw file is in colour, and the mixture of its channels is "
+                             "unknown; take a picture in a colour style", LENSPROF_REASON_UNDETERMINED);
 }
 
 }  // namespace
@@ -231,8 +231,8 @@ PlacesOf places_of(const Picture &raw, Picture rendered, uint32_t picture, const
     if (found.alignment.texture >= least_texture && found.alignment.correlation < least_agreement)
         throw Failure(ExitCode::not_usable,
                       name
-                          + format(": does not show what the raw file shows (their structure correlates by %.2f); give "
-                                   "the camera's JPEG of the same picture with --jpeg",
+                          + format(": does not match the raw file (correlation of their structure %.2f); give the "
+                                   "camera's JPEG of the same picture with --jpeg",
                                    found.alignment.correlation),
                       LENSPROF_REASON_IMAGE_GROUPS);
     Sampler sampler(raw, rendered, found.alignment, found.channels);

@@ -1,4 +1,4 @@
-// `lensprof response`: camera raw files and the camera's own JPEGs of them -> the camera's response.
+// `lensprof response`: fits the camera's response to raw files and the camera's JPEGs of them.
 #include <algorithm>
 #include <cctype>
 #include <chrono>
@@ -31,11 +31,11 @@ struct Options {
 };
 
 void declare(Command &command, Options &o) {
-    command.files("FILES", o.files, "camera raw files of one camera, with the JPEG that it has put into each");
+    command.files("FILES", o.files, "raw files of one camera, with the JPEG that the camera embedded in each");
     command.require("FILES");
     command.words(
         "--jpeg", "FILE", [&o](const std::string &word) { o.jpegs.push_back(word); },
-        "the camera's JPEG of the same shot, instead of the embedded one; once for each raw file, in their order");
+        "camera JPEG of the same shot; give one per raw file, in the same order; default the embedded JPEG");
     declare_store(command, o.store);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -47,14 +47,13 @@ void check_options(const Options &o) {
     for (size_t i = 0; i < o.files.size(); i++)
         for (size_t k = 0; k < i; k++)
             if (is_same_file(o.files[i], o.files[k]))
-                throw Failure(ExitCode::usage, o.files[i] + ": is given twice; give it once");
+                throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
     if (o.files.size() > most_files)
-        throw Failure(ExitCode::usage, format("%zu files are too many at once (%zu at most), and a few tell as much; "
-                                              "name fewer",
+        throw Failure(ExitCode::usage, format("%zu files are too many (maximum %zu), and a few suffice; give fewer",
                                               o.files.size(), most_files));
 }
 
-// A JPEG in the same folder with the name of the raw file; empty = none.
+// A JPEG in the same folder with the base name of the raw file; empty = none.
 std::string jpeg_beside(const std::string &raw) {
     std::error_code ignored;
     for (const char *end : {".JPG", ".jpg", ".JPEG", ".jpeg"}) {
@@ -67,17 +66,17 @@ std::string jpeg_beside(const std::string &raw) {
 Picture read_jpeg(const std::string &file) {
     Picture picture = read_picture(file);
     if (picture.traits.format != FileFormat::jpeg)
-        throw Failure(ExitCode::usage, file + ": is no JPEG, and the response of the camera is in its own JPEGs; give "
-                                              "that of the same shot with --jpeg");
+        throw Failure(ExitCode::usage, file + ": is not a JPEG, but only the camera's own JPEGs show its response; "
+                                              "give the JPEG of the same shot with --jpeg");
     if (read_metadata(file).mark)
-        throw Failure(ExitCode::usage, file + ": was made by lensprof, and the response of the camera is in its own "
-                                              "JPEGs; give the original");
+        throw Failure(ExitCode::usage, file + ": was written by lensprof, but only the camera's own JPEGs show its "
+                                              "response; give the original");
     return picture;
 }
 
 bool is_large_enough(const Picture &picture) { return std::max(picture.width, picture.height) >= least_rendered_side; }
 
-// What --jpeg names, else what is embedded, else (none there, or hardly more than an icon) the JPEG beside the raw
+// The JPEG of --jpeg, else the embedded one, else (none, or not much larger than an icon) the JPEG next to the raw
 // file, whose name `beside` receives.
 Picture read_rendered(const Options &o, size_t i, std::string &beside, Streams &streams) {
     if (!o.jpegs.empty()) return read_jpeg(beside = o.jpegs[i]);
@@ -90,7 +89,7 @@ Picture read_rendered(const Options &o, size_t i, std::string &beside, Streams &
         if (!is_raw) throw;
         if (other.empty()) throw Failure(failure.code, failure.what() + std::string(", and give it with --jpeg"));
     }
-    note(streams, o.files[i] + ": has no JPEG preview of a useful size; " + other + " is taken");
+    note(streams, o.files[i] + ": has no large enough JPEG preview; using " + other);
     return read_jpeg(beside = other);
 }
 
@@ -98,7 +97,7 @@ Picture read_rendered(const Options &o, size_t i, std::string &beside, Streams &
 Picture read_cells(const std::string &file) {
     const Picture header = read_header(file);
     if (header.traits.format != FileFormat::raw)
-        throw Failure(ExitCode::unreadable, file + ": is no camera raw file; give one, and its JPEG with --jpeg");
+        throw Failure(ExitCode::unreadable, file + ": is not a camera raw file; give one, and its JPEG with --jpeg");
     const uint32_t longer = std::max(header.width, header.height);
     if (std::min(header.width, header.height) < 2 * least_raw_side)
         throw Failure(ExitCode::not_usable,
@@ -114,12 +113,12 @@ std::string camera_of(const PictureMetadata &metadata) {
 void demand_one_camera(const Options &o, const std::vector<PictureMetadata> &metadata) {
     for (size_t i = 1; i < metadata.size(); i++)
         if (camera_of(metadata[i]) != camera_of(metadata[0]))
-            throw Failure(ExitCode::usage, o.files[i] + ": is by another camera (" + camera_of(metadata[i]) + ") than "
-                                               + o.files[0] + " (" + camera_of(metadata[0])
-                                               + "); name the files of one");
+            throw Failure(ExitCode::usage, o.files[i] + ": comes from another camera (" + camera_of(metadata[i])
+                                               + ") than " + o.files[0] + " (" + camera_of(metadata[0])
+                                               + "); give files of one camera");
 }
 
-// Picture styles have responses of their own; one that not all files have is none of the profile.
+// Picture styles have their own responses; a style that not all files share is not stored in the profile.
 void keep_common_style(const std::vector<PictureMetadata> &metadata, lensprof_profile_key &key,
                        const StoreOptions &store) {
     if (!store.style.empty()) return;
@@ -148,8 +147,8 @@ void read_files(const Options &o, Progress &progress, std::vector<std::vector<Pl
         file.from = places_of(raw, std::move(rendered), static_cast<uint32_t>(i),
                               file.rendered.empty() ? o.files[i] + " (its preview)" : file.rendered);
         if (i > 0 && file.from.channels != report.files[0].from.channels)
-            throw Failure(ExitCode::usage, o.files[i] + ": " + o.files[0] + " has colours and this has none, or the "
-                                               "other way round; name files of one kind");
+            throw Failure(ExitCode::usage, o.files[i] + ": is in colour and " + o.files[0]
+                                               + " is grey, or the reverse; give files of one kind");
         places.push_back(std::move(file.from.places));
         file.from.places = {};
         report.files.push_back(std::move(file));
@@ -204,7 +203,7 @@ int run(const Options &o, Streams &streams) {
     demand_one_camera(o, metadata);
     lensprof_profile_key key = camera_key(o.store, metadata[0], o.files[0], streams);
     keep_common_style(metadata, key, o.store);
-    key.processing = LENSPROF_PROCESSING_JPEG;  // what is stored is of the rendering, not of the raw file
+    key.processing = LENSPROF_PROCESSING_JPEG;  // the stored profile describes the rendering, not the raw file
     check_store(o.store);
     ResponseReport report;
     try {
@@ -224,9 +223,9 @@ int run(const Options &o, Streams &streams) {
 
 void declare_response(Command &program) {
     Command command =
-        program.add("response", "camera raw files with their own JPEGs -> the camera's response",
-                    "Fits the response of a camera to raw files and the JPEGs that it made of them, place by "
-                    "place; docs/raw.md explains which files.");
+        program.add("response", "fit the camera's response to raw files and their JPEGs",
+                    "Fits the response of a camera to raw files and the JPEGs that the camera made from them; see "
+                    "docs/raw.md for suitable files.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });
