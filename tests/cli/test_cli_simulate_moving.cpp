@@ -282,7 +282,7 @@ void test_refused_options(void **) {
     for (const Words &words :
          {Words{"--rows", "2"}, Words{"--overlap", "0.7"}, Words{"--misalign", "1"}, Words{"--scene", "wall"},
           Words{"--parallax", "5"}, Words{"--points", "10"}, Words{"--test-points", "10"}})
-        assert_refused(usage, simulate("room", words), {words[0], "leave out --moving"});
+        assert_refused(usage, simulate("room", words), {words[0], "omit --moving"});
     for (const char *hfov : {"19", "101"})
         assert_refused(usage, simulate("terrain", {"--hfov", hfov}), {"--hfov", "20 to 100"});
     assert_refused(usage, {"simulate", "-o", work("s"), "--gloss", "1"}, {"--gloss: needs --moving"});

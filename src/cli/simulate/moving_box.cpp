@@ -14,7 +14,7 @@ Vector3 out_of_box(const Box &box, const Vector3 &v) {
     return {box.cosine * v.x - box.sine * v.y, box.cosine * v.y + box.sine * v.x, v.z};
 }
 
-// Where a line enters and leaves the slabs of a box, and through which of its faces.
+// Where a ray enters and leaves the slabs of a box, and through which faces.
 struct Passage {
     double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();
     uint32_t face_in = 0, face_out = 0;

@@ -56,12 +56,12 @@ Vector3 Heights::normal(double x, double y) const {
     return normalised({-along, -across, 2.0 * kCell});
 }
 
-// In steps that cannot pass the ground, since it is nowhere steeper than slope_; the last ones along the secant.
+// In steps that cannot pass the ground, because it is nowhere steeper than slope_; the last ones by the secant method.
 bool Heights::meet(const Line &line, double &distance_m) const {
     const double fall = -line.direction.z, way = std::hypot(line.direction.x, line.direction.y);
     double at_m = line.from.z > top_m_ ? (line.from.z - top_m_) / fall : 0.0, before_m = at_m, gap_before = 0.0;
     if (line.from.z > top_m_ && fall <= 0.0) return false;
-    const double closing = fall + slope_ * way;  // a metre along the line takes no more than this off the gap
+    const double closing = fall + slope_ * way;  // a metre along the ray reduces the gap by at most this
     if (closing <= 0.0) return false;
     for (int step = 0; step < 400 && at_m < kFar; step++) {
         const Vector3 place = line.from + at_m * line.direction;

@@ -1,4 +1,4 @@
-// Ground with hills: heights on a grid, linear between its points.
+// Hilly ground: heights on a grid, linearly interpolated.
 #pragma once
 
 #include "cli/simulate/moving.hpp"
@@ -7,14 +7,14 @@ namespace lensprof {
 
 class Heights {
 public:
-    // Hills within `reach_m` of the origin along x and y; flat outwards from there.
+    // Hills within `reach_m` of the origin along x and y; flat beyond.
     Heights(uint32_t seed, double reach_x_m, double reach_y_m);
 
     double at(double x, double y) const;
     Vector3 normal(double x, double y) const;
     double top() const { return top_m_; }
 
-    // Where a line that comes from above meets the ground; false where it passes over it.
+    // The intersection of a ray from above with the ground; false if it passes over it.
     bool meet(const Line &line, double &distance_m) const;
 
 private:

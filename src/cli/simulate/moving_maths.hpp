@@ -1,4 +1,4 @@
-// Vectors of a scene in space, metres.
+// Vectors of a 3D scene, metres.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A room with boxes in it; the camera walks round them.
+// A room with boxes; the camera moves around them.
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr Vector3 kHalf = {6.0, 4.5, 1.8};  // of the room, m
-constexpr double kPath[2] = {4.1, 2.9};     // half axes of the camera's way, m
-constexpr uint32_t kSurfaces = 8;           // numbers that a box takes
+constexpr double kPath[2] = {4.1, 2.9};     // half axes of the camera's path, m
+constexpr uint32_t kSurfaces = 8;           // ids used by a box
 
 class Room : public MovingWorld {
 public:
@@ -61,7 +61,7 @@ private:
     std::vector<Box> boxes_;
 };
 
-// Out of the way of the camera, and of other boxes where a few attempts find such a place.
+// Away from the camera's path, and from other boxes if a few attempts succeed.
 void Room::stand_in_the_middle(Random &random) {
     Box box;
     box.half = {random.uniform(0.15, 0.5), random.uniform(0.15, 0.5), random.uniform(0.15, 0.85)};
@@ -133,7 +133,7 @@ Look Room::look_of_ceiling(const double uv_m[2], double footprint_m) const {
     return look;
 }
 
-// White plaster, bricks, paper and dark wood, with prints that hang on all of them.
+// White plaster, bricks, paper and dark wood, with prints on all of them.
 Look Room::look_of_wall(uint32_t face, const double uv_m[2], double footprint_m) const {
     const double paint[4][3] = {{0.72, 0.70, 0.64}, {0.34, 0.15, 0.10}, {0.20, 0.33, 0.28}, {0.10, 0.075, 0.055}};
     const double grain[4] = {0.16, 0.30, 0.24, 0.34};
@@ -161,7 +161,7 @@ Look Room::look_of_wall(uint32_t face, const double uv_m[2], double footprint_m)
     return look;
 }
 
-// Round the middle, and looking across it. Few pictures take a part of the way, so that they overlap.
+// Around the centre, looking across it. A few pictures cover only a part of the path, so that they overlap.
 std::vector<Pose> Room::path() const {
     Random random(plan_.seed * 6364136223846793005ull + 12);
     const double step = std::min(2.0 * kPi / plan_.images, 0.3 * plan_.hfov_deg * kPi / 180.0);

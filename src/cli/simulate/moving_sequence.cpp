@@ -1,4 +1,4 @@
-// `simulate --moving`: the sequence as the options ask for it, with automatic exposure and white balance.
+// `simulate --moving`: the requested sequence, with automatic exposure and white balance.
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +9,9 @@ namespace lensprof {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr uint32_t kColumns = 16, kRows = 12;  // of the places where a picture is metered
-constexpr double kMetered = 0.2;               // light of the mean of all pictures, of white
-constexpr double kStrength = 0.75;             // share of a difference in light that automatic exposure takes back
+constexpr uint32_t kColumns = 16, kRows = 12;  // metering points of a picture
+constexpr double kMetered = 0.2;               // mean irradiance of all pictures, relative to white
+constexpr double kStrength = 0.75;             // share of a brightness difference that automatic exposure compensates
 
 // log2 of the mean luminance.
 double metered_ev(const Truth &truth, uint32_t i) {
@@ -27,7 +27,7 @@ double metered_ev(const Truth &truth, uint32_t i) {
     return std::log2(std::max(sum / (kColumns * kRows), 1e-6));
 }
 
-// Swings to and fro within +-1, from 0.
+// Oscillates within +-1, starting at 0.
 double drift(double share, double swings, double phase) {
     return 0.5 * (std::sin(2.0 * kPi * swings * share + phase) - std::sin(phase));
 }

@@ -15,12 +15,12 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kAltitude = 62.0;           // of the drone above the middle of the ground, m
 constexpr double kTilt = 14.0;               // of its camera, forward from straight down, degrees
-constexpr double kAhead = 0.22;              // of a picture's height: the way between two pictures of a row
-constexpr double kAside = 0.38;              // of a picture's width: the way between two rows
-constexpr double kMargin = 70.0;             // of the hills beyond the drone's way, m
-constexpr double kBucket = 10.0;             // side of the lattice that houses and trees are found by, m
+constexpr double kAhead = 0.22;              // share of a picture's height between two pictures of a row
+constexpr double kAside = 0.38;              // share of a picture's width between two rows
+constexpr double kMargin = 70.0;             // of the hills beyond the drone's path, m
+constexpr double kBucket = 10.0;             // side of the lattice for finding houses and trees, m
 constexpr double kField = 21.0;              // side of a field, m
-constexpr uint32_t kGround = 1, kFirst = 8;  // numbers of surfaces; a house takes 8, a tree 1
+constexpr uint32_t kGround = 1, kFirst = 8;  // ids of surfaces; a house takes 8, a tree 1
 
 // Rows of the survey. Their number makes the surveyed area about square.
 struct Survey {
@@ -68,7 +68,7 @@ public:
     std::vector<Pose> path() const override;
 
 private:
-    // What may be met over a piece of ground.
+    // Objects above a piece of ground.
     struct Bucket {
         std::vector<uint32_t> houses, trees;
     };
@@ -134,7 +134,7 @@ void Terrain::add_house(Random &random) {
                     [&](size_t bucket) { buckets_[bucket].houses.push_back(index); });
 }
 
-// More of them where the wood is.
+// More of them in the wood.
 void Terrain::add_tree(Random &random) {
     Tree tree;
     tree.radius_m = random.uniform(0.8, 2.6);
@@ -165,7 +165,7 @@ void Terrain::meet_tree(uint32_t index, const Line &line, Hit &hit) const {
     hit.normal = 1.0 / tree.radius_m * (hit.point - tree.centre);
 }
 
-// The ground first: what stands on it is met between there and where the line comes below the highest of them.
+// The ground first: objects on it are hit between there and where the ray descends below the highest of them.
 Hit Terrain::trace(const Line &line) const {
     Hit hit;
     if (ground_.meet(line, hit.distance_m)) {
@@ -252,7 +252,7 @@ Look Terrain::look_of_tree(uint32_t tree, const Vector3 &point, double footprint
     return look;
 }
 
-// Up one row and down the next, the drone ahead of its camera's view.
+// Up one row and down the next, with the drone ahead of its camera's view.
 std::vector<Pose> Terrain::path() const {
     Random random(plan_.seed * 6364136223846793005ull + 22);
     std::vector<Pose> poses;

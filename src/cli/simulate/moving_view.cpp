@@ -1,4 +1,4 @@
-// One pixel of a camera that moves: lines into the scene, and the light that comes back along them.
+// One pixel of a moving camera: rays into the scene, and the radiance along them.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kSamples = 4;
-// A turned square about the centre of the pixel: no two samples share a row or a column.
+// A rotated square about the centre of the pixel: no two samples share a row or column.
 constexpr double kOffsets[kSamples][2] = {{-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}};
 
 void sky_radiance(const Light &light, const Vector3 &direction, double rgb[3]) {
@@ -37,7 +37,7 @@ void surface_radiance(const MovingWorld &world, const Line &line, const Hit &hit
                  + highlight * facing * light.direct[c] * strength;
 }
 
-// Of a pixel on the surface; seen at a flat angle it is longer.
+// Footprint of a pixel on the surface, longer at a flat angle.
 double footprint_of(const Pinhole &pinhole, const Line &line, const Hit &hit) {
     const double across = std::fabs(dot(hit.normal, line.direction));
     return hit.distance_m / pinhole.focal_px / std::sqrt(std::max(across, 0.05));
@@ -50,7 +50,7 @@ void radiance_of(const MovingWorld &world, const Pinhole &pinhole, const Line &l
         surface_radiance(world, line, hit, footprint_of(pinhole, line, hit), rgb);
 }
 
-// All lines have met one surface at about one distance: it is looked at once, in the middle.
+// All rays hit one surface at about the same distance: it is evaluated once, in the middle.
 bool is_one_surface(const Hit (&hits)[kSamples]) {
     for (const Hit &hit : hits) {
         if (hit.surface != hits[0].surface || hit.surface == 0) return false;

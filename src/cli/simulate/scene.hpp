@@ -1,4 +1,4 @@
-// A procedural world: radiance of every direction, the same for every picture.
+// A procedural scene: radiance by direction, the same for every picture.
 #pragma once
 
 #include <cstdint>
@@ -29,11 +29,11 @@ public:
     // Radiance of red, green and blue in a direction (radians, latitude positive down).
     void radiance(double longitude, double latitude, double rgb[3]) const;
 
-    // Of what is in a direction: 0 = far, 1 = the nearest there is; one of kLayers steps for each cell of a lattice.
+    // Nearness of the object in a direction: 0 = far, 1 = nearest; one of kLayers steps per cell of a lattice.
     double nearness(double longitude, double latitude) const;
     static constexpr int kLayers = 3;
 
-    // Sum of octaves of smooth noise at a point of space, the first with features of 1 / frequency; within +-1.1.
+    // Sum of octaves of smooth noise at a point in space, the first with features of 1 / frequency; within +-1.1.
     double fractal(const double d[3], double frequency, int octaves) const;
 
 private:
@@ -42,7 +42,7 @@ private:
         double longitude, latitude, d[3];
     };
     double noise(double x, double y, double z, uint32_t octave) const;
-    double draw(double u, double v, uint32_t what) const;  // 0..1, of a cell of a lattice
+    double draw(double u, double v, uint32_t what) const;  // a number 0..1 per cell of a lattice
     void landscape(const Ray &ray, double rgb[3]) const;
     void sky(const Ray &ray, double rgb[3]) const;
     void wall(const Ray &ray, double rgb[3]) const;

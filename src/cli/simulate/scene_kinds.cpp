@@ -1,4 +1,4 @@
-// What a lens is often pointed at, and a fit finds hard: little texture, too much of it, too much contrast.
+// Common subjects that are hard for a fit: little texture, too much of it, too much contrast.
 #include <cmath>
 
 #include "cli/simulate/scene.hpp"
@@ -7,7 +7,7 @@
 namespace lensprof {
 
 void Scene::sky(const Ray &ray, double rgb[3]) const {
-    const double low = ramp(-1.2, 0.5, ray.latitude);  // 1: by the horizon
+    const double low = ramp(-1.2, 0.5, ray.latitude);  // 1: at the horizon
     const double high[3] = {0.09, 0.18, 0.42}, haze[3] = {0.38, 0.46, 0.60};
     const double clouded = draw(0, 0, 31) < 0.5 ? 0.0 : 0.5;
     const double cloud = clouded > 0.0 ? clouded * ramp(0.02, 0.5, fractal(ray.d, 2.2, 3)) : 0.0;
@@ -41,7 +41,7 @@ void Scene::foliage(const Ray &ray, double rgb[3]) const {
 }
 
 void Scene::interior(const Ray &ray, double rgb[3]) const {
-    // Furniture and pictures: flat boxes on a wall that the windows light a little.
+    // Furniture and pictures: flat boxes on a wall lit dimly by the windows.
     const double u = ray.longitude * 5.0, v = ray.latitude * 6.0;
     const double inset = std::fmax(std::fabs(from_whole(u - 0.5)), std::fabs(from_whole(v - 0.5)));
     const double wood = 1.0 + 0.5 * fractal(ray.d, 30.0, 3), lit = std::exp(0.6 * fractal(ray.d, 1.5, 2));

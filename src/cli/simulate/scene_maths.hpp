@@ -1,4 +1,4 @@
-// Steps that scenes are made of.
+// Building blocks of scenes.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ inline double line(double distance, double half_width) {
     return 1.0 - ramp(0.6 * half_width, 1.4 * half_width, std::fabs(distance));
 }
 
-// Bits that look random, of four numbers; then as a number of 0..1.
+// Pseudo-random bits of four numbers; then as a number 0..1.
 inline uint32_t hash(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     uint32_t h = a * 0x9e3779b1u ^ b * 0x85ebca77u ^ c * 0xc2b2ae3du ^ d * 0x27d4eb2fu;
     h ^= h >> 15;
@@ -32,7 +32,7 @@ inline uint32_t hash(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
 
 inline double unit(uint32_t h) { return h * (1.0 / 4294967296.0); }
 
-// From the nearest whole number.
+// Distance to the nearest integer.
 inline double from_whole(double x) { return x - std::floor(x + 0.5); }
 
 }  // namespace lensprof

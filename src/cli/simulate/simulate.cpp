@@ -39,7 +39,7 @@ Picture render(const Truth &truth, const Scene &scene, uint32_t i) {
     return picture;
 }
 
-// What the camera does to the light: the product's own apply, run backwards.
+// The effect of the camera: the library's own correction, run in reverse.
 void expose(const Truth &truth, uint32_t i, Picture &picture) {
     lensprof_apply_options options;
     lensprof_apply_options_init(&options);
@@ -136,7 +136,7 @@ void write_pictures(const SimulateOptions &o, const Truth &truth, const Scene &s
         write.metadata = &metadata;
         std::string path = (std::filesystem::path(o.output) / truth.files[i]).string();
         if (!write_picture(path, picture, write) && o.exif)
-            throw Failure(ExitCode::failed, path + ": a TIFF of 4 GB cannot hold EXIF; use a smaller --size");
+            throw Failure(ExitCode::failed, path + ": EXIF cannot be written to a TIFF of 4 GB; use a smaller --size");
     });
 }
 
@@ -150,7 +150,7 @@ int run(const SimulateOptions &o, Streams &streams) {
     Progress progress(streams.err, ShowProgress::when_terminal);
     if (!o.no_images) write_pictures(o, truth, scene, progress);
     const std::string pto = (folder / "pano.pto").string(), truth_file = (folder / "truth.json").string();
-    if (!o.moving) {  // a project could not say where a camera that moves is
+    if (!o.moving) {  // a project cannot store the position of a moving camera
         const std::string project = project_text(o, truth);
         write_file(pto, project.data(), project.size());
     }
@@ -175,8 +175,8 @@ int run(const SimulateOptions &o, Streams &streams) {
 
 void declare_simulate(Command &program) {
     Command command = program.add(
-        "simulate", "render overlapping pictures with a known camera",
-        "Renders overlapping pictures of a procedural scene, taken by a camera whose truth is written down.");
+        "simulate", "render overlapping pictures of a simulated camera",
+        "Renders overlapping pictures of a procedural scene and writes the true camera parameters to truth.json.");
     auto o = std::make_shared<SimulateOptions>();
     declare_simulate_options(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

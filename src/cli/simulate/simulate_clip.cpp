@@ -1,4 +1,4 @@
-// Exposures that blow out the lights.
+// Exposures that clip highlights.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace lensprof {
 
 void clip_lights(double share, const Scene &scene, Truth &truth) {
-    constexpr uint32_t kGrid = 64;  // points a side of every picture
+    constexpr uint32_t kGrid = 64;  // points per side of every picture
     std::vector<double> stops;      // of the brightest channel, EV from white
     for (uint32_t i = 0; i < truth.cameras.size(); i++) {
         const auto &camera = truth.cameras[i];

@@ -1,4 +1,4 @@
-// The text files beside the pictures: the project and truth.json.
+// The text files next to the pictures: the project and truth.json.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -37,7 +37,7 @@ Json image_json(const Truth &truth, size_t i) {
 
 }  // namespace
 
-// The project as an alignment program would leave it: geometry known, exposures to be found.
+// The project as an alignment program would write it: geometry known, exposures unknown.
 std::string project_text(const SimulateOptions &o, const Truth &truth) {
     Random random(truth.seed * 31ull + 5);
     std::vector<ProjectImage> images;

@@ -1,4 +1,4 @@
-// What moves: blocks that are in one picture only, and record radiances of their own.
+// Moving objects: blocks in one picture only, with radiances of their own.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace lensprof {
 namespace {
 
-constexpr int kGrid = 128;  // points a side on which the covered share is measured
+constexpr int kGrid = 128;  // points per side for measuring the covered share
 
 Block random_block(const lensprof_camera &camera, Random &random) {
     Block block;
@@ -22,7 +22,7 @@ Block random_block(const lensprof_camera &camera, Random &random) {
     return block;
 }
 
-// Marks the points of the grid inside a block; how many are marked now.
+// Marks the grid points inside a block; returns the number marked so far.
 int mark(const lensprof_camera &camera, const Block &block, std::vector<char> &covered) {
     for (int j = 0; j < kGrid; j++)
         for (int i = 0; i < kGrid; i++)
@@ -40,8 +40,8 @@ std::vector<Block> random_blocks(const lensprof_camera &camera, double share, Ra
     for (int before = 0, now = 0; now < wanted; before = now) {
         Block block = random_block(camera, random);
         now = mark(camera, block, covered);
-        // The last block is taken when that is nearer to the share than to be without: on average neither more nor
-        // less than the share is covered.
+        // The last block is kept if the share is then closer to the requested one: on average exactly that share is
+        // covered.
         if (now < wanted || now - wanted < wanted - before) blocks.push_back(block);
     }
     return blocks;

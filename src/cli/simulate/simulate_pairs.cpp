@@ -57,8 +57,8 @@ struct Edge {
     uint32_t a, b;
 };
 
-// Ordered pairs of images that can see the same: the angle between their axes is below the sum of their half diagonal
-// fields of view. In a large mosaic few of all pairs do.
+// Ordered pairs of images that can overlap: the angle between their axes is below the sum of their half diagonal fields
+// of view. In a large mosaic only a few pairs do.
 std::vector<Edge> possible_overlaps(const std::vector<lensprof_camera> &cameras) {
     const double degree = std::acos(-1.0) / 180.0;
     std::vector<std::array<double, 3>> axes;
@@ -78,7 +78,7 @@ std::vector<Edge> possible_overlaps(const std::vector<lensprof_camera> &cameras)
     return edges;
 }
 
-// Where pairs come from. Noise-free ones see the scene alone.
+// The source of pairs. Noise-free ones see only the scene.
 struct Source {
     const Truth &truth;
     const Scene &scene;
@@ -102,7 +102,7 @@ void Source::see(lensprof_pair &pair, int side, const double scene_rgb[3]) const
     if (noisy && !truth.tone.empty()) map_tone(tone_gain(truth, image, x, y), pair.value[side]);
 }
 
-// One random correspondence before noise; false when the draw sees no second image or is badly exposed.
+// One random correspondence before noise; false if no second image sees it or it is badly exposed.
 bool Source::draw(Random &random, lensprof_pair &pair, int ring[2]) const {
     auto edge = edges[static_cast<size_t>(random.uniform() * static_cast<double>(edges.size()))];
     const auto &a = truth.cameras[edge.a], &b = truth.cameras[edge.b];
@@ -146,7 +146,7 @@ std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene
     uint32_t per_ring[kRings] = {}, share = (count + kRings - 1) / kRings;
     for (uint64_t trial = 0, most = 2000ull * count + 100000; trial < most && pairs.size() < count; trial++) {
         if (trial % (most / 20) == most / 20 - 1)
-            share += share / 4 + 1;  // rings that cannot be filled: others take more
+            share += share / 4 + 1;  // rings that cannot be filled: others get more
         if (trial % 4096 == 0) stop_if_interrupted();
         lensprof_pair pair;
         int ring[2];

@@ -1,11 +1,11 @@
-// A camera that moves between pictures: what is near shifts against what is far.
+// A camera that moves between pictures: near objects shift against far ones.
 #include <cmath>
 
 #include "cli/simulate/simulate.hpp"
 
 namespace lensprof {
 
-// Uniform within a circle: between two pictures what is nearest shifts by `parallax` px at most.
+// Uniform within a circle: between two pictures the nearest objects shift by at most `parallax` px.
 void move_cameras(double parallax, Random &random, Truth &truth) {
     truth.parallax = parallax;
     for (size_t i = 0; i < truth.cameras.size(); i++) {
@@ -15,7 +15,8 @@ void move_cameras(double parallax, Random &random, Truth &truth) {
     }
 }
 
-// The scene is layers of one nearness each: the first, from near to far, that has something where its shift leads.
+// The scene consists of layers of one nearness each: takes the first, from near to far, with an object at the shifted
+// position.
 void moved_direction(const Truth &truth, const Scene &scene, uint32_t index, double direction[2]) {
     if (truth.positions.empty()) return;
     const auto &camera = truth.cameras[index];

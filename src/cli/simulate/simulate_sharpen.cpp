@@ -1,4 +1,4 @@
-// What a camera does to its JPEG pictures after the response: an unsharp mask, which overshoots at edges.
+// Sharpening of JPEG pictures by a camera after the response: an unsharp mask, which overshoots at edges.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Local tone mapping: what a phone does to a picture after the response, by the surroundings of every pixel.
+// Local tone mapping, as phones apply it after the response, by the surroundings of every pixel.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// The camera before the scene, as the options ask for it.
+// The simulated camera, according to the options.
 #include <cmath>
 #include <stdexcept>
 
@@ -10,7 +10,7 @@
 namespace lensprof {
 namespace {
 
-// Exposure time and ISO that make up the exposure of every image, but for --exif-rounding.
+// Exposure time and ISO that give the exposure of every image, apart from --exif-rounding.
 std::vector<Settings> exposure_settings(const SimulateOptions &o, const Truth &truth) {
     Random random(truth.seed * 104729ull + 11);
     std::vector<Settings> settings;
@@ -23,7 +23,7 @@ std::vector<Settings> exposure_settings(const SimulateOptions &o, const Truth &t
     return settings;
 }
 
-// What the pictures tell of their exposures, and how these then scatter.
+// The EXIF exposures of the pictures, and the scatter of the true ones about them.
 void add_settings(const SimulateOptions &o, Truth &truth) {
     truth.settings = exposure_settings(o, truth);
     truth.is_manual = o.exif_manual;
@@ -31,7 +31,7 @@ void add_settings(const SimulateOptions &o, Truth &truth) {
     for (auto &e : truth.exposures) e.ev += o.exif_scatter * random.normal();
 }
 
-// Asked for with --objects, --parallax, --clip, --local-tone and --exif; random numbers of their own, so that the rest
+// Parts for --objects, --parallax, --clip, --local-tone and --exif; with separate random numbers, so that the rest
 // stays the same.
 void add_disturbances(const SimulateOptions &o, const Scene &scene, Truth &truth) {
     Random random(o.seed * 15485863ull + 3);
@@ -81,16 +81,15 @@ void draw_exposures(const SimulateOptions &o, Random &random, Truth &truth) {
     }
 }
 
-// Failure (usage) that names the option to blame: the curve, or where only it is off the middle the centre.
+// Failure (usage) for the option at fault: the curve, or the centre if only it is.
 void check_falloff(lensprof_vignetting falloff) {
     if (lensprof_vignetting_validate(&falloff) == LENSPROF_OK) return;
     falloff.center[0] = falloff.center[1] = 0.0;
     if (lensprof_vignetting_validate(&falloff) != LENSPROF_OK)
         throw Failure(ExitCode::usage,
-                      "--vignetting: the falloff must stay positive to the corner; give smaller numbers");
+                      "--vignetting: the falloff must stay positive up to the corner; give smaller numbers");
     throw Failure(ExitCode::usage,
-                  "--center: the falloff must stay positive to the corner farthest from its centre; give "
-                  "a centre nearer to 0,0");
+                  "--center: the falloff must stay positive up to the farthest corner; give a centre closer to 0,0");
 }
 
 }  // namespace
