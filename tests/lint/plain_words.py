@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 # What is checked, as globs below the project.
-PROSE = ("CONTRIBUTING.md",)
+PROSE = ("CHANGELOG.md", "CONTRIBUTING.md", "bindings/**/*.md", "docs/**/*.md", "examples/**/*.md", "src/**/*.md")
 SOURCES = ("src/cli/**/*.?pp",)
 # Files with sentences of other people, or tables that a program wrote.
 EXEMPT = ("tests/lint/", "docs/benchmark-results.md", "LICENSE", "NOTICE")

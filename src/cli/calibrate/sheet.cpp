@@ -29,20 +29,6 @@ struct Small {
     std::vector<uint8_t> rgb;
 };
 
-// EXIF orientation: the position of pixel (x, y) of the upright picture in the stored one of w x h.
-std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uint32_t h, uint32_t x, uint32_t y) {
-    switch (orientation) {
-    case 2: return {w - 1 - x, y};
-    case 3: return {w - 1 - x, h - 1 - y};
-    case 4: return {x, h - 1 - y};
-    case 5: return {y, x};
-    case 6: return {y, h - 1 - x};
-    case 7: return {w - 1 - y, h - 1 - x};
-    case 8: return {w - 1 - y, x};
-    default: return {x, y};
-    }
-}
-
 // Empty for an unreadable file: the copy may have been edited since.
 Small small_of(const std::string &file, uint16_t orientation) {
     ReadOptions read;

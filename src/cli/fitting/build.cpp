@@ -62,6 +62,8 @@ void declare_points(Command &command, Options &o) {
                  "write the pairs used (Hugin's 16 columns), even if the fit is not usable");
     command.file("--preview", o.preview,
                  "write a mosaic of the pictures before and, below, after correction, as .jpg, .png or .tif");
+    command.file("--report", o.report,
+                 "write a report with charts and the pictures before and after, as one .html file");
     command.file("--exposures-out", o.exposures_out,
                  "write exposures and white balances with standard errors, response and falloff as JSON, for `apply "
                  "--model` and other programs");

@@ -13,11 +13,6 @@ constexpr uint32_t longer_side = 1600, gap = 8;                           // px 
 constexpr uint32_t picture_side = 500;                                    // px to which pictures are reduced
 constexpr double widest_flat = 55.0 * M_PI / 180.0, farthest_flat = 8.0;  // forward view; px of a plane at distance 1
 
-struct Tile {
-    Picture before, after;  // 8 bit
-    lensprof_camera camera{};
-};
-
 // The model on a reduced picture, whose position in the frame does not matter: radii are in half diagonals.
 Picture applied(Picture &source, const lensprof_apply_options &options, const std::string &file) {
     lensprof_apply_options own = options;
@@ -39,7 +34,8 @@ Picture applied(Picture &source, const lensprof_apply_options &options, const st
 }
 
 // A picture corrected with a result, and the unchanged picture in the same format.
-Tile tile_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted) {
+CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted,
+                      uint32_t max_side) {
     ReadOptions read;
     read.max_side = max_side;
     Picture source = read_picture(project.files[i], read);
@@ -142,7 +138,7 @@ void copy_pixel(const Picture &from, uint32_t x, uint32_t y, uint8_t *to) {
 }
 
 // Draws a tile's pixels into both mosaics, unless another picture's centre is nearer.
-void paint(const Canvas &canvas, const Tile &tile, std::vector<float> &nearest, Picture &out) {
+void paint(const Canvas &canvas, const CorrectedCopy &tile, std::vector<float> &nearest, Mosaic &out) {
     const lensprof_camera &camera = tile.camera;
     const Box box = box_of(canvas, camera);
     const auto pixel = [&](double at, double from, uint32_t count) {
@@ -177,8 +173,7 @@ void check_preview(const std::string &path) {
                                               "or .tif");
 }
 
-void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress) {
-    const lensprof_exposure wanted = mean_exposure(fitted.exposures);  // as in `apply --pto`
+std::vector<uint32_t> images_with_exposure(const Fitted &fitted) {
     std::vector<uint32_t> joined;
     for (uint32_t i = 0; i < fitted.exposures.size(); i++)
         if (!std::isnan(fitted.exposures[i].ev)) joined.push_back(i);
