@@ -49,7 +49,7 @@ void test_a_folder_of_many_things(void **) {
     }
     assert_int_equal(json["left_out"].size(), 2);
     assert_true(contains(json["left_out"][0]["reason"], "bad.png"));
-    assert_true(contains(json["left_out"][1]["reason"], "it is a copy of img001.png"));
+    assert_true(contains(json["left_out"][1]["reason"], "a copy of img001.png"));
     assert_true(fs::exists(work("out/sub/y.png")) && fs::exists(work("out/calibrate_sheet.jpg")));
     assert_true(json["pictures"][4]["panorama"].is_null());  // sub/y.png, by the profile that the panoramas stored
 

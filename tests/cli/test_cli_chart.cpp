@@ -276,7 +276,7 @@ void test_usage(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, true}, {"A", 28, 4, 3, false}});
     const Words show = {"profile", "show", "--db", db};
     assert_refused(usage, show, {"profile list"});
-    assert_refused(usage, show + Words{"1", "--camera", "A"}, {"either"});
+    assert_refused(usage, show + Words{"1", "--camera", "A"}, {"give ids"});
     assert_refused(usage, show + Words{"0"}, {});
     assert_refused(usage, show + Words{"x"}, {});
     assert_refused(usage, show + Words{"1", "--channel", "green"}, {"--channel", "--chart"});

@@ -204,7 +204,7 @@ void test_refused(void **) {
     assert_refused(usage, {"profile", "check", "1", "--db", db()}, {"1", "--against"});
     assert_refused(usage, {"profile", "check", "--images", work("x"), "--db", db()}, {"--images", "--against"});
     assert_refused(usage, {"profile", "check", "--against", two, "--db", db()}, {"--against", "profile list"});
-    assert_refused(usage, against("0", two), {"0 is no number of a profile"});
+    assert_refused(usage, against("0", two), {"0 is not a profile id"});
     assert_refused(usage, against("99999999999999999999", two), {"99999999999999999999"});
     assert_refused(usage, against("1", two, {"--images", work("x")}), {"--images"});
     assert_refused(unreadable, against("1", text), {text});

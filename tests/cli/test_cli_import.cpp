@@ -110,7 +110,7 @@ void test_units_and_settings(void **) {
         contains(must_exit(done, query + Words{"--aperture", "2.8", "--unit", "sn1"}), "predicted from 2 profiles"));
     assert_refused(not_found, query + Words{"--aperture", "2.8"}, {"single units"});
     assert_refused(not_found, query, {"single units"});
-    assert_refused(usage, {"profile", "show", "abc", "--db", work("l.db")}, {"abc is no number of a profile"});
+    assert_refused(usage, {"profile", "show", "abc", "--db", work("l.db")}, {"abc is not a profile id"});
     const Outcome written = run_words({"profile", "export", "2", "-o", work("one.xml"), "--db", work("l.db")});
     assert_int_equal(written.code, done);
     assert_true(contains(written.err, "profile 2: its falloff differs per channel; lensfun stores the mean"));

@@ -139,8 +139,8 @@ void test_profile_of_another_processing(void **) {
     const std::string file = make_picture("a.png", "Camera", "Lens 50mm"),
                       raw = make_picture("b.tif", "Camera", "Lens 50mm", LENSPROF_SAMPLE_F32);
     assert_refused(usage, {"apply", "--profile", "1", "-o", work("out"), file},
-                   {file, "is taken as jpeg", "profile 1 is of raw", "--processing raw", "--response"});
-    assert_refused(usage, {"apply", "--profile", "2", "-o", work("out"), raw}, {raw, "is taken as raw", "of jpeg"});
+                   {file, "is treated as jpeg", "profile 1 is for raw", "--processing raw", "--response"});
+    assert_refused(usage, {"apply", "--profile", "2", "-o", work("out"), raw}, {raw, "is treated as raw", "for jpeg"});
     must_exit(done, {"apply", "--profile", "1", "--processing", "raw", "-o", work("out"), file});
     assert_corner(work("out/a.png"), by_linear);
     must_exit(done, {"apply", "--profile", "2", "--processing", "jpeg", "-o", work("out"), raw});
@@ -152,7 +152,7 @@ void test_corrected_in_camera(void **) {
     make_database("Lens 35mm");
     const std::string file = make_corrected("in/a.jpg");
     const Words words = {"apply", "--lens", "JPEG 35mm"};
-    const char *by = "its falloff was corrected before, in camera (Panasonic: shading compensation)";
+    const char *by = "its falloff was already corrected, in camera (Panasonic: shading compensation)";
     assert_refused(not_found, words + Words{"-o", work("out"), file}, {file, by, "--force-falloff"});
     assert_refused(not_found, {"apply", "--profile", "2", "-o", work("out"), file}, {by});
     assert_refused(not_found, words + Words{"--response", "srgb", "-o", work("out"), file}, {by});

@@ -66,7 +66,7 @@ void test_no_value_may_be_empty(void **) {
         for (const std::string &name : section_of(help, "Positionals"))
             assert_wrong_usage(command + Words{""}, name + ": ");
     }
-    assert_refused(usage, {"query", "--camera", "x", "--json="}, {"--json: its value is empty"});
+    assert_refused(usage, {"query", "--camera", "x", "--json="}, {"--json: takes no value"});
 }
 
 void test_the_nearest_is_named(void **) {

@@ -97,7 +97,7 @@ void test_a_folder_of_many_things(void **) {
     assert_true(contains(run.err, "x0.png, x1.png, x2.png: left out: part of another group"));
     assert_true(contains(run.err, "y.png: left out: no overlap"));
     assert_true(contains(run.err, "damaged.png"));
-    assert_true(contains(run.err, "it is a copy of copy.png"));
+    assert_true(contains(run.err, "a copy of copy.png"));
     assert_true(contains(run.err, "small.png: left out: no two pictures of its camera, size or processing overlap"));
     std::map<std::string, std::string> left_out;
     for (const Json &one : json["left_out"]) left_out[one["file"]] = one["reason"];

@@ -32,7 +32,7 @@ void test_merge(void **) {
     const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4}, {50, 4, -0.2}});
     const std::string b = make_db("b.db", "85mm", {{85, 2, -0.4}}), all = work("all.db");
     const std::string said = must_exit(done, merge_into(all) + Words{a, b});
-    assert_true(contains(said, a + ": 2 profiles added to " + all + ", 0 were there"));
+    assert_true(contains(said, a + ": 2 profiles added to " + all + ", 0 were already there"));
     assert_true(contains(said, b + ": 1 profile added"));
     const Json again = json_of(merge_into(all) + Words{b, a, "--json"});
     assert_string_equal(again["merged"][1]["file"].get<std::string>().c_str(), a.c_str());

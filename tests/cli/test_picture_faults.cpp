@@ -277,7 +277,8 @@ void test_kinds_that_formats_cannot_hold(void **) {
     assert_failure(ExitCode::usage, "a.jpg: cannot write: JPEG holds 8 bit",
                    write("a.jpg", LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB));
     assert_failure(ExitCode::usage, "alpha", write("a.jpg", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA));
-    assert_failure(ExitCode::usage, "a.bmp: unknown kind", write("a.bmp", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
+    assert_failure(ExitCode::usage, "a.bmp: unknown picture format",
+                   write("a.bmp", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
     assert_failure(ExitCode::usage, "unknown picture format", write("png", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
     Picture picture = make_noise(8, 8, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA);
     picture.traits.alpha = PictureTraits::Alpha::associated;

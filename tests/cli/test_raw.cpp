@@ -346,8 +346,10 @@ void test_mixed_and_pairs(void **) {
     const std::string path = save_dng("card.dng", card(600, 400, 14, Packing::words)), db = work("x.db");
     must_exit(done, {"flat", path, "--db", db, "--camera", "C"});
     must_exit(done, {"apply", path, "--db", db, "--profile", "1", "-o", work("tif"), "--raw-output", "tif"});
-    assert_refused(usage, {"flat", path, work("tif/card.tif"), "--no-store"}, {"card.dng", "card.tif", "alone"});
-    assert_refused(usage, {"bracket", path, work("tif/card.tif"), "--no-store"}, {"card.dng", "card.tif", "alone"});
+    assert_refused(usage, {"flat", path, work("tif/card.tif"), "--no-store"},
+                   {"card.dng", "card.tif", "files of one kind"});
+    assert_refused(usage, {"bracket", path, work("tif/card.tif"), "--no-store"},
+                   {"card.dng", "card.tif", "files of one kind"});
     fs::create_directories(work("pair"));
     fs::copy_file(path, work("pair/a.DNG")), fs::copy_file(work("tif/card.tif"), work("pair/a.tif"));
     const Outcome outcome = run_words({"apply", work("pair"), "--db", db, "--profile", "1", "-o", work("out")});

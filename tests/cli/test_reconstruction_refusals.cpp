@@ -36,7 +36,7 @@ void test_pictures(void **) {
     write_picture(work("project/d.png"), make_smooth(160, 120, LENSPROF_LAYOUT_RGB));
     assert_refused(unreadable, build_of(path), {path, "project/d.png", "is 160 x 120", "320 x 240", "resized"});
     write_picture(work("project/d.png"), make_smooth(240, 320, LENSPROF_LAYOUT_RGB));
-    assert_refused(unreadable, build_of(path), {path, "project/d.png", "is 240 x 320", "turned"});
+    assert_refused(unreadable, build_of(path), {path, "project/d.png", "is 240 x 320", "rotated"});
     save(work("project/d.png"), {1, 2, 3});
     assert_refused(unreadable, build_of(path), {"project/d.png"});
     assert_refused(unreadable, build_of(path) + Words{"--images", work("none")}, {work("none")});

@@ -226,8 +226,8 @@ void test_damaged_scenes(void **) {
         const char *from[2], *to[2], *part;
     } cases[] = {
         {{"\"12\", \"poseId\"", "\"id_view\": 12"}, {"\"5\", \"poseId\"", "\"id_view\": 5"}, "two views with the id 5"},
-        {{"\"320\"", "320"}, {"\"9999999999\"", "9999999999"}, "z z.jpg has no size"},
-        {{"\"320\"", "320"}, {"[]", "[]"}, "z z.jpg has no size"},
+        {{"\"320\"", "320"}, {"\"9999999999\"", "9999999999"}, "z z.jpg has no valid size"},
+        {{"\"320\"", "320"}, {"[]", "[]"}, "z z.jpg has no valid size"},
         {{"\"observationId\": \"12\"", "\"key\": 12, \"value\": {\"id_feat\""},
          {"\"observationId\": \"13\"", "\"key\": 13, \"value\": {\"id_feat\""},
          "in view 13, which does not exist"},
@@ -292,7 +292,8 @@ void test_pictures_of_other_sizes(void **) {
     const Reconstruction read = read_colmap_database(path);
     const std::vector<std::string> files = find_pictures(read, "", false);
     Reconstruction r = read;
-    assert_failure(ExitCode::unreadable, in_folder("a.png") + ": is 320 x 240 pixels, but " + path + " says 100 x 200",
+    assert_failure(ExitCode::unreadable,
+                   in_folder("a.png") + ": is 320 x 240 pixels, but " + path + " states 100 x 200",
                    [&] { settle_coordinates(r, files); });
     write_picture(in_folder("a.png"), make_smooth(100, 200, LENSPROF_LAYOUT_RGB));
     r = read;
@@ -300,7 +301,7 @@ void test_pictures_of_other_sizes(void **) {
     assert_place(r.observations[2], 100, 110);
     r = read;
     r.observations[1].xy[0] = 100.5f;
-    assert_failure(ExitCode::unreadable, path + ": has a feature at 100.5, 20.0 in a.png, which is 100 x 200",
+    assert_failure(ExitCode::unreadable, path + ": has a feature at 100.5, 20.0 in a.png, which has only 100 x 200",
                    [&] { settle_coordinates(r, files); });
     fs::remove(in_folder("d.png"));
     assert_failure(ExitCode::unreadable, path + ": 1 of its 4 pictures, the first d.png, are not in ",

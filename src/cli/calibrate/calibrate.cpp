@@ -99,7 +99,7 @@ int run(const CalibrateOptions &o, Streams &streams) {
     check_in_the_way(o, inputs, ledger);
     if (inputs.pictures.empty() && inputs.unreadable)
         throw Failure(ExitCode::unreadable,
-                      inputs.label + ": no picture could be read; the first: " + inputs.left_out[0].reason);
+                      inputs.label + ": none of the pictures can be read; the first: " + inputs.left_out[0].reason);
     if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
     make_folder(o.output);
     lock.take();

@@ -57,7 +57,7 @@ lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) cons
 
 [[noreturn]] static void fail_corrected(const std::string &file, const PictureMetadata &metadata) {
     throw NotThisOne(ExitCode::not_found,
-                     file + ": its falloff is already corrected, " + metadata.corrected_by
+                     file + ": its falloff was already corrected, " + metadata.corrected_by
                          + "; use --force-falloff to correct it anyway",
                      true);
 }

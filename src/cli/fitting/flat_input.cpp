@@ -145,7 +145,8 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
 void check_flat_options(const FlatCommand &o) {
     check_store_options(o.store);
     if (o.linear + o.gamma.has_value() + (o.profile != 0) > 1)
-        throw Failure(ExitCode::usage, "give the response of the pictures with --linear, --gamma G or --profile ID");
+        throw Failure(ExitCode::usage,
+                      "give the response of the pictures with one of --linear, --gamma G, --profile ID");
     if (o.files.size() > LENSPROF_FLAT_IMAGES)
         throw Failure(ExitCode::usage, std::to_string(o.files.size()) + " pictures; give at most "
                                            + std::to_string(LENSPROF_FLAT_IMAGES));

@@ -85,7 +85,7 @@ void print_stats(const std::string &file, const lensprof_store_stats &s, std::os
                   counted(s.lenses, "lens", "lenses").c_str(), counted(s.units, "single unit").c_str());
     out << format("processing   %u raw, %u jpeg, %u corrected in camera\n", s.processing[0], s.processing[1],
                   s.processing[2]);
-    out << format("with         %u a covariance, %u a gain grid, %u a doubt\n", s.with_covariance, s.with_grid,
+    out << format("of these     %u with covariance, %u with gain grid, %u doubtful\n", s.with_covariance, s.with_grid,
                   s.with_doubt);
     out << "focal length " << range(s.focal_mm, "", " mm") << "\naperture     " << range(s.aperture, "f/", "")
         << "\nfocus        " << range(s.distance_m, "", " m") << "\n";
