@@ -1,13 +1,13 @@
-/* lensprof/apply.h - undo (or simulate) what the camera did to the light, on pixels.
+/* lensprof/apply.h - correct (or simulate) falloff, exposure and white balance in pixels.
  *
  *   correct:  B' = f( g(B) / (M e w) * e' w' )                 Goldman & Chen 2005, equation 16
  *   simulate: B' = f( g(B) * M e w / (e' w') )                 the inverse, up to clipping
  *
- * M: the falloff, times the gain grid where there is one. e, w: the picture's own exposure and white balance; e', w':
- * the wanted ones.
- * A plan is prepared once per picture in memory that the caller provides, then applied to any tile. Vector units are
- * used where the processor has them (SSE4.1, AVX2, AVX-512, NEON); every one gives the same bytes. No heap, no I/O. On
- * a microcontroller, where the kernel works on one sample at a time, lensprof_apply takes at most 2.5 KiB of stack and
+ * M: the falloff, times the gain grid if there is one. e, w: exposure and white balance of the picture; e', w': the
+ * wanted ones.
+ * A plan is prepared once per picture, in memory that the caller provides, and then applied to any tile. The kernels
+ * use SSE4.1, AVX2, AVX-512 or NEON if the processor has it; all of them give the same bytes. No heap, no I/O. On a
+ * microcontroller, where the kernel works on one sample at a time, lensprof_apply takes at most 2.5 KiB of stack and
  * lensprof_plan_init 2 KiB (docs/firmware.md). Threads: a plan is immutable after init and may be used by several
  * threads on different tiles. */
 #ifndef LENSPROF_APPLY_H
@@ -34,8 +34,8 @@ typedef enum lensprof_layout {
     LENSPROF_LAYOUT_BGR = 4,
     LENSPROF_LAYOUT_BGRA = 5,
     LENSPROF_LAYOUT_PLANAR = 6, /* red, green and blue each in an image of layout GREY: lensprof_apply_planar */
-    LENSPROF_LAYOUT_RGGB = 7,   /* mosaics, one sample a pixel, by the colours of the frame's pixels (0, 0), (1, 0), */
-    LENSPROF_LAYOUT_GRBG = 8,   /* (0, 1), (1, 1) */
+    LENSPROF_LAYOUT_RGGB = 7,   /* mosaics, one sample per pixel, named by the colours of the frame's pixels (0, 0), */
+    LENSPROF_LAYOUT_GRBG = 8,   /* (1, 0), (0, 1), (1, 1) */
     LENSPROF_LAYOUT_GBRG = 9,
     LENSPROF_LAYOUT_BGGR = 10
 } lensprof_layout;
@@ -49,15 +49,15 @@ typedef struct lensprof_image {
     uint32_t layout; /* lensprof_layout */
 } lensprof_image;
 
-/* Samples per pixel (1..4; of a plane or mosaic 1) and colour channels (1 or 3) of a layout; 0 for an unknown one. */
+/* Samples per pixel (1..4; planes and mosaics 1) and colour channels (1 or 3) of a layout; 0 if it is unknown. */
 LENSPROF_API uint32_t lensprof_layout_samples(uint32_t layout);
 LENSPROF_API uint32_t lensprof_layout_channels(uint32_t layout);
 
-/* Bytes of one sample (1, 2 or 4); 0 for an unknown one. */
+/* Bytes of one sample (1, 2 or 4); 0 if the type is unknown. */
 LENSPROF_API uint32_t lensprof_sample_type_bytes(uint32_t type);
 
-/* LENSPROF_OK when data is aligned and not NULL, the sizes are in 1..2^20, and |row_bytes| holds a row and is
- * at most 2^28. */
+/* LENSPROF_OK if data is aligned and not NULL, the sizes are in 1..2^20, and |row_bytes| holds a row and is at most
+ * 2^28. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_image_validate(const lensprof_image *image);
 
 typedef enum lensprof_direction {
@@ -66,86 +66,86 @@ typedef enum lensprof_direction {
 } lensprof_direction;
 
 typedef enum lensprof_encoding {
-    LENSPROF_ENCODING_RESPONSE = 0, /* grey values, encoded by the response; output by output_response where given */
-    LENSPROF_ENCODING_LINEAR = 1    /* irradiance, 1 = what the response maps to 1 */
+    LENSPROF_ENCODING_RESPONSE = 0, /* grey values, encoded by the response; output by output_response if given */
+    LENSPROF_ENCODING_LINEAR = 1    /* irradiance; 1 is what the response maps to 1 */
 } lensprof_encoding;
 
-/* What happens to a pixel that is nearly saturated in some channel, whose true colour is not known. */
+/* Treatment of nearly saturated pixels, whose true colour is unknown. */
 typedef enum lensprof_saturated {
-    LENSPROF_SATURATED_NEUTRAL = 0, /* towards white all channels get the largest channel's gain: clouds keep no cast.
-                                       Only pixels with a channel above 0.9 and none below 0.6 are touched; mosaics,
-                                       whose samples stand alone, are not */
-    LENSPROF_SATURATED_AS_VALUE = 1 /* nothing special: every sample stands for its value */
+    LENSPROF_SATURATED_NEUTRAL = 0, /* towards white, all channels get the gain of the largest channel, so clouds keep
+                                       no cast. Changes only pixels with a channel above 0.9 and none below 0.6, and no
+                                       mosaics, which have one channel per pixel */
+    LENSPROF_SATURATED_AS_VALUE = 1 /* no special treatment */
 } lensprof_saturated;
 
 typedef struct lensprof_apply_options {
     uint32_t struct_size;
     uint32_t direction;                    /* lensprof_direction */
     uint32_t input, output;                /* lensprof_encoding */
-    uint32_t frame_width, frame_height;    /* the full frame that tiles belong to, px */
-    uint32_t source_sample, source_layout; /* pixel format of the pictures to come */
-    uint32_t target_sample;                /* sample type written; the layout is the source's */
-    uint32_t saturated;                    /* lensprof_saturated; NEUTRAL acts where direction is CORRECT and both input
-                                              and output are encoded */
-    uint32_t responses, vignettings;       /* 1 for all channels, or 3: red, green, blue; grey is treated as green */
-    const lensprof_response *response;     /* read during plan init only; a linear one where nothing is encoded */
-    const lensprof_vignetting *vignetting; /* read during plan init only. Single precision holds M to some
+    uint32_t frame_width, frame_height;    /* the full frame that contains the tiles, px */
+    uint32_t source_sample, source_layout; /* pixel format of the input */
+    uint32_t target_sample;                /* sample type of the output; the layout is that of the input */
+    uint32_t saturated; /* lensprof_saturated; NEUTRAL applies if direction is CORRECT and both input and output are
+                           encoded */
+    uint32_t responses, vignettings;       /* 1 for all channels, or 3: red, green, blue; grey uses green */
+    const lensprof_response *response;     /* read during plan init only; pass a linear one if nothing is encoded */
+    const lensprof_vignetting *vignetting; /* read during plan init only. Single precision represents M to about
                                               1e-7 (1 + |k1| + |k2| + |k3|) */
-    lensprof_exposure source;              /* what the picture received */
-    lensprof_exposure target;              /* what it shall look like; equal to source = keep */
-    const lensprof_gain_grid *grid;        /* multiplied to the vignetting; NULL = none; read during plan init only */
-    double strength;                       /* 0..1: M counts as 1 + strength (M - 1); 0 leaves the falloff alone */
-    double gain_cap; /* M counts as no less than 1 / gain_cap, which is 1..1e6: corners get at most this; 0 = no cap */
-    uint32_t dither; /* 1: ordered 8 x 8 dither in place of rounding, where U8 is written; 0: none */
+    lensprof_exposure source;              /* exposure and white balance of the picture */
+    lensprof_exposure target;              /* wanted exposure and white balance; equal to source = keep */
+    const lensprof_gain_grid *grid;        /* multiplied by the vignetting; NULL = none; read during plan init only */
+    double strength;                       /* 0..1: M becomes 1 + strength (M - 1); 0 leaves the falloff alone */
+    double gain_cap;   /* lower limit of M is 1 / gain_cap, 1..1e6, which limits the gain in corners; 0 = no cap */
+    uint32_t dither;   /* 1: ordered 8 x 8 dither instead of rounding, for U8 output; 0: none */
     uint32_t reserved; /* 0 */
-    const void *blob;  /* instead of response, vignetting and grid, which are NULL then: a profile blob (profile.h), at
-                          any address, read during plan init only; its own counts stand for responses and vignettings */
+    const void *blob;  /* replaces response, vignetting and grid, which must be NULL: a profile blob (profile.h), at any
+                          address, read during plan init only; its counts replace responses and vignettings */
     size_t blob_bytes;
-    const lensprof_response *output_response; /* what is written is encoded by this instead, as pictures of several
-                                                 cameras are that lie side by side; NULL = by `response`, or the blob's.
-                                                 Read during plan init only */
-    uint32_t output_responses;                /* 1 for all channels, or 3; 0 without */
+    const lensprof_response *output_response; /* encodes the output instead of the response, for pictures of several
+                                                 cameras side by side; NULL = `response`, or the blob's. Read during
+                                                 plan init only */
+    uint32_t output_responses;                /* 1 for all channels, or 3; 0 without output_response */
     uint32_t reserved2;                       /* 0 */
 } lensprof_apply_options;
 
-/* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV, strength 1; the rest zero, to be set by the caller.
- */
+/* Correct, encoded input and output, u8 RGB in and out, exposures 0 EV, strength 1. The rest is zero; the caller must
+ * set it. */
 LENSPROF_API void lensprof_apply_options_init_sized(lensprof_apply_options *options, size_t size);
 static inline void lensprof_apply_options_init(lensprof_apply_options *options) {
     lensprof_apply_options_init_sized(options, sizeof *options);
 }
 
-/* The model is a profile's: responses, vignettings and gain grid point into *profile, which must stay as it is until
- * the plan is made; no blob. All else stays. Errors: ARGUMENT; STRUCT_SIZE of either. */
+/* Uses the model of a profile: responses, vignettings and gain grid point into *profile, which must not change until
+ * the plan is made; the blob is cleared. All other options stay. Errors: ARGUMENT; STRUCT_SIZE of either. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *options,
                                                                                   const lensprof_profile *profile);
 
 typedef struct lensprof_plan lensprof_plan;
 
-/* Bytes of memory that lensprof_plan_init needs for these options; 0 when a field they depend on is invalid. */
+/* Bytes of memory that lensprof_plan_init needs for these options; 0 if a field they depend on is invalid. */
 LENSPROF_API size_t lensprof_plan_bytes(const lensprof_apply_options *options);
 
-/* Prepares a plan in memory[size] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
- * be released. Errors: NULL or unknown values ARGUMENT, struct_size STRUCT_SIZE, zero frame SIZE, too little or
- * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre;
- * target over source must be within 1e-12..1e12 (EXPOSURE); of a blob CORRUPT and LAYOUT as lensprof_profile_unpack. A
- * plan made from a blob and one made from the profile unpacked from it are the same. Takes well under a millisecond. */
+/* Prepares a plan in memory[size] (8-byte aligned, owned by the caller, must outlive the plan). There is nothing to
+ * release. A plan made from a blob equals one made from the profile unpacked from it. Takes well under a millisecond.
+ * Errors: ARGUMENT for NULL or unknown values; STRUCT_SIZE; SIZE for a zero frame; CAPACITY for too little or unaligned
+ * memory; those of the model's validate functions (three vignettings must share one centre); EXPOSURE unless target
+ * over source is within 1e-12..1e12; for a blob CORRUPT and LAYOUT as from lensprof_profile_unpack. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t size,
                                                                   const lensprof_apply_options *options,
                                                                   const lensprof_plan **plan, lensprof_error *error);
 
-/* Applies the plan to a tile whose upper left pixel is pixel (x0, y0) of the frame. `target` has the tile's size;
- * it may be the same memory as `source` (same sample type and row_bytes), otherwise the byte ranges from the first to
- * the last sample of the two must not overlap (so not two tiles side by side in one buffer). Alpha samples are copied
- * (converted to the target type). Integer output is rounded to nearest and clipped; float output is not clipped when
- * linear. NaN in float input comes out as NaN. A saturated sample stays saturated where light is added; where it is
- * taken away it becomes grey (see lensprof_saturated). Errors: views that do not fit the plan or the frame SIZE or
- * ARGUMENT; nothing is written then. */
+/* Applies the plan to a tile whose upper left pixel is pixel (x0, y0) of the frame. `target` has the size of the tile.
+ * It may be the same memory as `source` (same sample type and row_bytes). Otherwise the byte ranges from the first to
+ * the last sample of the two must not overlap (so they cannot be two tiles side by side in one buffer). Alpha samples
+ * are copied (converted to the target type). Integer output is rounded to nearest and clipped; linear float output is
+ * not clipped. NaN in float input gives NaN. A saturated sample stays saturated if light is added; if light is removed,
+ * it becomes grey (see lensprof_saturated). Errors: SIZE or ARGUMENT for views that do not fit the plan or the frame;
+ * nothing is written then. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply(const lensprof_plan *plan, const lensprof_image *source,
                                                               const lensprof_image *target, uint32_t x0, uint32_t y0);
 
-/* The same for three planes of layout GREY, red, green and blue, of one size; the plan's layout is PLANAR. Each target
- * may be the same memory as its own source; no other two of the six may overlap. */
+/* The same for three planes of layout GREY (red, green, blue) of one size; the layout of the plan is PLANAR. Each
+ * target may be the same memory as its own source; no other two of the six may overlap. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply_planar(const lensprof_plan *plan,
                                                                      const lensprof_image source[3],
                                                                      const lensprof_image target[3], uint32_t x0,

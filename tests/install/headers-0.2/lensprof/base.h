@@ -1,27 +1,26 @@
 /* lensprof/base.h - version, status codes, errors.
  *
- * Rules that hold for the whole API:
- *  - Every function that can fail returns lensprof_status; on error its outputs are untouched.
- *  - Calls that can fail for more than one reason also take a caller-owned lensprof_error (may be NULL) for a sentence
- *    that names the offending item and the next step. There is no global or thread-local error state.
- *  - Bytes that are read are `const void *data, size_t size`; data may be NULL where size is 0.
- *  - Results of any length go to `buffer, capacity, *count`: in bytes where they are a file or a text, else in
- *    elements. *count receives how many there are. Capacity 0 asks for that: OK, and nothing else is done; the
- *    buffer may be NULL then. Another capacity that is too small is refused with CAPACITY; *count is set, and
- *    nothing is written. A text's terminator is not counted; it is written where there is room for it, so give one
- *    byte more than *count where you need it. count may be NULL where it counts bytes.
- *  - Structs that grow begin with `uint32_t struct_size`. Their `_init` function sets it to the size that the
- *    program was compiled with, and every other member to its default; call it before anything else, for outputs
- *    too. New members come last. A library takes every size from that of the struct's first version up to its own:
- *    members that an older program does not have count as their defaults, and outputs are filled up to the
- *    program's size, whose struct_size stays. It refuses larger structs (the program is newer than the library) and
- *    smaller ones (_init was not called) with STRUCT_SIZE. Elements of an array have one struct_size, which is the
- *    step from one to the next. Never copy such a struct between an address of the library and one of the program
- *    by assignment.
- *  - lensprof_profile_key and lensprof_provenance, which lie within other structs, have fixed sizes and room for new
- *    members, which is 0. Structs that the library owns and only shows (lensprof_import_entry, lensprof_store_fault)
- *    get new members at their end. All other public structs are frozen values.
- *  - Input and output live in the caller's buffers. Nothing is kept after a call returns unless said so.
+ * Rules for the whole API:
+ *  - Every function that can fail returns lensprof_status. On error its outputs are unchanged.
+ *  - A call that can fail for more than one reason also takes a caller-owned lensprof_error (may be NULL). It receives
+ *    a sentence that names the offending item and the next step. There is no global or thread-local error state.
+ *  - Input bytes are passed as `const void *data, size_t size`; data may be NULL if size is 0.
+ *  - Results of variable length go to `buffer, capacity, *count`, in bytes for files and texts, otherwise in elements.
+ *    *count receives the full length. With capacity 0 (the buffer may then be NULL) the call only sets *count and
+ *    returns OK. Any other capacity that is too small is refused with CAPACITY: *count is set and nothing is written.
+ *    The terminator of a text is not counted, and is written only if there is room for it; allocate *count + 1 bytes if
+ *    you need it. count may be NULL if it counts bytes.
+ *  - Extensible structs begin with `uint32_t struct_size`. Their `_init` function sets it to the size that the program
+ *    was compiled with, and all other members to their defaults. Call it first, for output structs too. New members are
+ *    appended. A library accepts every size from that of the struct's first version up to its own: members missing from
+ *    an older program's struct take their defaults, and outputs are filled up to the program's struct_size, which does
+ *    not change. Larger structs (the program is newer than the library) and smaller ones (_init was not called) are
+ *    refused with STRUCT_SIZE. All elements of an array have the same struct_size, which is the stride of the array.
+ *    Never assign such a struct between memory of the library and memory of the program.
+ *  - lensprof_profile_key and lensprof_provenance are members of other structs. They have a fixed size, with reserved
+ *    space (zero) for new members. Structs that the library owns and only shows (lensprof_import_entry,
+ *    lensprof_store_fault) get new members at their end. All other public structs are frozen values.
+ *  - Input and output live in the caller's buffers. The library keeps no reference after a call returns unless stated.
  *
  * Threads: everything declared here may be called from any thread at any time.
  */
@@ -47,24 +46,24 @@
 extern "C" {
 #endif
 
-/* Numbers are pinned for ever. Groups: 1-9 argument, 10-19 resource, 20-29 model or data, 30-39 fit,
- * 40-49 store, 50-59 format, 90 internal. */
+/* Values never change. Groups: 1-9 argument, 10-19 resource, 20-29 model or data, 30-39 fit, 40-49 store, 50-59 format,
+ * 90 internal. */
 typedef enum lensprof_status {
     LENSPROF_OK = 0,
     LENSPROF_ERROR_ARGUMENT = 1,     /* NULL, unknown enum value, index out of range */
-    LENSPROF_ERROR_STRUCT_SIZE = 2,  /* struct_size not set by an _init function, or by that of a newer version */
+    LENSPROF_ERROR_STRUCT_SIZE = 2,  /* struct_size not set by an _init function, or set by a newer version */
     LENSPROF_ERROR_SIZE = 3,         /* zero or overflowing size, stride too small, tile outside the frame */
     LENSPROF_ERROR_CAPACITY = 4,     /* the caller's buffer is too small; the needed size is reported */
-    LENSPROF_ERROR_NOT_FINITE = 5,   /* NaN or infinity where a finite number is needed */
+    LENSPROF_ERROR_NOT_FINITE = 5,   /* NaN or infinity where a finite number is required */
     LENSPROF_ERROR_MEMORY = 10,      /* out of memory */
     LENSPROF_ERROR_CANCELLED = 11,   /* the progress callback asked to stop */
-    LENSPROF_ERROR_RESPONSE = 20,    /* not a response: decreasing, or ends not at 0 and 1 */
-    LENSPROF_ERROR_VIGNETTING = 21,  /* not a falloff: not positive on the whole frame */
-    LENSPROF_ERROR_EXPOSURE = 22,    /* exposure or white balance not positive and finite */
+    LENSPROF_ERROR_RESPONSE = 20,    /* not a response: decreasing, or its ends are not 0 and 1 */
+    LENSPROF_ERROR_VIGNETTING = 21,  /* not a falloff: not positive over the whole frame */
+    LENSPROF_ERROR_EXPOSURE = 22,    /* exposure or white balance is not positive and finite */
     LENSPROF_ERROR_GEOMETRY = 23,    /* camera that cannot be evaluated */
     LENSPROF_ERROR_NO_OVERLAP = 30,  /* no two images see the same point */
-    LENSPROF_ERROR_NO_SAMPLES = 31,  /* images overlap but every sample is saturated, black or masked */
-    LENSPROF_ERROR_NO_UNKNOWNS = 32, /* nothing was asked to be estimated */
+    LENSPROF_ERROR_NO_SAMPLES = 31,  /* images overlap, but every sample is saturated, black or masked */
+    LENSPROF_ERROR_NO_UNKNOWNS = 32, /* no parameter is free */
     LENSPROF_ERROR_STORE = 40,       /* the database could not be opened or used */
     LENSPROF_ERROR_NOT_FOUND = 41,   /* no such profile */
     LENSPROF_ERROR_CORRUPT = 42,     /* not a lensprof database or profile blob, or damaged */
@@ -90,26 +89,26 @@ typedef enum lensprof_item_kind {
     LENSPROF_ITEM_MATCH = 8        /* index into the matches */
 } lensprof_item_kind;
 
-/* What a text names by its number, "image 3": programs that have a better name put it in its place. Frozen value
- * struct; all zero where the text names nothing. */
+/* The item that a text refers to by index, as in "image 3". A program with a better name can substitute it. Frozen
+ * value struct; all zero if the text refers to no item. */
 typedef struct lensprof_item {
     uint32_t kind;       /* lensprof_item_kind */
     uint32_t index;      /* from 0 */
-    uint32_t text_begin; /* byte of the text where the item is named, */
-    uint32_t text_bytes; /* and how many bytes name it; 0 where the text was cut before its end */
+    uint32_t text_begin; /* byte offset in the text where the item is named */
+    uint32_t text_bytes; /* length of that name in bytes; 0 if the text was truncated before its end */
 } lensprof_item;
 
-/* The first thing that went wrong. Frozen value struct. */
+/* The first error of a call. Frozen value struct. */
 typedef struct lensprof_error {
-    char text[256];     /* always terminated; empty when nothing went wrong */
-    lensprof_item item; /* what the text names */
+    char text[256];     /* always terminated; empty if there is no error */
+    lensprof_item item; /* the item that the text names */
 } lensprof_error;
 
-/* Called now and then by the thread that made the call, with a fraction 0..1; a non-zero return cancels the call,
- * which then returns CANCELLED. */
+/* Called repeatedly, on the thread that made the call, with the fraction done (0..1). A non-zero return value cancels
+ * the call, which then returns CANCELLED. */
 typedef int (*lensprof_progress)(double done, void *user);
 
-/* Name of a status, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other numbers. Static storage. */
+/* Name of a status, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other values. Static storage. */
 LENSPROF_API const char *lensprof_status_name(lensprof_status status);
 
 /* "0.2.0". Static storage. */

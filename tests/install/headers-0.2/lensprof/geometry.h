@@ -1,7 +1,7 @@
 /* lensprof/geometry.h - camera projections: direction <-> image pixel.
  *
- * The PanoTools camera model as Hugin and nona use it; agrees with libpano13 (`pano_trafo`) to 1e-4 px.
- * Directions are longitude and latitude in radians, latitude positive DOWN; (0,0) is the panorama's centre.
+ * The PanoTools camera model as used by Hugin and nona; agrees with libpano13 (`pano_trafo`) to 1e-4 px.
+ * Directions are longitude and latitude in radians, latitude positive DOWN; (0,0) is the centre of the panorama.
  * Pixel centres are integers; pixel (0,0) is the centre of the upper left pixel. No heap, no I/O.
  * Threads: all functions are pure. */
 #ifndef LENSPROF_GEOMETRY_H
@@ -26,7 +26,7 @@ typedef enum lensprof_projection {
     LENSPROF_PROJECTION_EQUISOLID = 21
 } lensprof_projection;
 
-/* One picture's camera. Frozen value struct; all angles in degrees. */
+/* Camera of one picture. Frozen value struct; all angles in degrees. */
 typedef struct lensprof_camera {
     uint32_t projection;    /* lensprof_projection */
     uint32_t width, height; /* full frame, px */
@@ -39,17 +39,17 @@ typedef struct lensprof_camera {
     double plane_deg[2];   /* Tpy, Tpp: yaw and pitch of the remapping plane, used with a translation */
 } lensprof_camera;
 
-/* LENSPROF_OK when the camera can be evaluated: known projection, sizes > 0, finite numbers, field of view
- * possible for the projection. Else LENSPROF_ERROR_GEOMETRY (NULL: ARGUMENT). */
+/* LENSPROF_OK if the camera can be evaluated: known projection, sizes > 0, finite numbers, and a field of view that the
+ * projection allows. Errors: GEOMETRY; ARGUMENT for NULL. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_camera_validate(const lensprof_camera *camera);
 
-/* Direction -> pixel. Returns 1 and sets xy, or returns 0 when the camera does not see that direction (behind
- * it, or beyond the radius where the radial polynomial turns back). The pixel may lie outside the frame.
- * The camera must be valid. */
+/* Direction -> pixel. Returns 1 and sets xy, or returns 0 if the direction is not visible (at the back of the camera,
+ * or beyond the radius where the radial polynomial turns back). The pixel may lie outside the frame. The camera must be
+ * valid. */
 LENSPROF_API int lensprof_camera_project(const lensprof_camera *camera, double longitude, double latitude,
                                          double xy[2]);
 
-/* Pixel -> direction {longitude, latitude}. Returns 1, or 0 when no direction maps to that pixel. Inverse of
+/* Pixel -> direction {longitude, latitude}. Returns 1, or 0 if no direction maps to that pixel. Inverse of
  * lensprof_camera_project to 1e-9 px. */
 LENSPROF_API int lensprof_camera_unproject(const lensprof_camera *camera, double x, double y, double direction[2]);
 

@@ -6,7 +6,7 @@
  *   L  scene radiance             M  vignetting (attenuation), M = 1 at the centre
  *   e  exposure factor 2^ev       w  white balance factor of the channel, green = 1
  *
- * The maths of the model lives in the core and nowhere else. No heap, no I/O.
+ * Only the core implements the equations of the model. No heap, no I/O.
  * Threads: all functions are pure; any thread may call them on any data. */
 #ifndef LENSPROF_MODEL_H
 #define LENSPROF_MODEL_H
@@ -19,7 +19,7 @@ extern "C" {
 
 #define LENSPROF_RESPONSE_SAMPLES 1024 /* samples of a response on the uniform irradiance grid 0..1 */
 #define LENSPROF_EMOR_MODES 25         /* modes of the empirical model of response (Grossberg & Nayar 2004) */
-#define LENSPROF_GRID_SIDE 32          /* most columns and rows of a gain grid */
+#define LENSPROF_GRID_SIDE 32          /* maximum number of columns and of rows of a gain grid */
 
 typedef enum lensprof_response_kind {
     LENSPROF_RESPONSE_LINEAR = 0, /* f(x) = x */
@@ -29,11 +29,11 @@ typedef enum lensprof_response_kind {
 } lensprof_response_kind;
 
 /* A response curve. Fill it with one of the _set_ functions, which leave it valid. Frozen value struct.
- * table[] holds f on the grid x = j/1023 for every kind, so that a reader may ignore the rest. */
+ * For every kind, table[] holds f on the grid x = j/1023, so a reader may ignore the other members. */
 typedef struct lensprof_response {
     uint32_t kind;                           /* lensprof_response_kind */
-    uint32_t modes;                          /* EMOR: modes in use, 0..25; else 0 */
-    double gamma;                            /* GAMMA: exponent > 0; else 1 */
+    uint32_t modes;                          /* EMOR: number of modes in use, 0..25; otherwise 0 */
+    double gamma;                            /* GAMMA: exponent > 0; otherwise 1 */
     double emor[LENSPROF_EMOR_MODES];        /* EMOR: coefficients, 0 beyond `modes` */
     double table[LENSPROF_RESPONSE_SAMPLES]; /* f(j/1023) */
 } lensprof_response;
@@ -41,82 +41,83 @@ typedef struct lensprof_response {
 /* f(x) = x. */
 LENSPROF_API void lensprof_response_set_linear(lensprof_response *response);
 
-/* f(x) = x^(1/gamma), gamma in [0.1, 10]; else LENSPROF_ERROR_RESPONSE. */
+/* f(x) = x^(1/gamma), gamma in [0.1, 10]. Error: RESPONSE for other values. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_gamma(lensprof_response *response, double gamma);
 
 /* f = f0 + sum coefficients[l] h_l for `modes` (0..25) coefficients of the EMoR model (linear domain).
- * LENSPROF_ERROR_RESPONSE when the curve decreases anywhere on its grid. */
+ * Error: RESPONSE if the curve decreases anywhere on its grid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_emor(lensprof_response *response,
                                                                           const double *coefficients, uint32_t modes);
 
-/* Piecewise linear curve through `count` >= 2 values on a uniform grid of irradiance, resampled to the 1024
- * grid. values[0] must be 0 and values[count-1] must be 1, each within 1e-6; they become exact. */
+/* Piecewise linear curve through `count` >= 2 values on a uniform irradiance grid, resampled to 1024 samples. values[0]
+ * must be 0 and values[count-1] must be 1, each within 1e-6; both are stored exactly. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_table(lensprof_response *response,
                                                                            const double *values, uint32_t count);
 
-/* LENSPROF_OK when kind and its numbers are in range and the table is finite, non-decreasing on all 1024 samples, with
- * ends 0 and 1. Whether the table is the curve of its kind is not checked. */
+/* LENSPROF_OK if kind, modes and parameters are in range and the table is finite, non-decreasing over all 1024 samples,
+ * and ends at 0 and 1. Does not check that the table matches the kind and its parameters. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_validate(const lensprof_response *response);
 
-/* f(x) and, when not NULL, its slope df/dx. x outside [0,1] is clamped (slope 0 there): a sensor saturates. */
+/* f(x) and, if slope is not NULL, df/dx. x outside [0,1] is clamped (slope 0 there), as a sensor saturates. */
 LENSPROF_API double lensprof_response_eval(const lensprof_response *response, double x, double *slope);
 
-/* g(b) = f^-1(b): the smallest x with f(x) >= b. b outside [0,1] is clamped. When not NULL, *slope is
- * dg/db = 1/f'(g(b)), taken in the grid interval that holds b (0 outside [0,1] and where f is flat). */
+/* g(b) = f^-1(b): the smallest x with f(x) >= b. b outside [0,1] is clamped. If not NULL, *slope receives
+ * dg/db = 1/f'(g(b)), taken in the grid interval that contains b (0 outside [0,1] and where f is flat). */
 LENSPROF_API double lensprof_response_invert(const lensprof_response *response, double b, double *slope);
 
-/* Kinds of cameras, by how they render: whose measured responses stand for one that is not known. */
+/* Kinds of cameras, by how they render. The measured responses of a kind replace an unknown response. */
 typedef enum lensprof_camera_kind {
-    LENSPROF_CAMERA_ANY = 0,     /* nothing is known: a mixture of all below, and of gamma curves */
+    LENSPROF_CAMERA_ANY = 0,     /* unknown: a mixture of all kinds below and of gamma curves */
     LENSPROF_CAMERA_FILM = 1,    /* scanned film: 154 curves of the DoRF database */
     LENSPROF_CAMERA_DIGITAL = 2, /* digital and video cameras of the 1990s with a tone curve: 29 curves of DoRF */
     LENSPROF_CAMERA_CAMERA = 3,  /* JPEG of today's digital cameras: 20 curves of 19 cameras */
     LENSPROF_CAMERA_PHONE = 4,   /* JPEG of phones: 5 curves of 4 phones */
-    LENSPROF_CAMERA_LINEAR = 5   /* sensor data and what is developed linearly */
+    LENSPROF_CAMERA_LINEAR = 5   /* sensor data and pictures developed linearly from it */
 } lensprof_camera_kind;
 
-/* The typical response of a kind: the mean of its measured cameras, an EMoR response of all modes, and what a camera of
- * the kind is away from it. covariance[LENSPROF_EMOR_MODES * LENSPROF_EMOR_MODES], row major, or NULL: of the
- * coefficients, scatter of the shape and error of gamma together. *log_gamma_sigma, or NULL: standard error of ln
- * gamma, the exponent by which response, falloff and exposures go together; 68 % of cameras that the mean does not know
- * are nearer. LINEAR: the linear response, and zeros. Error: ARGUMENT. */
+/* The typical response of a kind: the mean of its measured cameras, as an EMoR response of all modes, with its scatter
+ * over the cameras of the kind. covariance[LENSPROF_EMOR_MODES * LENSPROF_EMOR_MODES] (may be NULL) receives the
+ * covariance of the coefficients, row major: scatter of the shape and error of gamma together. *log_gamma_sigma (may be
+ * NULL) receives the standard error of ln gamma, the exponent by which response, falloff and exposures change together;
+ * 68 % of the cameras that are not part of the mean lie within it. LINEAR: the linear response and zeros.
+ * Error: ARGUMENT. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_typical(lensprof_response *response,
                                                                              uint32_t camera_kind, double *covariance,
                                                                              double *log_gamma_sigma);
 
-/* The EMoR tables: mean curve f0 for mode 0, h_l for mode l = 1..25; NULL beyond. 1024 samples, static. */
+/* The EMoR tables: mean curve f0 for mode 0, h_l for mode l = 1..25; NULL beyond. 1024 samples, static storage. */
 LENSPROF_API const double *lensprof_emor_table(uint32_t mode);
 
 /* Radial falloff M = 1 + k1 r^2 + k2 r^4 + k3 r^6 (d'Angelo eq. 7; correct = divide). Frozen value struct.
  * r = |p - c| / rho; rho = half the diagonal of the full frame, sqrt(width^2 + height^2) / 2; pixel centres are
- * integers; the frame centre is ((width-1)/2, (height-1)/2); c = frame centre + rho * center, so that a
- * profile does not depend on the resolution. */
+ * integers; the frame centre is ((width-1)/2, (height-1)/2); c = frame centre + rho * center. A profile is therefore
+ * independent of the resolution. */
 typedef struct lensprof_vignetting {
     double k[3];      /* k1, k2, k3 */
     double center[2]; /* x (right) and y (down), in half diagonals */
 } lensprof_vignetting;
 
-/* rho: half the diagonal of a frame of width x height pixels, px. Exactly rounded for sides below 2^26. */
+/* rho: half the diagonal of a frame of width x height pixels, in px. Correctly rounded for sides below 2^26. */
 LENSPROF_API double lensprof_half_diagonal(uint32_t width, uint32_t height);
 
-/* M as a function of r^2, and its derivative dM/d(r^2) when not NULL. dM/dk_n = r^(2n). */
+/* M as a function of r^2, and its derivative dM/d(r^2) if slope is not NULL. dM/dk_n = r^(2n). */
 LENSPROF_API double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope);
 
-/* r^2 of pixel (x, y) in a frame of width x height pixels. When not NULL, gradient[2] receives
+/* r^2 of pixel (x, y) in a frame of width x height pixels. If not NULL, gradient[2] receives
  * d(r^2)/d(center x, center y). */
 LENSPROF_API double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height,
                                            double x, double y, double *gradient);
 
-/* LENSPROF_OK when finite, |k| <= 1e6, |center| <= 1 in each coordinate, and M >= 0.001 for every r from the centre to
- * the corner farthest from it (in any frame shape: r <= 1 + |center|). */
+/* LENSPROF_OK if the numbers are finite, |k| <= 1e6, |center| <= 1 in each coordinate, and M >= 0.001 for every r from
+ * the centre to the farthest corner (in any frame shape: r <= 1 + |center|). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetting);
 
-/* Attenuation on a grid over the frame, multiplied to M: what a radial polynomial leaves (a tilted sensor, a hood, a
- * fisheye's rim). Bilinear between nodes; node (0, 0) lies at the frame's first pixel, node (columns-1, rows-1) at its
- * last, so that a grid does not depend on the resolution. Frozen value struct (12 kB). */
+/* Attenuation on a grid over the frame, multiplied by M. It holds what a radial polynomial cannot describe (a tilted
+ * sensor, a hood, the rim of a fisheye). Bilinear between nodes; node (0, 0) lies at the first pixel of the frame, node
+ * (columns-1, rows-1) at the last, so a grid is independent of the resolution. Frozen value struct (12 kB). */
 typedef struct lensprof_gain_grid {
     uint32_t columns, rows; /* 2..32 each; both 0 = no grid */
-    uint32_t channels;      /* 1 for all channels, or 3; 0 where there is no grid */
+    uint32_t channels;      /* 1 for all channels, or 3; 0 if there is no grid */
     uint32_t reserved;      /* 0 */
     /* [channel][row][column], without gaps: node (i, j) of channel c is attenuation[(c * rows + j) * columns + i];
      * 0 beyond the last one */
@@ -126,16 +127,17 @@ typedef struct lensprof_gain_grid {
 /* No grid: all zero. */
 LENSPROF_API void lensprof_gain_grid_init(lensprof_gain_grid *grid);
 
-/* LENSPROF_OK when there is no grid, or its attenuations are finite and within 0.001..1000. SIZE for sides, ARGUMENT
- * for another number of channels or anything but 0 beyond the last node, NOT_FINITE, VIGNETTING for attenuations. */
+/* LENSPROF_OK if there is no grid, or its attenuations are finite and within 0.001..1000. Errors: SIZE for invalid
+ * sides; ARGUMENT for another number of channels or a nonzero value beyond the last node; NOT_FINITE; VIGNETTING for
+ * attenuations out of range. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid);
 
-/* Attenuation of a valid grid at pixel (x, y), not necessarily a whole one, of a frame of width x height pixels, in
- * channel 0, 1 or 2; beyond the first and last pixels' centres as at the nearest of them. 1 where there is no grid. */
+/* Attenuation of a valid grid at pixel (x, y), which may be fractional, of a frame of width x height pixels, in channel
+ * 0, 1 or 2. Positions beyond the centres of the outermost pixels use the nearest of them. 1 if there is no grid. */
 LENSPROF_API double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, double x,
                                             double y, uint32_t channel);
 
-/* What one picture received. Frozen value struct. */
+/* Exposure and white balance of one picture. Frozen value struct. */
 typedef struct lensprof_exposure {
     double ev;               /* log2 of the exposure factor; larger = more light recorded */
     double white_balance[3]; /* factors of red, green, blue; green = 1; all 1 for grey pictures */
@@ -147,7 +149,7 @@ LENSPROF_API void lensprof_exposure_init(lensprof_exposure *exposure);
 /* e * w of a channel (0, 1, 2): 2^ev * white_balance[channel]; 0 for another channel. */
 LENSPROF_API double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel);
 
-/* LENSPROF_OK when |ev| <= 64 and the factors are in [1e-6, 1e6]. */
+/* LENSPROF_OK if |ev| <= 64 and the factors are in [1e-6, 1e6]. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure);
 
 #ifdef __cplusplus

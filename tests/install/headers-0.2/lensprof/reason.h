@@ -1,7 +1,7 @@
-/* lensprof/reason.h - why a result is not usable, or what is doubtful about it, as a number.
+/* lensprof/reason.h - reason codes: why a result is not usable, or what is doubtful about it.
  *
- * Fits, flat fields and lookups state their verdict as data: a code, the image or shot that it concerns, and its
- * numbers. The sentence next to it (`reason`) is made of these, for people. docs/reasons.md has a cure for every code.
+ * Fits, flat fields and lookups report their verdict as data: a code, the image or shot concerned, and numbers. The
+ * sentence next to it (`reason`) is composed of these, for people. docs/reasons.md has a remedy for every code.
  */
 #ifndef LENSPROF_REASON_H
 #define LENSPROF_REASON_H
@@ -12,16 +12,16 @@
 extern "C" {
 #endif
 
-/* Numbers are pinned for ever. Of each hundred those below 50 are of results that are not usable and of lookups that
- * found nothing, those from 50 on warnings. STILL_: of pictures by a camera that did not move. The comment has the item
- * that a reason names and the numbers that it states, in their order. Shares are 0..1, radii and distances from the
- * middle in half diagonals of the frame. */
+/* Values never change. In each hundred, values below 50 mark results that are not usable and lookups that found
+ * nothing; values from 50 on are warnings. STILL_: pictures from a stationary camera. Comments give the item that a
+ * reason names, then its numbers in order. Shares are 0..1; radii and distances from the centre are in half diagonals
+ * of the frame. */
 typedef enum lensprof_reason {
     LENSPROF_REASON_NONE = 0,
 
-    /* Pairs and images: how many there are, and how they agree. */
+    /* Pairs and images: how many there are, and how well they agree. */
     LENSPROF_REASON_IMAGE_GROUPS = 101,    /* image: number of groups */
-    LENSPROF_REASON_FEW_PAIRS = 102,       /* different pairs between black and white; unknowns */
+    LENSPROF_REASON_FEW_PAIRS = 102,       /* distinct pairs between black and white; unknowns */
     LENSPROF_REASON_FEW_AGREE = 103,       /* share of the pairs that agree */
     LENSPROF_REASON_STILL_FEW_AGREE = 104, /* share of the pairs that agree */
     LENSPROF_REASON_SCATTER = 105,         /* noise of a sample, levels of 255 */
@@ -37,13 +37,13 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_IMAGE_ODD = 151,                 /* image: median residual, levels of 255 */
     LENSPROF_REASON_STILL_IMAGE_ODD = 152,           /* image: median residual, levels of 255 */
     LENSPROF_REASON_WEAK_PATTERNS = 153,             /* share of the residual's variance; levels of 255 */
-    LENSPROF_REASON_IMAGES_LEFT_OUT = 154,           /* image, the first of them: how many */
+    LENSPROF_REASON_IMAGES_LEFT_OUT = 154,           /* first image left out: number of images */
     LENSPROF_REASON_MANY_OUTLIERS = 155,             /* share of the pairs that disagree; held-out RMS, levels of 255 */
-    LENSPROF_REASON_SEAMS_STAY = 156,                /* median residual and the same before, levels of 255 */
-    LENSPROF_REASON_LINKS_UNVERIFIED = 157,          /* image, the first of them: how many */
-    LENSPROF_REASON_LINKS_CONTRADICT = 158,          /* image, of the first link: how many links */
+    LENSPROF_REASON_SEAMS_STAY = 156,       /* median residual; median residual before the fit; levels of 255 */
+    LENSPROF_REASON_LINKS_UNVERIFIED = 157, /* first image: number of images */
+    LENSPROF_REASON_LINKS_CONTRADICT = 158, /* image of the first link: number of links */
 
-    /* Exposures, and the exponent gamma that pictures leave open. */
+    /* Exposures, and the exponent gamma, which pictures alone do not determine. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201, /* image: standard error, EV */
     LENSPROF_REASON_KNOWN_ALIKE = 202,        /* difference, EV */
     LENSPROF_REASON_KNOWN_REVERSED = 203,
@@ -60,7 +60,7 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FEW_GREYS = 301,     /* tenths of the grey values */
     LENSPROF_REASON_MISSING_GREYS = 351, /* from, grey value 0..1; to, grey value 0..1 */
     LENSPROF_REASON_UNUSUAL_RESPONSE =
-        352, /* distance, times that of the kind's measured cameras; standard error of ln gamma */
+        352, /* distance, in units of the spread of the kind's measured cameras; standard error of ln gamma */
     LENSPROF_REASON_RESPONSE_NOT_SHOWN = 353, /* difference of the light, EV; standard error of ln gamma */
 
     /* Falloff. */
@@ -85,8 +85,8 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FLAT_TEXTURE = 509,        /* share of the light */
     LENSPROF_REASON_FLAT_SHOTS_DIFFER = 510,   /* share of the light */
     LENSPROF_REASON_FLAT_FEW_AGREE = 511,      /* share of the cells */
-    LENSPROF_REASON_FLAT_STEEP = 512,          /* shot: share of the light a half diagonal */
-    LENSPROF_REASON_FLAT_STEEP_ALONE = 513,    /* shot: share of the light a half diagonal */
+    LENSPROF_REASON_FLAT_STEEP = 512,          /* shot: share of the light per half diagonal */
+    LENSPROF_REASON_FLAT_STEEP_ALONE = 513,    /* shot: share of the light per half diagonal */
     LENSPROF_REASON_FLAT_UNDETERMINED = 514,
     LENSPROF_REASON_FLAT_CORNER_NOT_RADIAL = 515, /* share of the light that is not radial; standard error of M */
     LENSPROF_REASON_FLAT_CORNER_UNCERTAIN = 516,  /* standard error of M */
@@ -96,11 +96,10 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FLAT_EXPOSURE_DOUBTFUL = 554, /* image: distance, EV */
     LENSPROF_REASON_FLAT_SHOTS_DIFFER_SOME = 555, /* share of the light */
     LENSPROF_REASON_FLAT_SOME_TEXTURE = 556,      /* share of the light */
-    LENSPROF_REASON_FLAT_SLANTED_LIGHT = 557,     /* share of the light a half diagonal */
-    LENSPROF_REASON_FLAT_NOT_RADIAL_GRID =
-        558,                               /* share of the light that is not radial; share that the gain grid leaves */
-    LENSPROF_REASON_FLAT_NOT_RADIAL = 559, /* share of the light that is not radial */
-    LENSPROF_REASON_FLAT_FAR_CENTER = 560, /* distance, half diagonals */
+    LENSPROF_REASON_FLAT_SLANTED_LIGHT = 557,     /* share of the light per half diagonal */
+    LENSPROF_REASON_FLAT_NOT_RADIAL_GRID = 558, /* share of the light that is not radial; share left by the gain grid */
+    LENSPROF_REASON_FLAT_NOT_RADIAL = 559,      /* share of the light that is not radial */
+    LENSPROF_REASON_FLAT_FAR_CENTER = 560,      /* distance, half diagonals */
     LENSPROF_REASON_FLAT_CENTER_BY_PRIOR = 561,
     LENSPROF_REASON_FLAT_DUST = 562, /* spots */
 
@@ -144,12 +143,12 @@ typedef enum lensprof_reason {
         753 /* distance of its falloff, standard errors; distance of held-out pairs, standard errors */
 } lensprof_reason;
 
-/* The enumerator's name in lower case without LENSPROF_REASON_, "image_groups"; "unknown" for other numbers. Static
- * storage. */
+/* Name of the enumerator in lower case without LENSPROF_REASON_, e.g. "image_groups"; "unknown" for other values.
+ * Static storage. */
 LENSPROF_API const char *lensprof_reason_name(uint32_t reason);
 
-/* A short sentence without item and numbers, another one for every code; empty for NONE and other numbers. Static
- * storage. */
+/* A short sentence without item and numbers, different for each code; empty for NONE and other values. Static storage.
+ */
 LENSPROF_API const char *lensprof_reason_text(uint32_t reason);
 
 #ifdef __cplusplus
