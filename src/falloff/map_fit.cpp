@@ -39,7 +39,7 @@ Channel channel_of(const FalloffMap &map, uint32_t index) {
     const size_t size = size_t(map.columns) * map.rows;
     const double *values = map.attenuation.data() + size * index;
     Channel channel{*std::max_element(values, values + size), {}};
-    if (!(channel.largest > 0.0)) fail("a map without a value above 0; correct it");
+    if (!(channel.largest > 0.0)) fail("the map has no value above 0; correct it");
     const uint32_t across = std::min(map.columns, kMostSamples), down = std::min(map.rows, kMostSamples);
     for (uint32_t b = 0; b < down; b++)
         for (uint32_t a = 0; a < across; a++) {
@@ -48,7 +48,7 @@ Channel channel_of(const FalloffMap &map, uint32_t index) {
             const double value = values[size_t(j) * map.columns + i] / channel.largest;
             if (value >= kLowestFalloff) channel.samples.push_back({map.x0 + i * map.dx, map.y0 + j * map.dy, value});
         }
-    if (channel.samples.size() < 8) fail("too little of the map is above 0; give one that covers the frame");
+    if (channel.samples.size() < 8) fail("too few values of the map are above 0; give one that covers the frame");
     return channel;
 }
 
@@ -279,7 +279,7 @@ FalloffMap sampled_map(uint32_t width, uint32_t height, uint32_t channels, const
 double fit_map(const FalloffMap &map, lensprof_profile &profile) {
     for (double value : map.attenuation)
         if (!std::isfinite(value))
-            throw FalloffFailure{LENSPROF_ERROR_NOT_FINITE, "a map that is not finite; correct it"};
+            throw FalloffFailure{LENSPROF_ERROR_NOT_FINITE, "the map has a value that is not finite; correct it"};
     MapFit fit(map);
     fit.run();
     profile.vignettings = map.channels;
@@ -288,7 +288,7 @@ double fit_map(const FalloffMap &map, lensprof_profile &profile) {
         const std::array<double, 3> k = fit.k(c);
         v = {{k[0], k[1], k[2]}, {fit.center_of(0), fit.center_of(1)}};
         if (!(fit.one(c) > 0.0) || lensprof_vignetting_validate(&v) != LENSPROF_OK)
-            fail("a map that no radial falloff comes near; check that it is of one frame, and its sense");
+            fail("no radial falloff approximates the map; check that it shows one frame, and its sense");
     }
     lensprof_gain_grid_init(&profile.grid);
     const double worst = worst_error(map, fit, profile);

@@ -19,9 +19,8 @@ EvenRefit refit_even(const std::function<double(double)> &target, uint32_t count
     for (int i = 0; i <= kSteps; i++) {
         const double value = target(double(i) / kSteps) / middle;
         if (!std::isfinite(value))
-            throw FalloffFailure{LENSPROF_ERROR_NOT_FINITE, "a falloff that is not finite; correct it"};
-        if (!(value > 0.0))
-            throw FalloffFailure{LENSPROF_ERROR_VIGNETTING, "a falloff that is not above 0; correct it"};
+            throw FalloffFailure{LENSPROF_ERROR_NOT_FINITE, "the falloff is not finite; correct it"};
+        if (!(value > 0.0)) throw FalloffFailure{LENSPROF_ERROR_VIGNETTING, "the falloff is not above 0; correct it"};
         values.push_back(value);
     }
     std::vector<int> powers;

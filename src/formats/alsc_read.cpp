@@ -18,7 +18,7 @@ constexpr size_t kMostValues = 65536;
 
 // The algorithm's object: the text itself, a member of it, or one of the algorithms of a tuning file.
 JsonValue find_alsc(const JsonValue &root) {
-    if (!root.is_object()) root.fail("is no object; give a tuning file of libcamera, or its \"rpi.alsc\"");
+    if (!root.is_object()) root.fail("is not an object; give a tuning file of libcamera, or its \"rpi.alsc\"");
     if (const JsonValue direct = root[kAlscName]) return direct;
     if (const JsonValue list = root["algorithms"]) {
         for (JsonValue item = list.first(); item; item = item.next())
@@ -47,8 +47,9 @@ std::vector<double> gains_of(const JsonValue &table) {
     const std::vector<double> gains = table.numbers(4, kMostValues);
     for (size_t i = 0; i < gains.size(); i++)
         if (!(gains[i] >= 1.0 / kMostGain && gains[i] <= kMostGain))
-            table.fail("has " + number_text(gains[i]) + " at " + std::to_string(i) + ", which is no gain; correct it",
-                       LENSPROF_ERROR_VIGNETTING);
+            table.fail(
+                "has " + number_text(gains[i]) + " at " + std::to_string(i) + ", which is not a gain; correct it",
+                LENSPROF_ERROR_VIGNETTING);
     return gains;
 }
 
@@ -57,7 +58,7 @@ std::vector<double> gains_of(const JsonValue &table) {
 std::vector<double> ratios_at(const JsonValue &calibrations, double ct, size_t count) {
     std::vector<double> ratios(count, 1.0);
     if (!calibrations) return ratios;
-    if (!calibrations.is_array()) calibrations.fail("is no array; correct it");
+    if (!calibrations.is_array()) calibrations.fail("is not an array; correct it");
     double before_ct = 0.0;
     std::vector<double> before;
     for (JsonValue item = calibrations.first(); item; item = item.next()) {
@@ -67,7 +68,7 @@ std::vector<double> ratios_at(const JsonValue &calibrations, double ct, size_t c
         if (gains.size() != count)
             table.fail("has " + std::to_string(gains.size()) + " values, the luminance " + std::to_string(count)
                        + "; correct it");
-        if (item_ct <= before_ct) item.fail("is not of a higher ct than the one before; sort them");
+        if (item_ct <= before_ct) item.fail("does not have a higher ct than the one before; sort them");
         const double share = before.empty() ? 1.0 : std::clamp((ct - before_ct) / (item_ct - before_ct), 0.0, 1.0);
         if (before.empty() || ct > before_ct)
             for (size_t i = 0; i < count; i++)
@@ -85,7 +86,7 @@ double read_alsc(std::string_view text, double ct, Shape shape, lensprof_profile
     const JsonText json(text);
     const JsonValue alsc = find_alsc(json.root());
     if (alsc.is_object() && alsc["corner_strength"])
-        alsc["corner_strength"].fail("makes libcamera ignore \"luminance_lut\"; take it out to read the table",
+        alsc["corner_strength"].fail("makes libcamera ignore \"luminance_lut\"; remove it to read the table",
                                      LENSPROF_ERROR_UNSUPPORTED);
     const JsonValue table = alsc.required("luminance_lut");
     const std::vector<double> luminance = gains_of(table);

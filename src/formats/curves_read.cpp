@@ -78,7 +78,7 @@ private:
         if (tables_.empty()) tables_.push_back({});
         std::vector<Row> &rows = tables_.back().rows;
         if (!rows.empty() && rows[0].values.size() != row.values.size())
-            fail_at_line(number, std::to_string(row.values.size()) + " columns, where the first row has "
+            fail_at_line(number, std::to_string(row.values.size()) + " columns, but the first row has "
                                      + std::to_string(rows[0].values.size()) + "; correct it");
         if (rows.size() == kMostCurveRows)
             fail_at_line(number, "over 65536 rows; give a shorter table", LENSPROF_ERROR_SIZE);
@@ -118,18 +118,19 @@ void check_index(const Table &table, size_t index) {
 
 // The values of a channel as a response.
 lensprof_response read_curve(const Table &table, std::vector<double> values, uint32_t curve) {
-    if (values.size() < 2) fail_at_line(table.rows[0].line, "a single row; give one for each grey value");
+    if (values.size() < 2) fail_at_line(table.rows[0].line, "only one row; give one per grey value");
     const size_t fall = find_fall(values, false);
     if (fall < values.size())
         fail_at_line(table.rows[fall].line,
                      number_text(values[fall]) + " is below the " + number_text(values[fall - 1])
-                         + " before it, and a response does not decrease; smooth it, or check the kind of table",
+                         + " before it, but a response cannot decrease; smooth it, or check the kind of table",
                      LENSPROF_ERROR_RESPONSE);
     const double first = values.front(), last = values.back();
     if (curve == LENSPROF_CURVE_INVERSE && first < 0.0)
-        fail_at_line(table.rows[0].line,
-                     number_text(first) + " is below 0, as no irradiance is; is the table logarithmic?",
-                     LENSPROF_ERROR_RESPONSE);
+        fail_at_line(
+            table.rows[0].line,
+            number_text(first) + " is below 0, which is not an irradiance; check whether the table is logarithmic",
+            LENSPROF_ERROR_RESPONSE);
     const bool is_log = curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10;
     if (is_log ? !(last > first) : !(last > 0.0 && last > first))
         fail_at_line(table.rows.back().line,
@@ -150,7 +151,7 @@ lensprof_response read_curve(const Table &table, std::vector<double> values, uin
     lensprof_response response;
     const lensprof_status status =
         lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size()));
-    if (status != LENSPROF_OK) throw FormatFailure{status, "not a response; check the kind of table"};
+    if (status != LENSPROF_OK) throw FormatFailure{status, "it is not a response; check the kind of table"};
     return response;
 }
 
@@ -178,7 +179,7 @@ void read_columns(const Table &table, bool blue_first, uint32_t curve, Curves &c
     const size_t columns = table.rows[0].values.size();
     if (columns > 4)
         fail_at_line(table.rows[0].line,
-                     std::to_string(columns) + " columns; give 1 or 3, or these after one that counts");
+                     std::to_string(columns) + " columns; give 1 or 3, optionally after one that counts the rows");
     curves.count = columns <= 2 ? 1 : 3;
     const size_t skipped = columns - curves.count;
     if (skipped && table.rows.size() > 1) check_index(table, 0);
@@ -195,7 +196,7 @@ lensprof_status lensprof_curves_read(const void *data, size_t size, uint32_t cur
                                      uint32_t *count, lensprof_error *error) {
     if ((!data && size) || !responses || !count || curve > LENSPROF_CURVE_FORWARD) {
         set_error(error,
-                  "lensprof_curves_read: data, responses or count is NULL, or an unknown kind; see lensprof_curve");
+                  "lensprof_curves_read: data, responses or count is NULL, or the kind is unknown; see lensprof_curve");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {

@@ -52,7 +52,8 @@ lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32
                                       lensprof_error *error) {
     if (!responses || (response_count != 1 && response_count != 3) || curve > LENSPROF_CURVE_FORWARD || rows < 2
         || rows > kMostCurveRows || (!data && capacity)) {
-        set_error(error, "lensprof_curves_write: give 1 or 3 responses, a kind of table, 2 to 65536 rows and a buffer");
+        set_error(error,
+                  "lensprof_curves_write: give 1 or 3 responses, a lensprof_curve, 2 to 65536 rows and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error,

@@ -95,7 +95,7 @@ RadialGain read_radial(BigEndian payload) {
         c = payload.f64("its centre");
         demand(c >= 0.0 && c <= 1.0, "its centre is outside the frame; correct it");
     }
-    demand(payload.left() == 0, "bytes beyond its 7 numbers; correct their count");
+    demand(payload.left() == 0, "bytes after its 7 numbers; correct its size");
     return gain;
 }
 
@@ -107,17 +107,17 @@ GainMap read_map(BigEndian payload, uint64_t &points_left) {
     for (double *field : {&map.spacing[0], &map.spacing[1], &map.origin[0], &map.origin[1]})
         *field = payload.f64("its spacing and origin");
     map.map_planes = payload.u32("its planes");
-    demand(map.planes && map.row_pitch && map.column_pitch, "planes or pitch 0; correct it");
+    demand(map.planes && map.row_pitch && map.column_pitch, "planes or pitch is 0; correct it");
     demand(map.rows && map.columns && map.map_planes, "a map without points; correct it");
     demand((map.rows == 1 || map.spacing[0] > 0.0) && (map.columns == 1 || map.spacing[1] > 0.0),
            "a spacing that is not above 0; correct it");
     uint64_t points = 1;
     for (uint32_t side : {map.rows, map.columns, map.map_planes}) {
-        demand(side <= points_left && points * side <= points_left, "over 1 Mi points in all; leave maps out",
+        demand(side <= points_left && points * side <= points_left, "over 1 Mi points in total; leave maps out",
                LENSPROF_ERROR_SIZE);
         points *= side;
     }
-    demand(payload.left() == 4 * points, "another number of gains than points; correct it");
+    demand(payload.left() == 4 * points, "the number of gains differs from that of points; correct it");
     points_left -= points;
     map.gains.resize(points);
     for (float &gain : map.gains) gain = payload.f32("a gain");
@@ -140,7 +140,7 @@ public:
                 throw;
             }
         }
-        demand(bytes_.left() == 0, "bytes beyond the last opcode; give the list alone");
+        demand(bytes_.left() == 0, "bytes after the last opcode; give only the list");
         return std::move(gains_);
     }
 
@@ -154,11 +154,10 @@ private:
         const std::string name = known ? kNames[id] : "id " + std::to_string(id);
         name_ = " (" + name + ")";
         const BigEndian payload = bytes_.part(size, "its payload");
-        demand(known || (flags & kOpcodeOptional),
-               "not one of DNG 1.7, and not optional; read this picture by a program that knows it",
+        demand(known || (flags & kOpcodeOptional), "not in DNG 1.7, and not optional; use a program that supports it",
                LENSPROF_ERROR_UNSUPPORTED);
         const bool gain = id == kFixVignetteRadial || id == kGainMap;
-        demand(!gain || !trimmed_, "a gain of what TrimBounds leaves, which lensprof does not follow; take it out",
+        demand(!gain || !trimmed_, "a gain after TrimBounds, which lensprof does not support; remove it",
                LENSPROF_ERROR_UNSUPPORTED);
         demand(!gain || gains_.radial.size() + gains_.maps.size() < kMostGains, "over 64 gains; leave some out",
                LENSPROF_ERROR_SIZE);
@@ -228,7 +227,7 @@ uint32_t mosaic_channel(uint32_t layout, uint32_t column, uint32_t row) {
 uint32_t opcode_channels(uint32_t layout) {
     if (layout == LENSPROF_LAYOUT_GREY) return 1;
     demand(layout == LENSPROF_LAYOUT_RGB || is_mosaic(layout),
-           "a layout that raw pictures have not; pass GREY, RGB or a mosaic's", LENSPROF_ERROR_ARGUMENT);
+           "the layout is not one of raw pictures; pass GREY, RGB or that of a mosaic", LENSPROF_ERROR_ARGUMENT);
     return 3;
 }
 

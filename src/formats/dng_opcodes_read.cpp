@@ -35,7 +35,7 @@ public:
                                   : map.row_pitch != 1 || map.column_pitch != 1)
                 fail(LENSPROF_ERROR_UNSUPPORTED, "a GainMap of every "
                                                      + std::to_string(std::max(map.row_pitch, map.column_pitch))
-                                                     + "th pixel; pass the layout of the mosaic that the list is for");
+                                                     + "th pixel; pass the layout of the mosaic");
     }
 
     // Of a channel, at a place between the pixels' centres too; of the two greens of a mosaic, their mean.
@@ -126,7 +126,7 @@ std::string read_gains(const OpcodeGains &gains, PixelFrame frame, uint32_t layo
     if (gains.radial.empty() && gains.maps.empty())
         fail(LENSPROF_ERROR_NOT_FOUND, "no FixVignetteRadial and no GainMap among " + std::to_string(gains.count)
                                            + " opcodes" + (gains.left_out.empty() ? "" : " (" + gains.left_out + ")")
-                                           + "; give the list that has one");
+                                           + "; give the list that contains one");
     profile.key.processing = LENSPROF_PROCESSING_RAW;
     const GainField field(gains, frame, layout);
     const double worst = gains.maps.empty() && one_center(gains.radial) ? fit_radial(gains.radial, frame, profile)

@@ -54,20 +54,19 @@ private:
 
 void check_profile(const lensprof_profile &profile) {
     const lensprof_status status = lensprof_profile_validate(&profile);
-    demand(
-        status == LENSPROF_OK,
-        std::string("the profile is not valid (") + lensprof_status_name(status) + "); see lensprof_profile_validate",
-        status);
+    demand(status == LENSPROF_OK,
+           std::string("the profile is invalid (") + lensprof_status_name(status) + "); see lensprof_profile_validate",
+           status);
     demand(profile.key.processing != LENSPROF_PROCESSING_CORRECTED,
-           "the profile is of pictures corrected in camera, and opcodes correct raw ones; give another",
+           "the profile is for pictures corrected in camera, but opcodes apply to raw pictures; give another",
            LENSPROF_ERROR_UNSUPPORTED);
 }
 
 // The gain in its own polynomial, by least squares of its relative error. Returns the largest one.
 double write_radial(const lensprof_profile &profile, PixelFrame frame, OpcodeBytes &bytes) {
-    demand(profile.vignettings == 1, "falloffs a channel, and FixVignetteRadial has one; write GainMap",
+    demand(profile.vignettings == 1, "the profile has a falloff per channel, FixVignetteRadial only one; write GainMap",
            LENSPROF_ERROR_UNSUPPORTED);
-    demand(profile.grid.columns == 0, "a gain grid, and FixVignetteRadial is radial; write GainMap",
+    demand(profile.grid.columns == 0, "the profile has a gain grid, but FixVignetteRadial is radial; write GainMap",
            LENSPROF_ERROR_UNSUPPORTED);
     const lensprof_vignetting &v = profile.vignetting[0];
     const double sides[2] = {double(frame.width), double(frame.height)};
@@ -159,7 +158,8 @@ double write_maps(const lensprof_profile &profile, PixelFrame frame, uint32_t la
     const uint32_t channels = opcode_channels(layout);
     const bool differ = channels == 3 && (profile.vignettings == 3 || profile.grid.channels == 3);
     demand(channels == 3 || (profile.vignettings == 1 && profile.grid.channels <= 1),
-           "falloffs a channel for pictures of one; pass the layout RGB or a mosaic's", LENSPROF_ERROR_UNSUPPORTED);
+           "a falloff per channel for pictures with one channel; pass the layout RGB or that of a mosaic",
+           LENSPROF_ERROR_UNSUPPORTED);
     if (!differ || !is_mosaic(layout)) {
         GainMap map = whole_map(frame, differ ? 3 : 1);
         fill_gains(profile, frame, 0, map);
@@ -197,8 +197,7 @@ lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile, uint
     OpcodeBytes list;
     double found = 0.0;
     const lensprof_status status = at_boundary(error, [&] {
-        demand(form == LENSPROF_DNG_RADIAL || form == LENSPROF_DNG_GAIN_MAP,
-               "an unknown form; pass a lensprof_dng_form");
+        demand(form == LENSPROF_DNG_RADIAL || form == LENSPROF_DNG_GAIN_MAP, "unknown form; pass a lensprof_dng_form");
         demand(width && height, "a frame without pixels; pass its width and height");
         opcode_channels(layout);
         check_profile(*profile);

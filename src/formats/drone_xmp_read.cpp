@@ -119,7 +119,8 @@ std::vector<double> Packet::numbers(const Space &space, std::string_view name, s
                     fail(first(), std::string(name) + " has " + in_quotes(word) + ", not a number; correct it");
                 if (values.size() == most)
                     fail(first(),
-                         std::string(name) + " has over " + std::to_string(most) + " numbers; give what a camera wrote",
+                         std::string(name) + " has over " + std::to_string(most)
+                             + " numbers; give the packet as written by the camera",
                          LENSPROF_ERROR_SIZE);
                 values.push_back(value);
             } while (!words.empty());
@@ -248,7 +249,7 @@ Written DroneXmpReader::read_radial() const {
 
 std::array<double, 2> DroneXmpReader::center(const std::vector<double> &given, const char *name) const {
     if (given.empty()) return {(frame_.width - 1.0) / 2.0, (frame_.height - 1.0) / 2.0};
-    if (given.size() != 2) packet_.fail(packet_.first(), std::string(name) + " has not two numbers; correct it");
+    if (given.size() != 2) packet_.fail(packet_.first(), std::string(name) + " does not have two numbers; correct it");
     if (!(given[0] >= 0.0 && given[0] <= frame_.width && given[1] >= 0.0 && given[1] <= frame_.height))
         packet_.fail(packet_.first(), std::string(name) + " is outside a frame of " + std::to_string(frame_.width)
                                           + " x " + std::to_string(frame_.height)
@@ -261,12 +262,12 @@ double DroneXmpReader::read_2d(lensprof_profile &profile) const {
                               terms = packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d);
     if (powers.size() != 2 * terms.size())
         packet_.fail(packet_.first(),
-                     "VignettingPolynomial2DName has not two powers for each number of "
+                     "VignettingPolynomial2DName does not have two powers for each number of "
                      "VignettingPolynomial2D; correct it");
     for (double power : powers)
         if (power != std::floor(power) || power < 0.0 || power > 20.0)
             packet_.fail(packet_.first(), "VignettingPolynomial2DName has " + number_text(power)
-                                              + ", not a whole power of 0 to 20; correct it");
+                                              + ", not an integer power of 0 to 20; correct it");
     return fit_2d(powers, terms, frame_, profile);
 }
 
@@ -295,7 +296,7 @@ std::string DroneXmpReader::read(const char *source, lensprof_profile &profile) 
         throw FormatFailure{
             LENSPROF_ERROR_NOT_FOUND,
             "no VignettingPolynomial or VignettingPolynomial2D of Camera or Sentera, and no drone-dji:VignettingData; "
-            "give the XMP of a picture that has one"};
+            "give the XMP of a picture that contains one"};
     }
     if (dji && packet_.text(kDji, "VignettingFlag") == "1")
         return "VignettingFlag: the camera corrected this picture itself";

@@ -29,7 +29,7 @@ void read_text(const JsonValue &object, const char *name, char (&field)[capacity
     const std::string_view text = value.text();
     if (text.size() >= capacity) value.fail("is longer than " + std::to_string(capacity - 1) + " bytes; shorten it");
     for (char c : text)
-        if ((c >= 0 && c < ' ') || c == 127) value.fail("has control characters; take them out");
+        if ((c >= 0 && c < ' ') || c == 127) value.fail("has control characters; remove them");
     put_text(field, capacity, text);
 }
 
@@ -48,7 +48,7 @@ uint32_t read_word(const JsonValue &value, const char *const (&words)[count]) {
     const std::string_view text = value.text();
     for (uint32_t i = 0; i < count; i++)
         if (text == words[i]) return i;
-    value.fail("is " + in_quotes(text) + ", which is none of " + words[0] + " to " + words[count - 1] + "; correct it");
+    value.fail("is " + in_quotes(text) + ", not one of " + words[0] + " to " + words[count - 1] + "; correct it");
 }
 
 void read_key(const JsonValue &object, lensprof_profile_key &key) {
@@ -68,13 +68,13 @@ void read_key(const JsonValue &object, lensprof_profile_key &key) {
     key.color_temperature_k = read_known(object, "color_temperature_k");
     key.processing = read_word(object.required("processing"), kJsonProcessings);
     read_text(object, "style", key.style);
-    check(lensprof_profile_key_validate(&key), object, "no valid key");
+    check(lensprof_profile_key_validate(&key), object, "not a valid key");
 }
 
 // 1 or 3 items.
 uint32_t count_of_curves(const JsonValue &array) {
     const size_t count = array.is_array() ? array.size() : 0;
-    if (count != 1 && count != 3) array.fail("is not of one or three curves; correct it");
+    if (count != 1 && count != 3) array.fail("does not have one or three curves; correct it");
     return static_cast<uint32_t>(count);
 }
 
@@ -89,7 +89,7 @@ void read_vignetting(const JsonValue &object, lensprof_profile &profile) {
             const std::vector<double> xy = center.numbers(2, 2);
             std::copy(xy.begin(), xy.end(), v->center);
         }
-        check(lensprof_vignetting_validate(v), k, "no valid falloff");
+        check(lensprof_vignetting_validate(v), k, "not a valid falloff");
     }
     if (v != profile.vignetting + profile.vignettings) curves.fail("holds null; correct it");
 }
@@ -102,12 +102,12 @@ void read_grid(const JsonValue &object, lensprof_gain_grid &grid) {
     float *node = grid.attenuation;
     const float *const end = node + grid.channels * grid.rows * grid.columns;
     for (JsonValue rows = channels.first(); rows; rows = rows.next()) {
-        if (!rows.is_array() || rows.size() != grid.rows) rows.fail("is not of as many rows as \"rows\"; correct it");
+        if (!rows.is_array() || rows.size() != grid.rows) rows.fail("does not have \"rows\" rows; correct it");
         for (JsonValue row = rows.first(); row; row = row.next())
             for (double value : row.numbers(grid.columns, grid.columns)) *node++ = static_cast<float>(value);
     }
     if (node != end) channels.fail("holds null; correct it");
-    check(lensprof_gain_grid_validate(&grid), object, "no valid gain grid");
+    check(lensprof_gain_grid_validate(&grid), object, "not a valid gain grid");
 }
 
 // A curve of the kind that `object` names, with the samples that there are.
@@ -117,17 +117,17 @@ void read_curve(const JsonValue &object, const JsonValue &samples, lensprof_resp
         if (!samples) object.fail("has no \"values\"; add them");
         const std::vector<double> values = samples.numbers(2, kMostSamples);
         return check(lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size())),
-                     samples, "no response, which rises from 0 to 1");
+                     samples, "not a response that rises from 0 to 1");
     }
     if (kind == LENSPROF_RESPONSE_GAMMA) {
         const JsonValue gamma = object.required("gamma");
-        check(lensprof_response_set_gamma(&response, gamma.number()), gamma, "no exponent of 0.1 to 10");
+        check(lensprof_response_set_gamma(&response, gamma.number()), gamma, "not an exponent of 0.1 to 10");
     } else if (kind == LENSPROF_RESPONSE_EMOR) {
         const JsonValue emor = object.required("emor");
         const std::vector<double> terms = emor.numbers(0, LENSPROF_EMOR_MODES);
         lensprof_response_set_linear(&response);
         check(lensprof_response_set_emor(&response, terms.data(), static_cast<uint32_t>(terms.size())), emor,
-              "no response that rises");
+              "not a response that rises");
     } else {
         lensprof_response_set_linear(&response);
     }
@@ -135,16 +135,16 @@ void read_curve(const JsonValue &object, const JsonValue &samples, lensprof_resp
     const std::vector<double> values = samples.numbers(LENSPROF_RESPONSE_SAMPLES, LENSPROF_RESPONSE_SAMPLES);
     for (size_t j = 0; j < values.size(); j++)
         if (!(std::fabs(values[j] - response.table[j]) <= kSameCurve))
-            samples.fail("is another curve than that of its kind; leave \"values\" out, or make the kind \"table\"");
+            samples.fail("does not match the curve of its kind; leave \"values\" out, or set the kind to \"table\"");
     std::copy(values.begin(), values.end(), response.table);
-    check(lensprof_response_validate(&response), samples, "no response, which rises from 0 to 1");
+    check(lensprof_response_validate(&response), samples, "not a response that rises from 0 to 1");
 }
 
 void read_responses(const JsonValue &object, lensprof_profile &profile) {
     const JsonValue values = object["values"], curves = object["curves"];
     profile.responses = values ? count_of_curves(values) : curves ? count_of_curves(curves) : 1;
     if (curves && count_of_curves(curves) != profile.responses)
-        curves.fail("is not of as many as \"values\"; correct it");
+        curves.fail("has not as many curves as \"values\"; correct it");
     JsonValue samples = values ? values.first() : values, curve = curves ? curves.first() : object;
     for (uint32_t c = 0; c < profile.responses; c++) {
         if (values && !samples) values.fail("holds null; correct it");
@@ -157,7 +157,7 @@ void read_responses(const JsonValue &object, lensprof_profile &profile) {
 
 void read_covariance(const JsonValue &rows, lensprof_profile &profile) {
     const size_t n = rows.size();
-    if (n > LENSPROF_COVARIANCE_MAX) rows.fail("is of more than 36 parameters; correct it");
+    if (n > LENSPROF_COVARIANCE_MAX) rows.fail("has more than 36 parameters; correct it");
     double *out = profile.covariance;
     for (JsonValue row = rows.first(); row; row = row.next())
         for (double value : row.numbers(n, n)) *out++ = value;
@@ -209,7 +209,7 @@ void check_schema(const JsonValue &object) {
     const JsonValue schema = object["schema"];
     if (!schema) return;
     if (schema.whole(INT64_MIN, INT64_MAX) != kJsonSchema)
-        schema.fail("is not 1, which this lensprof reads; use a newer one", LENSPROF_ERROR_UNSUPPORTED);
+        schema.fail("is not 1, the only one supported; use a newer lensprof", LENSPROF_ERROR_UNSUPPORTED);
 }
 
 void read_profile(const JsonValue &object, const char *source, lensprof_profile &profile) {
@@ -224,28 +224,28 @@ void read_profile(const JsonValue &object, const char *source, lensprof_profile 
         read_provenance(provenance, source, profile.provenance);
     else
         put_name(profile.provenance.source, sizeof profile.provenance.source, source);
-    check(lensprof_profile_validate(&profile), object, "no valid profile");
+    check(lensprof_profile_validate(&profile), object, "not a valid profile");
 }
 
 // Calls use(profile) for every profile of the text until it does not return OK.
 template <typename Use>
 lensprof_status walk(const JsonText &text, const char *source, lensprof_profile &profile, Use use) {
     const JsonValue root = text.root();
-    if (!root.is_object()) root.fail("is no object; give that of a profile, or one with a list of profiles");
+    if (!root.is_object()) root.fail("is not an object; give that of a profile, or one with a list of profiles");
     const JsonValue list = root["profiles"];
     if (!list) {
         read_profile(root, source, profile);
         return use(profile);
     }
     check_schema(root);
-    if (!list.is_array()) list.fail("is no array; correct it");
+    if (!list.is_array()) list.fail("is not an array; correct it");
     lensprof_status status = LENSPROF_OK;
     size_t read = 0;
     for (JsonValue item = list.first(); item && status == LENSPROF_OK; item = item.next(), read++) {
         read_profile(item, source, profile);
         status = use(profile);
     }
-    if (status == LENSPROF_OK && read != list.size()) list.fail("holds null; take it out");
+    if (status == LENSPROF_OK && read != list.size()) list.fail("holds null; remove it");
     return status;
 }
 

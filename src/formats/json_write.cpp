@@ -183,7 +183,7 @@ std::string profiles_text(const lensprof_profile *const *profiles, uint32_t coun
         if (status != LENSPROF_OK)
             throw failure_at(
                 LENSPROF_ITEM_PROFILE, i,
-                std::string("is not valid (") + lensprof_status_name(status) + "); see lensprof_profile_validate",
+                std::string("is invalid (") + lensprof_status_name(status) + "); see lensprof_profile_validate",
                 status);
         if (count != 1) json.line();
         write_profile(json, *profiles[i]);

@@ -148,7 +148,7 @@ void LcpReader::read_focal(const RdfResource &entry, const RdfResource &model, L
     if (!(x > 0.0)) {
         if (key.focal_mm == LENSPROF_UNKNOWN || key.crop_factor == LENSPROF_UNKNOWN)
             fail(entry.node(),
-                 "a VignetteModel without FocalLengthX, and no FocalLength and SensorFormatFactor to take "
+                 "a VignetteModel without FocalLengthX, and without FocalLength and SensorFormatFactor to derive "
                  "it from; add one of them");
         x = key.focal_mm * key.crop_factor / 35.0;
     }
@@ -167,7 +167,7 @@ std::vector<Knot> LcpReader::read_knots(const RdfResource &model) const {
             fail(model.node(), "VignetteModelPiecewiseParam has " + in_quotes(item) + ", not two numbers; correct it");
         if (r < 0.0 || (!knots.empty() && !(r > knots.back().first)))
             fail(model.node(), "VignetteModelPiecewiseParam: the radius of " + in_quotes(item)
-                                   + " is not above that before; sort them");
+                                   + " is not above the one before; sort them");
         if (knots.size() == kMostKnots)
             fail(model.node(), "VignetteModelPiecewiseParam: over 1000 knots; leave some out", LENSPROF_ERROR_SIZE);
         knots.emplace_back(r, value);

@@ -76,13 +76,13 @@ void LcpWriter::check_key(const lensprof_profile &profile, uint32_t index) {
                           && !std::strcmp(key.camera_model, first_.camera_model) && !std::strcmp(key.lens, first_.lens)
                           && key.crop_factor == first_.crop_factor && key.processing == first_.processing;
         demand_of_profile(same, index,
-                          "another camera, lens or crop factor than profile 0, or rendered and not raw, and a "
-                          "lens profile is of one; write a file for each");
+                          "differs from profile 0 in camera, lens, crop factor or processing, but a "
+                          "lens profile holds only one; write a file for each");
     } else {
         first_ = key;
     }
     demand_of_profile(settings_.insert({key.focal_mm, key.aperture, key.distance_m}).second, index,
-                      "the setting of an earlier profile; leave one out");
+                      "same setting as an earlier profile; leave one out");
 }
 
 void LcpWriter::append_key(pugi::xml_node entry, const lensprof_profile_key &key) {
@@ -148,9 +148,10 @@ lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles, uint
     return write_at_boundary(data, capacity, count, error, [&] {
         const bool known = width && height;
         if (!known && (width || height))
-            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "a frame of one side; pass width and height, or 0 for 3:2"};
+            throw FormatFailure{LENSPROF_ERROR_ARGUMENT,
+                                "a frame with only one side; pass width and height, or 0 for 3:2"};
         if (width > 1000000 || height > 1000000)
-            throw FormatFailure{LENSPROF_ERROR_SIZE, "a frame of over a million pixels a side; pass its size"};
+            throw FormatFailure{LENSPROF_ERROR_SIZE, "a side of over a million pixels; pass the size of the frame"};
         LcpWriter writer({known ? width : kLcpWidth, known ? height : kLcpHeight, known});
         for (uint32_t i = 0; i < profile_count; i++) {
             demand_of_profile(profiles[i] != nullptr, i, "is NULL; pass a profile");

@@ -170,7 +170,7 @@ void LensfunReader::read_entry(const pugi::xml_node &entry) {
         if (n == 0 || entry.attribute(kNames[acm][n])) terms[n] = attribute(entry, kNames[acm][n], -1e300, 1e300);
     if (acm) terms = in_half_diagonals(terms, real_focal(entry, key.focal_mm) / half_diagonal_mm(key.crop_factor));
     for (double k : terms)
-        if (!std::isfinite(k)) fail(entry, "coefficients beyond all numbers; correct them");
+        if (!std::isfinite(k)) fail(entry, "coefficients out of range; correct them");
     std::copy(terms.begin(), terms.end(), profile_->vignetting[0].k);
 }
 

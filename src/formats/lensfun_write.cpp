@@ -48,12 +48,12 @@ void append_entry(WrittenLens &lens, const lensprof_profile &profile, uint32_t i
     const lensprof_profile_key &key = profile.key;
     const double *center = profile.vignetting[0].center;
     demand_of_profile(lens.center[0] == center[0] && lens.center[1] == center[1], index,
-                      "another centre than an earlier profile of " + in_quotes(key.lens)
-                          + ", and Lensfun has one a lens; fit it without");
+                      "its centre differs from that of an earlier profile of " + in_quotes(key.lens)
+                          + ", but Lensfun has one per lens; fit without a centre");
     const bool far = key.distance_m == LENSPROF_UNKNOWN || std::isinf(key.distance_m);
     const Setting setting{key.focal_mm, key.aperture, far ? kLensfunInfinityM : key.distance_m};
     demand_of_profile(lens.settings.insert(setting).second, index,
-                      "lens " + in_quotes(key.lens) + " and setting of an earlier profile; leave one out");
+                      "lens " + in_quotes(key.lens) + ": same setting as an earlier profile; leave one out");
     pugi::xml_node entry = append_element(lens.calibration, "vignetting");
     append_attribute(entry, "model", "pa");
     append_number(entry, "focal", key.focal_mm);
@@ -67,7 +67,7 @@ void append_entry(WrittenLens &lens, const lensprof_profile &profile, uint32_t i
 std::string database_text(const lensprof_profile *const *profiles, uint32_t count) {
     pugi::xml_document document;
     const std::string remark =
-        std::string(kLensfunRemark) + lensprof_version() + "; <mount> may be made that of your camera ";
+        std::string(kLensfunRemark) + lensprof_version() + "; <mount> may be changed to that of your camera ";
     append_remark(document, remark);
     const pugi::xml_node root = append_element(document, "lensdatabase");
     append_attribute(root, "version", "1");

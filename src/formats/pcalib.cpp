@@ -21,9 +21,9 @@ lensprof_response read_pcalib(std::string_view text) {
             double value;
             if (!read_number(word, value))
                 fail_at_line(lines.number, "value " + std::to_string(values.size()) + " is " + in_quotes(word)
-                                               + ", not a finite number; interpolate grey values that were not seen");
+                                               + ", not a finite number; interpolate missing grey values");
             if (values.size() == kMostCurveRows)
-                throw FormatFailure{LENSPROF_ERROR_SIZE, "over 65536 values; give one for each grey value"};
+                throw FormatFailure{LENSPROF_ERROR_SIZE, "over 65536 values; give one per grey value"};
             values.push_back(value);
         }
     const size_t fall = find_fall(values, true);
@@ -31,11 +31,11 @@ lensprof_response read_pcalib(std::string_view text) {
         throw FormatFailure{LENSPROF_ERROR_RESPONSE,
                             "value " + std::to_string(fall) + " (" + number_text(values[fall])
                                 + ") is not above the one before (" + number_text(values[fall - 1])
-                                + "), and an inverse response must increase; smooth it, or write it with lensprof"};
+                                + "), but an inverse response must increase; smooth it, or write it with lensprof"};
     if (values.size() < kRows)
-        throw FormatFailure{LENSPROF_ERROR_SYNTAX,
-                            std::to_string(values.size())
-                                + " values, not 256 or more; give the whole file, with one for each grey value"};
+        throw FormatFailure{
+            LENSPROF_ERROR_SYNTAX,
+            std::to_string(values.size()) + " values, not 256 or more; give the whole file, with one per grey value"};
     const double first = values.front(), range = values.back() - first;
     for (double &value : values) value = std::max((value - first) / range, 0.0);
     return response_of_irradiances(values);

@@ -28,7 +28,7 @@ constexpr const char *kPolynomial = "PolynomialVignettingModel", *kMap = "Nonpar
 }
 
 uint32_t take_u32(std::string_view &data) {
-    if (data.size() < 4) fail("the matrix is cut; give the whole file");
+    if (data.size() < 4) fail("the matrix is truncated; give the whole file");
     uint32_t value = 0;
     for (size_t i = 0; i < 4; i++) value |= uint32_t{static_cast<unsigned char>(data[i])} << (8 * i);
     data.remove_prefix(4);
@@ -61,7 +61,7 @@ struct Matrix {
 };
 
 Matrix take_matrix(std::string_view data, uint32_t type) {
-    if (take_u32(data) != kMagic) fail("not a file of radical (its magic number is missing); give a .crf or .vgn");
+    if (take_u32(data) != kMagic) fail("not a radical file (its magic number is missing); give a .crf or .vgn");
     Matrix matrix{};
     matrix.type = take_u32(data);
     const uint32_t dimensions = take_u32(data);
@@ -72,7 +72,7 @@ Matrix take_matrix(std::string_view data, uint32_t type) {
              LENSPROF_ERROR_UNSUPPORTED);
     const uint64_t pixel = type == kFloat3 ? 12 : 24;
     if (matrix.rows > 65536 || matrix.columns > 65536)
-        fail("a matrix of over 65536 a side; give another file", LENSPROF_ERROR_SIZE);
+        fail("a matrix side of over 65536; give another file", LENSPROF_ERROR_SIZE);
     if (data.size() != uint64_t{matrix.rows} * matrix.columns * pixel)
         fail("a matrix of " + std::to_string(matrix.columns) + " x " + std::to_string(matrix.rows) + " in "
              + std::to_string(data.size()) + " bytes; give the whole file");
@@ -99,7 +99,7 @@ void read_responses(std::string_view data, lensprof_response *responses) {
     const Matrix matrix = take_matrix(data, kFloat3);
     if (uint64_t{matrix.rows} * matrix.columns != kGreys)
         fail("a response of " + std::to_string(uint64_t{matrix.rows} * matrix.columns)
-             + " greys, not of 256; give another file");
+             + " grey values, not 256; give another file");
     const std::vector<float> values = matrix.numbers<float>();
     static constexpr const char *kNames[3] = {"red", "green", "blue"};
     for (size_t c = 0; c < 3; c++) {
@@ -108,7 +108,7 @@ void read_responses(std::string_view data, lensprof_response *responses) {
         for (size_t i = 0; i < kGreys; i++)
             if (!std::isfinite(greys[i]) || greys[i] < 0.0)
                 fail(std::string("grey ") + std::to_string(i) + " of " + kNames[c]
-                         + " is no irradiance; calibrate again",
+                         + " is not an irradiance; calibrate again",
                      LENSPROF_ERROR_RESPONSE);
         const size_t fall = find_fall(greys, false);
         if (fall < kGreys || !(greys.back() > greys.front()))
@@ -145,7 +145,7 @@ void set_falloffs(const Polynomials &terms, uint32_t width, uint32_t height, len
         v.center[1] = (terms[0][1] - (height - 1.0) / 2.0) / rho;
         for (size_t n = 0; n < 3; n++) v.k[n] = terms[c][n + 2] * std::pow(rho, 2.0 * (double(n) + 1.0));
         const lensprof_status status = lensprof_vignetting_validate(&v);
-        if (status != LENSPROF_OK) fail("a falloff that is not above 0 on the whole frame; calibrate again", status);
+        if (status != LENSPROF_OK) fail("the falloff is not above 0 on the whole frame; calibrate again", status);
     }
     lensprof_gain_grid_init(&profile.grid);
 }
@@ -165,7 +165,7 @@ double read_polynomial(std::string_view header, std::string_view data, lensprof_
     double size[3];
     for (double &value : size)
         if (!read_whole(next_word(header), 1, 65536, value))
-            fail("line 1: no degree, width and height; give the whole file");
+            fail("line 1: degree, width and height are missing; give the whole file");
     if (size[0] != 3.0)
         fail("line 1: a polynomial of degree " + number_text(size[0]) + ", not 3", LENSPROF_ERROR_UNSUPPORTED);
     const Matrix matrix = take_matrix(data, kDouble3);
@@ -173,8 +173,7 @@ double read_polynomial(std::string_view header, std::string_view data, lensprof_
     const std::vector<double> values = matrix.numbers<double>();
     Polynomials terms;
     for (size_t i = 0; i < values.size(); i++) {
-        if (!std::isfinite(values[i]))
-            fail("a coefficient that is not finite; calibrate again", LENSPROF_ERROR_NOT_FINITE);
+        if (!std::isfinite(values[i])) fail("a coefficient is not finite; calibrate again", LENSPROF_ERROR_NOT_FINITE);
         terms[2 - i % 3][i / 3] = values[i];
     }
     const auto width = static_cast<uint32_t>(size[1]), height = static_cast<uint32_t>(size[2]);
@@ -189,7 +188,7 @@ double read_polynomial(std::string_view header, std::string_view data, lensprof_
 
 double read_vignetting(std::string_view data, lensprof_profile &profile) {
     const size_t end = data.substr(0, 100).find('\n');
-    if (end == std::string_view::npos) fail("no line of text at the beginning; give a .vgn of radical");
+    if (end == std::string_view::npos) fail("no line of text at the beginning; give a .vgn file of radical");
     std::string_view header = data.substr(0, end);
     const std::string_view name = next_word(header);
     data.remove_prefix(end + 1);
@@ -202,7 +201,7 @@ double read_vignetting(std::string_view data, lensprof_profile &profile) {
         worst = fit_values({matrix.columns, matrix.rows, 3, false, {2, 1, 0}}, values.data(), matrix.columns,
                            matrix.rows, profile);
     } else {
-        fail("line 1: " + in_quotes(name) + " is no vignetting model of radical; give another file",
+        fail("line 1: " + in_quotes(name) + " is not a vignetting model of radical; give another file",
              LENSPROF_ERROR_UNSUPPORTED);
     }
     profile.covariance_size = 0;

@@ -19,12 +19,12 @@ double read_field(std::string_view word, const char *what, size_t line) {
 lensprof_frame_time read_frame(std::string_view line, size_t number) {
     lensprof_frame_time frame{};
     const std::string_view id = next_word(line), time = next_word(line), exposure = next_word(line);
-    if (time.empty()) fail_at_line(number, "a frame without a time; give name, time and exposure of each");
+    if (time.empty()) fail_at_line(number, "a frame without a time; give name, time and exposure of each frame");
     if (!next_word(line).empty()) fail_at_line(number, "more than name, time and exposure; give another file");
     if (id.size() >= sizeof frame.id)
         fail_at_line(number, "the name " + in_quotes(id) + " is longer than 63 bytes; shorten it");
     for (char c : id)
-        if ((c >= 0 && c < ' ') || c == 127) fail_at_line(number, "a name with control characters; take them out");
+        if ((c >= 0 && c < ' ') || c == 127) fail_at_line(number, "a name with control characters; remove them");
     std::memcpy(frame.id, id.data(), id.size());
     frame.time_s = read_field(time, "the time", number);
     frame.exposure_ms = exposure.empty() ? 0.0 : read_field(exposure, "the exposure", number);
@@ -61,7 +61,7 @@ void check_frame(const lensprof_frame_time &frame, uint32_t index) {
                "its name has blanks or control characters, or begins with #; change id", LENSPROF_ERROR_ARGUMENT);
     demand(std::isfinite(frame.time_s), "its time is not finite; correct it", LENSPROF_ERROR_NOT_FINITE);
     demand(frame.exposure_ms == LENSPROF_UNKNOWN || (frame.exposure_ms > 0.0 && std::isfinite(frame.exposure_ms)),
-           "its exposure is not above 0; correct it, or make it unknown", LENSPROF_ERROR_EXPOSURE);
+           "its exposure is not above 0; correct it, or set it to unknown", LENSPROF_ERROR_EXPOSURE);
 }
 
 std::string times_text(const lensprof_frame_time *frames, uint32_t count) {
@@ -93,7 +93,7 @@ lensprof_status lensprof_times_read(const void *data, size_t size, lensprof_fram
         *count = walk(all, [](uint32_t, const lensprof_frame_time &) {});
         if (!capacity) return;
         if (*count > capacity)
-            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(*count) + " frames for a buffer of "
+            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(*count) + " frames do not fit the buffer of "
                                                              + std::to_string(capacity) + "; pass a larger one"};
         walk(all, [&](uint32_t index, const lensprof_frame_time &frame) { frames[index] = frame; });
     });

@@ -233,7 +233,7 @@ void test_what_is_free(void **) {
     // Exposures alone cannot explain this camera, and the program says so, with the result all the same.
     const Outcome poor = run_words(build_scene({"--free", "ev"}));
     assert_int_equal(poor.code, not_usable);
-    assert_true(contains(poor.err, "pano.pto: not usable: the pairs scatter by"));
+    assert_true(contains(poor.err, "pano.pto: not usable: the pairs deviate by"));
     const Json ev = Json::parse(poor.out);
     assert_true(ev["usable"] == false);
     for (const Json &k : ev["vignetting"]["k"][0]) assert_close(k.get<double>(), 0, 0);

@@ -230,7 +230,7 @@ void test_pictures_that_show_no_response(void **) {
     like.noise = 0.0;
     for (double ev : {-40.0, 40.0}) assert_shows_nothing(shots({ev, ev + 1.0, ev - 1.0}, like));
     assert_shows_nothing(shots({30.0, -30.0}, like));
-    assert_refused(not_usable, bracket(shots({0.0, -30.0}, like), no_store), {"all black or white"});
+    assert_refused(not_usable, bracket(shots({0.0, -30.0}, like), no_store), {"entirely black or white"});
     like.noise = 1.0;
     Words files = shots(three);
     for (uint32_t i = 0; i < 3; ++i) {

@@ -149,7 +149,7 @@ void test_exposures_that_cannot_be(void **) {
     for (auto &image : alike.fit_images) image.known_ev = 1.0;
     run = run_fit(alike, by_debevec());
     assert_int_equal(run.result.usable, 0);
-    assert_reason(run.result, KNOWN_ALIKE, "differ by 0.00 EV");
+    assert_reason(run.result, KNOWN_ALIKE, "differ by only 0.00 EV");
     assert_true(is_monotone(run.result.response));
 }
 
@@ -176,7 +176,7 @@ void test_refuses(void **) {
     for (uint32_t flag : {LENSPROF_FREE_K1, LENSPROF_FREE_K2, LENSPROF_FREE_K3, LENSPROF_FREE_CENTER}) {
         lensprof_fit_options options = by_debevec();
         options.free |= flag;
-        assert_refused(s, options, LENSPROF_ERROR_ARGUMENT, "hold falloff");
+        assert_refused(s, options, LENSPROF_ERROR_ARGUMENT, "fix falloff");
     }
     lensprof_fit_options held = by_debevec();
     held.free = 0;

@@ -83,7 +83,7 @@ static void what_is_not_radial_goes_into_a_grid(void **) {
     o.grid = LENSPROF_FLAT_GRID_NONE;
     r = p.fit(o);
     assert_int_equal(r->gain_grid.columns, 0);
-    assert_reason(*r, FLAT_NOT_RADIAL, "ask for a gain grid");
+    assert_reason(*r, FLAT_NOT_RADIAL, "request a gain grid");
 }
 
 static void what_is_far_from_radial_needs_a_grid(void **) {
@@ -98,7 +98,7 @@ static void what_is_far_from_radial_needs_a_grid(void **) {
     o.grid = LENSPROF_FLAT_GRID_NONE;
     r = p.fit(o);
     assert_false(r->usable);
-    assert_reason(*r, FLAT_CORNER_NOT_RADIAL, "ask for a gain grid");
+    assert_reason(*r, FLAT_CORNER_NOT_RADIAL, "request a gain grid");
 }
 
 static void the_result_does_not_depend_on_threads(void **) {

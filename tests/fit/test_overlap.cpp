@@ -240,7 +240,7 @@ void test_unconnected_images_are_not_usable(void **) {
     Run run = fit(s, default_options());
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 2);
-    assert_reason(run.result, IMAGE_GROUPS, "2 groups: no usable overlap joins image 3 ");
+    assert_reason(run.result, IMAGE_GROUPS, "2 groups: no usable overlap connects image 3 ");
     assert_int_equal(run.result.reason_item.index, 3);
 }
 

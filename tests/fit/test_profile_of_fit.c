@@ -146,12 +146,12 @@ static void test_refused(void **state) {
     prepare(state);
 #define FIT(change) (prepare(state), (change), lensprof_profile_from_fit(&profile, &result, &options, 6, &error))
 #define FLAT(change) (prepare(state), (change), lensprof_profile_from_flat(&profile, &flat, &card, 6, &error))
-    assert_refused(FIT(result.vignettings = 0), LENSPROF_ERROR_ARGUMENT, "no fit has filled it");
-    assert_refused(FIT(result.covariance_size = 37), LENSPROF_ERROR_ARGUMENT, "no fit has filled it");
+    assert_refused(FIT(result.vignettings = 0), LENSPROF_ERROR_ARGUMENT, "not filled by a fit");
+    assert_refused(FIT(result.covariance_size = 37), LENSPROF_ERROR_ARGUMENT, "not filled by a fit");
     assert_refused(FIT(result.struct_size = 0), LENSPROF_ERROR_STRUCT_SIZE, "result");
     assert_refused(FIT(options.struct_size += 8), LENSPROF_ERROR_STRUCT_SIZE, "options");
     assert_refused(FIT(profile.struct_size = 0), LENSPROF_ERROR_STRUCT_SIZE, "profile");
-    assert_refused(FLAT(flat.vignettings = 2), LENSPROF_ERROR_ARGUMENT, "no fit has filled it");
+    assert_refused(FLAT(flat.vignettings = 2), LENSPROF_ERROR_ARGUMENT, "not filled by a fit");
     assert_refused(FLAT(card.responses = 2), LENSPROF_ERROR_ARGUMENT, "responses is 2");
     assert_refused(FLAT(card.struct_size = 1), LENSPROF_ERROR_STRUCT_SIZE, "options");
     assert_int_equal(lensprof_profile_from_fit(NULL, &result, &options, 6, &error), LENSPROF_ERROR_ARGUMENT);

@@ -164,8 +164,8 @@ void test_what_is_refused(void **) {
     };
     refused([](lensprof_match &m) { m.image[1] = 0; }, "match 5: image");
     refused([](lensprof_match &m) { m.image[1] = 2; }, "match 5: image");
-    refused([](lensprof_match &m) { m.xy[0][0] = kWidth + 1.0; }, "outside of its image");
-    refused([](lensprof_match &m) { m.xy[1][1] = NAN; }, "outside of its image");
+    refused([](lensprof_match &m) { m.xy[0][0] = kWidth + 1.0; }, "outside its image");
+    refused([](lensprof_match &m) { m.xy[1][1] = NAN; }, "outside its image");
     refused([](lensprof_match &m) { m.map[0][0] = NAN; }, "map");
     refused([](lensprof_match &m) { m.map[0][0] = -1.0; }, "map");
     refused([](lensprof_match &m) { m.map[0][0] = 0.0; }, "map");

@@ -36,7 +36,7 @@ void test_values_and_items_have_their_places(void **) {
     assert_string_equal(named(sentence).c_str(), "shot 4");
     sentence = sentence_of({LENSPROF_REASON_FLAT_NOT_RADIAL_GRID, {0.0123, 0.0004}});
     assert_string_equal(sentence.text.c_str(),
-                        "1.2 % of the light is not radial: the gain grid takes it, and leaves 0.0 %");
+                        "1.2 % of the light is not radial: the gain grid describes it, except for 0.0 %");
     assert_int_equal(sentence.item.kind, LENSPROF_ITEM_NONE);
     assert_string_equal(sentence_of({LENSPROF_REASON_NONE, {}}).text.c_str(), "");
 }

@@ -290,13 +290,13 @@ void test_refused(void **) {
     profile->covariance[0] = profile->covariance[6] = 1e-4;
     profile->covariance[1] = profile->covariance[5] = 1e-2;  // a correlation of 100
     assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.text, "covariance is none"));
+    assert_non_null(strstr(error.text, "covariance is not positive semi-definite"));
     profile->covariance[1] = profile->covariance[5] = 0.0;
     assert_int_equal(fit(s, profile.get(), found, &error, LENSPROF_METHOD_TRANSFER_FUNCTION),
                      LENSPROF_ERROR_UNSUPPORTED);
     profile->vignetting[0].k[0] = -2.0;
     assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_VIGNETTING);
-    assert_non_null(strstr(error.text, "the profile is not valid"));
+    assert_non_null(strstr(error.text, "the profile is invalid"));
 }
 
 }  // namespace

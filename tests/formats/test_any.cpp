@@ -211,8 +211,8 @@ void test_empty_large_and_unknown(void **) {
     for (uint32_t format = 0; format <= LENSPROF_FORMAT_RADICAL_VIGNETTING; format++)
         if (format != LENSPROF_FORMAT_MAP)
             refused("", import_options(format, "a.csv"), LENSPROF_ERROR_SYNTAX, "is empty");
-    refused("hello", import_options(), LENSPROF_ERROR_UNSUPPORTED, "name the format");
-    refused("hello", import_options(LENSPROF_FORMAT_AUTO, "a.doc"), LENSPROF_ERROR_UNSUPPORTED, "name the format");
+    refused("hello", import_options(), LENSPROF_ERROR_UNSUPPORTED, "specify the format");
+    refused("hello", import_options(LENSPROF_FORMAT_AUTO, "a.doc"), LENSPROF_ERROR_UNSUPPORTED, "specify the format");
     refused("hello", import_options(13), LENSPROF_ERROR_ARGUMENT, "unknown format");
     lensprof_error error{};
     Found found;
@@ -383,7 +383,7 @@ void test_export_refuses(void **) {
         if (status != wanted || why.find(words) == std::string::npos)
             fail_msg("%s: %s, not %s", lensprof_status_name(status), why.c_str(), words);
     };
-    refuses({p.get()}, export_options(), LENSPROF_ERROR_UNSUPPORTED, "name the format");
+    refuses({p.get()}, export_options(), LENSPROF_ERROR_UNSUPPORTED, "specify the format");
     refuses({p.get()}, export_options(LENSPROF_FORMAT_AUTO, "a.m"), LENSPROF_ERROR_UNSUPPORTED, "read only");
     refuses({p.get()}, export_options(LENSPROF_FORMAT_DRONE_XMP), LENSPROF_ERROR_UNSUPPORTED, "xmp is read only");
     refuses({p.get()}, export_options(LENSPROF_FORMAT_MAP), LENSPROF_ERROR_UNSUPPORTED, "lensprof_map_write");

@@ -301,13 +301,13 @@ void test_write_refused(void **) {
     fails(*profile, LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_CAPACITY, "buffer is too small");
     profile->vignettings = 3;
     fails(*profile, LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_UNSUPPORTED, "write GainMap");
-    fails(*profile, LENSPROF_LAYOUT_GREY, 1, LENSPROF_ERROR_UNSUPPORTED, "pictures of one");
+    fails(*profile, LENSPROF_LAYOUT_GREY, 1, LENSPROF_ERROR_UNSUPPORTED, "pictures with one");
     profile = profile_of(-0.3, 0, 0);
     profile->grid.columns = profile->grid.rows = 2, profile->grid.channels = 1;
     for (int i = 0; i < 4; i++) profile->grid.attenuation[i] = 1;
     fails(*profile, LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_UNSUPPORTED, "gain grid");
     fails(*profile_of(-0.1, 0, 0, 0.9, 0), LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_UNSUPPORTED, "centre");
-    fails(*profile_of(-2, 0, 0), LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_VIGNETTING, "not valid");
+    fails(*profile_of(-2, 0, 0), LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_VIGNETTING, "invalid");
     profile = profile_of(-0.3, 0, 0);
     profile->key.processing = LENSPROF_PROCESSING_CORRECTED;
     fails(*profile, LENSPROF_LAYOUT_RGB, 1, LENSPROF_ERROR_UNSUPPORTED, "corrected in camera");
@@ -329,13 +329,13 @@ void test_read_refused(void **) {
     assert_refused(read(list_of({radial({NAN, 0, 0, 0, 0})})), LENSPROF_ERROR_SYNTAX, "not finite");
     assert_refused(read(list_of({radial({0, 0, 0, 0, 0}, 1.5)})), LENSPROF_ERROR_SYNTAX, "outside the frame");
     assert_refused(read(list_of({radial({0, 0, 0, 0})})), LENSPROF_ERROR_SYNTAX, "ends within");
-    assert_refused(read(list_of({radial({0, 0, 0, 0, 0, 0})})), LENSPROF_ERROR_SYNTAX, "beyond its 7 numbers");
+    assert_refused(read(list_of({radial({0, 0, 0, 0, 0, 0})})), LENSPROF_ERROR_SYNTAX, "after its 7 numbers");
     assert_refused(read(list_of({radial({-1.5, 0, 0, 0, 0})})), LENSPROF_ERROR_VIGNETTING, "not above 0");
     assert_refused(read(list_of(std::vector<Bytes>(65, good))), LENSPROF_ERROR_SIZE, "over 64 gains");
     assert_ok(read(list_of(std::vector<Bytes>(2, radial({0.1, 0, 0, 0, 0})))).status);
     Bytes beyond = list_of({good});
     beyond.push_back(0);
-    assert_refused(read(beyond), LENSPROF_ERROR_SYNTAX, "beyond the last opcode");
+    assert_refused(read(beyond), LENSPROF_ERROR_SYNTAX, "after the last opcode");
     assert_refused(read(list_of({good}), LENSPROF_LAYOUT_RGBA), LENSPROF_ERROR_ARGUMENT, "layout");
     assert_refused(read(list_of({good}), LENSPROF_LAYOUT_RGB, 0), LENSPROF_ERROR_ARGUMENT, "frame");
     assert_int_equal(lensprof_dng_opcodes_read(nullptr, 4, 6, 4, 2, nullptr, keep_entry, nullptr, nullptr),
@@ -355,10 +355,10 @@ void test_maps_refused(void **) {
         std::copy(number.begin(), number.end(), bytes.begin() + 16 + static_cast<std::ptrdiff_t>(offset));
         return read(list_of({bytes}));
     };
-    assert_refused(with(20, 0), LENSPROF_ERROR_SYNTAX, "planes or pitch 0");
-    assert_refused(with(24, 0), LENSPROF_ERROR_SYNTAX, "planes or pitch 0");
+    assert_refused(with(20, 0), LENSPROF_ERROR_SYNTAX, "planes or pitch is 0");
+    assert_refused(with(24, 0), LENSPROF_ERROR_SYNTAX, "planes or pitch is 0");
     assert_refused(with(32, 0), LENSPROF_ERROR_SYNTAX, "without points");
-    assert_refused(with(36, 3), LENSPROF_ERROR_SYNTAX, "another number of gains");
+    assert_refused(with(36, 3), LENSPROF_ERROR_SYNTAX, "the number of gains differs");
     assert_refused(with(32, 0xFFFFFFFF), LENSPROF_ERROR_SIZE, "over 1 Mi points");
     assert_refused(with(72, 0xFFFFFFFF), LENSPROF_ERROR_SIZE, "over 1 Mi points");
     assert_refused(with(40, 0xBFF00000), LENSPROF_ERROR_SYNTAX, "spacing");

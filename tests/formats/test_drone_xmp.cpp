@@ -209,7 +209,7 @@ void test_refused(void **) {
         packet("", list("Camera:VignettingPolynomial2D", {1, 2}) + list("Camera:VignettingPolynomial2DName", {0, 0})),
         LENSPROF_ERROR_SYNTAX, "two powers");
     refused(packet("", list("Camera:VignettingPolynomial2D", {1}) + list("Camera:VignettingPolynomial2DName", {0, -1})),
-            LENSPROF_ERROR_SYNTAX, "whole power");
+            LENSPROF_ERROR_SYNTAX, "integer power");
     refused(packet("", list("Camera:VignettingPolynomial2D", {-1}) + list("Camera:VignettingPolynomial2DName", {0, 0})),
             LENSPROF_ERROR_VIGNETTING, "not above 0");
     refused(packet("", good), LENSPROF_ERROR_ARGUMENT, "a side is 0", 0);

@@ -114,25 +114,25 @@ void test_refused(void **) {
         const char *words;
     } cases[] = {
         {"", LENSPROF_ERROR_SYNTAX, "line 1: not JSON"},
-        {"[]", LENSPROF_ERROR_SYNTAX, "is no object"},
+        {"[]", LENSPROF_ERROR_SYNTAX, "is not an object"},
         {"{}", LENSPROF_ERROR_SYNTAX, "has no \"key\""},
         {one.substr(0, one.size() / 2), LENSPROF_ERROR_SYNTAX, "line 1: not JSON"},
-        {with(kShort, "1e-3", "1e999"), LENSPROF_ERROR_SYNTAX, "line 2: \"1e999\" is beyond all numbers"},
+        {with(kShort, "1e-3", "1e999"), LENSPROF_ERROR_SYNTAX, "line 2: \"1e999\" is out of range"},
         {with(kShort, "1e-3", "NaN"), LENSPROF_ERROR_SYNTAX, "line 2: not JSON"},
-        {with(kShort, "1e-3", "null"), LENSPROF_ERROR_SYNTAX, "vignetting.k[0][2] is no number"},
+        {with(kShort, "1e-3", "null"), LENSPROF_ERROR_SYNTAX, "vignetting.k[0][2] is not a number"},
         {with(kShort, "1e-3", "1,2"), LENSPROF_ERROR_SYNTAX, "vignetting.k[0] has 4 items"},
-        {with(kShort, "-0.5", "-1.5"), LENSPROF_ERROR_VIGNETTING, "vignetting.k[0] is no valid falloff"},
-        {with(kShort, "[[-0.5,0,1e-3]]", "[]"), LENSPROF_ERROR_SYNTAX, "vignetting.k is not of one or three"},
+        {with(kShort, "-0.5", "-1.5"), LENSPROF_ERROR_VIGNETTING, "vignetting.k[0] is not a valid falloff"},
+        {with(kShort, "[[-0.5,0,1e-3]]", "[]"), LENSPROF_ERROR_SYNTAX, "vignetting.k does not have one or three"},
         {with(kShort, "\"L\"", "\"\xff\""), LENSPROF_ERROR_SYNTAX, "line 1: not UTF-8"},
         {with(kShort, "\"L\"", "\"\\u0007\""), LENSPROF_ERROR_SYNTAX, "key.lens has control characters"},
         {with(kShort, "\"L\"", "\"" + std::string(128, 'x') + "\""), LENSPROF_ERROR_SYNTAX,
          "key.lens is longer than 127"},
-        {with(kShort, "\"L\"", "7"), LENSPROF_ERROR_SYNTAX, "key.lens is no text"},
+        {with(kShort, "\"L\"", "7"), LENSPROF_ERROR_SYNTAX, "key.lens is not a text"},
         {with(kShort, "\"raw\"", "\"tiff\""), LENSPROF_ERROR_SYNTAX, "key.processing is \"tiff\""},
         {with(kShort, "\"processing\":\"raw\",", ""), LENSPROF_ERROR_SYNTAX, "key has no \"processing\""},
         {with(kShort, "\"distance_m\":null", "\"distance_m\":-1"), LENSPROF_ERROR_SYNTAX,
          "key.distance_m is not above 0"},
-        {with(kShort, "0.25", "250"), LENSPROF_ERROR_RESPONSE, "response.emor is no response"},
+        {with(kShort, "0.25", "250"), LENSPROF_ERROR_RESPONSE, "response.emor is not a response"},
         {with(kShort, "\"emor\",", "\"table\","), LENSPROF_ERROR_SYNTAX, "response has no \"values\""},
         {with(kShort, "\"emor\",", "\"gamma\","), LENSPROF_ERROR_SYNTAX, "response has no \"gamma\""},
         {with(kShort, "{\"key\"", "{\"schema\":2,\"key\""), LENSPROF_ERROR_UNSUPPORTED, "schema is not 1"},
@@ -140,19 +140,20 @@ void test_refused(void **) {
         {with(one, "\"columns\":3", "\"columns\":4000000000"), LENSPROF_ERROR_SYNTAX,
          "gain_grid.columns is 4000000000"},
         {with(one, "\"covariance\":[[", "\"covariance\":[[1,"), LENSPROF_ERROR_SYNTAX, "covariance[0] has 6 items"},
-        {with(one, "\"covariance\":[[", "\"covariance\":[[-"), LENSPROF_ERROR_ARGUMENT, "is no valid profile"},
+        {with(one, "\"covariance\":[[", "\"covariance\":[[-"), LENSPROF_ERROR_ARGUMENT, "is not a valid profile"},
         {with(one, "\"images\":4000000000", "\"images\":5000000000"), LENSPROF_ERROR_SYNTAX,
          "provenance.images is 5000000000"},
         {with(one, "\"forced\":true", "\"forced\":1"), LENSPROF_ERROR_SYNTAX, "provenance.forced is not true or false"},
         {with(one, "\"prior_id\":12", "\"prior_id\":0"), LENSPROF_ERROR_SYNTAX, "provenance.prior_id is 0"},
         {with(one, "\"prior_id\":12", "\"prior_id\":\"12\""), LENSPROF_ERROR_SYNTAX,
-         "provenance.prior_id is no whole number"},
+         "provenance.prior_id is not an integer"},
         {with(one, "\"gamma_sigma\":0.0", "\"gamma_sigma\":-0.0"), LENSPROF_ERROR_SYNTAX, "provenance.gamma_sigma is "},
-        {with(one, "\"style\":\"PROVIA", "\"style\":7,\"a\":\"PROVIA"), LENSPROF_ERROR_SYNTAX, "key.style is no text"},
+        {with(one, "\"style\":\"PROVIA", "\"style\":7,\"a\":\"PROVIA"), LENSPROF_ERROR_SYNTAX,
+         "key.style is not a text"},
         {with(one, "\"color_temperature_k\":4321.5", "\"color_temperature_k\":-1"), LENSPROF_ERROR_SYNTAX,
          "key.color_temperature_k is not above 0"},
         {with(one, "\"values\":[[0.0,", "\"values\":[[0.5,"), LENSPROF_ERROR_SYNTAX,
-         "response.values[0] is another curve"},
+         "response.values[0] does not match the curve"},
         {with(list, "\"profiles\":[", "\"profiles\":[null,"), LENSPROF_ERROR_SYNTAX, "profiles holds null"},
         {with(list, "\"k\":[[", "\"k\":[[1e7,"), LENSPROF_ERROR_SYNTAX, "profiles[0].vignetting.k[0] has 4 items"},
         {"{\"a\":" + std::string(100000, '[') + "]}", LENSPROF_ERROR_SYNTAX, "over 32 levels"},
@@ -189,7 +190,7 @@ void test_calls(void **) {
     bad->vignetting[0].k[0] = -5;
     const lensprof_profile *const one = bad.get();
     assert_int_equal(lensprof_json_write(&one, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_VIGNETTING);
-    assert_non_null(strstr(error.text, "profile 0: is not valid"));
+    assert_non_null(strstr(error.text, "profile 0: is invalid"));
     // Texts of a database need not be UTF-8, JSON must be.
     Profile latin = new_profile();
     strcpy(latin->key.lens, "\xe9t\xe9");

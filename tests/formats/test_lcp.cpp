@@ -284,22 +284,22 @@ void test_write_refused(void **) {
     refused([](P p) { p.key.aperture = LENSPROF_UNKNOWN; }, LENSPROF_ERROR_ARGUMENT, "aperture");
     refused([](P p) { p.key.focal_mm = LENSPROF_UNKNOWN; }, LENSPROF_ERROR_ARGUMENT, "focal length");
     refused([](P p) { p.key.crop_factor = LENSPROF_UNKNOWN; }, LENSPROF_ERROR_ARGUMENT, "crop factor");
-    refused([](P p) { p.key.aperture = 2; }, LENSPROF_ERROR_ARGUMENT, "setting of an earlier profile");
-    refused([](P p) { p.key.lens[0] = 'B'; }, LENSPROF_ERROR_ARGUMENT, "a lens profile is of one");
-    refused([](P p) { p.key.camera_model[0] = 'B'; }, LENSPROF_ERROR_ARGUMENT, "a lens profile is of one");
+    refused([](P p) { p.key.aperture = 2; }, LENSPROF_ERROR_ARGUMENT, "same setting as an earlier profile");
+    refused([](P p) { p.key.lens[0] = 'B'; }, LENSPROF_ERROR_ARGUMENT, "a lens profile holds only one");
+    refused([](P p) { p.key.camera_model[0] = 'B'; }, LENSPROF_ERROR_ARGUMENT, "a lens profile holds only one");
     refused([](P p) { p.key.processing = LENSPROF_PROCESSING_JPEG; }, LENSPROF_ERROR_ARGUMENT,
-            "a lens profile is of one");
+            "a lens profile holds only one");
     refused([](P p) { p.key.processing = LENSPROF_PROCESSING_CORRECTED; }, LENSPROF_ERROR_UNSUPPORTED, "in camera");
     refused([](P p) { strcpy(p.key.camera_maker, "\xFF"); }, LENSPROF_ERROR_ARGUMENT, "UTF-8");
     refused([](P p) { strcpy(p.key.lens, "\xFF"); }, LENSPROF_ERROR_ARGUMENT, "UTF-8");
-    refused([](P p) { p.vignetting[0].k[0] = -3; }, LENSPROF_ERROR_VIGNETTING, "not valid");
+    refused([](P p) { p.vignetting[0].k[0] = -3; }, LENSPROF_ERROR_VIGNETTING, "is invalid");
     refused(
         [](P p) {
             p.grid.columns = p.grid.rows = 2, p.grid.channels = 1;
             for (int i = 0; i < 4; i++) p.grid.attenuation[i] = 1;
         },
         LENSPROF_ERROR_UNSUPPORTED, "gain grid");
-    write({good}, 100, 0, LENSPROF_ERROR_ARGUMENT, "one side");
+    write({good}, 100, 0, LENSPROF_ERROR_ARGUMENT, "only one side");
     write({good}, 2000000, 100, LENSPROF_ERROR_SIZE, "million");
     const lensprof_profile *none = nullptr;
     assert_int_equal(lensprof_lcp_write(&none, 1, 0, 0, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);

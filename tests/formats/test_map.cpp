@@ -129,9 +129,9 @@ void test_refused(void **) {
     values[64 + 2] = -1;
     read(LENSPROF_ERROR_ARGUMENT, "column 2, row 1 is below 0");
     std::fill(values.begin(), values.end(), 0.0f);
-    read(LENSPROF_ERROR_VIGNETTING, "without a value above 0");
+    read(LENSPROF_ERROR_VIGNETTING, "no value above 0");
     values[3] = 1;
-    read(LENSPROF_ERROR_VIGNETTING, "too little");
+    read(LENSPROF_ERROR_VIGNETTING, "too few values");
     map.columns = 1;
     read(LENSPROF_ERROR_SIZE, "1 x 48");
     map.columns = 70000;

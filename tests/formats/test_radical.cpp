@@ -178,15 +178,15 @@ void test_refused(void **) {
         if (why.find(words) == std::string::npos) fail_msg("\"%s\" instead of \"%s\"", why.c_str(), words);
         assert_int_equal(responses->r[0].kind, 99);
     };
-    refused("", LENSPROF_ERROR_SYNTAX, "cut");
-    refused(crf.substr(0, 19), LENSPROF_ERROR_SYNTAX, "cut");
+    refused("", LENSPROF_ERROR_SYNTAX, "truncated");
+    refused(crf.substr(0, 19), LENSPROF_ERROR_SYNTAX, "truncated");
     refused(crf.substr(0, 1000), LENSPROF_ERROR_SYNTAX, "980 bytes");
     refused(crf + "x", LENSPROF_ERROR_SYNTAX, "3073 bytes");
     refused("PK" + crf, LENSPROF_ERROR_SYNTAX, "magic");
     refused(header(22, 0, 1, 1) + crf.substr(20), LENSPROF_ERROR_UNSUPPORTED, "type 22");
     refused(header(21, 0, 127, 127) + crf.substr(20), LENSPROF_ERROR_SYNTAX, "3072 bytes");
     refused(std::string(crf).replace(15, 1, "\x7f"), LENSPROF_ERROR_SIZE, "over 65536");
-    refused(header(21, 2, 0, 1) + std::string(24, '\0'), LENSPROF_ERROR_SYNTAX, "of 2 greys");
+    refused(header(21, 2, 0, 1) + std::string(24, '\0'), LENSPROF_ERROR_SYNTAX, "of 2 grey values");
     refused(std::string(crf).replace(20 + 12 * 7, 4, "\0\0\xC0\x7f", 4), LENSPROF_ERROR_RESPONSE, "grey 7 of blue");
     refused(std::string(crf).replace(20 + 12 * 7 + 8, 4, 4, '\0'), LENSPROF_ERROR_RESPONSE, "grey 7 of red is darker");
     const auto not_read = [&](const std::string &data, lensprof_status status, const char *words) {
@@ -198,8 +198,9 @@ void test_refused(void **) {
     not_read("", LENSPROF_ERROR_SYNTAX, "no line of text");
     not_read(crf.substr(0, 3), LENSPROF_ERROR_SYNTAX, "no line of text");
     not_read("SomeModel\n", LENSPROF_ERROR_UNSUPPORTED, "\"SomeModel\"");
-    not_read("PolynomialVignettingModel 3 640\n", LENSPROF_ERROR_SYNTAX, "no degree");
-    not_read("PolynomialVignettingModel 3 640 99999999999\n", LENSPROF_ERROR_SYNTAX, "no degree");
+    not_read("PolynomialVignettingModel 3 640\n", LENSPROF_ERROR_SYNTAX, "degree, width and height are missing");
+    not_read("PolynomialVignettingModel 3 640 99999999999\n", LENSPROF_ERROR_SYNTAX,
+             "degree, width and height are missing");
     not_read("PolynomialVignettingModel 4 640 480\n", LENSPROF_ERROR_UNSUPPORTED, "degree 4");
     not_read("PolynomialVignettingModel 3 1 480\n" + vgn.substr(kLine.size()), LENSPROF_ERROR_SIZE, "1 x 480");
     not_read(vgn.substr(0, vgn.size() - 1), LENSPROF_ERROR_SYNTAX, "119 bytes");

@@ -116,7 +116,7 @@ class Fits(unittest.TestCase):
         key = lp.ProfileKey(camera_model="c")
         self.assertEqual(result.profile(key, setting=4).vignetting[0], result.settings[4].vignetting[0])
         self.assertEqual(result.profile(key).vignetting[0], result.vignetting[0])
-        with self.assertRaisesRegex(lp.Error, "no image of it joined"):
+        with self.assertRaisesRegex(lp.Error, "no image in the fit"):
             result.profile(key, setting=2)
         with self.assertRaises(lp.Error):
             images[1].setting = lp.SETTINGS_MAX

@@ -246,7 +246,7 @@ class AnyFormat(unittest.TestCase):
         self.assertEqual(lp.format_info(lp.Format.DRONE_XMP)[2:], (lp.Holds.FALLOFF, False, False))
         with self.assertRaises(ValueError):
             lp.format_info(lp.Format.AUTO)
-        for data, name, words in ((b"hello", "", "name the format"), (b"", "a.csv", "is empty"),
+        for data, name, words in ((b"hello", "", "specify the format"), (b"", "a.csv", "is empty"),
                                   (b"hello", "a.blob", "not a profile blob"), (b"\x89PNG", "a.png", "a picture")):
             with self.assertRaisesRegex(lp.Error, words):
                 lp.import_profiles(data, name)

@@ -191,7 +191,7 @@ static void test_list_capacity(void **state) {
     lensprof_error error;
     found = 0;
     assert_int_equal(lensprof_store_list(store, NULL, rows, 7, &found, &error), LENSPROF_ERROR_CAPACITY);
-    assert_non_null(strstr(error.text, "8 rows for a buffer of 7"));
+    assert_non_null(strstr(error.text, "8 rows do not fit the buffer of 7"));
     assert_int_equal(found, 8);
     assert_int_equal(rows[0].id, 0x5555555555555555);
     found = 0;

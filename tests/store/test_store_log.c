@@ -170,7 +170,7 @@ static void test_read_only_folder(void **state) {
     snprintf(shared, sizeof shared, "%s-shm", here->path);
     unlink(shared); /* as on a medium that was copied to */
     assert_true(set_protected(here->directory, true));
-    assert_read_there(here->path, LENSPROF_ERROR_READ_ONLY, "cut off");
+    assert_read_there(here->path, LENSPROF_ERROR_READ_ONLY, "interrupted write");
 }
 
 /* A user who may only read, with names that an address would read otherwise. */

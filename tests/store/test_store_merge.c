@@ -224,7 +224,7 @@ static void test_find_same(void **state) {
     id = 1;
     sample[0].vignettings = 7;
     assert_int_equal(lensprof_store_find_same(store, &sample[0], &id, &error), lensprof_profile_validate(&sample[0]));
-    assert_non_null(strstr(error.text, "not valid"));
+    assert_non_null(strstr(error.text, "invalid"));
     assert_int_equal(lensprof_store_find_same(store, NULL, &id, &error), LENSPROF_ERROR_ARGUMENT);
     lensprof_store_close(store);
     store = store_at(here->path, LENSPROF_STORE_READ);

@@ -36,21 +36,21 @@ constexpr size_t kFirstQuality = LP_END_OF(lensprof_fit_image_quality, known_ev_
 lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *error) {
     if (o.method != LENSPROF_METHOD_TRANSFER && o.method != LENSPROF_METHOD_RADIANCE)
         return fail(LENSPROF_ERROR_UNSUPPORTED, error,
-                    "fit options: a profile as the prior is for the methods transfer and radiance; leave it out");
+                    "fit options: only the methods transfer and radiance use a profile as the prior; leave it out");
     if (!(o.prior_weight > 0.0))
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit options: a profile as the prior wants a prior weight above 0");
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit options: a profile as the prior requires prior_weight > 0");
     lensprof_status status = lensprof_profile_validate(o.profile);
     if (status != LENSPROF_OK)
-        return fail(status, error, "fit options: the profile is not valid; see lensprof_profile_validate");
+        return fail(status, error, "fit options: the profile is invalid; see lensprof_profile_validate");
     if (!says_how_sure(*o.profile))
-        return fail(LENSPROF_ERROR_ARGUMENT, error,
-                    "fit options: the profile has neither a covariance nor a refined response's gamma_sigma, and says "
-                    "nothing of how sure it is; leave it out");
-    if (!is_covariance(*o.profile))
         return fail(
             LENSPROF_ERROR_ARGUMENT, error,
-            "fit options: the profile's covariance is none (a combination of parameters has a variance below 0); "
-            "leave it out");
+            "fit options: the profile has neither a covariance nor the gamma_sigma of a refined response, so its "
+            "uncertainty is unknown; leave it out");
+    if (!is_covariance(*o.profile))
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "fit options: the profile's covariance is not positive semi-definite; "
+                    "leave it out");
     return LENSPROF_OK;
 }
 
@@ -68,12 +68,12 @@ const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
         {o.max_iterations >= 1 && o.max_iterations <= 1000000, "max_iterations must be 1..1000000"},
         {o.vignettings <= 1 || o.vignettings == 3, "vignettings must be 0, 1 or 3"},
         {o.gamma_from <= LENSPROF_GAMMA_EXPOSURES,
-         "gamma_from must be LENSPROF_GAMMA_AUTO, _PRIOR or _EXPOSURES; the others are of results"},
+         "gamma_from must be LENSPROF_GAMMA_AUTO, _PRIOR or _EXPOSURES; the others occur only in results"},
         {o.camera_kind <= LENSPROF_CAMERA_LINEAR, "camera_kind must be one of lensprof_camera_kind, 0..5"},
         {o.method <= LENSPROF_METHOD_DEBEVEC, "method must be one of lensprof_fit_method, 0..3"},
         {o.refine <= 1, "refine must be 0 or 1"},
         {!o.reserved && !o.reserved2, "reserved and reserved2 must be 0"},
-        {o.links || !o.link_count, "links must not be NULL where link_count is not 0"},
+        {o.links || !o.link_count, "links must not be NULL if link_count is not 0"},
     };
     return first_broken(rules);
 }
@@ -115,7 +115,7 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
         if (image.known_ev_sigma != 0.0
             && !(image.known_ev_sigma >= 1e-3 && image.known_ev_sigma <= 100.0 && std::abs(image.known_ev) <= 64.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
-                           "known exposure beyond 64 EV, or its sigma neither 0 nor 0.001..100");
+                           "known_ev beyond 64 EV, or known_ev_sigma neither 0 nor 0.001..100");
         if (image.free & ~kImageFlags)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "only EV, RED and BLUE can be free in an image");
@@ -144,7 +144,7 @@ lensprof_status check_cameras(const std::vector<lensprof_fit_image> &images, len
         const uint32_t other = first.try_emplace(images[i].setting, i).first->second;
         if (images[other].camera != images[i].camera)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                           "is of setting %u as image %u, and of another camera; give it a setting of its own",
+                           "has setting %u like image %u, but another camera; give it a separate setting",
                            images[i].setting, other);
     }
     return LENSPROF_OK;
@@ -205,7 +205,7 @@ lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error) {
         const auto &first = tracks.observations[track.first];
         if (track.last - track.first < 2)
             return fail_at(LENSPROF_ITEM_POINT, first.point, LENSPROF_ERROR_ARGUMENT, error,
-                           "one observation only; leave out points without a second one");
+                           "only one observation; leave out points without a second one");
         for (size_t i = track.first + 1; i < track.last; i++)
             if (tracks.observations[i].image == tracks.observations[i - 1].image)
                 return fail_at(LENSPROF_ITEM_POINT, first.point, LENSPROF_ERROR_ARGUMENT, error,
@@ -219,12 +219,12 @@ lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_
                               lensprof_error *error) {
     if (o.free != LENSPROF_FREE_RESPONSE)
         return fail(LENSPROF_ERROR_ARGUMENT, error,
-                    "fit options: the method debevec finds the response alone; free it, and hold falloff and centre");
+                    "fit options: the method debevec estimates only the response; free it, and fix falloff and centre");
     for (uint32_t i = 0; i < image_count; i++)
         if (!(images[i].known_ev_sigma > 0.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "the method debevec needs the known exposures of all images (known_ev, and a "
-                           "known_ev_sigma above 0); give it, or use the method transfer");
+                           "known_ev_sigma above 0); give them, or use the method transfer");
     for (uint32_t i = 0; i < image_count; i++)
         if (!(std::abs(known_exposure(images, o.reference, i)) <= 64.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
@@ -273,10 +273,10 @@ lensprof_status check_settings(const Call &call, lensprof_error *error) {
         const uint32_t camera = method == LENSPROF_METHOD_DEBEVEC ? 0 : image.camera;
         if (setting_of.try_emplace(camera, image.setting).first->second != image.setting)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
-                           "is of another lens setting, which the methods transfer and radiance fit together");
+                           "has another lens setting; use the method transfer or radiance to fit several");
         if (method == LENSPROF_METHOD_DEBEVEC && image.camera != call.images[0].camera)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
-                           "is of another camera, and the method debevec fits one at a time");
+                           "belongs to another camera; the method debevec fits one camera at a time");
     }
     return LENSPROF_OK;
 }
@@ -307,11 +307,11 @@ lensprof_status take_settings(const lensprof_fit_result &given, Call &call, lens
         last_camera = std::max(last_camera, call.images[i].camera);
         if (taken.settings && call.images[i].setting >= taken.setting_count)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                           "its setting is %u, and the result has room for %u", call.images[i].setting,
+                           "its setting is %u, but the result has room for %u", call.images[i].setting,
                            taken.setting_count);
         if (taken.cameras && call.images[i].camera >= taken.camera_count)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                           "its camera is %u, and the result has room for %u", call.images[i].camera,
+                           "its camera is %u, but the result has room for %u", call.images[i].camera,
                            taken.camera_count);
     }
     lensprof_status status = check_settings(call, error);
@@ -479,8 +479,9 @@ bool fit_camera(const CameraInput &input, lensprof_exposure *exposures, lensprof
 lensprof_status fit_each_camera(Call &call, const CamerasData &data, lensprof_exposure *exposures,
                                 lensprof_error *error) {
     if (fit_cameras(data, fit_camera, exposures, call.result)) return LENSPROF_OK;
-    return fail(LENSPROF_ERROR_NO_SAMPLES, error,
-                "fit: no pairs are between two images of one camera; give more of its images, or take all as of one");
+    return fail(
+        LENSPROF_ERROR_NO_SAMPLES, error,
+        "fit: no pair connects two images of the same camera; give more images of it, or treat all as one camera");
 }
 
 const char *method_name(uint32_t method) {
@@ -572,7 +573,7 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
         lensprof_status status = take_call(options, images, image_count, observations || observation_count == 0,
                                            exposures, result, *call, error);
         if (status == LENSPROF_OK && call->options.method != LENSPROF_METHOD_RADIANCE)
-            return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: tracks are for the method radiance");
+            return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: tracks require the method radiance");
         if (status == LENSPROF_OK)
             status = check_observations(observations, observation_count, call->images.data(), image_count,
                                         call->channels(), error);
@@ -642,7 +643,7 @@ lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result, co
     if (const char *wrong = lp_sized_take(&own, result, kFirstResult))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
     if (!setting.images)
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "setting: no image of it joined; take one that has images");
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "setting: it has no image in the fit; choose one with images");
     copy_setting(setting, own);
     own.pairs = setting.pairs;
     own.left_out = 0;
@@ -666,7 +667,7 @@ lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result, con
     lensprof_fit_result_init(&own);
     if (const char *wrong = lp_sized_take(&own, result, kFirstResult))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
-    if (!camera.images) return fail(LENSPROF_ERROR_ARGUMENT, error, "camera: it has no fit; take one that has images");
+    if (!camera.images) return fail(LENSPROF_ERROR_ARGUMENT, error, "camera: it has no fit; choose one with images");
     copy_camera(camera, own);
     own.usable = 0;  // until a setting is taken
     lp_sized_copy(result, &own);

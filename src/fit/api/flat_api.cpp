@@ -25,7 +25,7 @@ const char *broken_option(const lensprof_flat_options &o) {
         {o.channels == 1 || o.channels == 3, "channels must be 1 or 3"},
         {!(o.free & ~kLensFlags), "free takes LENSPROF_FREE_K1, _K2, _K3 and _CENTER only"},
         {o.vignettings <= 1 || o.vignettings == 3, "vignettings must be 0, 1 or 3"},
-        {o.vignettings != 3 || o.channels == 3, "vignettings must be 0 or 1 where channels is 1"},
+        {o.vignettings != 3 || o.channels == 3, "vignettings must be 0 or 1 if channels is 1"},
         {o.light <= LENSPROF_FLAT_LIGHT_QUADRATIC, "light must be one of lensprof_flat_light, 0..3"},
         {o.own_light <= 1, "own_light must be 0 or 1"},
         {o.several <= 1, "several must be 0 or 1"},
@@ -64,18 +64,18 @@ lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_
     if (status != LENSPROF_OK) return status;
     if (image.width != images[0].width || image.height != images[0].height)
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_SIZE, error,
-                       "a frame of %u x %u, not %u x %u as the first", image.width, image.height, images[0].width,
+                       "a frame of %u x %u, not %u x %u like the first", image.width, image.height, images[0].width,
                        images[0].height);
     if (o.channels == 3 && lensprof_layout_channels(image.view.layout) != 3)
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "a grey picture; set channels to 1");
     if (!(std::abs(image.ev) <= 64.0))
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error, "exposure beyond 64 EV");
     if (!(std::abs(image.turn_deg) <= kLargestTurn))
-        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "turned by more than 360 degrees");
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "rotated by more than 360 degrees");
     for (uint32_t j = 0; j < i; j++)
         if (images[j].shot == image.shot && images[j].turn_deg != image.turn_deg)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                           "of one shot with image %u, but turned differently", j);
+                           "in the same shot as image %u, but rotated differently", j);
     return LENSPROF_OK;
 }
 
@@ -115,8 +115,9 @@ lensprof_status run(Call &call, lensprof_error *error) {
     const lensprof_status status = check_finite(place, count, options.threads, stop, error);
     if (status != LENSPROF_OK) return status;
     if (!fit_flat(options, call.images.data(), count, call.result))
-        return fail(LENSPROF_ERROR_NO_SAMPLES, error,
-                    "no part of a card lies between black and white; check exposures, limits, and where the card is");
+        return fail(
+            LENSPROF_ERROR_NO_SAMPLES, error,
+            "no part of a card lies between black and white; check exposures, limits, and the position of the card");
     return LENSPROF_OK;
 }
 

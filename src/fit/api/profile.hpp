@@ -56,7 +56,7 @@ lensprof_status take_fitted(const Options *options, size_t first_options, Option
     if (const char *wrong = lp_sized_take(&own, result, first_result))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
     if ((own.vignettings != 1 && own.vignettings != 3) || own.covariance_size > LENSPROF_COVARIANCE_MAX)
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "result: no fit has filled it; pass one that returned OK");
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "result: not filled by a fit; pass one whose fit returned OK");
     return LENSPROF_OK;
 }
 

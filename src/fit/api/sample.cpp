@@ -19,7 +19,7 @@ constexpr size_t kFirstImage = LP_END_OF(lensprof_sample_image, white);
 lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, bool by_cameras, lensprof_error *error) {
     if (image.reserved) return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "reserved is not 0");
     const lensprof_status status = by_cameras ? lensprof_camera_validate(&image.camera) : LENSPROF_OK;
-    if (status != LENSPROF_OK) return fail_at(LENSPROF_ITEM_IMAGE, i, status, error, "not a valid camera");
+    if (status != LENSPROF_OK) return fail_at(LENSPROF_ITEM_IMAGE, i, status, error, "the camera is invalid");
     return check_view(image, i, error);
 }
 
@@ -29,7 +29,7 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
         {options.sampling <= LENSPROF_SAMPLING_BRACKET, "sampling must be one of lensprof_sampling, 0..2"},
         {options.pairs <= kLargestCount, "pairs must be 0..16777216"},
         {!options.reserved && !options.reserved2, "reserved and reserved2 must be 0"},
-        {options.links || !options.link_capacity, "links must not be NULL where link_capacity is not 0"},
+        {options.links || !options.link_capacity, "links must not be NULL if link_capacity is not 0"},
     };
     if (const char *wrong = first_broken(rules))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample options: %s", wrong);
@@ -77,7 +77,7 @@ lensprof_status check_matches(const Matches &matches, const std::vector<lensprof
             const lensprof_camera &camera = images[match.image[side]].camera;
             const double *xy = match.xy[side];
             if (!(xy[0] >= -1.0 && xy[1] >= -1.0 && xy[0] <= camera.width && xy[1] <= camera.height))
-                return wrong("xy is outside of its image");
+                return wrong("xy is outside its image");
         }
         const auto &map = match.map;
         const double turns = map[0][0] * map[1][1] - map[0][1] * map[1][0];
@@ -115,14 +115,14 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
         items = draw(sampler);
         if (items.empty() && options.sampling == LENSPROF_SAMPLING_BRACKET)
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
-                        "no two images show the same place between black and white: they may be of different scenes, "
-                        "too far apart in exposure, masked, or one may be all black or white");
+                        "no two images show the same place between black and white: they may show different scenes, be "
+                        "too far apart in exposure or masked, or one may be entirely black or white");
         if (!sampler.overlaps())
             return fail(LENSPROF_ERROR_NO_OVERLAP, error, "no two images overlap; check their alignment");
         if (items.empty())
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
-                        "the images overlap, but every sample there is masked, black or saturated, or does not show "
-                        "the same in both; check their alignment");
+                        "the images overlap, but every sample there is masked, black or saturated, or shows "
+                        "different content in the two images; check their alignment");
         give_links(options, sampler.links());
         return LENSPROF_OK;
     } catch (const Cancelled &) {
@@ -143,7 +143,8 @@ lensprof_status sample_into(const lensprof_sample_options &options, const lenspr
     if (capacity < room) *count = static_cast<uint32_t>(room);
     if (capacity == 0) return LENSPROF_OK;
     if (capacity < room)
-        return fail(LENSPROF_ERROR_CAPACITY, error, "sample: room for %u items is needed", static_cast<uint32_t>(room));
+        return fail(LENSPROF_ERROR_CAPACITY, error, "sample: the buffer is too small; provide room for %u items",
+                    static_cast<uint32_t>(room));
     std::vector<Item> result;
     const lensprof_status status = sample(options, images, image_count, matches, draw, result, error);
     if (status != LENSPROF_OK) return status;
@@ -216,7 +217,7 @@ lensprof_status lensprof_sample_matches(const lensprof_sample_options *given, co
     const lensprof_status status = take_options(given, image_count, options, error);
     if (status != LENSPROF_OK) return status;
     if (options.sampling == LENSPROF_SAMPLING_PAPER)
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: paper sampling takes no matches; use balanced");
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: paper sampling does not support matches; use balanced");
     const uint32_t wanted = wanted_pairs(options, image_count);
     const Matches own{matches, match_count};
     auto draw = [&](Sampler &sampler) {

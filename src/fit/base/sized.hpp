@@ -21,7 +21,8 @@ lensprof_status take_all(const T *given, uint32_t count, size_t first, lensprof_
         const char *element = bytes + i * step;
         if (lp_sized_bytes(element) != step)
             return fail_at(kind, i, LENSPROF_ERROR_STRUCT_SIZE, error,
-                           "struct_size is not that of %s 0; call the struct's _init function first", item_word(kind));
+                           "struct_size differs from that of %s 0; call the struct's _init function first",
+                           item_word(kind));
         T next;
         init(next, i);
         if (const char *wrong = lp_sized_take(&next, element, first))
@@ -45,7 +46,7 @@ lensprof_status check_result(const Result &result, size_t first, size_t first_qu
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "%s: %s", what, wrong);
     if (quality && (result.image_quality_size < first_quality || result.image_quality_size > sizeof *quality))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error,
-                    "%s: image_quality_size is not set, or that of a newer lensprof; call the result's _init function",
+                    "%s: image_quality_size is not set, or set by a newer lensprof; call the result's _init function",
                     what);
     return LENSPROF_OK;
 }

@@ -53,7 +53,7 @@ void hold_typical(const lensprof_fit_options &options, uint32_t image_count, con
     std::vector<double> covariance(LENSPROF_EMOR_MODES * LENSPROF_EMOR_MODES);
     double sigma;
     if (lensprof_response_set_typical(&typical, options.camera_kind, covariance.data(), &sigma) != LENSPROF_OK)
-        throw std::invalid_argument("no kind of camera");
+        throw std::invalid_argument("unknown kind of camera");
     lensprof_fit_options held = options;
     held.free &= ~LENSPROF_FREE_RESPONSE;
     held.response = &typical;

@@ -45,7 +45,7 @@ Eigen::Vector4d shape_variance(const ShapeOf &shape, const Eigen::MatrixXd &cova
 
 void set_typical(uint32_t kind, lensprof_response &response, double *covariance, double &sigma) {
     if (lensprof_response_set_typical(&response, kind, covariance, &sigma) != LENSPROF_OK)
-        throw std::invalid_argument("no kind of camera");
+        throw std::invalid_argument("unknown kind of camera");
 }
 
 }  // namespace

@@ -280,7 +280,7 @@ Estimate estimate_of(const lensprof_response &response, const std::vector<Fallof
 lensprof_response table_response(const Estimate &estimate) {
     lensprof_response response;
     if (lensprof_response_set_table(&response, estimate.curve.table.data(), LENSPROF_RESPONSE_SAMPLES) != LENSPROF_OK)
-        throw std::runtime_error("a curve that falls was to be a response");
+        throw std::runtime_error("the fitted response is not monotone");
     return response;
 }
 

@@ -197,16 +197,17 @@ Slope slope_of(const Lanes *values) {
 
 lensprof_status check_view(const lensprof_sample_image &image, uint32_t i, lensprof_error *error) {
     lensprof_status status = lensprof_image_validate(&image.view);
-    if (status != LENSPROF_OK) return fail_at(LENSPROF_ITEM_IMAGE, i, status, error, "not a valid view of pixels");
+    if (status != LENSPROF_OK) return fail_at(LENSPROF_ITEM_IMAGE, i, status, error, "the view of pixels is invalid");
     const auto &view = image.view;
     if (view.layout > LENSPROF_LAYOUT_BGRA || view.sample > LENSPROF_SAMPLE_F32)
-        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                       "mosaics, planes and half floats are not sampled; give interleaved pixels of U8, U16 or F32");
+        return fail_at(
+            LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+            "mosaics, planes and half floats are not supported here; give interleaved pixels of U8, U16 or F32");
     if (!image.reduction || image.every_pixel > 1
         || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
         || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_SIZE, error,
-                       "a view of %u x %u reduced %u times does not fit a frame of %u x %u", view.width, view.height,
+                       "a view of %u x %u with reduction %u does not fit a frame of %u x %u", view.width, view.height,
                        image.reduction, image.camera.width, image.camera.height);
     ptrdiff_t width = static_cast<ptrdiff_t>(view.width), row = image.mask_row_bytes;
     constexpr ptrdiff_t kLongestRow = ptrdiff_t{1} << 28;

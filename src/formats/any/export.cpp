@@ -42,7 +42,7 @@ lensprof_status write_blob(const lensprof_profile &profile, const lensprof_expor
     set_error(out.error, "");
     const lensprof_status status = lensprof_profile_pack(&profile, o.pack, out.data, out.capacity, out.count);
     if (status == LENSPROF_ERROR_CAPACITY)
-        set_error(out.error, "the buffer is too small; ask for the size with capacity 0, and call again");
+        set_error(out.error, "the buffer is too small; call with capacity 0 to get the size, then call again");
     else if (status != LENSPROF_OK)
         set_error(out.error, "the profile or the flags of the blob are invalid; see lensprof_profile_validate");
     return status;
@@ -80,7 +80,7 @@ lensprof_status write_many(const lensprof_profile *const *profiles, uint32_t pro
     const lensprof_status status = write(out.data, std::min(out.capacity, kMostBytes), &size);
     if (status != LENSPROF_OK && status != LENSPROF_ERROR_CAPACITY) return status;
     if (size > kMostBytes) {
-        set_error(out.error, "would be larger than the 64 MiB that are read; write fewer profiles");
+        set_error(out.error, "would be larger than 64 MiB, the limit for reading; write fewer profiles");
         return LENSPROF_ERROR_SIZE;
     }
     if (out.count) *out.count = size;
@@ -97,18 +97,18 @@ lensprof_status check_output(uint32_t profile_count, lensprof_export_options &o,
                 throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, "pfstools' tables are read only; write .csv"};
         }
         if (!o.format)
-            throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, "its name does not identify a format; name the format"};
+            throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, "its name does not identify a format; specify the format"};
         const lensprof_format_info *info = lensprof_format_get_info(o.format);
-        if (!info) throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "an unknown format; pass a lensprof_format"};
+        if (!info) throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "unknown format; pass a lensprof_format"};
         const std::string format = info->name;
         if (!info->is_written)
             throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, format + " is read only; choose another format"};
         if (o.format == LENSPROF_FORMAT_MAP)
             throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED,
-                                "a map is a picture; get its values by lensprof_map_write, and encode them"};
+                                "a map is a picture; get its values with lensprof_map_write and encode them"};
         if (!info->is_many && profile_count != 1)
             throw FormatFailure{LENSPROF_ERROR_ARGUMENT,
-                                format + " holds one profile, and not " + std::to_string(profile_count) + "; pass one"};
+                                format + " holds one profile, not " + std::to_string(profile_count) + "; pass one"};
     });
 }
 

@@ -49,7 +49,7 @@ lensprof_status take_falloff(void *user, const lensprof_import_entry *entry) {
 void demand_frame(const lensprof_import_options &o) {
     if (!o.width || !o.height)
         throw FormatFailure{LENSPROF_ERROR_SIZE,
-                            "the file does not say how large the pictures are; give width and height of the frame"};
+                            "the file does not contain the size of the pictures; give width and height of the frame"};
 }
 
 lensprof_status read_response(const Input &in, lensprof_profile &profile, lensprof_error *error) {
@@ -167,7 +167,7 @@ lensprof_status import_blob(const Input &in, lensprof_import_visitor visit, void
 
 // Containers, whose bytes are not those of the format.
 const char *container_of(uint32_t format, std::string_view data) {
-    if (format == LENSPROF_FORMAT_MAP) return "is a picture; decode it, and pass its values as a lensprof_map";
+    if (format == LENSPROF_FORMAT_MAP) return "is a picture; decode it and pass its values as a lensprof_map";
     if (!is_picture(data)) return nullptr;
     if (format == LENSPROF_FORMAT_DNG_OPCODES)
         return "is a TIFF or DNG file; pass the bytes of its tag OpcodeList2 or OpcodeList3";
@@ -181,16 +181,16 @@ lensprof_status check_input(Input &in, lensprof_error *error) {
         uint32_t &format = in.options.format;
         if (in.options.map && format == LENSPROF_FORMAT_MAP) return;
         if (in.options.map)
-            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "a map, and not the format MAP; set both or none"};
+            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "a map without the format MAP; set both or neither"};
         if (data.empty()) throw FormatFailure{LENSPROF_ERROR_SYNTAX, "is empty; copy it again"};
         if (data.size() > kMostBytes)
             throw FormatFailure{LENSPROF_ERROR_SIZE, "is larger than 64 MiB; check that it is the right file"};
         if (!format) format = detect_format(data, in.options.name ? in.options.name : "");
         if (!format)
             throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED,
-                                "neither its content nor its name identifies its format; name the format"};
+                                "neither its content nor its name identifies its format; specify the format"};
         if (!lensprof_format_get_info(format))
-            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "an unknown format; pass a lensprof_format"};
+            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "unknown format; pass a lensprof_format"};
         if (const char *container = container_of(format, data))
             throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, container};
     });

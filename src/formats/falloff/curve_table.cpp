@@ -28,7 +28,7 @@ lensprof_response response_of_irradiances(const std::vector<double> &irradiances
     table[kLast] = 1.0;
     lensprof_response response;
     const lensprof_status status = lensprof_response_set_table(&response, table, LENSPROF_RESPONSE_SAMPLES);
-    if (status != LENSPROF_OK) throw FormatFailure{status, "not a response; check what the table holds"};
+    if (status != LENSPROF_OK) throw FormatFailure{status, "it is not a response; check the content of the table"};
     return response;
 }
 
@@ -44,7 +44,7 @@ void check_response(const lensprof_response &response, const std::string &what) 
     const lensprof_status status = lensprof_response_validate(&response);
     if (status != LENSPROF_OK)
         throw FormatFailure{
-            status, what + " is not valid (" + lensprof_status_name(status) + "); see lensprof_response_validate"};
+            status, what + " is invalid (" + lensprof_status_name(status) + "); see lensprof_response_validate"};
 }
 
 }  // namespace lensprof

@@ -12,7 +12,7 @@ void check_exported(const lensprof_profile &profile, uint32_t index, const std::
     };
     const lensprof_status status = lensprof_profile_validate(&profile);
     demand(status == LENSPROF_OK,
-           std::string("is not valid (") + lensprof_status_name(status) + "); see lensprof_profile_validate", status);
+           std::string("is invalid (") + lensprof_status_name(status) + "); see lensprof_profile_validate", status);
     const lensprof_profile_key &key = profile.key;
     const std::string lens = key.lens;
     demand(!lens.empty(), "its lens is unknown; set key.lens");
@@ -20,10 +20,10 @@ void check_exported(const lensprof_profile &profile, uint32_t index, const std::
     demand(key.crop_factor != LENSPROF_UNKNOWN, "its crop factor is unknown; set key.crop_factor");
     demand(key.focal_mm != LENSPROF_UNKNOWN, "its focal length is unknown; set key.focal_mm");
     demand(key.aperture != LENSPROF_UNKNOWN, "its aperture is unknown; set key.aperture");
-    demand(profile.grid.columns == 0, "has a gain grid, which " + format + " has not; fit a radial falloff alone",
+    demand(profile.grid.columns == 0, "has a gain grid, which " + format + " cannot hold; fit only a radial falloff",
            LENSPROF_ERROR_UNSUPPORTED);
     demand(key.processing != LENSPROF_PROCESSING_CORRECTED,
-           "is of pictures corrected in camera, and " + format + " corrects others; leave it out",
+           "is for pictures corrected in camera, which " + format + " does not correct; leave it out",
            LENSPROF_ERROR_UNSUPPORTED);
 }
 

@@ -21,7 +21,7 @@ constexpr uint32_t kKeptSide = 1024;  // larger maps are averaged down first: mo
 
 // Attenuation of a value, 0 where it is not known.
 double attenuation_of(float value, bool gain, uint32_t i, uint32_t j) {
-    if (!std::isfinite(value)) fail_at(i, j, "is not finite; write 0 for what is not known", LENSPROF_ERROR_NOT_FINITE);
+    if (!std::isfinite(value)) fail_at(i, j, "is not finite; use 0 for unknown values", LENSPROF_ERROR_NOT_FINITE);
     if (value < 0.0f) fail_at(i, j, "is below 0; correct it, or give another map", LENSPROF_ERROR_ARGUMENT);
     return gain ? (value > 0.0f ? 1.0 / double(value) : 0.0) : double(value);
 }
@@ -68,7 +68,7 @@ void check_frame(uint32_t width, uint32_t height) {
 void check_profile(const lensprof_profile &profile) {
     const lensprof_status status = lensprof_profile_validate(&profile);
     if (status != LENSPROF_OK)
-        throw FormatFailure{status, std::string("the profile is not valid (") + lensprof_status_name(status)
+        throw FormatFailure{status, std::string("the profile is invalid (") + lensprof_status_name(status)
                                         + "); see lensprof_profile_validate"};
 }
 

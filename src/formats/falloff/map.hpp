@@ -46,7 +46,7 @@ void change_profile(lensprof_profile *profile, Change change) {
     }
     if (status != LENSPROF_OK)
         throw FormatFailure{status,
-                            "the profile's struct_size is not set, or of a newer lensprof; call "
+                            "the profile's struct_size is not set, or set by a newer lensprof; call "
                             "lensprof_profile_init first"};
 }
 

@@ -73,14 +73,15 @@ void check_pairs(const lensprof_pair *pairs, uint32_t pair_count, const lensprof
     for (uint32_t i = 0; i < pair_count; i++) {
         const std::string item = "pair " + std::to_string(i) + ": ";
         if (pairs[i].image[0] >= camera_count || pairs[i].image[1] >= camera_count)
-            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, item + "an image without a camera; give one of each image"};
+            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, item + "its image has no camera; give one per image"};
         if (!is_finite(pairs[i]))
-            throw FormatFailure{LENSPROF_ERROR_NOT_FINITE, item + "a number that is not finite; leave the pair out"};
+            throw FormatFailure{LENSPROF_ERROR_NOT_FINITE,
+                                item + "it has a number that is not finite; leave the pair out"};
     }
     for (uint32_t i = 0; i < camera_count; i++)
         if (!cameras[i].width || !cameras[i].height)
             throw FormatFailure{LENSPROF_ERROR_SIZE,
-                                "camera " + std::to_string(i) + ": a frame without pixels; set width and height"};
+                                "camera " + std::to_string(i) + ": its frame has no pixels; set width and height"};
 }
 
 void append_pair(std::string &text, const lensprof_pair &pair, const lensprof_camera *cameras) {
@@ -113,7 +114,7 @@ lensprof_status lensprof_points_read(const void *data, size_t size, lensprof_pai
         *count = walk_pairs(all, [](const lensprof_pair &, uint32_t) {});  // all lines are checked first
         if (!capacity) return;
         if (*count > capacity)
-            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(*count) + " pairs for a buffer of "
+            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(*count) + " pairs do not fit the buffer of "
                                                              + std::to_string(capacity) + "; pass a larger one"};
         walk_pairs(all, [&](const lensprof_pair &pair, uint32_t i) { pairs[i] = pair; });
     });

@@ -75,7 +75,7 @@ lensprof_status lensprof_pto_draw_mask(const lensprof_pto *pto, uint32_t index, 
     const ptrdiff_t least = static_cast<ptrdiff_t>(width);
     if (!width || !height || (row_bytes < least && row_bytes > -least)) {
         set_error(error,
-                  "lensprof_pto_draw_mask: a mask without pixels, or row_bytes is below its width; correct them");
+                  "lensprof_pto_draw_mask: the mask has no pixels, or row_bytes is below its width; correct them");
         return LENSPROF_ERROR_SIZE;
     }
     return at_boundary(error, [&] {

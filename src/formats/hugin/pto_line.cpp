@@ -76,7 +76,7 @@ std::vector<PtoToken> split_pto_line(std::string_view line, size_t number) {
         size_t end = at;
         bool quote = false;
         for (; end < line.size() && (quote || !is_blank(line[end])); end++) quote ^= line[end] == '"';
-        if (quote) fail_at_line(number, "quote without end; add the closing \"");
+        if (quote) fail_at_line(number, "unterminated quote; add the closing \"");
         std::string_view word = line.substr(at, end - at);
         size_t length = name_length(word);
         tokens.push_back({word.substr(0, length), word.substr(length), at + length});

@@ -26,7 +26,7 @@ uint32_t whole_item(const std::vector<PtoToken> &tokens, std::string_view name, 
     bool good = token ? read_whole(token->value, low, high, value) : value >= low;
     if (!good)
         fail_at_line(line, std::string(name) + (token ? " is " + in_quotes(token->value) : " is missing")
-                               + "; write a whole number from " + std::to_string(std::lround(low)) + " to "
+                               + "; write an integer from " + std::to_string(std::lround(low)) + " to "
                                + std::to_string(std::lround(high)));
     return static_cast<uint32_t>(value);
 }
@@ -41,7 +41,7 @@ void read_parameter(const PtoToken &token, size_t parameter, const std::vector<P
     double target;
     if (!read_whole(token.value.substr(1), 0, static_cast<double>(before.size()) - 1, target))
         fail_at_line(image.line, std::string(token.name) + std::string(token.value.substr(0, 20)) + " in image " +
-                                     std::to_string(before.size()) + " is no link to an earlier image; write a number "
+                                     std::to_string(before.size()) + " is not a link to an earlier image; write a number "
                                      "or = with a smaller image number");
     const PtoImage &linked = before[static_cast<size_t>(target)];
     image.value[parameter] = linked.value[parameter];
@@ -102,8 +102,8 @@ void fill_camera(const PtoImage &image, lensprof_camera &camera) {
                          + " is not supported; use f0, f1, f2, f3, f4, f8, f10, f20 or f21",
                      LENSPROF_ERROR_UNSUPPORTED);
     if (lensprof_camera_validate(&camera) != LENSPROF_OK)
-        fail_at_line(image.line, "a camera with field of view v" + number_text(camera.hfov_deg)
-                                     + ", this distortion and this position is not possible with lens type f"
+        fail_at_line(image.line, "field of view v" + number_text(camera.hfov_deg)
+                                     + ", with this distortion and position, is not possible for lens type f"
                                      + std::to_string(camera.projection) + "; correct v, a b c, g t or Tr*");
 }
 
@@ -192,13 +192,13 @@ void read_variables(const Line &line, lensprof_pto &pto) {
         if (parameter == kPtoParameters || parameter == kStack) {
             std::string names;
             for (size_t i = 0; i < kStack; i++) names += " " + std::string(kPtoParameterInfo[i].name);
-            fail_at_line(line.number, "variable " + word + " is unknown; write one of" + names + " and an image number",
+            fail_at_line(line.number, "variable " + word + " is unknown; use one of" + names + " and an image number",
                          LENSPROF_ERROR_VARIABLE);
         }
         double number;
         if (!read_whole(token.value, 0, static_cast<double>(pto.images.size()) - 1, number))
             fail_at_line(line.number,
-                         "variable " + word + " has no image of the project; write " + std::string(token.name)
+                         "variable " + word + " refers to no image of the project; write " + std::string(token.name)
                              + " with a number, " + image_range(pto) + " exist",
                          LENSPROF_ERROR_VARIABLE);
         const PtoImage &image = pto.images[static_cast<size_t>(number)];
@@ -270,7 +270,7 @@ lensprof_pto parse_pto(std::string text) {
     LineReader reader(pto.text);
     while (reader.next()) {
         if (reader.line.find('\0') != std::string_view::npos)
-            fail_at_line(reader.number, "zero byte in a text; this is not a Hugin project");
+            fail_at_line(reader.number, "zero byte in the text; this is not a Hugin project");
         char record = record_of(reader.line);
         if (record == 'i') pto.images.push_back(read_image(reader, pto.images));
         if (record == 'v') variables.push_back({reader.line, reader.number});
@@ -291,7 +291,7 @@ using namespace lensprof;
 
 lensprof_status lensprof_pto_read(const void *data, size_t size, lensprof_pto **pto, lensprof_error *error) {
     if (!data || !pto) {
-        set_error(error, "lensprof_pto_read: data or pto is NULL; pass a project and where to put the handle");
+        set_error(error, "lensprof_pto_read: data or pto is NULL; pass a project and the address of a handle");
         return LENSPROF_ERROR_ARGUMENT;
     }
     if (size > kMaxBytes) {
@@ -316,7 +316,7 @@ namespace lensprof {
 lensprof_status fail_at_image(const lensprof_pto *pto, uint32_t index, const char *what, lensprof_error *error) {
     char text[sizeof error->text];
     if (has_image(pto, index) || !pto)
-        std::snprintf(text, sizeof text, "pto or %s is NULL; pass a project and a place for it", what);
+        std::snprintf(text, sizeof text, "pto or %s is NULL; pass both", what);
     else
         std::snprintf(text, sizeof text, "image %u: the project has %zu images; count from 0", index,
                       pto->images.size());

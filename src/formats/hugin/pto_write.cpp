@@ -194,13 +194,14 @@ lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_respon
                                         uint32_t image_count, uint32_t reference, lensprof_error *error) {
     if (pto && exposures && image_count == pto->images.size() && reference < image_count
         && is_left_out(exposures[reference])) {
-        set_error(error, "lensprof_pto_set_result: the reference was left out of the fit; give that of its result");
+        set_error(error,
+                  "lensprof_pto_set_result: the reference was left out of the fit; give the reference of its result");
         return LENSPROF_ERROR_ARGUMENT;
     }
     if (!pto || !response || !vignetting || !exposures || image_count != pto->images.size()
         || reference >= image_count) {
         set_error(error,
-                  "lensprof_pto_set_result: give a project, curves, an exposure of each image, and one of them "
+                  "lensprof_pto_set_result: give a project, curves, an exposure per image, and one of the images "
                   "as the reference");
         return LENSPROF_ERROR_ARGUMENT;
     }
@@ -227,7 +228,7 @@ lensprof_status lensprof_pto_set_settings(lensprof_pto *pto, const uint32_t *set
     if (!pto || !setting || !vignetting || image_count != pto->images.size()
         || std::any_of(setting, setting + image_count, [&](uint32_t s) { return s >= setting_count; })) {
         set_error(error,
-                  "lensprof_pto_set_settings: give a project, a setting of each image, and a vignetting of each "
+                  "lensprof_pto_set_settings: give a project, a setting per image, and a vignetting per "
                   "setting");
         return LENSPROF_ERROR_ARGUMENT;
     }
@@ -246,8 +247,7 @@ lensprof_status lensprof_pto_set_cameras(lensprof_pto *pto, const uint32_t *came
                                          lensprof_error *error) {
     if (!pto || !camera || !response || image_count != pto->images.size()
         || std::any_of(camera, camera + image_count, [&](uint32_t k) { return k >= camera_count; })) {
-        set_error(error,
-                  "lensprof_pto_set_cameras: give a project, a camera of each image, and a response of each camera");
+        set_error(error, "lensprof_pto_set_cameras: give a project, a camera per image, and a response per camera");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {

@@ -46,7 +46,7 @@ public:
     bool parse_error(size_t position, const std::string &token, const nlohmann::json::exception &error) override {
         const std::string_view before = text_.substr(0, std::min(position, text_.size()));
         const size_t line = 1 + static_cast<size_t>(std::count(before.begin(), before.end(), '\n'));
-        if (error.id == 406) fail_at_line(line, lensprof::in_quotes(token) + " is beyond all numbers; correct it");
+        if (error.id == 406) fail_at_line(line, lensprof::in_quotes(token) + " is out of range; correct it");
         fail_at_line(line, "not JSON at " + lensprof::in_quotes(token.substr(token.size() > 20 ? token.size() - 20 : 0))
                                + "; correct the file");
     }
@@ -75,7 +75,7 @@ private:
 
     bool open(JsonText::Kind kind) {
         if (open_.size() >= kMostLevels)
-            throw FormatFailure{LENSPROF_ERROR_SYNTAX, "JSON of over 32 levels; give a file of profiles or tables"};
+            throw FormatFailure{LENSPROF_ERROR_SYNTAX, "JSON with over 32 levels; give a file of profiles or tables"};
         add(kind);
         open_.push_back({static_cast<uint32_t>(all_.nodes_.size() - 1), 0});
         return true;
@@ -102,7 +102,7 @@ JsonText::JsonText(std::string_view text) : texts_(sizeof(uint32_t), '\0') {
     if (wrong < text.size()) {
         const std::string_view before = text.substr(0, wrong);
         fail_at_line(1 + static_cast<size_t>(std::count(before.begin(), before.end(), '\n')),
-                     "not UTF-8 text; convert the file, or give one of JSON");
+                     "not UTF-8 text; convert the file, or give a JSON file");
     }
     JsonNodes nodes(*this, text);
     if (!nlohmann::json::sax_parse(text.begin(), text.end(), &nodes))
@@ -130,7 +130,7 @@ bool JsonValue::is_number() const {
 }
 
 JsonValue JsonValue::first() const {
-    if (!is_array() && !is_object()) fail("is no array or object; correct it");
+    if (!is_array() && !is_object()) fail("is not an array or object; correct it");
     const uint32_t index = owner_->nodes_[index_].first;
     return {owner_, index ? index : kMissing};
 }
@@ -149,7 +149,7 @@ size_t JsonValue::size() const {
 bool JsonValue::has(std::string_view name) const { return (*this)[name].index_ != kMissing; }
 
 JsonValue JsonValue::operator[](std::string_view name) const {
-    if (!is_object()) fail("is no object; correct it");
+    if (!is_object()) fail("is not an object; correct it");
     JsonValue found{owner_, kMissing};
     for (JsonValue member = first(); member.index_ != kMissing; member = member.next())
         if (owner_->text_at(owner_->nodes_[member.index_].name) == name) found = member;
@@ -163,7 +163,7 @@ JsonValue JsonValue::required(std::string_view name) const {
 }
 
 double JsonValue::number() const {
-    if (!is_number()) fail("is no number; correct it");
+    if (!is_number()) fail("is not a number; correct it");
     const JsonText::Node &node = owner_->nodes_[index_];
     return node.kind == JsonText::kWhole ? static_cast<double>(node.whole) : node.number;
 }
@@ -177,7 +177,7 @@ double JsonValue::number_within(double low, double high) const {
 }
 
 int64_t JsonValue::whole(int64_t low, int64_t high) const {
-    if (!is_number() || owner_->nodes_[index_].kind != JsonText::kWhole) fail("is no whole number; correct it");
+    if (!is_number() || owner_->nodes_[index_].kind != JsonText::kWhole) fail("is not an integer; correct it");
     const int64_t value = owner_->nodes_[index_].whole;
     if (value < low || value > high)
         fail("is " + std::to_string(value) + ", not within " + std::to_string(low) + " to " + std::to_string(high)
@@ -191,12 +191,12 @@ bool JsonValue::boolean() const {
 }
 
 std::string_view JsonValue::text() const {
-    if (!is_text()) fail("is no text; correct it");
+    if (!is_text()) fail("is not a text; correct it");
     return owner_->text_at(owner_->nodes_[index_].text);
 }
 
 std::vector<double> JsonValue::numbers(size_t low, size_t high) const {
-    if (!is_array()) fail("is no array; correct it");
+    if (!is_array()) fail("is not an array; correct it");
     const size_t count = size();
     if (count < low || count > high)
         fail("has " + std::to_string(count) + " items, not " + std::to_string(low)

@@ -111,7 +111,7 @@ lensprof_status copy_bytes(std::string_view source, void *data, size_t capacity,
     if (count) *count = source.size();
     if (!capacity) return LENSPROF_OK;
     if (capacity < source.size()) {
-        set_error(error, "the buffer is too small; ask for the size with capacity 0, and call again");
+        set_error(error, "the buffer is too small; call with capacity 0 to get the size, then call again");
         return LENSPROF_ERROR_CAPACITY;
     }
     if (!source.empty()) std::memcpy(data, source.data(), source.size());

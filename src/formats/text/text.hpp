@@ -41,7 +41,7 @@ lensprof_status at_boundary(lensprof_error *error, Body body) noexcept {
         set_error(error, "out of memory; close other programs or use fewer images");
         return LENSPROF_ERROR_MEMORY;
     } catch (...) {
-        set_error(error, "unexpected exception in lensprof; please report it");
+        set_error(error, "internal error of lensprof: unexpected exception; please report it");
         return LENSPROF_ERROR_INTERNAL;
     }
 }

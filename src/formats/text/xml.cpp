@@ -32,7 +32,8 @@ XmlText::XmlText(std::string_view text, const std::vector<std::string_view> &doc
     check_size(text);
     const size_t wrong = find_not_utf8(text);
     if (wrong < text.size() || text.find('\0') < text.size())
-        fail_at_line(line_at(std::min(wrong, text.find('\0'))), "not UTF-8 text; convert the file, or give one of XML");
+        fail_at_line(line_at(std::min(wrong, text.find('\0'))),
+                     "not UTF-8 text; convert the file, or give an XML file");
     constexpr unsigned int kFlags =
         pugi::parse_minimal | pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol | pugi::parse_wconv_attribute;
     const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size(), kFlags, pugi::encoding_utf8);
@@ -63,9 +64,9 @@ void XmlText::check_key_text(const pugi::xml_node &node, const std::string &labe
     const auto fail = [&](const std::string &why) { fail_at_line(line_of(node), label + in_quotes(text) + why); };
     if (text.size() >= capacity) fail(" is longer than " + std::to_string(capacity - 1) + " bytes; shorten it");
     if (find_not_utf8(text) < text.size())  // by a character reference
-        fail(" has characters that there are not; take them out");
+        fail(" has invalid characters; remove them");
     for (char c : text)
-        if ((c > 0 && c < ' ') || c == 127) fail(" has control characters; take them out");
+        if ((c > 0 && c < ' ') || c == 127) fail(" has control characters; remove them");
 }
 
 std::string one_line(std::string_view text) {

@@ -34,9 +34,10 @@ lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error) 
 
 lensprof_status lp_store_fail_capacity(uint32_t rows, uint32_t capacity, lensprof_error *error) {
     if (error)
-        snprintf(error->text, sizeof error->text,
-                 "profile database: %u rows for a buffer of %u; pass a larger one, or capacity 0 to ask", rows,
-                 capacity);
+        snprintf(
+            error->text, sizeof error->text,
+            "profile database: %u rows do not fit the buffer of %u; pass a larger one, or capacity 0 to get the number",
+            rows, capacity);
     return LENSPROF_ERROR_CAPACITY;
 }
 
@@ -118,18 +119,18 @@ static const struct sentence {
     {LENSPROF_ERROR_STORE, "cannot be used", "check the file and its folder"},
     {LENSPROF_ERROR_NOT_FOUND, "no such file or folder", "check the path"},
     {LENSPROF_ERROR_CORRUPT, "is damaged", "restore it from a copy"},
-    {LENSPROF_ERROR_READ_ONLY, "cannot be written", "check the rights on the file and its folder, or write to a copy"},
-    {LENSPROF_ERROR_FULL, "no space left for it", "free some space and repeat"},
-    {LENSPROF_ERROR_BUSY, "another process holds it", "repeat when that has finished"},
-    {LENSPROF_ERROR_MEMORY, "out of memory", "close other programs and repeat"},
-    {LENSPROF_ERROR_INTERNAL, "defect of lensprof", "please report it"},
+    {LENSPROF_ERROR_READ_ONLY, "cannot be written",
+     "check the permissions of the file and its folder, or write to a copy"},
+    {LENSPROF_ERROR_FULL, "no space left", "free some space and try again"},
+    {LENSPROF_ERROR_BUSY, "locked by another process", "try again when that has finished"},
+    {LENSPROF_ERROR_MEMORY, "out of memory", "close other programs and try again"},
+    {LENSPROF_ERROR_INTERNAL, "internal error of lensprof", "please report it"},
 };
 
 lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lensprof_error *error) {
     if (rc == SQLITE_READONLY_ROLLBACK || rc == SQLITE_READONLY_RECOVERY || rc == SQLITE_READONLY_CANTINIT)
-        return lp_store_fail(path, LENSPROF_ERROR_READ_ONLY,
-                             "a write that was cut off must be completed or undone first",
-                             "open it once where it can be written", error);
+        return lp_store_fail(path, LENSPROF_ERROR_READ_ONLY, "an interrupted write must be completed or undone first",
+                             "open it once with write access", error);
     if (rc == SQLITE_READONLY_DBMOVED)
         return lp_store_fail(path, LENSPROF_ERROR_STORE, "was moved or removed while it was open", "open it again",
                              error);
@@ -156,6 +157,5 @@ lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const c
 lensprof_status lp_store_fail_missing(const lensprof_store *store, int64_t id, lensprof_error *error) {
     char text[60];
     snprintf(text, sizeof text, "has no profile %lld", (long long)id);
-    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, text, "list the profiles to see which there are",
-                         error);
+    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, text, "list the profiles to see the valid ids", error);
 }

@@ -69,6 +69,5 @@ lensprof_status lp_store_probe(const char *path, lp_store_file *file, char **ful
     }
     sqlite3_free(absolute);
     if (rc == SQLITE_NOMEM) return lp_store_fail_sql(path, NULL, rc, error);
-    return lp_store_fail(path, LENSPROF_ERROR_STORE, "cannot be read as a file", "give the path of a file you may read",
-                         error);
+    return lp_store_fail(path, LENSPROF_ERROR_STORE, "cannot be read", "check the path and its permissions", error);
 }

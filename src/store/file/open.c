@@ -89,7 +89,7 @@ static lensprof_status connect_to(lensprof_store *store, const char *full, lp_st
 static lensprof_status check_file(const char *path, uint32_t mode, lp_store_file file, lensprof_error *error) {
     if (file == LP_STORE_FILE_MISSING && mode != LENSPROF_STORE_CREATE)
         return lp_store_fail(path, LENSPROF_ERROR_NOT_FOUND, "no such file",
-                             "check the path; storing a profile makes a new one", error);
+                             "check the path; storing a profile creates a new database", error);
     if (file == LP_STORE_FILE_FOREIGN)
         return lp_store_fail(path, LENSPROF_ERROR_CORRUPT, "is not a lensprof database",
                              "give the path of another file, or restore it from a copy", error);
@@ -99,8 +99,8 @@ static lensprof_status check_file(const char *path, uint32_t mode, lp_store_file
 lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_ms, lensprof_store **store,
                                       lensprof_error *error) {
     lp_store_clear(error);
-    if (!path || !*path) return lp_store_fail_argument("no path; name a file", error);
-    if (!store) return lp_store_fail_argument("no place for the handle", error);
+    if (!path || !*path) return lp_store_fail_argument("no path; give the path of a file", error);
+    if (!store) return lp_store_fail_argument("store is NULL; pass the address of a handle", error);
     if (mode > LENSPROF_STORE_CREATE) return lp_store_fail_argument("unknown mode; see lensprof_store_mode", error);
     lp_store_file file;
     char *full;

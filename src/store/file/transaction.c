@@ -49,13 +49,13 @@ static lensprof_status check_layout(const lensprof_store *store, const layout *f
     const char *restore = "give the path of another file, or restore it from a copy";
     if (found->pages == 0)
         return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "is empty, not a lensprof database",
-                             "storing a profile makes a database of it", error);
+                             "storing a profile turns it into a database", error);
     if (found->application_id != LP_STORE_APPLICATION_ID)
         return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "is not a lensprof database", restore, error);
     if (found->user_version > LP_STORE_LAYOUT) {
         char what[80];
-        snprintf(what, sizeof what, "has layout %lld of a newer lensprof, this one knows up to %d",
-                 (long long)found->user_version, LP_STORE_LAYOUT);
+        snprintf(what, sizeof what, "has layout %lld; this lensprof supports up to %d", (long long)found->user_version,
+                 LP_STORE_LAYOUT);
         return lp_store_fail(store->path, LENSPROF_ERROR_LAYOUT, what, "update lensprof", error);
     }
     if (found->user_version < 1)
@@ -78,7 +78,7 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
         return rc ? lp_store_fail_sql(store->path, store->db, rc, error) : LENSPROF_OK;
     }
     if (write && store->mode == LENSPROF_STORE_READ)
-        return lp_store_fail(store->path, LENSPROF_ERROR_READ_ONLY, "was opened for reading only",
+        return lp_store_fail(store->path, LENSPROF_ERROR_READ_ONLY, "was opened read-only",
                              "open it with LENSPROF_STORE_WRITE", error);
     lensprof_status status = lp_store_refresh(store, error);
     if (status != LENSPROF_OK) return status;
@@ -118,7 +118,7 @@ void lp_store_rollback(lensprof_store *store) {
 
 lensprof_status lensprof_store_begin(lensprof_store *store, lensprof_error *error) {
     lp_store_clear(error);
-    if (!store || store->batch) return lp_store_fail_argument("store is NULL, or a transaction is open already", error);
+    if (!store || store->batch) return lp_store_fail_argument("store is NULL, or a transaction is already open", error);
     const lensprof_status status = lp_store_begin(store, true, error);
     store->batch = status == LENSPROF_OK;
     return status;
@@ -130,7 +130,7 @@ lensprof_status lensprof_store_commit(lensprof_store *store, lensprof_error *err
     store->batch = false;
     if (!sqlite3_get_autocommit(store->db)) return lp_store_commit(store, error);
     return lp_store_fail(store->path, LENSPROF_ERROR_STORE, "the transaction was rolled back by an earlier failure",
-                         "nothing of it was stored; try again", error);
+                         "nothing was stored; try again", error);
 }
 
 void lensprof_store_rollback(lensprof_store *store) {

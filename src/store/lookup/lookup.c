@@ -239,7 +239,7 @@ static lensprof_status check_lookup(const lensprof_profile_key *key, const lensp
         || own->force_falloff > 1 || own->response_alone > 1)
         return lp_store_fail_argument("an option is unknown; see lensprof_lookup_options", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
-        return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
+        return lp_store_fail_argument("the key is invalid; see lensprof_profile_key", error);
     return LENSPROF_OK;
 }
 

@@ -269,7 +269,7 @@ static lensprof_status fuse(lensprof_store *store, const choice *chosen, lp_resp
         if (status != LENSPROF_OK) return status;
         take_one(&store->scratch, answer);
     } else if (take_several(&all, variance, answer) != LENSPROF_OK)
-        return lp_store_fail_profile(store, answer->id[0], "its response is not one", error);
+        return lp_store_fail_profile(store, answer->id[0], "invalid response", error);
     widen(answer);
     return LENSPROF_OK;
 }

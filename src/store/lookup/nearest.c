@@ -51,7 +51,7 @@ lensprof_status lensprof_store_nearest_lenses(lensprof_store *store, const lensp
     if (!store || !key || !count || (most && !names))
         return lp_store_fail_argument("store, key, names or count is NULL", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
-        return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
+        return lp_store_fail_argument("the key is invalid; see lensprof_profile_key", error);
     lensprof_store_name *nearest = malloc((most ? most : 1) * sizeof *nearest);
     if (!nearest) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
     lensprof_status status = lp_store_begin(store, false, error);

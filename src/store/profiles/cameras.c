@@ -101,7 +101,7 @@ lensprof_status lensprof_store_put_camera(lensprof_store *store, const lensprof_
     lp_store_clear(error);
     if (!store || !camera) return lp_store_fail_argument("store or camera is NULL", error);
     if (lensprof_camera_model_validate(camera) != LENSPROF_OK)
-        return lp_store_fail_argument("the camera is not valid; see lensprof_camera_model_validate", error);
+        return lp_store_fail_argument("the camera is invalid; see lensprof_camera_model_validate", error);
     lensprof_status status = lp_store_begin(store, true, error);
     if (status != LENSPROF_OK) return status;
     status = put(store, "INSERT OR REPLACE " INTO, camera, error);
@@ -115,7 +115,7 @@ static lensprof_status refuse(const lensprof_store *store, int64_t id, const cha
     char what[120];
     snprintf(what, sizeof what, "camera %lld is damaged (%s)", (long long)id, wrong);
     return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, what,
-                         "import the cameras again, or restore it from a copy", error);
+                         "import the cameras again, or restore the file from a copy", error);
 }
 
 /* What is asked for, and what all rows that have the name agree on. */
@@ -219,8 +219,8 @@ lensprof_status lensprof_store_find_camera(lensprof_store *store, const char *ma
     status = lp_store_find_camera(store, maker, model, camera, &found, error);
     lp_store_rollback(store);
     if (status != LENSPROF_OK || found) return status;
-    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no camera of this name",
-                         "import a table of cameras, as Lensfun's", error);
+    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no camera with this name",
+                         "import a table of cameras, e.g. Lensfun's", error);
 }
 
 /* Cameras as they come, for the caller's buffer once all are known. */

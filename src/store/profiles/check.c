@@ -78,7 +78,7 @@ static const struct orphans {
      " (SELECT 1 FROM responses AS r WHERE r.profile_id = e.profile_id AND r.curve = e.curve)",
      "a row of emor_coefficients without its response", 1},
     {"SELECT DISTINCT profile_id FROM emor_coefficients JOIN responses USING (profile_id, curve) WHERE emor_modes IS NULL",
-     "a row of emor_coefficients of a response that is not EMoR", 1},
+     "a row of emor_coefficients for a response that is not EMoR", 1},
 };
 
 static lensprof_status check_orphans(inspection *all, const struct orphans *kind, lensprof_error *error) {
@@ -103,7 +103,7 @@ static lensprof_status check_lens_name(inspection *all, int64_t id, sqlite3_stmt
     if (!found && sqlite3_errcode(all->store->db) == SQLITE_NOMEM)
         return lp_store_fail_sql(all->store->path, NULL, SQLITE_NOMEM, error);
     lp_squeeze(all->store->scratch.key.lens, expected);
-    return found && !strcmp(found, expected) ? LENSPROF_OK : report(all, id, "lens_name is not that of lens");
+    return found && !strcmp(found, expected) ? LENSPROF_OK : report(all, id, "lens_name does not match lens");
 }
 
 static lensprof_status check_profile(inspection *all, sqlite3_stmt *statement, lensprof_error *error) {
@@ -135,7 +135,7 @@ static lensprof_status check_profiles(inspection *all, lensprof_error *error) {
         if (status == LENSPROF_OK) rc = sqlite3_step(statement);
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE)
-        status = report_failure(all, rc, "profiles cannot be read to their end", error);
+        status = report_failure(all, rc, "profiles cannot be read completely", error);
     lp_store_release(all->store, statement);
     return status;
 }
@@ -150,7 +150,7 @@ static lensprof_status check_cameras(inspection *all, lensprof_error *error) {
     const lensprof_status status = lp_store_check_cameras(all->store, report_camera, all, error);
     if (status != LENSPROF_ERROR_CORRUPT) return status;
     lp_store_clear(error);
-    return report(all, 0, "cameras cannot be read to their end");
+    return report(all, 0, "cameras cannot be read completely");
 }
 
 lensprof_status lensprof_store_check(lensprof_store *store, lensprof_fault_visitor visit, void *user,

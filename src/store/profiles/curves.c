@@ -207,7 +207,7 @@ static lensprof_status read_responses(lensprof_store *store, int64_t id, lenspro
         status = read_coefficients(store, id, c, &profile->response[c], error);
         if (status != LENSPROF_OK) break;
         if (lp_store_rebuild(&profile->response[c], &rebuilt) != LENSPROF_OK)
-            return lp_store_fail_profile(store, id, "its response is not one", error);
+            return lp_store_fail_profile(store, id, "invalid response", error);
         profile->response[c] = rebuilt;
     }
     return status;

@@ -100,7 +100,7 @@ lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *othe
     if (!store || !other) return lp_store_fail_argument("store or other is NULL", error);
     if (store == other || !strcmp(sqlite3_db_filename(store->db, "main"), sqlite3_db_filename(other->db, "main")))
         return lp_store_fail(other->path, LENSPROF_ERROR_ARGUMENT, "is the database itself",
-                             "name another one to be merged into it", error);
+                             "give a different database to merge", error);
     lensprof_status status = lp_store_begin(store, true, error);
     if (status != LENSPROF_OK) return status;
     status = lp_store_begin(other, false, error);

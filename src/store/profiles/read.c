@@ -138,7 +138,7 @@ static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *
         status = lp_store_fail_missing(store, *id, error);
     else
         status = lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile with this key",
-                               "list the profiles to see which there are", error);
+                               "list the profiles to see the valid keys", error);
     lp_store_release(store, binder.statement);
     return status;
 }
@@ -166,7 +166,7 @@ lensprof_status lensprof_store_find(lensprof_store *store, const lensprof_profil
     lp_store_clear(error);
     if (!store || !key || !profile) return lp_store_fail_argument("store, key or profile is NULL", error);
     lensprof_status status = lensprof_profile_key_validate(key);
-    if (status != LENSPROF_OK) return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
+    if (status != LENSPROF_OK) return lp_store_fail_argument("the key is invalid; see lensprof_profile_key", error);
     status = lp_store_check_size(profile, error);
     if (status == LENSPROF_OK) status = fetch_in_transaction(store, key, &found, error);
     if (status != LENSPROF_OK) return status;
@@ -256,7 +256,7 @@ lensprof_status lensprof_store_list(lensprof_store *store, const lensprof_profil
     lensprof_profile_key_init(&any);
     if (!filter) filter = &any;
     if (lensprof_profile_key_validate(filter) != LENSPROF_OK)
-        return lp_store_fail_argument("the filter is not valid; see lensprof_profile_key", error);
+        return lp_store_fail_argument("the filter is invalid; see lensprof_profile_key", error);
     lensprof_status status = lp_store_begin(store, false, error);
     if (status != LENSPROF_OK) return status;
     status = list_rows(store, filter, &list, error);

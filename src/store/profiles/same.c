@@ -76,7 +76,7 @@ lensprof_status lensprof_store_find_same(lensprof_store *store, const lensprof_p
     if (status != LENSPROF_OK) return status;
     status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) {
-        (void)lp_store_fail_argument("the profile is not valid; see lensprof_profile_validate", error);
+        (void)lp_store_fail_argument("the profile is invalid; see lensprof_profile_validate", error);
         return status;
     }
     status = lp_store_begin(store, true, error); /* whose layout is the newest */

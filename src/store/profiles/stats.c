@@ -44,7 +44,7 @@ static lensprof_status read_counts(lensprof_store *store, lensprof_store_stats *
         read_range(&reader, stats->distance_m);
         if (reader.bad)
             status = lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has a profile with an impossible number",
-                                   "lensprof_store_check names it", error);
+                                   "lensprof_store_check identifies it", error);
     } else
         status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, statement);
@@ -63,7 +63,7 @@ static lensprof_status read_groups(lensprof_store *store, const char *sql, lensp
         groups[i].profiles = read_count(statement, 1);
         if (reader.bad)
             status = lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has a profile with an impossible text",
-                                   "lensprof_store_check names it", error);
+                                   "lensprof_store_check identifies it", error);
         else
             rc = sqlite3_step(statement);
     }

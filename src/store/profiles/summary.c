@@ -103,7 +103,7 @@ static lensprof_status read_all(lensprof_store *store, const char *sql, const ch
         if (reader.bad) {
             status =
                 lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has a profile with an impossible name or number",
-                              "lensprof_store_check names it", error);
+                              "lensprof_store_check identifies it", error);
             break;
         }
         const bool named = *part && is_name(&row, part);

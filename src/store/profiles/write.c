@@ -23,12 +23,12 @@ static lensprof_status check_profile(lensprof_store *store, const lensprof_profi
     status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) {
         char what[80];
-        snprintf(what, sizeof what, "the profile is not valid (%s)", lensprof_status_name(status));
+        snprintf(what, sizeof what, "the profile is invalid (%s)", lensprof_status_name(status));
         return lp_store_fail(store->path, status, what, "nothing was stored; correct the profile", error);
     }
     if (profile->provenance.not_usable && !profile->provenance.forced)
         return lp_store_fail(store->path, LENSPROF_ERROR_ARGUMENT, "the fit of this profile was not usable",
-                             "nothing was stored; set provenance.forced to store it all the same", error);
+                             "nothing was stored; set provenance.forced to store it anyway", error);
     for (uint32_t c = 0; c < profile->responses; c++)
         if (!is_consistent(&profile->response[c]))
             return lp_store_fail(store->path, LENSPROF_ERROR_RESPONSE,
@@ -93,7 +93,7 @@ static lensprof_status check_ids(lensprof_store *store, lensprof_error *error) {
                                     &last);
     if (rc) return lp_store_fail_sql(store->path, store->db, rc, error);
     if (last < INT64_MAX) return LENSPROF_OK;
-    return lp_store_fail(store->path, LENSPROF_ERROR_FULL, "its ids are used up: a profile has or had the last one",
+    return lp_store_fail(store->path, LENSPROF_ERROR_FULL, "no free ids: a profile has or had the last one",
                          "merge it into a new database, where ids begin at 1", error);
 }
 
@@ -187,7 +187,7 @@ lensprof_status lensprof_store_set_key(lensprof_store *store, int64_t id, const 
     lp_store_clear(error);
     if (!store || !key) return lp_store_fail_argument("store or key is NULL", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
-        return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
+        return lp_store_fail_argument("the key is invalid; see lensprof_profile_key", error);
     lensprof_status status = lp_store_begin(store, true, error);
     if (status != LENSPROF_OK) return status;
     status = set_key(store, id, key, error);
