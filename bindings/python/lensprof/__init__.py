@@ -1,8 +1,8 @@
-"""lensprof: camera response, vignetting and exposure from overlapping pictures, and their correction.
+"""lensprof: estimates and corrects camera response, vignetting and exposure from overlapping pictures.
 
-A thin layer over the C library lensprof on the memory of NumPy arrays. What the library refuses raises lensprof.Error
-with a `status`; what it could not be asked (an array of a wrong type, shape or stride) raises TypeError or
-ValueError.
+A thin layer over the C library lensprof that works on the memory of NumPy arrays. If the library refuses a call, it
+raises lensprof.Error with a `status`; arguments that cannot be passed to it (an array of the wrong type, shape or
+stride) raise TypeError or ValueError.
 """
 from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,

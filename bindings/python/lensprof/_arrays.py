@@ -1,4 +1,5 @@
-"""NumPy arrays as the library sees them: their own memory, never a copy. What does not fit is refused with a reason."""
+"""NumPy arrays as the library sees them: their own memory, never a copy. Unsuitable arrays are refused with a
+reason."""
 from __future__ import annotations
 
 import ctypes
@@ -71,7 +72,7 @@ def sample_dtype(kind: SampleType) -> Any:
 
 
 def layout_of(array: np.ndarray, layout: Optional[Layout] = None) -> Layout:
-    """Layout of a picture of shape (height, width) or (height, width, samples): RGB order unless told."""
+    """Layout of a picture of shape (height, width) or (height, width, samples): RGB order by default."""
     if array.ndim not in (2, 3):
         raise ValueError(f"a picture has the shape (height, width) or (height, width, samples), not {array.shape}")
     samples = array.shape[2] if array.ndim == 3 else 1

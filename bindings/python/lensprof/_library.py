@@ -1,7 +1,7 @@
 """The shared library: finding it, errors, and handles that must be released.
 
-Searched in this order: the file that the environment variable LENSPROF_LIBRARY names, the folder of this package, the
-system's loader.
+Search order: the file named by the environment variable LENSPROF_LIBRARY, the folder of this package, the system's
+loader.
 """
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ lib = _load()
 
 
 def initialise(struct: Any) -> None:
-    """Calls the `_init` function of a raw or public structure, which sets size and defaults. Some have none."""
+    """Calls the `_init` function of a raw or public structure, if it has one, which sets size and defaults."""
     for kind in type(struct).__mro__:
         if kind in _abi.INITS:
             name, sizes = _abi.INITS[kind]
@@ -98,10 +98,10 @@ def status_name(status: int) -> str:
 
 
 class Error(Exception):
-    """The library refused or could not do something.
+    """The library refused a call or failed.
 
-    status: why, a lensprof.Status. text: a sentence that names the offending item and the next step. item_kind and
-    item_index: that item where it has a number, ItemKind.NONE and 0 else.
+    status: a lensprof.Status. text: a sentence that names the offending item and the next step. item_kind and
+    item_index: that item if it has an index, otherwise ItemKind.NONE and 0.
     """
 
     def __init__(self, status: Status, text: str, item_kind: ItemKind = ItemKind.NONE, item_index: int = 0):
@@ -116,7 +116,7 @@ class Error(Exception):
 
 
 def check(status: int, text: str, error: Optional[_abi.ErrorText] = None) -> None:
-    """Raises lensprof.Error unless status is OK; `text` stands where the library gives none."""
+    """Raises lensprof.Error unless status is OK; `text` is used if the library gives no text."""
     if status != Status.OK:
         if error is None or not error.text:
             raise Error(Status(status), text)
@@ -125,7 +125,7 @@ def check(status: int, text: str, error: Optional[_abi.ErrorText] = None) -> Non
 
 
 class Handle:
-    """Something of the library that must be released. A context manager; `close` may be called twice.
+    """An object of the library that must be released. A context manager; `close` may be called twice.
 
     The library allows one thread at a time: calls from several threads wait for each other.
     """
@@ -143,7 +143,7 @@ class Handle:
             yield self._pointer
 
     def close(self) -> None:
-        """Releases the memory and files behind this object."""
+        """Releases the memory and files of this object."""
         with self._lock:
             self._release()
 

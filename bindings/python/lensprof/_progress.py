@@ -12,8 +12,8 @@ Function = Callable[[float], Optional[bool]]
 
 
 class WithProgress:
-    """Options with a field `progress`: called now and then with a fraction 0..1; the call is cancelled when it returns
-    True, and when it raises an exception, which then comes out of the call."""
+    """Options with a field `progress`, called repeatedly with the fraction done (0..1). The call is cancelled if it
+    returns True or raises an exception, which then propagates from the call."""
 
     _progress: Optional[Function] = None
 
@@ -34,9 +34,9 @@ class WithProgress:
 
 @contextlib.contextmanager
 def _interrupts() -> Iterator[list[int]]:
-    """Ctrl-C during a call. Python would raise KeyboardInterrupt on the way into a callback from C, where nothing can
-    catch it; so the signal is only noted, the callback then cancels the call, and KeyboardInterrupt is raised at the
-    end."""
+    """Ctrl-C during a call. Python would raise KeyboardInterrupt on entry to a callback from C, where nothing can catch
+    it. The signal is therefore only recorded; the callback then cancels the call, and KeyboardInterrupt is raised at
+    the end."""
     noted: list[int] = []
     usual = (threading.current_thread() is threading.main_thread()
              and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
@@ -53,8 +53,7 @@ def _interrupts() -> Iterator[list[int]]:
 
 @contextlib.contextmanager
 def calling(options: Any) -> Iterator[Any]:
-    """The raw options for one call of the library, which lasts as long as the block; what they point to is kept alive
-    by `options`."""
+    """The raw options for one call of the library, valid within the block; `options` keeps alive what they point to."""
     raised: list[BaseException] = []
     raw: Any = next(base for base in type(options).__mro__ if "_fields_" in vars(base))
     call = raw.from_buffer_copy(options)

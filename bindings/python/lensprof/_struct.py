@@ -29,12 +29,12 @@ def integer(value: Any, what: str, kind: type = ctypes.c_uint32) -> int:
 
 
 def _raw(cls: type) -> Any:
-    """The structure of `_abi` behind a public class."""
+    """The structure of `_abi` that a public class wraps."""
     return next(base for base in cls.__mro__ if "_fields_" in vars(base))
 
 
 class Struct:
-    """Fields are given by name; those left out have the library's defaults. Unknown names are errors."""
+    """Fields are given by name; omitted ones have the library's defaults. Unknown names are errors."""
 
     def __init__(self, **fields: Any):
         self._set_defaults()
@@ -103,7 +103,7 @@ class Text(_Field):
         if b"\0" in text or len(text) >= room:
             raise ValueError(f"{self.name} holds at most {room - 1} bytes of UTF-8, none of them 0; shorten {value!r}")
         place = ctypes.addressof(instance) + self.raw.offset
-        ctypes.memmove(place, text.ljust(room, b"\0"), room)  # ctypes would leave the end of a longer text behind
+        ctypes.memmove(place, text.ljust(room, b"\0"), room)  # ctypes would leave the rest of a longer text
 
 
 class Vector(_Field):
@@ -177,7 +177,7 @@ def one_or_three(value: Any, cls: type, what: str) -> list:
 
 
 class Curves(_Field, Generic[T]):
-    """An array of three structures of which as many count as another field says (1 or 3): a tuple that shares memory.
+    """An array of three structures with a valid count in another field (1 or 3): a tuple that shares memory.
 
     Assigning one value or three copies them and sets the count.
     """
@@ -201,7 +201,7 @@ class Curves(_Field, Generic[T]):
 
 
 class Numbers(_Field):
-    """An array of numbers of which as many count as another field says: a tuple of floats."""
+    """An array of numbers with a valid count in another field: a tuple of floats."""
 
     def __init__(self, count: str):
         self.count = count
@@ -213,7 +213,7 @@ class Numbers(_Field):
 
 
 class Count(_Field):
-    """How many structures or bytes a pointer leads to: set together with it, as the library reads so many."""
+    """The number of structures or bytes that a pointer refers to. It is set together with the pointer."""
 
     def __init__(self, instead: str = "assign one or three curves"):
         self.instead = instead

@@ -1,8 +1,8 @@
-"""Undoing (or simulating) what the camera did to the light, on the memory of NumPy arrays; see lensprof/apply.h.
+"""Corrects (or simulates) falloff, exposure and white balance in the memory of NumPy arrays; see lensprof/apply.h.
 
 Pictures have the shape (height, width) or (height, width, samples) and the type uint8 (0..255 = 0..1), uint16
-(0..65535), float32 or float16 (0..1). Rows may be any number of bytes apart, also backwards: slices like a[10:20, 5:50] and
-a[::-1] work.
+(0..65535), float32 or float16 (0..1). Row strides are arbitrary, also negative: slices like a[10:20, 5:50] and a[::-1]
+work.
 """
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from .profile import Profile
 
 
 def layout_samples(layout: Layout) -> int:
-    """Samples of a pixel, 1..4."""
+    """Samples per pixel, 1..4."""
     return lib.lensprof_layout_samples(Layout(layout))
 
 
 def layout_channels(layout: Layout) -> int:
-    """Colour channels of a pixel, 1 or 3."""
+    """Colour channels per pixel, 1 or 3."""
     return lib.lensprof_layout_channels(Layout(layout))
 
 
@@ -35,14 +35,14 @@ def sample_type_bytes(sample: SampleType) -> int:
 
 
 class ApplyOptions(Struct, _abi.ApplyOptions):
-    """What a Plan does. By default: correct, encoded in and out, uint8 RGB in and out, 0 EV; frame, response and
+    """Options of a Plan. Defaults: correct, encoded input and output, uint8 RGB in and out, 0 EV; frame, response and
     vignetting must be given.
 
     frame_width, frame_height: the full frame, px. response and vignetting: one for all channels, or three. source:
-    what the picture received. target: what it shall look like. grid: a GainGrid multiplied to the vignetting, or None.
-    strength: 0..1 of the falloff. gain_cap: the largest gain for the falloff, 1..1e6, or 0. dither: in place of
-    rounding, where uint8 is written. blob: what Profile.pack gave, instead of response, vignetting and grid, or None.
-    output_response: what is written is encoded by this one, or three, instead; None = by the model's own.
+    exposure and white balance of the picture. target: the wanted ones. grid: a GainGrid multiplied by the vignetting,
+    or None. strength: 0..1 of the falloff. gain_cap: the largest gain for the falloff, 1..1e6, or 0. dither: dither
+    instead of rounding, for uint8 output. blob: a result of Profile.pack, instead of response, vignetting and grid, or
+    None. output_response: one response or three that encode the output instead; None = those of the model.
     """
 
     direction = Enumerated(Direction)
@@ -70,7 +70,7 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     output_responses = Count("assign output_response")
 
     def set_profile(self, profile: Profile) -> None:
-        """Response, vignetting and grid of a copy of the profile, in place of what was set."""
+        """Sets response, vignetting and grid from a copy of the profile, replacing previous values."""
         own = Profile._copy_of(byref(profile))
         check(lib.lensprof_apply_options_set_profile(byref(self), byref(own)), "not a profile")
         shown = _abi.Profile.from_buffer(own)
@@ -79,7 +79,7 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
 
 
 class Plan:
-    """Everything prepared for one picture; may be applied to any of its tiles, by several threads at once."""
+    """A plan prepared for one picture; may be applied to any of its tiles, by several threads simultaneously."""
 
     def __init__(self, options: ApplyOptions):
         size = lib.lensprof_plan_bytes(byref(options))
@@ -126,7 +126,7 @@ class Plan:
 class FixedPlan:
     """A plan in integers, for processors without floating point; see lensprof/fixed.h.
 
-    data: the plan as bytes, which may be copied into a camera; FixedPlan.open makes a plan of them again.
+    data: the plan as bytes, which may be copied to a camera; FixedPlan.open turns them into a plan.
     """
 
     def __init__(self, options: ApplyOptions):
@@ -143,7 +143,7 @@ class FixedPlan:
 
     @classmethod
     def open(cls, data: bytes, layout: Layout) -> "FixedPlan":
-        """The plan whose `data` these are, made for pictures of a layout."""
+        """The plan from its `data`, for pictures of the given layout."""
         plan = cls.__new__(cls)
         plan._memory = np.frombuffer(bytearray(data) + bytes(-len(data) % 4), dtype=np.uint32)
         plan._plan = POINTER(_abi.FixedPlan)()
@@ -178,11 +178,12 @@ def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] =
             target: Optional[Exposure] = None, saturated: Optional[Saturated] = None,
             strength: Optional[float] = None, gain_cap: Optional[float] = None, dither: Optional[bool] = None,
             layout: Optional[Layout] = None, out: Optional[np.ndarray] = None) -> np.ndarray:
-    """Removes a profile's falloff (and what its gain grid has) from a full frame, and brings exposure and white balance
-    from source to target.
+    """Removes the falloff (and gain grid) of a profile from a full frame, and changes exposure and white balance from
+    source to target.
 
-    source, target: 0 EV when None. strength, gain_cap, dither: as in ApplyOptions. layout: grey, RGB or RGBA by the number of samples when None. out: `array` itself to
-    work in place, another array (its type is written), a new one when None. Returns out.
+    source, target: None = 0 EV. strength, gain_cap, dither: as in ApplyOptions. layout: None = grey, RGB or RGBA by the
+    number of samples. out: `array` itself to work in place, another array (its type is used), or None for a new one.
+    Returns out.
     """
     return _apply(Direction.CORRECT, array, profile, out, layout, source=source, target=target, saturated=saturated,
                   strength=strength, gain_cap=gain_cap, dither=dither)
@@ -191,5 +192,5 @@ def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] =
 def simulate(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
              target: Optional[Exposure] = None, layout: Optional[Layout] = None,
              out: Optional[np.ndarray] = None) -> np.ndarray:
-    """The inverse of `correct`, up to clipping: what the camera would have recorded."""
+    """The inverse of `correct`, up to clipping: what the camera would record."""
     return _apply(Direction.SIMULATE, array, profile, out, layout, source=source, target=target)

@@ -1,4 +1,4 @@
-"""Recovering response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
+"""Recovers response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
 from __future__ import annotations
 
 import ctypes
@@ -21,12 +21,12 @@ from .reason import Item
 class FitImage(Value, _abi.FitImage):
     """One image of a fit.
 
-    index: its own place among the images. width, height: full frame, px. exposure: the value where fixed. free:
-    Free.EV, RED, BLUE, all by default. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
-    its own unless told. known_ev: exposure from elsewhere (EXIF), EV up to a common offset, a soft observation;
-    known_ev_sigma: its standard error, EV, 0 = not known. setting: number of the lens setting (lens, focal length, aperture
-    and focus), 0..SETTINGS_MAX - 1, each of which has a vignetting of its own. camera: number of the camera, 0..CAMERAS_MAX - 1,
-    each of which has a response of its own; images of one setting are of one camera.
+    index: its position among the images. width, height: full frame, px. exposure: value if fixed. free: Free.EV, RED,
+    BLUE, all by default. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
+    by default its own. known_ev: exposure from another source (EXIF), EV up to a common offset, a soft observation;
+    known_ev_sigma: its standard error, EV, 0 = unknown. setting: number of the lens setting (lens, focal length,
+    aperture and focus), 0..SETTINGS_MAX - 1; each has its own vignetting. camera: number of the camera, 0..CAMERAS_MAX
+    - 1; each has its own response. All images of a setting belong to one camera.
     """
 
     width: int
@@ -48,21 +48,21 @@ class FitImage(Value, _abi.FitImage):
 
 
 class FitOptions(WithProgress, Struct, _abi.FitOptions):
-    """What is estimated, and how. By default 3 channels, reference 0, everything free, modes chosen by held-out error.
+    """Options of a fit. Defaults: 3 channels, reference 0, everything free, modes chosen by held-out error.
 
     channels: 1 or 3. reference: the image whose exposure stays as given. free: Free.RESPONSE .. CENTER. modes: EMoR
     modes 0..25 or MODES_AUTO. huber_levels: levels of 255. prior_weight: 0 = none, as in the paper. response,
-    vignetting: the values where fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out
-    error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of. method:
-    Method.TRANSFER, RADIANCE, TRANSFER_FUNCTION, or DEBEVEC: the response alone, from known exposures of all images.
-    refine: free the response of the EMoR modes where held-out pairs are clearly better for it.
-    threads: at most so many, 0 = one a core; the result does not depend on it. profile: of the same camera, lens and
-    setting, from other pictures, the prior in place of that of all cameras; the result takes its place, unless
-    FitResult.profile_prior says OVERRULED. links: those of SampleOptions, so that the result warns of images that are
-    joined only where there is no texture to check the alignment; None where they are not known.
+    vignetting: values if fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out error.
+    gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: selects the responses of the prior. method:
+    Method.TRANSFER, RADIANCE, TRANSFER_FUNCTION, or DEBEVEC: only the response, from known exposures of all images.
+    refine: free the response from the EMoR modes, unless held-out pairs get clearly worse. threads: maximum number, 0 =
+    one per core; does not affect the result. profile: of the same camera, lens and setting, from other pictures;
+    replaces the prior of all cameras, and the result supersedes it unless FitResult.profile_prior is OVERRULED. links:
+    those of SampleOptions, so that the result warns of images connected only where there is no texture to check the
+    alignment; None = unknown.
 
-    progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
-    when it raises an exception, which then comes out of fit_overlap.
+    progress: called repeatedly during a fit with the fraction done (0..1). The fit is cancelled if it returns True or
+    raises an exception, which then propagates from fit_overlap.
     """
 
     channels: int
@@ -100,9 +100,9 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
 
 
 class FitSetting(Struct, _abi.FitSetting):
-    """What a fit found of one lens setting; the fields are those of FitResult with these names.
+    """Result for one lens setting; the fields have the same meaning as in FitResult.
 
-    images: of this setting that joined; where 0, the rest means nothing. pairs: with an end in them.
+    images: images of this setting in the fit; if 0, the other fields have no meaning. pairs: pairs with an end in them.
     """
 
     images: int
@@ -126,15 +126,15 @@ class FitSetting(Struct, _abi.FitSetting):
 
 
 class FitCamera(Struct, _abi.FitCamera):
-    """What a fit found of one camera of several; the fields are those of FitResult with these names, of a fit of the pairs
-    between its own images.
+    """Result for one camera, if the fit has several; the fields have the same meaning as in FitResult, for a fit of the
+    pairs between its own images.
 
-    images: of this camera that joined its fit; where 0, the rest means nothing. attached: beside these, whose exposures pairs
-    with other cameras say. joined: its exposures are relative to the
-    reference, as pairs with other cameras show; else they are NaN. shared_pairs: with an end in it and the other in another
-    camera; agreeing_share: of these, those within 3 sigma of what is left; light_difference_ev: median difference of the
-    light at their ends. log_gamma: by which its own fit was moved to agree with the others. offset_sigma_ev: standard error
-    of the offset of its exposures. reference: image whose exposure its own fit held; setting: of that image.
+    images: images of this camera in its fit; if 0, the other fields have no meaning. attached: additional images, whose
+    exposures follow from pairs with other cameras. joined: its exposures are relative to the reference, through pairs
+    with other cameras; otherwise they are NaN. shared_pairs: pairs with another camera; agreeing_share: share of them
+    within 3 sigma of the residual; light_difference_ev: median difference of the light at their ends. log_gamma: shift
+    of its own fit to agree with the others. offset_sigma_ev: standard error of the offset of its exposures. reference:
+    image whose exposure was fixed in its own fit; setting: setting of that image.
     """
 
     images: int
@@ -169,23 +169,24 @@ class FitCamera(Struct, _abi.FitCamera):
 
 
 class FitResult(Struct, _abi.FitResult):
-    """What a fit found. Arrays are views on this object.
+    """Result of a fit. Arrays are views on this object.
 
-    usable: a profile to store; False with the `reason` in words; a usable result may have one as a caution. evens: the
-    result evens out these pictures, whether or not it is a profile to store. left_out: images that do not agree with the
-    others, of ev NaN in `exposures` and `joined` 0 in `image_quality`; reference: the image of 0 EV. response_from: where the
-    response is from; light_spread_ev: how much the light differs between the ends of pairs. reason_code: what it states, a
-    Reason; reason_item: the image that it names; reason_value: its numbers. response: of all images.
-    vignetting: tuple of 1 (all channels) or 3. exposures: what every image got relative to the reference,
-    EXPOSURE_DTYPE; image_quality: how well each is determined, IMAGE_QUALITY_DTYPE. pairs: used. components: connected
-    groups of images. gamma_from: what settled the exponent gamma; gamma_sigma: standard error of ln gamma;
-    gamma_direction: change of each parameter per unit of it. before_rms, heldout_rms, heldout_median, noise_levels: levels of
-    255. frame_share, image_share: residual variance that follows a map over the frame, or of each image's own. inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of
-    the half diagonal and of the grey range. covariance: n x n as in Profile; parameters held fixed have zero rows.
-    settings: tuple of FitSetting by FitImage.setting; where there are several, vignetting, radius_ends, usable, reason,
-    covariance and gamma_direction of the result are those of the reference's. cameras: tuple of FitCamera by FitImage.camera;
-    where there are several, the result's other fields are those of the reference's, but exposures, image_quality and
-    left_out, which are of all.
+    usable: a profile to store; if False, `reason` states why; if True, `reason` may have a warning. evens: the result
+    evens out these pictures, whether or not it is a profile to store. left_out: number of inconsistent images, with ev
+    NaN in `exposures` and `joined` 0 in `image_quality`; reference: the image of 0 EV. response_from: origin of the
+    response; light_spread_ev: difference of the light between the ends of pairs. reason_code: a Reason; reason_item:
+    the image concerned; reason_value: its numbers. response: of all images. vignetting: tuple of 1 (all channels) or 3.
+    exposures: exposure and white balance of every image relative to the reference, EXPOSURE_DTYPE; image_quality: how
+    well each image is determined, IMAGE_QUALITY_DTYPE. pairs: pairs used. components: connected groups of images.
+    gamma_from: what determined the exponent gamma; gamma_sigma: standard error of ln gamma; gamma_direction: change of
+    each parameter per unit of it. before_rms, heldout_rms, heldout_median, noise_levels: levels of 255. frame_share,
+    image_share: share of the residual variance that follows one map over the frame, or a separate map per image.
+    inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of the half diagonal and of the
+    grey range. covariance: n x n as in Profile; fixed parameters have zero rows. settings: tuple of FitSetting by
+    FitImage.setting; if there are several, vignetting, radius_ends, usable, reason, covariance and gamma_direction of
+    the result are those of the reference's setting. cameras: tuple of FitCamera by FitImage.camera; if there are
+    several, the other fields of the result describe the reference's camera, except exposures, image_quality and
+    left_out, which cover all.
     """
 
     usable = Flag()
@@ -261,13 +262,13 @@ class FitResult(Struct, _abi.FitResult):
         return self._quality
 
     def exposure(self, index: int) -> Exposure:
-        """What image `index` got."""
+        """Exposure and white balance of image `index`."""
         return Exposure.from_buffer_copy(self._exposures[index])
 
     def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0,
                 setting: Optional[int] = None) -> Profile:
-        """A profile of this result, to be stored or applied. source: file that it was made from. Time 0 = unknown.
-        setting: number of the lens setting that it is of; None = that of the reference."""
+        """A profile of this result, to be stored or applied. source: file of origin. created_unix_s 0 = unknown.
+        setting: number of the lens setting; None = that of the reference."""
         profile, error, count = Profile(key=key), _abi.ErrorText(), len(self._exposures)
         result: _abi.FitResult = self
         if setting is not None:
@@ -308,13 +309,13 @@ def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], optio
 
 
 def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
-    """Fits pairs (PAIR_DTYPE) over at least two images. A fit that ran returns also when it is poor: see `usable`."""
+    """Fits pairs (PAIR_DTYPE) over at least two images. Also returns if the result is poor: see `usable`."""
     return _fit(lib.lensprof_fit_overlap, images, _arrays.pairs(pairs), options or FitOptions())
 
 
 def fit_radiance(images: Sequence[FitImage], observations: np.ndarray,
                  options: Optional[FitOptions] = None) -> FitResult:
-    """Fits tracks of observations (OBSERVATION_DTYPE, in any order) over at least two images, by Method.RADIANCE."""
+    """Fits tracks of observations (OBSERVATION_DTYPE, in any order) over at least two images, with Method.RADIANCE."""
     return _fit(lib.lensprof_fit_radiance, images, _arrays.observations(observations),
                 options or FitOptions(method=Method.RADIANCE))
 

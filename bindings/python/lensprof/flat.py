@@ -1,4 +1,4 @@
-"""The falloff from pictures of a white card or another even light; see lensprof/flat.h."""
+"""Falloff from pictures of a white card or another even light; see lensprof/flat.h."""
 from __future__ import annotations
 
 from ctypes import byref
@@ -19,12 +19,12 @@ from .reason import Item
 
 @dataclass
 class FlatImage:
-    """A picture of a card; its arrays are read where they are.
+    """A picture of a card; its arrays are read in place.
 
-    array: (height, width) or (height, width, samples); layouts with alpha: alpha below half = excluded. width, height:
-    of the full frame, px; those of the array times reduction unless told. shot: pictures of one shot (same pose, other
-    exposure) carry one number. ev: known exposure, EV. turn_deg: camera turned about its axis, clockwise as seen from
-    behind it. layout, reduction, mask, black, white: as in SampleImage.
+    array: (height, width) or (height, width, samples); in layouts with alpha, alpha below half = excluded. width,
+    height: of the full frame, px; by default those of the array times reduction. shot: pictures of one shot (same pose,
+    different exposure) have the same number. ev: known exposure, EV. turn_deg: rotation of the camera about its axis,
+    clockwise seen from the back of the camera. layout, reduction, mask, black, white: as in SampleImage.
     """
 
     array: np.ndarray
@@ -52,13 +52,13 @@ class FlatImage:
 
 
 class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
-    """How to fit a flat field. By default 3 channels, everything free, linear response, shots that fill the frame.
+    """Options of a flat field fit. Defaults: 3 channels, everything free, linear response, shots that fill the frame.
 
-    channels: 1 or 3. free: Free.K1, K2, K3, CENTER. vignettings: falloff curves, 1, 3 or 0 = 3 where they differ.
-    light: FlatLight; own_light: every shot has a light of its own. several: one card at several places of the frame, with
-    one brightness; find_card: look for the card in the frame. grid: FlatGrid. ev_sigma: standard error of an exposure,
-    EV (several). prior_weight: 0 = none. response: () = linear, else one or three. vignetting: the value where fixed.
-    threads: at most so many, 0 = one a core; the result does not depend on it. progress: as in FitOptions.
+    channels: 1 or 3. free: Free.K1, K2, K3, CENTER. vignettings: falloff curves, 1, 3 or 0 = 3 if they differ. light:
+    FlatLight; own_light: each shot has its own light. several: one card at several places of the frame, with the same
+    brightness; find_card: find the card in the frame. grid: FlatGrid. ev_sigma: standard error of an exposure, EV
+    (several). prior_weight: 0 = none. response: () = linear, otherwise one or three. vignetting: values of fixed
+    parameters. threads: maximum number, 0 = one per core; does not affect the result. progress: as in FitOptions.
     """
 
     channels: int

@@ -1,4 +1,4 @@
-"""Other tools' files, from and to memory; see lensprof/formats.h."""
+"""Files of other programs, from and to memory; see lensprof/formats.h."""
 from __future__ import annotations
 
 import os
@@ -25,7 +25,7 @@ _FILE_NAME = re.compile(r"[^\n<{]{1,4095}\.[A-Za-z]\w{0,9}")  # a line that ends
 
 
 def _content(data: Union[str, bytes], what: str = "data") -> bytes:
-    """The content of a file; a path in its place is refused."""
+    """The content of a file; a path is refused."""
     if isinstance(data, os.PathLike) or isinstance(data, str) and _FILE_NAME.fullmatch(data):
         raise TypeError(f"{what} takes the content of a file, and not its name; give Path({os.fspath(data)!r}).read_bytes()")
     if isinstance(data, str):
@@ -55,9 +55,9 @@ def _written(write: Callable[..., int], what: str) -> bytes:
 class PtoImage(Value, _abi.PtoImage):
     """One `i` line with its links resolved.
 
-    emor: Ra..Re. response_type: 0 EMoR, 1 linear. free: what the `v` lines ask for. response_of, vignetting_of,
-    center_of, ev_of, red_of, blue_of: index of the image at the end of the link, own index when not linked. crop:
-    left, top, right, bottom (exclusive), px. left_out: the result in the project is without this image.
+    emor: Ra..Re. response_type: 0 EMoR, 1 linear. free: requested by the `v` lines. response_of, vignetting_of,
+    center_of, ev_of, red_of, blue_of: index of the image at the end of the link; own index if not linked. crop: left,
+    top, right, bottom (exclusive), px. left_out: the result in the project excludes this image.
     """
 
     camera = Nested(Camera)
@@ -95,7 +95,7 @@ class Pto(Handle):
         return f"image {index}: the project has no such image; count from 0"
 
     def image(self, index: int) -> PtoImage:
-        """The `i` line of an image, in lensprof's conventions."""
+        """The `i` line of an image, in the conventions of lensprof."""
         image, error = PtoImage(), _abi.ErrorText()
         with self._use() as pto:
             check(lib.lensprof_pto_get_image(pto, integer(index, "index"), byref(image), byref(error)),
@@ -103,7 +103,7 @@ class Pto(Handle):
         return image
 
     def response(self, index: int) -> Response:
-        """The response of an image as Hugin evaluates it."""
+        """The response of an image as evaluated by Hugin."""
         response, error = Response(), _abi.ErrorText()
         with self._use() as pto:
             check(lib.lensprof_pto_get_response(pto, integer(index, "index"), byref(response), byref(error)),
@@ -126,8 +126,8 @@ class Pto(Handle):
             check(lib.lensprof_pto_set_name(pto, integer(index, "index"), text, byref(error)), repr(name), error)
 
     def draw_mask(self, index: int, mask: np.ndarray) -> np.ndarray:
-        """Draws where pairs may be taken from an image into a uint8 or bool array (height, width): 1, else 0. Returns
-        it.
+        """Draws the mask of places where pairs may be taken from an image into a uint8 or bool array (height, width):
+        1, otherwise 0. Returns the array.
 
         The array is a view of the whole frame at its own size.
         """
@@ -142,7 +142,7 @@ class Pto(Handle):
 
     def set_result(self, response: Response, vignetting: Vignetting, exposures: Union[np.ndarray, Iterable[Exposure]],
                    reference: int = 0) -> None:
-        """Puts a result into the project: one response, one vignetting, an exposure an image (Exposure, or
+        """Writes a result into the project: one response, one vignetting, an exposure per image (Exposure, or
         EXPOSURE_DTYPE).
 
         A response other than EMoR with at most 5 modes becomes its least squares projection on Hugin's 5. Exposures are
@@ -157,8 +157,8 @@ class Pto(Handle):
                   f"{count} exposures, reference {reference}", error)
 
     def set_settings(self, settings: Iterable[int], vignetting: Iterable[Vignetting]) -> None:
-        """Gives every lens setting a falloff. settings: number of that of each image, 0 .. len(vignetting) - 1. The first
-        image of each receives it, and the others are linked to that one."""
+        """Writes a falloff per lens setting. settings: setting number of each image, 0 .. len(vignetting) - 1. The
+        first image of each setting receives the falloff, and the others are linked to it."""
         numbers = [integer(number, "a setting") for number in settings]
         curves = list(vignetting)
         error = _abi.ErrorText()
@@ -168,8 +168,8 @@ class Pto(Handle):
                   f"{len(numbers)} settings, {len(curves)} vignettings", error)
 
     def set_cameras(self, cameras: Iterable[int], response: Iterable[Response]) -> None:
-        """Gives every camera a response. cameras: number of that of each image, 0 .. len(response) - 1. The first image of
-        each receives it, and the others are linked to that one. Call it after set_result."""
+        """Writes a response per camera. cameras: camera number of each image, 0 .. len(response) - 1. The first image
+        of each camera receives the response, and the others are linked to it. Call it after set_result."""
         numbers = [integer(number, "a camera") for number in cameras]
         curves = list(response)
         error = _abi.ErrorText()
@@ -179,13 +179,13 @@ class Pto(Handle):
                   f"{len(numbers)} cameras, {len(curves)} responses", error)
 
     def write(self) -> bytes:
-        """The project as text: what was read, unchanged but for what was set."""
+        """The project as text. Everything that was read stays unchanged, except what was set."""
         with self._use() as pto:
             return _written(lambda *buffer: lib.lensprof_pto_write(pto, *buffer), "the project cannot be written")
 
 
 def points_read(text: Union[str, bytes]) -> np.ndarray:
-    """The pairs of a point file (vig_optimize -w, 16 numbers a line): an array of PAIR_DTYPE."""
+    """The pairs of a point file (vig_optimize -w, 16 numbers per line): an array of PAIR_DTYPE."""
     data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
     check(lib.lensprof_points_read(data, len(data), None, 0, byref(found), byref(error)),
           "points cannot be read", error)
@@ -237,10 +237,10 @@ def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: 
 
 
 def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
-    """The falloffs of a Lensfun database (.xml) as profiles of about 50 kB each, in the order of the file.
+    """The falloffs of a Lensfun database (.xml) as (profile, usable), about 50 kB each, in file order.
 
-    False stands beside those that are no falloff, which cannot be stored or applied; provenance.doubt says why, and may
-    warn of others. source: where the text is from, for provenance.source.
+    usable is False for an invalid falloff, which cannot be stored or applied; provenance.doubt states the reason, and
+    may have a warning for others. source: origin of the text, for provenance.source.
     """
     data = _content(text, "text")
     return _imported(lambda *rest: lib.lensprof_lensfun_read(data, len(data), *rest), source,
@@ -269,15 +269,14 @@ def lensfun_read_cameras(text: Union[str, bytes], source: str = "") -> list[Came
 
 
 def lensfun_write(profiles: Iterable[Profile]) -> str:
-    """A Lensfun database (.xml) of the falloffs of profiles, whose lens, crop factor, focal length and aperture are
-    known."""
+    """A Lensfun database (.xml) of the falloffs of profiles with known lens, crop factor, focal length and aperture."""
     return _database(lib.lensprof_lensfun_write, profiles, (), "the database cannot be written").decode()
 
 
 def json_read(text: Union[str, bytes], source: str = "") -> list[Profile]:
-    """The profiles of what `lensprof profile show --json` prints, or json_write made.
+    """The profiles in JSON, as printed by `lensprof profile show --json` or made by json_write.
 
-    source: where the text is from, for provenance.source where the text has none.
+    source: origin of the text, for provenance.source if the text does not contain it.
     """
     data = _content(text, "text")
     found = _imported(lambda *rest: lib.lensprof_json_read(data, len(data), *rest), source, "the profiles cannot be read")
@@ -285,12 +284,13 @@ def json_read(text: Union[str, bytes], source: str = "") -> list[Profile]:
 
 
 def json_write(profiles: Iterable[Profile]) -> str:
-    """Profiles as JSON (docs/json.md), from which json_read makes the same."""
+    """Profiles as JSON (docs/json.md); json_read restores the same profiles."""
     return _database(lib.lensprof_json_write, profiles, (), "the profiles cannot be written").decode()
 
 
 def pcalib_read(text: Union[str, bytes]) -> Response:
-    """The response of a pcalib.txt of TUM's tools, DSO and its kin: 256 (or 2 to 65536) increasing irradiances."""
+    """The response of a pcalib.txt of TUM's tools, DSO and related programs: 256 (or up to 65536) increasing
+    irradiances."""
     data, response, error = _content(text, "text"), Response(), _abi.ErrorText()
     check(lib.lensprof_pcalib_read(data, len(data), byref(response), byref(error)), "pcalib cannot be read", error)
     return response
@@ -303,7 +303,7 @@ def pcalib_write(response: Response) -> str:
 
 
 class FrameTime(Value, _abi.FrameTime):
-    """A line of times.txt: id as written, time_s, exposure_ms (UNKNOWN where there is none)."""
+    """A line of times.txt: id as written, time_s, exposure_ms (UNKNOWN if missing)."""
 
     id = Text()
     time_s: float
@@ -329,7 +329,8 @@ def times_write(frames: Iterable[FrameTime]) -> str:
 
 
 def curves_read(text: Union[str, bytes], kind: CurveKind = CurveKind.INVERSE) -> list[Response]:
-    """One or three responses of a table of text (CSV, or .m of pfstools), of which nothing in it says what it holds."""
+    """One or three responses of a text table (CSV, or .m of pfstools). The table does not state its content: pass
+    it."""
     data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
     responses = (_abi.Response * 3)()
     check(lib.lensprof_curves_read(data, len(data), int(CurveKind(kind)), responses, byref(found), byref(error)),
@@ -356,10 +357,10 @@ def _refitted(read: Callable[..., int], profile: Optional[Profile], what: str) -
 
 def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: Optional[tuple[int, int]] = None,
              profile: Optional[Profile] = None) -> tuple[Profile, float]:
-    """The falloff of a map (rows, columns) or (rows, columns, 3), and the largest relative error that is left.
+    """The falloff of a map (rows, columns) or (rows, columns, 3), and the largest relative error left.
 
-    Values are linear, to any scale; 0 is not known. frame: width and height of the pictures it is for, px; that of the
-    map by default. profile: what the rest of the result is a copy of.
+    Values are linear, in any unit; 0 = unknown. frame: width and height of the pictures it applies to, px; by default
+    those of the map. profile: copied for the rest of the result.
     """
     array = np.ascontiguousarray(values, dtype=np.float32)
     if array.ndim not in (2, 3):
@@ -374,9 +375,10 @@ def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: 
 
 def map_write(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int, int]] = None, channels: int = 1,
               sense: MapSense = MapSense.ATTENUATION) -> np.ndarray:
-    """Falloff and gain grid as a float32 map of size (columns, rows), that of the frame (width, height) by default.
+    """Falloff and gain grid as a float32 map of size (columns, rows), by default that of the frame (width, height).
 
-    The largest attenuation is 1. Of one channel: (rows, columns), the mean of the profile's; of 3: (rows, columns, 3).
+    The largest attenuation is 1. With 1 channel: (rows, columns), the mean of the profile's channels; with 3: (rows,
+    columns, 3).
     """
     columns, rows = size if size is not None else frame
     values = np.empty((integer(rows, "rows"), integer(columns, "columns"), integer(channels, "channels")), np.float32)
@@ -403,7 +405,7 @@ def radical_response_write(responses: Union[Response, Iterable[Response]]) -> by
 
 
 def radical_vignetting_read(data: bytes, profile: Optional[Profile] = None) -> tuple[Profile, float]:
-    """The falloff of a .vgn file of radical, and the largest relative error that is left; as map_read."""
+    """The falloff of a .vgn file of radical, and the largest relative error left; as map_read."""
     given = _content(data)
     return _refitted(lambda *out: lib.lensprof_radical_vignetting_read(given, len(given), *out), profile,
                      "the file cannot be read")
@@ -420,8 +422,8 @@ def dng_opcodes_read(data: bytes, width: int, height: int, layout: Layout = Layo
                      source: str = "") -> tuple[Profile, bool]:
     """The falloff of a DNG opcode list, the bytes of the tag OpcodeList2 or OpcodeList3, and whether it is usable.
 
-    width, height: of the frame that the opcodes work on. layout: RGGB, GRBG, GBRG or BGGR for a mosaic (OpcodeList2),
-    RGB for three planes (OpcodeList3), GREY for one. provenance.doubt names opcodes that are left out.
+    width, height: of the frame that the opcodes apply to. layout: RGGB, GRBG, GBRG or BGGR for a mosaic (OpcodeList2),
+    RGB for three planes (OpcodeList3), GREY for one. provenance.doubt lists opcodes that are left out.
     """
     given = _content(data)
     (entry,) = _imported(
@@ -444,15 +446,15 @@ def dng_opcodes_write(profile: Profile, width: int, height: int, layout: Layout 
 
 
 def lcp_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
-    """The falloffs of an Adobe lens profile (.lcp), as lensfun_read gives those of a database."""
+    """The falloffs of an Adobe lens profile (.lcp), in the form of lensfun_read."""
     data = _content(text, "text")
     return _imported(lambda *rest: lib.lensprof_lcp_read(data, len(data), *rest), source,
                      "the lens profile cannot be read")
 
 
 def lcp_write(profiles: Iterable[Profile], width: int = 0, height: int = 0) -> str:
-    """An Adobe lens profile (.lcp) of the falloffs of profiles of one camera and lens, whose crop factor, focal length
-    and aperture are known. width, height: of the frames; both 0 = not known, of 3:2."""
+    """An Adobe lens profile (.lcp) of the falloffs of profiles of one camera and lens, with known crop factor, focal
+    length and aperture. width, height: of the frames; both 0 = unknown, taken as 3:2."""
     return _database(lib.lensprof_lcp_write, profiles, (integer(width, "width"), integer(height, "height")),
                      "the lens profile cannot be written").decode()
 
@@ -470,10 +472,10 @@ def drone_xmp_read(text: Union[str, bytes], width: int, height: int, source: str
 
 def alsc_read(text: Union[str, bytes], frame: tuple[int, int], ct: float = _abi.UNKNOWN,
               size: tuple[int, int] = (0, 0), profile: Optional[Profile] = None) -> tuple[Profile, float]:
-    """The falloff of a tuning file of libcamera for the Raspberry Pi, and the largest relative error that is left.
+    """The falloff of a libcamera tuning file for the Raspberry Pi, and the largest relative error left.
 
-    frame: width and height of the sensor, px. ct: colour temperature, K; the file's own by default. size: columns and rows
-    of other tables than 16 x 12 and 32 x 32. profile: as map_read.
+    frame: width and height of the sensor, px. ct: colour temperature, K; by default that of the file. size: columns and
+    rows of tables other than 16 x 12 and 32 x 32. profile: as in map_read.
     """
     data, numbers = _content(text, "text"), [integer(n, "columns, rows, width or height") for n in (*size, *frame)]
     return _refitted(lambda *out: lib.lensprof_alsc_read(data, len(data), ct, *numbers, *out), profile,
@@ -489,7 +491,8 @@ def alsc_write(profile: Profile, frame: tuple[int, int], ct: float = _abi.UNKNOW
 
 
 class FormatInfo(NamedTuple):
-    """A format: its one word, one line about it, what its files hold, whether it is written, and holds several."""
+    """A format: its name, a description, the content of its files, whether it can be written, and whether it holds
+    several."""
 
     name: str
     about: str
@@ -499,16 +502,16 @@ class FormatInfo(NamedTuple):
 
 
 def format_info(format: Format) -> FormatInfo:
-    """What is known of a format but AUTO."""
+    """Description of a format other than AUTO."""
     found = lib.lensprof_format_get_info(_format(format))
     if not found:
-        raise ValueError("AUTO is no format; pass another lensprof.Format")
+        raise ValueError("AUTO is not a format here; pass another lensprof.Format")
     info = found.contents
     return FormatInfo(info.name.decode(), info.about.decode(), Holds(info.holds), bool(info.is_written), bool(info.is_many))
 
 
 def detect_format(data: Union[str, bytes], name: str = "") -> Format:
-    """The format of a file by its content, then by the ending of its name; Format.AUTO where neither decides."""
+    """The format of a file by its content, then by the ending of its name; Format.AUTO if neither decides."""
     content = _content(data)
     return Format(lib.lensprof_format_detect(content, len(content), _bytes(name)))
 
@@ -517,11 +520,11 @@ def import_profiles(data: Union[str, bytes], name: str = "", *, format: Format =
                     key: Optional[ProfileKey] = None, frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0),
                     layout: Layout = Layout.RGB, curve: CurveKind = CurveKind.INVERSE,
                     color_temperature_k: float = _abi.UNKNOWN) -> list[tuple[Profile, bool]]:
-    """The profiles of a file of any format, of which data is the content, as lensfun_read gives those of a database.
+    """The profiles of a file of any format, in the form of lensfun_read. data: the content of the file.
 
     A response or a falloff makes one profile with `key`. name: of the file, for detection and provenance.source. frame:
-    width and height of the pictures, which opcodes, XMP and alsc do not say. tables: columns and rows, of alsc. The
-    bytes are those of the format, and not of a picture around them: opcodes without their DNG, XMP without its JPEG.
+    width and height of the pictures, which opcodes, XMP and alsc do not contain. tables: columns and rows, of alsc. The
+    bytes are those of the format, not of a picture around them: opcodes without their DNG, XMP without its JPEG.
     """
     content, options = _content(data), initialised(_abi.ImportOptions)
     options.format, options.layout, options.curve = _format(format), int(Layout(layout)), int(CurveKind(curve))
@@ -542,9 +545,9 @@ def export_profiles(profiles: Iterable[Profile], name: str = "", *, format: Form
                     frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0), layout: Layout = Layout.RGB,
                     form: DngForm = DngForm.AUTO, curve: CurveKind = CurveKind.INVERSE, covariance: bool = False,
                     color_temperature_k: float = _abi.UNKNOWN) -> bytes:
-    """A file of any format that is written, chosen by `format` or the ending of the name: of all the profiles where it
-    holds several, else of one. frame, tables: as for import_profiles; rows of curves are tables[1]. form: of opcodes.
-    covariance: of a blob."""
+    """A file in any format that can be written, selected by `format` or the ending of the name: of all profiles if the
+    format holds several, otherwise of one. frame, tables: as for import_profiles; rows of curves are tables[1]. form:
+    of opcodes. covariance: of a blob."""
     for other in Format:
         if other and not format and format_info(other).name == name:
             raise ValueError(f"{name!r} is a format and not the name of a file; give format=Format.{other.name}")

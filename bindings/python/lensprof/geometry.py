@@ -1,4 +1,4 @@
-"""Camera projections: direction <-> image pixel, as Hugin and nona use them; see lensprof/geometry.h."""
+"""Camera projections: direction <-> image pixel, as used by Hugin and nona; see lensprof/geometry.h."""
 from __future__ import annotations
 
 from ctypes import byref, c_double
@@ -16,8 +16,8 @@ _NOWHERE = (np.nan, np.nan)
 
 
 class Camera(Value, _abi.Camera):
-    """One picture's camera; projection RECTILINEAR and zeros by default. Angles in degrees, sizes of the full frame
-    in px.
+    """Camera of one picture; by default projection RECTILINEAR and zeros. Angles in degrees, sizes of the full frame in
+    px.
 
     hfov_deg: horizontal field of view. radial: a, b, c. shift_px: d, e. shear_px: g, t. translation: TrX, TrY, TrZ.
     plane_deg: Tpy, Tpp.
@@ -45,12 +45,12 @@ class Camera(Value, _abi.Camera):
     def project(self, longitude: Numbers, latitude: Numbers) -> np.ndarray:
         """Pixels (x, y on the last axis) of directions in radians, latitude positive down.
 
-        NaN where the camera does not see the direction. Pixels may lie outside the frame; pixel centres are integers.
+        NaN if the camera does not see the direction. Pixels may lie outside the frame; pixel centres are integers.
         """
         return self._map(lib.lensprof_camera_project, longitude, latitude)
 
     def unproject(self, x: Numbers, y: Numbers) -> np.ndarray:
-        """Directions (longitude, latitude on the last axis, radians) of pixels; NaN where there is none."""
+        """Directions (longitude, latitude on the last axis, radians) of pixels; NaN for pixels without a direction."""
         return self._map(lib.lensprof_camera_unproject, x, y)
 
     def _map(self, function: Any, first: Numbers, second: Numbers) -> np.ndarray:

@@ -91,7 +91,8 @@ class Response(Value, _abi.Response):
 
     @classmethod
     def typical(cls, kind: CameraKind = CameraKind.ANY) -> tuple[Response, np.ndarray, float]:
-        """The mean of a kind of cameras, the 25 x 25 covariance of its EMoR coefficients, and the error of ln gamma."""
+        """The mean of the cameras of a kind, the 25 x 25 covariance of its EMoR coefficients, and the error of ln
+        gamma."""
         response, covariance, sigma = cls(), np.empty((_abi.EMOR_MODES, _abi.EMOR_MODES)), c_double()
         check(lib.lensprof_response_set_typical(byref(response), CameraKind(kind),
                                                 covariance.ctypes.data_as(POINTER(c_double)), byref(sigma)),
@@ -147,7 +148,7 @@ def half_diagonal(width: int, height: int) -> float:
 
 
 class Vignetting(Value, _abi.Vignetting):
-    """Radial falloff M = 1 + k1 r^2 + k2 r^4 + k3 r^6; none by default.
+    """Radial falloff M = 1 + k1 r^2 + k2 r^4 + k3 r^6; by default no falloff.
 
     k: k1, k2, k3. center: x (right) and y (down) from the middle of the frame. r and center are in half diagonals.
     """
@@ -212,11 +213,11 @@ class Attenuation(_Field):
 
 
 class GainGrid(Value, _abi.GainGrid):
-    """Attenuation on a grid over the frame, multiplied to the falloff: what a radial polynomial leaves. No grid by
-    default.
+    """Attenuation on a grid over the frame, multiplied by the falloff, for what a radial polynomial cannot describe. By
+    default no grid.
 
-    attenuation: (rows, columns) or (channels, rows, columns), 2..32 nodes a side, within 0.001..1000; its first node
-    lies at the frame's first pixel, its last at the last. Assigning it sets channels, rows and columns.
+    attenuation: (rows, columns) or (channels, rows, columns), 2..32 nodes per side, within 0.001..1000; its first node
+    lies at the first pixel of the frame, its last at the last. Assigning it sets channels, rows and columns.
     """
 
     columns: int
@@ -243,7 +244,7 @@ class GainGrid(Value, _abi.GainGrid):
 
 
 class Exposure(Value, _abi.Exposure):
-    """What one picture received; 0 EV and white balance 1, 1, 1 by default.
+    """Exposure and white balance of one picture; 0 EV and 1, 1, 1 by default.
 
     ev: log2 of the exposure factor, larger = more light recorded. white_balance: factors of red, green (1), blue.
     """

@@ -1,4 +1,4 @@
-"""What is known about one camera, lens and setting; see lensprof/profile.h."""
+"""Calibration of one camera, lens and setting; see lensprof/profile.h."""
 from __future__ import annotations
 
 from ctypes import byref, c_double, c_size_t, create_string_buffer
@@ -14,11 +14,11 @@ from .model import GainGrid, Response, Vignetting
 
 
 class ProfileKey(Value, _abi.ProfileKey):
-    """What a profile is for; empty texts and lensprof.UNKNOWN where not known, processing JPEG by default.
+    """The camera, lens and setting that a profile applies to. Defaults: empty texts, lensprof.UNKNOWN, processing JPEG.
 
-    unit: serial numbers, where a profile is of one camera and lens. crop_factor, focal_mm, aperture (f-number),
-    distance_m (may be infinite) and color_temperature_k (of the light, where the falloff depends on it) are above 0, or
-    UNKNOWN. style: the picture style of a rendering, as the camera calls it.
+    unit: serial numbers of one camera and lens. crop_factor, focal_mm, aperture (f-number), distance_m (may be
+    infinite) and color_temperature_k (of the light, if the falloff depends on it) are above 0, or UNKNOWN. style: the
+    picture style of a rendering, as named by the camera.
     """
 
     camera_maker = Text()
@@ -40,19 +40,19 @@ class ProfileKey(Value, _abi.ProfileKey):
 
     @property
     def camera_kind(self) -> CameraKind:
-        """Whose typical response pictures of this key have while none of its own is known; see Response.typical."""
+        """The kind whose typical response applies if the camera's own response is unknown; see Response.typical."""
         self.validate()
         return CameraKind(lib.lensprof_camera_kind_of(byref(self)))
 
 
 class Provenance(Value, _abi.Provenance):
-    """Where a profile comes from. Part of a Profile, which sets the defaults.
+    """Origin of a profile. Part of a Profile, which sets the defaults.
 
-    created_unix_s: seconds since 1970-01-01 UTC, 0 = unknown. images, pairs: how many were used. heldout_rms: levels
-    of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why it may be wrong, as found when it was imported or fitted.
-    prior_id: the profile of the same database that was the prior of its fit, 0 = none. forced: 1 = stored although the
-    fit was not usable. not_usable: 1 = of a fit that was not usable, which Store.put refuses unless it is forced; it is
-    not stored. gamma_sigma: standard error of ln gamma, the common exponent of response and falloff; 0 = not known.
+    created_unix_s: seconds since 1970-01-01 UTC, 0 = unknown. images, pairs: numbers used. heldout_rms: levels of 255,
+    or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why the profile may be wrong, found at import or by the fit.
+    prior_id: the profile of the same database that was the prior of the fit, 0 = none. forced: 1 = stored although the
+    fit was not usable. not_usable: 1 = from a fit that was not usable, which Store.put refuses unless it is forced; it
+    is not stored. gamma_sigma: standard error of ln gamma, the common exponent of response and falloff; 0 = unknown.
     """
 
     method = Text()
@@ -79,9 +79,9 @@ class Provenance(Value, _abi.Provenance):
 
 
 class CameraModel(Value, _abi.CameraModel):
-    """A camera, whatever its lens. maker, model: as its EXIF has them; other_maker, other_model: as people call it, empty
-    where that is the same; variant: which one, where several have one name. lens: that which is built in, as profiles
-    name it. crop_factor: 43.27 mm over the sensor's diagonal, or UNKNOWN. fixed_lens: 1 = it cannot be changed."""
+    """A camera, independent of the lens. maker, model: as in EXIF; other_maker, other_model: common name, empty if it
+    is the same; variant: distinguishes cameras with the same name. lens: the built-in lens, as named in profiles.
+    crop_factor: 43.27 mm over the sensor's diagonal, or UNKNOWN. fixed_lens: 1 = it cannot be changed."""
 
     maker = Text()
     model = Text()
@@ -132,11 +132,11 @@ class Covariance:
 
 
 class Profile(Value, _abi.Profile):
-    """Response and vignetting of one camera, lens and setting: linear and without falloff by default.
+    """Response and vignetting of one camera, lens and setting; by default linear and without falloff.
 
-    response, vignetting: tuples of 1 (all channels) or 3; assign one or three. grid: multiplied to the
-    vignetting. covariance: n x n, n = 0 when not known; in the order EMoR coefficients of each response, k1, k2, k3 of
-    each vignetting, centre x and y.
+    response, vignetting: tuples of 1 (all channels) or 3; assign one or three. grid: multiplied by the vignetting.
+    covariance: n x n, n = 0 if unknown; in the order EMoR coefficients of each response, k1, k2, k3 of each vignetting,
+    centre x and y.
     """
 
     key = Nested(ProfileKey)
@@ -163,18 +163,18 @@ class Profile(Value, _abi.Profile):
               "covariance must be finite and symmetric")
 
     def falloff(self, width: int, height: int, x: float, y: float, channel: int = 0) -> tuple[float, float | None]:
-        """Relative illuminance of a channel at pixel (x, y) of a frame, gain grid included, and its standard error by the
-        covariance of the falloff; None when that is not known."""
+        """Relative illuminance of a channel at pixel (x, y) of a frame, including the gain grid, and its standard error
+        from the covariance of the falloff; None if that is unknown."""
         return self._with_sigma(lambda this, sigma: lib.lensprof_profile_falloff(
             this, channel_number(channel), integer(width, "width"), integer(height, "height"), x, y, sigma))
 
     def radial_falloff(self, r: float, channel: int = 0) -> tuple[float, float | None]:
-        """The same of the falloff alone, without gain grid, at r half diagonals from its centre."""
+        """The same for the falloff alone, without gain grid, at r half diagonals from its centre."""
         return self._with_sigma(lambda this, sigma: lib.lensprof_profile_radial_falloff(
             this, channel_number(channel), r, sigma))
 
     def corner_falloff(self, channel: int = 0) -> tuple[float, float | None]:
-        """The same in the corner: r = 1."""
+        """The same in the corner, r = 1."""
         return self._with_sigma(lambda this, sigma: lib.lensprof_profile_corner_falloff(
             this, channel_number(channel), sigma))
 
@@ -186,7 +186,7 @@ class Profile(Value, _abi.Profile):
 
     def pack(self, covariance: bool = False) -> bytes:
         """A blob for firmware, which lensprof_plan_init reads in place (docs/blob.md): response samples in single
-        precision, without the provenance's source, and without the covariance unless asked for."""
+        precision, without the provenance's source, and without the covariance unless requested."""
         needed, flags = c_size_t(), Pack.COVARIANCE if covariance else 0
         self.validate()
         check(lib.lensprof_profile_pack(byref(self), flags, None, 0, byref(needed)), "the profile cannot be packed")
@@ -197,8 +197,8 @@ class Profile(Value, _abi.Profile):
 
     @classmethod
     def unpack(cls, blob: Any) -> Profile:
-        """The profile of a blob (any object with bytes). Raises lensprof.Error with ERROR_CORRUPT when any of it is
-        wrong, with ERROR_LAYOUT when a newer lensprof wrote it."""
+        """The profile of a blob (any object with bytes). Raises lensprof.Error with ERROR_CORRUPT if any part of it is
+        invalid, with ERROR_LAYOUT if a newer lensprof wrote it."""
         data, profile = memoryview(blob).tobytes(), cls()
         check(lib.lensprof_profile_unpack(data, len(data), byref(profile)),
               f"{len(data)} bytes: not a profile blob, damaged, or of a newer lensprof; write it again with pack()")

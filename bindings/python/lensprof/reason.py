@@ -1,4 +1,4 @@
-"""Why a result is not usable, or what is doubtful about it, as numbers; see lensprof/reason.h."""
+"""Reason codes: why a result is not usable, or what is doubtful about it; see lensprof/reason.h."""
 from __future__ import annotations
 
 from . import _abi
@@ -8,8 +8,8 @@ from ._struct import Enumerated, Value
 
 
 class Item(Value, _abi.Item):
-    """What a text names by its number: `index` of its kind, in bytes text_begin to text_begin + text_bytes of its UTF-8.
-    Kind NONE where it names nothing."""
+    """The item that a text refers to by index: `index` of its kind, in bytes text_begin to text_begin + text_bytes of
+    its UTF-8. Kind NONE if it refers to no item."""
 
     kind = Enumerated(ItemKind)
     index: int
@@ -18,7 +18,7 @@ class Item(Value, _abi.Item):
 
 
 def reason_name(reason: Reason) -> str:
-    """The name of a reason in the JSON of the command line program: that of the member in lower case."""
+    """The name of a reason in JSON: that of the member in lower case."""
     return lib.lensprof_reason_name(Reason(reason)).decode()
 
 

@@ -1,4 +1,4 @@
-"""Correspondences: the same scene point seen in two pictures; see lensprof/sample.h."""
+"""Correspondences: the same scene point in two pictures; see lensprof/sample.h."""
 from __future__ import annotations
 
 from ctypes import POINTER, byref, c_uint32, pointer
@@ -18,13 +18,13 @@ from .model import Response, Vignetting
 
 @dataclass
 class SampleImage:
-    """A picture to sample; its arrays are read where they are.
+    """A picture to sample; its arrays are read in place.
 
-    array: (height, width) or (height, width, samples); layouts with alpha: alpha below half = excluded. camera: of
-    the full frame. layout: RGB order when None. reduction: pixel (u, v) of the array is the mean of the square of
-    `reduction` frame pixels from (u, v) * reduction on, or of some pixels of it. mask: (height, width) uint8 or bool, 0 = excluded. black,
-    white: samples outside in any channel are not used; 0..1. every_pixel: no pixel of a patch may be outside, else its
-    mean counts.
+    array: (height, width) or (height, width, samples); in layouts with alpha, alpha below half = excluded. camera: of
+    the full frame. layout: None = RGB order. reduction: pixel (u, v) of the array is the mean of the square of
+    `reduction` frame pixels that begins at (u, v) * reduction, or of some of its pixels. mask: (height, width) uint8 or
+    bool, 0 = excluded. black, white: samples outside in any channel are not used; 0..1. every_pixel: all pixels of a
+    patch must be within the limits; otherwise its mean must be.
     """
 
     array: np.ndarray
@@ -46,13 +46,14 @@ class SampleImage:
 
 
 class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
-    """How to sample. By default balanced, pairs 0 (= 300 per image, at least 2000), seed 1, threads 0 (= one a core).
+    """Options of sampling. Defaults: balanced, pairs 0 (= 300 per image, at least 2000), seed 1, threads 0 (= one per
+    core).
 
-    Same seed, same pairs, on any number of threads. progress: called now and then with a fraction 0..1; sampling is
-    cancelled when it returns True, and when it raises an exception, which then comes out of sample_overlap.
-    links: after a balanced sampling what texture says of the images that overlap, an array of LINK_DTYPE, for
-    FitOptions.links; None before. response, vignetting: what a first fit or a profile knows of the camera, or None;
-    places are then compared by the light they received, which joins pictures that are many EV apart.
+    Same seed, same pairs, with any number of threads. progress: called repeatedly with the fraction done (0..1).
+    Sampling is cancelled if it returns True or raises an exception, which then propagates from sample_overlap. links:
+    after balanced sampling, an array of LINK_DTYPE with the result of comparing the texture of overlapping images, for
+    FitOptions.links; None before. response, vignetting: from a first fit or a profile, or None; places are then
+    compared by their light, which connects pictures that are many EV apart.
     """
 
     sampling = Enumerated(Sampling)
@@ -102,13 +103,13 @@ def _sample(function: Any, images: Sequence[SampleImage], options: Optional[Samp
 def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
     """Finds correspondences between at least two overlapping pictures: an array of PAIR_DTYPE.
 
-    There are at most as many as options.pairs, fewer when the overlaps do not hold more.
+    There are at most options.pairs, fewer if the overlaps do not hold as many.
     """
     return _sample(lib.lensprof_sample_overlap, images, options, _arrays.PAIR_DTYPE, _arrays.pairs)
 
 
 def sample_tracks(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
-    """Finds points that several pictures see, for fit_radiance: an array of OBSERVATION_DTYPE, by point.
+    """Finds points seen in several pictures, for fit_radiance: an array of OBSERVATION_DTYPE, by point.
 
     There are at most options.pairs points (0 = 150 per image, at least 2000), each with up to 16 observations.
     """
@@ -119,8 +120,8 @@ def sample_matches(images: Sequence[SampleImage], matches: np.ndarray,
                    options: Optional[SampleOptions] = None) -> np.ndarray:
     """Measures correspondences at places that are known to match, an array of MATCH_DTYPE: an array of PAIR_DTYPE.
 
-    For pictures by a camera that moved; only width and height of the cameras are looked at. `map` of a match, how its
-    surroundings are turned and scaled, may be all 0: the pair then comes from the match itself, else from the quietest
+    For pictures from a moving camera; only width and height of the cameras are used. `map` of a match, the rotation and
+    scale of its surroundings, may be all 0: the pair then comes from the match itself, otherwise from the smoothest
     place near it.
     """
     address, count = _arrays.matches(matches)

@@ -15,8 +15,8 @@ from .profile import CameraModel, Profile, ProfileKey, Provenance
 
 
 class StoreRow(Value, _abi.StoreRow):
-    """A row of a listing: id, key and provenance of a profile. damaged: 1 = the row has impossible values, its key and
-    provenance are unknown, and Store.get says what is wrong."""
+    """A row of a listing: id, key and provenance of a profile. damaged: 1 = the row has impossible values; its key and
+    provenance are unknown, and Store.get reports what is wrong."""
 
     id: int
     damaged: int
@@ -25,10 +25,10 @@ class StoreRow(Value, _abi.StoreRow):
 
 
 class LookupOptions(Struct, _abi.LookupOptions):
-    """How Store.lookup searches. distance_rule: where the focus distance is unknown. with_doubt: profiles with a doubt
-    count as others do. any_processing: the key's processing does not matter. force_falloff: falloffs of uncorrected
-    pictures for keys whose processing is CORRECTED, too. response_alone: the camera's response is an answer where there
-    is no falloff."""
+    """Options of Store.lookup. distance_rule: what to use if the focus distance is unknown. with_doubt: use profiles
+    with a doubt like others. any_processing: ignore the processing of the key. force_falloff: use falloffs of
+    uncorrected pictures also for keys with processing CORRECTED. response_alone: return the camera's response if no
+    falloff is found."""
 
     distance_rule = Enumerated(DistanceRule)
     with_doubt = Flag()
@@ -38,14 +38,15 @@ class LookupOptions(Struct, _abi.LookupOptions):
 
 
 class Lookup(Value, _abi.Lookup):
-    """How Store.lookup came to its answer.
+    """How Store.lookup found its answer.
 
-    The falloff: id[:rows] and weight[:rows] of the profiles it is from, nearest first; exact when the answer is one of
-    them as it is; distance to the nearest; name_score. The response: response_from says what it is, response_id and
-    response_weight[:response_rows] the profiles; camera_kind is the kind of camera. Standard errors: sigma of M in the
-    corner, of which falloff_sigma, distance_sigma and sensor_sigma are parts, and response_sigma, of ln gamma.
-    falloff_store and response_store: which of the databases of lookup_in. reason: cautions, whose sentences are
-    `reasons`."""
+    The falloff: id[:rows] and weight[:rows] of the profiles used, nearest first; exact if the answer is one of them,
+    unchanged; distance to the nearest; name_score. The response: response_from is its origin, response_id and
+    response_weight[:response_rows] the profiles used; camera_kind is the kind of camera. Standard errors: sigma of M in
+    the corner, with the parts falloff_sigma, distance_sigma and sensor_sigma, and response_sigma, of ln gamma.
+    falloff_store and response_store: indices of the databases in lookup_in. reason: warnings; their codes are
+    `reasons`.
+    """
 
     exact: int
     rows: int
@@ -68,20 +69,20 @@ class Lookup(Value, _abi.Lookup):
 
     @property
     def reasons(self) -> tuple[Reason, ...]:
-        """What each sentence of `reason` states."""
+        """The Reason of each sentence in `reason`."""
         return tuple(Reason(code) for code in self.reason_code.tolist() if code != Reason.NONE)
 
 
 class StoreFault(Value, _abi.StoreFault):
-    """Something that Store.check found: id of the profile, 0 for the file as a whole, and the reason."""
+    """A fault found by Store.check: id of the profile, 0 for the file as a whole, and the reason."""
 
     id: int
     reason = Text()
 
 
 class StoreSummary(Value, _abi.StoreSummary):
-    """A lens, or a camera, and what is stored of it: how many profiles, also by Processing, how many different cameras or
-    lenses are named with it (others), and (smallest, largest) of focal_mm, aperture and distance_m."""
+    """A lens or a camera, with a summary of its profiles: their number, also by Processing, the number of distinct
+    cameras or lenses named with it (others), and (smallest, largest) of focal_mm, aperture and distance_m."""
 
     camera_maker = Text()
     camera_model = Text()
@@ -95,7 +96,7 @@ class StoreSummary(Value, _abi.StoreSummary):
 
 
 class StoreName(Value, _abi.StoreName):
-    """The name of a stored lens, and how near (0..1) it is to one that was asked for."""
+    """The name of a stored lens, and its similarity (0..1) to a requested one."""
 
     lens = Text()
     score: float
@@ -109,8 +110,8 @@ def _bytes_of(text: Optional[str]) -> Optional[bytes]:
 
 
 class StoreStats(Value, _abi.StoreStats):
-    """What is in a database: counts, (smallest, largest) of focal_mm, aperture and distance_m, bytes, layout; method and
-    source, the groups with the most profiles, as a dictionary of their counts."""
+    """Contents of a database: counts, (smallest, largest) of focal_mm, aperture and distance_m, bytes, layout; method
+    and source, the groups with the most profiles, as dictionaries of their counts."""
 
     profiles: int
     cameras: int
@@ -155,24 +156,24 @@ class Store(Handle):
             check(function(store, *arguments, byref(error)), f"{function.__name__} failed", error)
 
     def put(self, profile: Profile) -> int:
-        """Adds a profile and returns its id. A profile with the same key stays: `find` returns the newest."""
+        """Adds a profile and returns its id. Profiles with the same key stay; `find` returns the newest."""
         number = c_int64()
         self._call(lib.lensprof_store_put, byref(profile), byref(number))
         return number.value
 
     def find(self, key: ProfileKey) -> tuple[int, Profile]:
-        """Id and profile of the newest with an equal key; lensprof.Error NOT_FOUND when there is none.
+        """Id and profile of the newest with an equal key; lensprof.Error NOT_FOUND if no profile matches.
 
-        Texts are compared without ASCII case and outer blanks, numbers to 1e-6 relative; UNKNOWN equals UNKNOWN only.
+        Texts are compared without ASCII case and outer blanks, numbers to 1e-6 relative; UNKNOWN equals only UNKNOWN.
         """
         profile, number = Profile(), c_int64()
         self._call(lib.lensprof_store_find, byref(key), byref(profile), byref(number))
         return number.value, profile
 
     def lookup(self, key: ProfileKey, options: Optional[LookupOptions] = None) -> tuple[Profile, Lookup]:
-        """The profile for a setting, the lens's falloff (stored or predicted from other settings) and the camera's
-        response together, and how it was found; lensprof.Error NOT_FOUND, with the reason and, as `lookup`, its Lookup,
-        where there is none near enough."""
+        """The profile for a setting, composed of the lens's falloff (stored or predicted from other settings) and the
+        camera's response, and how it was found. Raises lensprof.Error NOT_FOUND, with the reason and, as `lookup`, its
+        Lookup, if no profile is near enough."""
         profile, how = Profile(), Lookup()
         try:
             self._call(lib.lensprof_store_lookup, byref(key), byref(options or LookupOptions()), byref(profile),
@@ -184,7 +185,8 @@ class Store(Handle):
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
-        """`with store.transaction():` makes all calls in it one: stored at its end, or none of it after an exception."""
+        """`with store.transaction():` makes all calls in it one transaction: stored at its end, or rolled back on an
+        exception."""
         self._call(lib.lensprof_store_begin)
         try:
             yield
@@ -195,15 +197,15 @@ class Store(Handle):
         self._call(lib.lensprof_store_commit)
 
     def find_same(self, profile: Profile) -> int:
-        """The id of a stored profile with the same key, content and provenance, whatever its method and software; 0
-        where there is none. For importers, before put(): the store must be open for writing."""
+        """The id of a stored profile with the same key, content and provenance, whatever its method and software; 0 if
+        it is not stored. Intended for imports, before put(): the store must be open for writing."""
         found = c_int64()
         self._call(lib.lensprof_store_find_same, byref(profile), byref(found))
         return found.value
 
     def merge(self, other: Store) -> tuple[int, int]:
-        """Adds the profiles of another open database that find_same() does not find; returns how many were added and how
-        many were there. All or none."""
+        """Adds the profiles of another open database that find_same() does not find; returns the number added and the
+        number already present. All or none."""
         if not isinstance(other, Store):
             raise TypeError(f"merge takes a Store, not {type(other).__name__}")
         if other is self:
@@ -214,7 +216,7 @@ class Store(Handle):
         return added.value, known.value
 
     def check(self) -> tuple[int, List[StoreFault]]:
-        """Reads and checks everything: how many profiles there are, and all that is wrong."""
+        """Reads and checks everything: the number of profiles, and all faults."""
         faults: List[StoreFault] = []
         raised: List[BaseException] = []
         profiles = c_uint32()
@@ -236,7 +238,7 @@ class Store(Handle):
         return profiles.value, faults
 
     def stats(self) -> StoreStats:
-        """How much of what is in the database."""
+        """A summary of the database."""
         stats = StoreStats()
         self._call(lib.lensprof_store_get_stats, byref(stats))
         return stats
@@ -248,26 +250,26 @@ class Store(Handle):
         return profile
 
     def remove(self, id: int) -> None:
-        """Removes the profile with an id; lensprof.Error NOT_FOUND when there is none."""
+        """Removes the profile with an id; lensprof.Error NOT_FOUND if it does not exist."""
         self._call(lib.lensprof_store_remove, integer(id, "id", c_int64))
 
     def list(self, filter: Optional[ProfileKey] = None) -> List[StoreRow]:
         """Rows in the order camera maker, model, lens, focal, aperture, distance, id.
 
-        filter: where it has a text or a known number, only equal ones.
+        filter: its texts and known numbers must match.
         """
         return self._list(StoreRow, _abi.StoreRow, lib.lensprof_store_list, None if filter is None else byref(filter))
 
     def lenses(self, part: Optional[str] = None) -> List[StoreSummary]:
-        """The lenses of the stored profiles by name; with `part` those of that name, or that have all its words."""
+        """The lenses of the stored profiles by name; with `part` those with that name, or with all its words."""
         return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_lenses, _bytes_of(part))
 
     def cameras(self, part: Optional[str] = None) -> List[StoreSummary]:
-        """The cameras of the stored profiles, as lenses()."""
+        """The cameras of the stored profiles, as for lenses()."""
         return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_cameras, _bytes_of(part))
 
     def nearest_lenses(self, key: ProfileKey, count: int = 3) -> List[StoreName]:
-        """The stored lenses whose names are nearest to that of the key, nearest first: for a lens that lookup() did not
+        """The stored lenses with names nearest to that of the key, nearest first, for a lens that lookup() did not
         find."""
         rows, found = (_abi.StoreName * integer(count, "count"))(), c_uint32()
         self._call(lib.lensprof_store_nearest_lenses, byref(key), rows, len(rows), byref(found))
@@ -275,12 +277,12 @@ class Store(Handle):
         return [StoreName.from_buffer(rows, i * size) for i in range(found.value)]
 
     def put_camera(self, camera: CameraModel) -> None:
-        """Stores a camera, in place of the one with the same maker, model and variant."""
+        """Stores a camera, replacing the one with the same maker, model and variant."""
         self._call(lib.lensprof_store_put_camera, byref(camera))
 
     def find_camera(self, maker: str, model: str) -> CameraModel:
-        """The camera of a name, as EXIF has it or as people call it; maker may be empty. What several of one name do not
-        agree on is unknown. Raises lensprof.Error (NOT_FOUND)."""
+        """Finds a camera by its EXIF name or common name; maker may be empty. Data in which several cameras of one name
+        differ is unknown. Raises lensprof.Error (NOT_FOUND)."""
         camera = CameraModel()
         self._call(lib.lensprof_store_find_camera, _bytes_of(maker), _bytes_of(model), byref(camera))
         return camera
@@ -290,7 +292,7 @@ class Store(Handle):
         return self._list(CameraModel, _abi.CameraModel, lib.lensprof_store_list_camera_models)
 
     def set_key(self, id: int, key: ProfileKey) -> None:
-        """Gives the profile with an id another key; all else stays."""
+        """Changes the key of the profile with an id; all else stays."""
         self._call(lib.lensprof_store_set_key, integer(id, "id", c_int64), byref(key))
 
     def _list(self, row: Any, raw: Any, function: Any, *arguments: Any) -> List[Any]:

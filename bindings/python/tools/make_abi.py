@@ -284,7 +284,7 @@ def python_text(interface: Interface) -> str:
         body += wrapped(f'    "{name}": ({result}, [', parameters, "]),")
     body += "}\n"
     used = sorted(set(re.findall(r"\b(?:c_\w+|POINTER|CFUNCTYPE|Structure)\b", body)))
-    return (f"# Generated from include/lensprof by {COMMAND}: do not edit; `make abi` writes it anew.\n"
+    return (f"# Generated from include/lensprof by {COMMAND}: do not edit; `make abi` regenerates it.\n"
             '"""The C interface as tables: structures, enumerations, constants and functions of the public headers.\n\n'
             "Nothing else in the package knows a layout or a number of the C library. Raw structures have the fields\n"
             "of those in C; users see subclasses of them in the modules by topic.\n"
@@ -294,7 +294,7 @@ def python_text(interface: Interface) -> str:
 
 def dump_text(interface: Interface) -> str:
     """tests/python/abi_dump.c."""
-    text = (f"/* Generated from include/lensprof by {COMMAND}: do not edit; `make abi` writes it anew. */\n"
+    text = (f"/* Generated from include/lensprof by {COMMAND}: do not edit; `make abi` regenerates it. */\n"
             "/* Prints sizes and offsets of structs and values of constants as the C compiler sees them. test_abi.py\n"
             " * compares them with the tables of the Python package. */\n"
             "#include <lensprof/lensprof.h>\n\n#include <stdio.h>\n\n"
