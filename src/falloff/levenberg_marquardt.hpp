@@ -28,7 +28,7 @@ struct DescentLimits {
     int steps;             // most accepted ones
     double first_damping;  // larger where the start is poor
     double damping;        // beyond, nothing more is to be gained
-    double gain;           // share of the objective at which a descent has settled
+    double gain;           // share of the objective at which a descent has converged
 };
 
 struct Descent {

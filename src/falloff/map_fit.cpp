@@ -155,7 +155,7 @@ Range values_within(double from, double to, double first, double step, uint32_t 
     return {static_cast<uint32_t>(std::clamp(low, 0.0, last)), static_cast<uint32_t>(std::clamp(high, 0.0, last))};
 }
 
-// Values of a channel that stand for 1, and below which they are not known.
+// The value of a channel that means 1, and the value below which it is unknown.
 struct Scale {
     double one, lowest;
 };

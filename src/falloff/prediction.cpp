@@ -8,10 +8,10 @@
 // kPriorSigma^2. With A = c(d_ij) + diag(n_i) among the nodes and b = c(d_i*) from them to the setting asked for, the
 // best linear prediction and its variance are
 //     w = A^-1 b,     y* = m + w'(y - m),     v (c(0) + kOwnNoise - b'w),
-// where m is the nodes' mean: as kAnyLevel is large the weights add up to nearly 1 and m hardly matters. The same w
-// serve k1, k2, k3 of all curves. v is what the nodes show, y' A^-1 y over their number for corners y about their mean,
-// together with kPriorSigma^2 in the weight of kPriorNodes nodes. M has no unit; distances are in steps of two octaves
-// of focal length, of one N0/N or of 5 dioptres.
+// where m is the nodes' mean: as kAnyLevel is large the weights add up to nearly 1 and m has almost no effect. The same
+// w serve k1, k2, k3 of all curves. v is what the nodes show, y' A^-1 y over their number for corners y about their
+// mean, together with kPriorSigma^2 in the weight of kPriorNodes nodes. M has no unit; distances are in steps of two
+// octaves of focal length, of one N0/N or of 5 dioptres.
 #include "falloff/prediction.h"
 
 #include <algorithm>

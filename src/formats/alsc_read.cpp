@@ -54,7 +54,7 @@ std::vector<double> gains_of(const JsonValue &table) {
 }
 
 // The table of a colour temperature, as libcamera finds it: between the two nearest ones linearly, beyond the ends as
-// there. All 1 where there is none.
+// there. All 1 without a table.
 std::vector<double> ratios_at(const JsonValue &calibrations, double ct, size_t count) {
     std::vector<double> ratios(count, 1.0);
     if (!calibrations) return ratios;

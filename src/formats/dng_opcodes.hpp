@@ -41,7 +41,7 @@ struct OpcodeGains {
     uint32_t count;        // opcodes of the list, of any kind
 };
 
-// Throws SYNTAX for bytes that are no opcode list, SIZE for over 64 gains or 1 Mi points in all, UNSUPPORTED for
+// Throws SYNTAX for bytes that are not an opcode list, SIZE for over 64 gains or 1 Mi points in total, UNSUPPORTED for
 // opcodes without a name in the specification that are not optional, and for gains after TrimBounds.
 OpcodeGains parse_opcodes(const uint8_t *bytes, size_t size);
 

@@ -118,7 +118,7 @@ std::string remark_on(double worst, const std::string &left_out) {
     return refit.empty() ? "left out: " + left_out : refit + "; left out: " + left_out;
 }
 
-// Returns what provenance.doubt says.
+// Returns the text for provenance.doubt.
 std::string read_gains(const OpcodeGains &gains, PixelFrame frame, uint32_t layout, lensprof_profile &profile) {
     const uint32_t channels = opcode_channels(layout);
     if (!frame.width || !frame.height)

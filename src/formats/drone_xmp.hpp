@@ -1,4 +1,4 @@
-// The XMP packet of a drone's camera, with what is known of it beside the packet.
+// The XMP packet of a drone camera, with what is known about it from elsewhere.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct DronePacket {
     size_t size;
     uint32_t width, height;  // of its picture, px
     const char *source;      // for the provenance; or NULL
-    const char *maker;       // of the camera, where the packet does not say it; or NULL
+    const char *maker;       // of the camera, if the packet does not contain it; or NULL
 };
 
 // lensprof_drone_xmp_read of it.

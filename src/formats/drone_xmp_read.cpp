@@ -52,7 +52,7 @@ public:
 
     pugi::xml_node first() const { return xml_.root(); }
 
-    // The value, of a list its first item; empty where there is none.
+    // The value, of a list its first item; empty if it is missing.
     std::string text(const Space &space, std::string_view name) const {
         const std::vector<std::string> all = texts(space, name);
         return all.empty() ? std::string() : all.front();
@@ -71,7 +71,7 @@ private:
     std::vector<pugi::xml_node> descriptions_;
 };
 
-// By what the prefix stands for; an undeclared one by the name that everybody gives it.
+// By the namespace of the prefix; an undeclared prefix by its usual name.
 bool in_space(const pugi::xml_node &node, std::string_view name, const Space &space) {
     const std::string_view declared = namespace_of(node, name);
     if (!declared.empty()) return declared.find(space.uri) != std::string_view::npos;
@@ -112,7 +112,7 @@ std::vector<double> Packet::numbers(const Space &space, std::string_view name, s
             const size_t comma = std::min(rest.find(','), rest.size());
             const std::string part = one_line(rest.substr(0, comma));
             std::string_view words = part;
-            do {  // of an empty part one that is no number
+            do {  // an empty part gives a word that is not a number
                 const std::string_view word = next_word(words);
                 double value = 0.0;
                 if (!read_number(word, value) || std::fabs(value) > 1e100)
@@ -198,11 +198,11 @@ struct Written {
 
 class DroneXmpReader {
 public:
-    // `maker`: where the packet does not say it.
+    // `maker`: used if the packet does not contain it.
     DroneXmpReader(std::string_view text, PixelSize frame, std::string_view maker)
         : xml_(text, {"x:xmpmeta", "x:xapmeta", "rdf:RDF"}), packet_(xml_), frame_(frame), maker_(maker) {}
 
-    // Fills the profile; returns what its doubt says.
+    // Fills the profile; returns the text for its doubt.
     std::string read(const char *source, lensprof_profile &profile) const;
 
 private:
@@ -231,7 +231,7 @@ bool DroneXmpReader::is_of_sentera() const {
     return known.substr(0, kSentera.prefix.size()) == kSentera.prefix || packet_.has(kSentera);
 }
 
-// What a maker writes under its own name counts first; no terms where there are none.
+// Properties under the maker's own name come first; no terms if nothing is found.
 Written DroneXmpReader::read_radial() const {
     Written own{packet_.numbers(kDji, "VignettingData", kMostTerms),
                 packet_.numbers(kDji, "CalibratedOpticalCenterX", 1), "CalibratedOpticalCenter"};

@@ -110,7 +110,7 @@ double LcpReader::read(const RdfResource &from, const char *name, const std::str
     return value;
 }
 
-// What all entries share may be said by the first one alone.
+// Values that all entries share may be present only in the first one.
 std::string LcpReader::common(const RdfResource &entry, const char *name) {
     const std::string own = entry.text(name);
     if (!own.empty()) return own;

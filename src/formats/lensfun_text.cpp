@@ -21,7 +21,7 @@ const char *lensfun_origin(std::string_view text) {
 
 void check_lensfun_version(const XmlText &xml) {
     const pugi::xml_attribute version = xml.root().attribute("version");
-    if (!version) return;  // the oldest databases have none
+    if (!version) return;  // the oldest databases do not have it
     double value = 0.0;
     const size_t line = xml.line_of(xml.root());
     if (!read_whole(version.value(), 0, 1e9, value))

@@ -11,9 +11,9 @@
 namespace lensprof {
 
 constexpr size_t kMostCurveRows = 65536;
-constexpr double kDarkest = 1e-6;  // of full irradiance: what stands for 0 in formats that take its logarithm
+constexpr double kDarkest = 1e-6;  // of full irradiance: replaces 0 in formats that store its logarithm
 
-// First index whose value is below (strict: not above) that before it; the size where there is none.
+// First index whose value is below (strict: not above) the one before it; the size if there is no such index.
 size_t find_fall(const std::vector<double> &values, bool strict);
 
 // The response with these irradiances at the grey values i / (size - 1), to any scale: the last is that of full grey.
@@ -24,7 +24,7 @@ lensprof_response response_of_irradiances(const std::vector<double> &irradiances
 // Irradiances 0..1 of `count` evenly spaced grey values.
 std::vector<double> irradiances_of(const lensprof_response &response, size_t count);
 
-// Throws, with the status of lensprof_response_validate, for what is no response. what: "response 1".
+// Throws, with the status of lensprof_response_validate, if it is not a response. what: "response 1".
 void check_response(const lensprof_response &response, const std::string &what);
 
 }  // namespace lensprof

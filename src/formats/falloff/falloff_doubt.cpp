@@ -10,7 +10,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kSteps = 1000;    // radii between the centre and the corner farthest from it
-constexpr double kRise = 0.05;  // of M, which is 1 at the centre: what a lens hardly does, and a noisy fit does
+constexpr double kRise = 0.05;  // of M, which is 1 at the centre: rare for a lens, common for a noisy fit
 
 std::string with_numbers(const char *format, double a, double b = 0.0, double c = 0.0) {
     char text[64];

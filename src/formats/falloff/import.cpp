@@ -8,7 +8,7 @@
 namespace lensprof {
 namespace {
 
-constexpr double kRemarkFrom = 0.01;  // relative error of a refit that is said
+constexpr double kRemarkFrom = 0.01;  // relative error of a refit that is reported
 
 }  // namespace
 

@@ -13,7 +13,7 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t kMostSide = 65536;
-constexpr uint32_t kKeptSide = 1024;  // larger maps are averaged down first: more tells a profile nothing
+constexpr uint32_t kKeptSide = 1024;  // larger maps are averaged down first: more resolution does not help a profile
 
 [[noreturn]] void fail_at(uint32_t i, uint32_t j, const char *what, lensprof_status status) {
     throw FormatFailure{status, "value at column " + std::to_string(i) + ", row " + std::to_string(j) + " " + what};

@@ -30,7 +30,7 @@ double fit_values(const MapValues &form, const float *values, uint32_t width, ui
 std::vector<double> attenuations_of(const lensprof_profile &profile, uint32_t width, uint32_t height, uint32_t columns,
                                     uint32_t rows, uint32_t channels);
 
-// Throws SIZE for a side below 2 or over 65536, and what lensprof_profile_validate says.
+// Throws SIZE for a side below 2 or over 65536, and the errors of lensprof_profile_validate.
 void check_frame(uint32_t width, uint32_t height);
 void check_profile(const lensprof_profile &profile);
 

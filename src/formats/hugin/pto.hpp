@@ -55,7 +55,7 @@ struct PtoParameterInfo {
 
 extern const std::array<PtoParameterInfo, kPtoParameters> kPtoParameterInfo;
 
-// Index of a name, kPtoParameters when there is none.
+// Index of a name, kPtoParameters if it is unknown.
 size_t find_pto_parameter(std::string_view name);
 
 // One item of a line: letters, then a number, `=N`, "text" with its quotes, or nothing.
@@ -71,7 +71,7 @@ bool is_left_out_mark(std::string_view line);
 // Splits a line after its record letter.
 std::vector<PtoToken> split_pto_line(std::string_view line, size_t number);
 
-// The first text in quotes of that name, without them; empty when the line has none.
+// The first text in quotes of that name, without the quotes; empty if the line has no such text.
 std::string_view find_pto_text(const std::vector<PtoToken> &tokens, std::string_view name);
 
 // First token of that name (Hugin reads the first), or NULL.

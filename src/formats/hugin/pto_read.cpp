@@ -245,7 +245,7 @@ bool is_left_out_mark(std::string_view line) {
 
 namespace {
 
-// Numbers that are none of an image are ignored, as all of a comment is.
+// Numbers without an image are ignored, like the whole comment.
 void read_left_out(std::string_view line, lensprof_pto &pto) {
     std::string_view rest = line.substr(kLeftOutMark.size());
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {

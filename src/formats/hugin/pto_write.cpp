@@ -103,7 +103,7 @@ std::string_view line_of(const lensprof_pto &pto, const PtoImage &image) {
                                  : std::string_view(image.renamed);
 }
 
-// The text with line_text(i) in the place of every `i` line.
+// The text with every `i` line replaced by line_text(i).
 template <class LineText>
 std::string replace_lines(const lensprof_pto &pto, const LineText &line_text) {
     std::string text;

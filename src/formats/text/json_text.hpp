@@ -27,7 +27,7 @@ public:
     size_t size() const;
     // Whether an object has a member of this name, be it null.
     bool has(std::string_view name) const;
-    // The member of an object, the last one of this name; throws for what is no object.
+    // The member of an object, the last one of this name; throws if this is not an object.
     JsonValue operator[](std::string_view name) const;
     // The same; throws SYNTAX, with the path, where it is missing or null.
     JsonValue required(std::string_view name) const;

@@ -12,7 +12,7 @@ namespace lensprof {
 // "Lens" of "stCamera:Lens".
 std::string_view local_name(std::string_view qualified);
 
-// What a name's prefix stands for where it is used; empty where it is not declared within 64 levels.
+// The namespace of a name's prefix at its place; empty if it is not declared within 64 levels.
 std::string_view namespace_of(const pugi::xml_node &node, std::string_view qualified);
 
 // A resource with properties, which are looked up by their local names: an element with an rdf:Description within, or
@@ -24,7 +24,7 @@ public:
     explicit operator bool() const { return bool(node_); }
     pugi::xml_node node() const { return node_; }
 
-    // The value of a property without blanks at its ends; empty where there is none.
+    // The value of a property without blanks at its ends; empty if it is missing.
     std::string text(std::string_view name) const;
 
     // The resource that a property is.

@@ -73,7 +73,7 @@ bool read_number(std::string_view text, double &value);
 // The same as a whole number within [low, high].
 bool read_whole(std::string_view text, double low, double high, double &value);
 
-// Offset of the first byte that is not part of well-formed UTF-8; the size where there is none.
+// Offset of the first byte that is not part of well-formed UTF-8; the size if all of it is.
 size_t find_not_utf8(std::string_view text);
 
 // Copies to a text field of a value struct; what does not fit is cut between characters.
@@ -82,10 +82,10 @@ void put_text(char *field, size_t capacity, std::string_view text);
 // Shortest decimal form that reads back as the same number.
 std::string number_text(double value);
 
-// The same for a name that a caller gives, a file's say: control characters as '?', nothing where it is not UTF-8.
+// The same for a name given by the caller, e.g. of a file: control characters as '?', empty if it is not UTF-8.
 void put_name(char *field, size_t capacity, const char *name);
 
-// A caller's bytes, which may be NULL where there are none.
+// The caller's bytes, which may be NULL if the size is 0.
 inline std::string_view view_of(const void *data, size_t size) {
     return {size ? static_cast<const char *>(data) : "", size};
 }

@@ -37,7 +37,7 @@ private:
 std::string one_line(std::string_view text);
 
 // Children and attributes at the end of an element, with the shortest decimals that read back the same; they throw
-// std::bad_alloc, which pugixml tells by its results.
+// std::bad_alloc, which pugixml reports in its results.
 pugi::xml_node append_element(pugi::xml_node parent, const char *name);
 void append_text(pugi::xml_node parent, const char *name, const std::string &text);
 void append_attribute(pugi::xml_node node, const char *name, const std::string &value);

@@ -12,7 +12,7 @@ static int configure(sqlite3 *db, uint32_t mode, int busy_ms) {
     int rc = sqlite3_extended_result_codes(db, 1);
     if (rc == SQLITE_OK) rc = sqlite3_busy_timeout(db, busy_ms);
     if (rc == SQLITE_OK) rc = sqlite3_db_config(db, SQLITE_DBCONFIG_ENABLE_FKEY, 1, NULL);
-    /* The file may come from anybody: what it contains besides our tables is not to run. */
+    /* The file may come from anyone: nothing in it other than our tables must run. */
     if (rc == SQLITE_OK) rc = sqlite3_db_config(db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     if (rc == SQLITE_OK) rc = sqlite3_db_config(db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     if (rc == SQLITE_OK) rc = sqlite3_db_config(db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);

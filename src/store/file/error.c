@@ -51,7 +51,8 @@ lensprof_status lp_store_check_size(const lensprof_profile *profile, lensprof_er
     return wrong ? lp_store_fail_size("lensprof_profile", wrong, error) : LENSPROF_OK;
 }
 
-/* What the system said; SQLite forgets it when it cleans up after a failed COMMIT, the file does not. 0 = nothing. */
+/* The error of the system; SQLite forgets it when it cleans up after a failed COMMIT, the file does not. 0 = nothing.
+ */
 static int last_errno(sqlite3 *db) {
     int number = sqlite3_system_errno(db);
     sqlite3_file *log = NULL;

@@ -18,7 +18,7 @@ static int classify(sqlite3_file *handle, lp_store_file *file) {
     sqlite3_int64 size;
     int rc = handle->pMethods->xFileSize(handle, &size);
     if (rc) return rc;
-    if (size == 0) { /* SQLite says so of one byte too, for it writes an S itself on some file systems */
+    if (size == 0) { /* SQLite reports the same for one byte, for it writes an S itself on some file systems */
         rc = handle->pMethods->xRead(handle, header, 1, 0);
         *file = rc == SQLITE_OK && header[0] != 'S' ? LP_STORE_FILE_FOREIGN : LP_STORE_FILE_EMPTY;
         return rc == SQLITE_IOERR_SHORT_READ ? SQLITE_OK : rc;

@@ -1,4 +1,4 @@
-/* The write-ahead log: readers and one writer at once, and a commit is one synchronised write. */
+/* The write-ahead log: readers and one writer simultaneously, and a commit is one synchronised write. */
 #include "store/file/private.h"
 
 #define SETTLE_MS 50 /* others that read keep the mode from being changed; the next write tries again */

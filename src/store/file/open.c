@@ -48,7 +48,7 @@ static lensprof_status check_tables(lensprof_store *store, lensprof_error *error
     return status;
 }
 
-/* Read-only media: a log and its index cannot be made beside the file, and where there is none, none is needed. */
+/* Read-only media: a log and its index cannot be created next to the file, and are not needed if there is no log. */
 static bool is_immutable(const lensprof_store *store, const char *full, lp_store_file file) {
     bool exists;
     return store->mode == LENSPROF_STORE_READ && file == LP_STORE_FILE_LOGGED
@@ -64,7 +64,7 @@ static lensprof_status connect(lensprof_store *store, const char *full, lensprof
     lensprof_status status = LENSPROF_OK;
     if (store->mode == LENSPROF_STORE_CREATE) status = create_when_empty(store, error);
     if (status == LENSPROF_OK) status = check_tables(store, error);
-    if (status == LENSPROF_OK) /* KiB; it reads the file, whose failures check_tables has told */
+    if (status == LENSPROF_OK) /* KiB; it reads the file, whose failures check_tables has reported */
         (void)sqlite3_exec(store->db, "PRAGMA cache_size = -16000", NULL, NULL, NULL);
     return status;
 }

@@ -1,4 +1,4 @@
-/* What lies around the file: its folder, and a log beside it. Asked of SQLite's file layer, without a connection. */
+/* The surroundings of the file: its folder, and a log next to it. Uses SQLite's file layer, without a connection. */
 #include "store/file/private.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What the files of the store share. SQLite stays behind this header. */
+/* Shared by the files of the store. Only they see SQLite. */
 #ifndef LENSPROF_STORE_PRIVATE_H
 #define LENSPROF_STORE_PRIVATE_H
 
@@ -27,7 +27,7 @@ struct lensprof_store {
         const char *sql; /* a literal, known by its address */
         sqlite3_stmt *statement;
     } kept[LP_STORE_STATEMENTS];
-    char damage[64];          /* what lp_store_fail_profile said last */
+    char damage[64];          /* last text of lp_store_fail_profile */
     lensprof_profile scratch; /* 50 kB: a profile is read here first, so that on error outputs are untouched */
     char path[];              /* as the caller wrote it, for error texts */
 };
@@ -36,7 +36,7 @@ struct lensprof_store {
 extern const char lp_schema_0001[], lp_schema_0002[], lp_schema_0003[], lp_schema_0004[], lp_schema_0005[];
 
 /* place.c: what lies around the file with the full path `full`. */
-bool lp_store_has_log(const char *full); /* a log that is not empty lies beside the file */
+bool lp_store_has_log(const char *full); /* a log that is not empty exists next to the file */
 bool lp_store_is_folder_writable(const char *full, bool *exists);
 
 /* error.c: each sets `error` (may be NULL) to "path: what; next" and returns the status. */
@@ -47,7 +47,7 @@ lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lenspro
 /* For a wrong argument; the text names it and not the file. */
 lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error);
 lensprof_status lp_store_fail_capacity(uint32_t rows, uint32_t capacity, lensprof_error *error);
-/* STRUCT_SIZE for a struct; `wrong` is what lp_sized_wrong says of it. */
+/* STRUCT_SIZE for a struct; `wrong` is the result of lp_sized_wrong. */
 lensprof_status lp_store_fail_size(const char *name, const char *wrong, lensprof_error *error);
 /* Whether a profile's struct_size is one that this library knows; also of outputs. */
 lensprof_status lp_store_check_size(const lensprof_profile *profile, lensprof_error *error);
@@ -56,7 +56,7 @@ lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const c
 lensprof_status lp_store_fail_missing(const lensprof_store *store, int64_t id, lensprof_error *error);
 void lp_store_clear(lensprof_error *error);
 
-/* header.c: what the first 100 bytes say, read without lock, journal or trace. */
+/* header.c: the content of the first 100 bytes, read without lock, journal or trace. */
 typedef enum lp_store_file {
     LP_STORE_FILE_MISSING,
     LP_STORE_FILE_EMPTY,
@@ -73,7 +73,7 @@ void lp_store_clear_log(const char *full);          /* files of a log that could
 
 /* connection.c: a new connection, configured for the store's mode; result code. */
 int lp_store_connect(const lensprof_store *store, const char *full, bool immutable, sqlite3 **db);
-/* Connects again where another process has begun to write beside an immutable file. */
+/* Connects again if another process has begun to write a log next to an immutable file. */
 lensprof_status lp_store_refresh(lensprof_store *store, lensprof_error *error);
 
 /* open.c. */

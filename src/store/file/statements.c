@@ -29,7 +29,7 @@ lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3
 
 void lp_store_release(lensprof_store *store, sqlite3_stmt *statement) {
     if (is_kept(store, statement)) {
-        (void)sqlite3_reset(statement); /* what it says was said by the step before */
+        (void)sqlite3_reset(statement); /* the step before reported the same */
         (void)sqlite3_clear_bindings(statement);
     } else
         sqlite3_finalize(statement);

@@ -84,7 +84,7 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
     if (status != LENSPROF_OK) return status;
     int rc = begin(store, write, &found);
     if (rc == SQLITE_CANTOPEN && lp_store_has_log(sqlite3_db_filename(store->db, "main")))
-        rc = SQLITE_READONLY_RECOVERY; /* no place for the log's index beside it */
+        rc = SQLITE_READONLY_RECOVERY; /* no place for the log's index next to it */
     status = rc ? lp_store_fail_sql(store->path, store->db, rc, error) : check_layout(store, &found, error);
     if (status == LENSPROF_OK) store->layout = (int)found.user_version;
     if (status == LENSPROF_OK && write) status = bring_up_to_date(store, error);
@@ -113,7 +113,7 @@ void lp_store_rollback(lensprof_store *store) {
     }
     /* Some failures have rolled back already. If there is not even the memory for this, the next begin does it. */
     if (!sqlite3_get_autocommit(store->db)) (void)lp_store_execute(store, "ROLLBACK");
-    if (store->immutable) (void)sqlite3_db_release_memory(store->db); /* nobody says when the file changes */
+    if (store->immutable) (void)sqlite3_db_release_memory(store->db); /* nothing reports when the file changes */
 }
 
 lensprof_status lensprof_store_begin(lensprof_store *store, lensprof_error *error) {

@@ -101,7 +101,7 @@ static double sigma_of_falloff(const lensprof_lookup *lookup) {
 }
 
 /* The response's block and one for each curve of the falloff. Curves of the channels err together, but a covariance
- * that says so would have no inverse: they are taken apart. */
+ * that includes it would have no inverse: they are treated separately. */
 static void set_covariance(const work *w, lensprof_profile *profile) {
     const uint32_t modes = lp_covariance_modes(profile->response, profile->responses);
     const uint32_t n = lp_covariance_index(modes, profile->vignettings);
@@ -167,7 +167,7 @@ static lensprof_status compose(work *w, lensprof_error *error) {
     return LENSPROF_OK;
 }
 
-/* The camera's response where no falloff was found, which `error` tells and *lookup has the reason of. */
+/* The camera's response if no falloff was found, as `error` and the reason in *lookup state. */
 static lensprof_status answer_response(work *w, lensprof_error *error) {
     lensprof_error own;
     w->falloff.key = *w->key;

@@ -11,11 +11,11 @@
 #include "store/profiles/layouts.h"
 
 #define BUILT_IN_SCORE 0.6 /* of a lens that was found by its camera */
-#define SHORTEST_CAMERA 3  /* characters of a name that says something within another one */
+#define SHORTEST_CAMERA 3  /* characters of a name that is significant within another one */
 
 #define NEAR_ID 4 /* rows of other lenses between two rows that cost less to read than to jump over */
 
-/* Without curves, which only a prediction needs. A bracket tells the response of its camera, whatever the lens and the
+/* Without curves, which only a prediction needs. A bracket gives the response of its camera, whatever the lens and the
  * setting, and nothing of a falloff: it counts where a camera is asked for (?5) alone. */
 static const char *const rows_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(
     "SELECT id, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k,"
@@ -124,7 +124,7 @@ static bool take_row(const row *r, const lensprof_profile_key *key, const lenspr
                      lp_candidates *found) {
     compare_names(r, key, found);
     const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit);
-    const int camera = found->by_table ? 1 : found->last_camera; /* as the table says */
+    const int camera = found->by_table ? 1 : found->last_camera; /* from the table */
     if (unit < 0) return true;
     if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
     lp_candidate *one = add(found);
@@ -233,7 +233,7 @@ static void keep_better(best_name *best, const char *lens, uint32_t apart) {
     memcpy(best->name, name, sizeof name);
 }
 
-/* The squeezed name of the lens that has the same words, or the most in common; empty where there is none, or where
+/* The squeezed name of the lens that has the same words, or the most in common; empty if there is no such lens, or if
  * several are as good. */
 static lensprof_status find_by_words(lensprof_store *store, const lensprof_profile_key *key, char *name,
                                      lensprof_error *error) {
@@ -297,7 +297,7 @@ static lensprof_status find_only_lens(lensprof_store *store, const lensprof_prof
     return status;
 }
 
-/* The squeezed name of the lens that the table of cameras says is built in; else empty, and whether it says that the
+/* The squeezed name of the built-in lens according to the table of cameras, or empty; and whether according to it the
  * camera's can be changed. */
 static lensprof_status find_fixed_lens(lensprof_store *store, const lensprof_profile_key *key, char *name,
                                        bool *can_change, lensprof_error *error) {

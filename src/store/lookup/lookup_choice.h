@@ -25,10 +25,11 @@ void lp_round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lo
 /* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */
 lensprof_reason lp_settle(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup);
 
-/* By how much the standard error of a prediction is too small at a setting, settled, outside the rows; else 1. */
+/* Factor by which the standard error of a prediction is too small at a complete setting outside the rows; otherwise 1.
+ */
 double lp_widening(const lp_candidates *found, const lp_falloff_node *at);
 
-/* Whether focal length and aperture, settled, are both outside the rows': a corner of which they say nothing. Then
+/* Whether focal length and aperture, both known, are both outside the rows': a corner without information. Then
  * text[bytes] receives both, and the ranges. */
 bool lp_is_outside_both(const lp_candidates *found, const lp_falloff_node *at, char *text, size_t bytes);
 

@@ -48,7 +48,7 @@ typedef struct predictions {
     lp_falloff_prediction at[MOST_DISTANCES];
 } predictions;
 
-/* -1 without memory. Where none can be made, at[0] says how far the nearest node is. */
+/* -1 without memory. If none can be made, at[0] is the distance of the nearest node. */
 static int predict_at(const distances *where, const lp_falloff_nodes *nodes, lp_falloff_node at, predictions *made) {
     double shares = 0.0;
     made->count = 0;

@@ -209,7 +209,7 @@ static void mind_what_is_open(const lp_falloff_node *at, uint32_t distance_rule,
     if (at->distance_m == LENSPROF_UNKNOWN) lp_mind(lookup, distances[distance_rule], NULL);
 }
 
-/* As lp_predict_falloff; -1 also with an error that from->status tells. */
+/* As lp_predict_falloff; -1 also on an error, which is in from->status. */
 static int predict_at(source *from, lp_falloff_nodes *nodes, const lp_falloff_node *at, uint32_t distance_rule,
                       lp_falloff_prediction *p, double *distance_sigma) {
     nodes->read_variance = read_node, nodes->user = from;

@@ -1,7 +1,7 @@
-/* The response of a camera: the mean of what its profiles say, by their errors.
+/* The response of a camera: the mean of its profiles, weighted by their errors.
  *
- * Profile i states the standard error s_i of ln gamma, and has the weight 1/s_i^2. Where gamma was settled by exposures
- * the errors are independent of each other. Where it was settled by the typical response of the kind of camera, which
+ * Profile i states the standard error s_i of ln gamma, and has the weight 1/s_i^2. If gamma was determined by exposures
+ * the errors are independent of each other. If it was determined by the typical response of the kind of camera, which
  * shows in an error as large as that one's, all profiles share the camera's distance from it. With weights w that add
  * up to 1 the variance of the mean is then (sum of w s over the sharing)^2 + sum of w^2 s^2 over the others. */
 #include "store/lookup/lookup_response.h"
@@ -238,8 +238,8 @@ static lensprof_status take_several(const sums *all, double variance, lp_respons
     return LENSPROF_OK;
 }
 
-/* Of the chosen profiles; but those that know gamma less well than the typical response, which `answer` holds, rest on
- * a wider prior and are left out. */
+/* Fuses the chosen profiles. Profiles that know gamma less well than the typical response, which `answer` holds, depend
+ * on a wider prior and are left out. */
 static lensprof_status fuse(lensprof_store *store, const choice *chosen, lp_response_answer *answer,
                             lensprof_error *error) {
     const double typical = answer->sigma;

@@ -22,7 +22,7 @@ typedef struct lp_response_answer {
 void lp_typical_answer(const lensprof_profile_key *key, lp_response_answer *answer);
 
 /* The response of the camera by its profiles of rendered pictures. answer->rows is 0, and the rest as it was, where
- * there are none. `answer` holds the typical one. Within a transaction; uses store->scratch. */
+ * there are no such profiles. `answer` holds the typical one. Within a transaction; uses store->scratch. */
 lensprof_status lp_find_response(lensprof_store *store, const lensprof_profile_key *key,
                                  const lensprof_lookup_options *o, lp_response_answer *answer, lensprof_error *error);
 

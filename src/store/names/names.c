@@ -119,7 +119,7 @@ const char *lp_maker_in_front(const char *squeezed) {
     return found ? found->maker : NULL;
 }
 
-/* Behind the makers' names in front ("Panasonic Lumix"), or the whole; *maker is the first of them, or NULL. */
+/* The text after leading makers' names ("Panasonic Lumix"), or the whole; *maker is the first of them, or NULL. */
 static const char *without_maker(const char *squeezed, const char **maker) {
     const struct spelling *found;
     *maker = NULL;

@@ -26,7 +26,7 @@ int lp_is_same_maker(const char *a, const char *b);
 #define LP_CAMERA_NAMES 3
 uint32_t lp_camera_names(const char *squeezed, const char *names[LP_CAMERA_NAMES]);
 
-/* Behind the maker's name in front of a squeezed one, or the whole. */
+/* The part of a squeezed name after a leading maker, or the whole. */
 const char *lp_without_maker(const char *squeezed);
 
 /* The maker whose name this squeezed word is, or begins with, in one spelling for all; NULL = none. */
@@ -39,11 +39,11 @@ bool lp_makes_lenses_alone(const char *maker);
 /* False where the numbers of the names differ, in most cases: a quick look before lp_words_match. */
 bool lp_may_match(const lp_words *asked, const char *stored);
 
-/* 0.6: the same words in another order, but for what says nothing of the lens ("lens", "mm", "for Canon EF"); 0.5: some
- * that may be missing are in one of the names alone (glass and advertising: "ED", "M.Zuiko Digital" and "M.", "(IF)";
- * the maker's code, "A032"), *apart is how many. All numbers (focal lengths, f-numbers) agree, and all other words, as
- * generations (II, III), mounts, motors and stabilisers, tell lenses apart. Makers that are both named are the same;
- * one that is named in one of them is the camera's (empty = any), or makes lenses for others'. Else 0. */
+/* 0.6: the same words in another order, except for words that do not identify the lens ("lens", "mm", "for Canon EF");
+ * 0.5: some that may be missing are in one of the names alone (glass and advertising: "ED", "M.Zuiko Digital" and "M.",
+ * "(IF)"; the maker's code, "A032"), *apart is how many. All numbers (focal lengths, f-numbers) agree, and all other
+ * words, as generations (II, III), mounts, motors and stabilisers, tell lenses apart. Makers that are both named are
+ * the same; one that is named in one of them is the camera's (empty = any), or makes lenses for others'. Else 0. */
 double lp_words_match(const lp_words *asked, const char *stored, const char *camera_maker, uint32_t *apart);
 double lp_words_score(const char *a, const char *b, const char *camera_maker);
 

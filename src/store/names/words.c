@@ -65,7 +65,7 @@ static const char *take_letters(const char *text, char *word) {
     return text;
 }
 
-/* Sigma's lines, which have one letter behind a bar or in brackets. */
+/* Sigma's lines, which have one letter after a bar or in brackets. */
 static const char *line_of(const reading *r, const char *word) {
     if (!r->is_behind_bar && r->bracket != '[') return word;
     return !strcmp(word, "a") ? "art" : !strcmp(word, "c") ? "contemporary" : !strcmp(word, "s") ? "sports" : word;
@@ -95,8 +95,8 @@ static bool add_letters(reading *r, char *word) {
     return add(r, line, r->bracket == '(' ? LP_WORD_OPTIONAL : LP_WORD_IDENTITY);
 }
 
-/* Length of a code at the text, 0 for none: letters with two digits or more behind them and nothing else, "A032"; in
- * round brackets also with more letters. "F4" and "F16" are none, but "F045" is. */
+/* Length of a code at the text, 0 for none: letters followed by two or more digits and nothing else, "A032"; in
+ * round brackets also with more letters. "F4" and "F16" are not codes, but "F045" is. */
 static size_t code_at(const reading *r) {
     const char *text = r->text;
     size_t letters = 0, digits = 0;
@@ -125,7 +125,7 @@ static bool is_trailing_code(const reading *r, const char *end) {
            && r->text[-1] == ' ';
 }
 
-/* The number at the text, without zeros that say nothing: 24.0 is 24; and not the 1 of "1:2.8". */
+/* The number at the text, without redundant zeros: 24.0 is 24; and not the 1 of "1:2.8". */
 static bool take_number(reading *r) {
     char word[LP_WORD_BYTES] = "";
     size_t n = 0;
@@ -163,7 +163,7 @@ static void find_versions(lp_words *words) {
     }
 }
 
-/* Letters that are no code; false where the name is full. Sets *done at "for Canon EF". */
+/* Letters that are not a code; false if the name is full. Sets *done at "for Canon EF". */
 static bool take_word(reading *r, bool *done) {
     char word[LP_WORD_BYTES];
     const uint32_t before = r->words->count;
@@ -181,7 +181,7 @@ static bool take_word(reading *r, bool *done) {
     return true;
 }
 
-/* A sign, which may change what the words behind it are. */
+/* A sign, which may change the kind of the words after it. */
 static void take_sign(reading *r) {
     const char c = *r->text++;
     if (c == '(' || c == '[') r->bracket = c;

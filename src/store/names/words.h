@@ -11,7 +11,7 @@
 
 typedef enum lp_word_kind {
     LP_WORD_NUMBER,   /* focal length or f-number */
-    LP_WORD_IDENTITY, /* tells lenses apart: mount, motor, stabiliser, generation, line */
+    LP_WORD_IDENTITY, /* distinguishes lenses: mount, motor, stabiliser, generation, line */
     LP_WORD_VARIANT,  /* one of a list: that of "II/L/WR" which the lens is */
     LP_WORD_OPTIONAL, /* left out as one likes: glass, advertising */
     LP_WORD_DESIGN,   /* "Summilux", which the numbers tell as well */
@@ -31,8 +31,8 @@ typedef struct lp_words {
     const char *maker[LP_MOST_MAKERS]; /* those that are named, in lp_maker_of's spelling */
 } lp_words;
 
-/* Letters and numbers apart, without what says nothing ("lens", "mm", "& compatibles", "for Canon EF"). Words that
- * depend on the maker are identity until lp_weigh_words. False for a name of too many words. */
+/* Letters and numbers apart, without words that carry no information ("lens", "mm", "& compatibles", "for Canon EF").
+ * Words that depend on the maker are identity until lp_weigh_words. False for a name of too many words. */
 bool lp_split_words(const char *name, lp_words *words);
 
 /* The kinds of words that depend on whose lens it is. */

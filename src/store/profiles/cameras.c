@@ -285,7 +285,7 @@ lensprof_status lp_store_merge_cameras(lensprof_store *store, lensprof_store *ot
     return visit_all(other, add_camera, &t, error);
 }
 
-/* Who is told what is wrong. */
+/* Receives what is wrong. */
 typedef struct inspection {
     lp_camera_fault report;
     void *user;

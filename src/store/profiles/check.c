@@ -33,8 +33,8 @@ static lensprof_status report_failure(inspection *all, int rc, const char *what,
     return report(all, 0, reason);
 }
 
-/* Where SQLite could not read on (no memory, an I/O error) its check says so in a text, as of damage: the result code
- * in it, or SQLITE_OK. */
+/* Where SQLite could not read on (no memory, an I/O error) its check reports that in a text, like damage: the result
+ * code in it, or SQLITE_OK. */
 static int code_in(const char *text) {
     const char *at = strstr(text, "error code");
     const int code = at ? (int)strtol(at + strlen("error code") + 1, NULL, 10) : SQLITE_OK;
@@ -62,7 +62,7 @@ static lensprof_status check_file(inspection *all, lensprof_error *error) {
     return status;
 }
 
-/* Rows that hang on nothing, as PRAGMA foreign_key_check would find them, but by what the schema should say and not by
+/* Orphaned rows, as PRAGMA foreign_key_check would find them, but by what the schema should be and not by
  * what the tables of this file do; and rows that no profile reads. Each gives the profile's number. */
 static const struct orphans {
     const char *sql, *reason;

@@ -110,7 +110,7 @@ lensprof_status lp_store_put_curves(lensprof_store *store, int64_t id, const len
 typedef struct rows {
     const char *sql; /* ?1 is the profile, ?2 (if any) the curve */
     uint32_t curve, count;
-    const char *wrong_count; /* what to say then */
+    const char *wrong_count; /* its error text */
     void (*read)(lp_store_reader *reader, uint32_t index, void *target);
     void *target;
 } rows;

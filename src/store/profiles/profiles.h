@@ -18,12 +18,12 @@ lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *p
                                 lensprof_error *error);
 void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name);
 
-/* same.c: the id of the same valid profile, 0 where there is none; within a transaction that writes. */
+/* same.c: the id of the same valid profile, 0 if it is not stored; within a transaction that writes. */
 lensprof_status lp_store_find_same(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
                                    lensprof_error *error);
 
 /* cameras.c, within a transaction: the camera of a name, as lensprof_store_find_camera finds it; cameras of another
- * database that are not here by maker, model and variant; and what is wrong with a camera, told with its number. */
+ * database that are not here by maker, model and variant; and what is wrong with a camera, with its number. */
 lensprof_status lp_store_find_camera(lensprof_store *store, const char *maker, const char *model,
                                      lensprof_camera_model *camera, bool *found, lensprof_error *error);
 lensprof_status lp_store_merge_cameras(lensprof_store *store, lensprof_store *other, lensprof_error *error);

@@ -34,7 +34,7 @@ static bool have_same_curves(const lensprof_profile *a, const lensprof_profile *
         if (r->kind == LENSPROF_RESPONSE_EMOR && (r->modes != s->modes || !are_equal(r->emor, s->emor, r->modes)))
             return false;
         if (r->kind == LENSPROF_RESPONSE_TABLE && !are_equal(r->table, s->table, LENSPROF_RESPONSE_SAMPLES))
-            return false; /* of other kinds the numbers say it */
+            return false; /* for other kinds the parameters suffice */
     }
     for (uint32_t c = 0; c < a->vignettings; c++) {
         const lensprof_vignetting *v = &a->vignetting[c], *w = &b->vignetting[c];
