@@ -21,6 +21,10 @@ The profile database is one SQLite file of layout {layout}. [The profile databas
 this page lists tables and columns. Write with lensprof, not with other programs, unless you keep to the constraints of
 [the SQL](../../profiles/schema).
 
+```text
+{conventions}
+```
+
 """
 
 
@@ -69,7 +73,9 @@ def page(root):
         for table, columns in columns_of(database).items():
             for column in ["", *(row[1] for row in columns)]:
                 since.setdefault((table, column), layout)
-    text = HEAD.format(layout=layout)
+    first = sorted((root / "profiles/schema").glob("*.sql"))[0].read_text(encoding="utf-8")
+    conventions = "\n".join(line[2:].removeprefix(" ") for line in first.split("\n\n")[0].splitlines()[2:])
+    text = HEAD.format(layout=layout, conventions=conventions)
     for table, columns in columns_of(database).items():
         text += f"## `{table}`\n\nSince layout {since[table, '']}. {cell(comments.get((table, ''), ''))}".rstrip() + "\n\n"
         text += "| column | type | may be NULL | key | since layout | notes |\n|---|---|---|---|---|---|\n"
