@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge install abi abi-baseline abi-headers lint format clean
+.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge install abi abi-baseline abi-headers lint format docs docs-update clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -99,6 +99,24 @@ lint: test-deps build ## format, cppcheck, clang's warnings and clang-tidy over 
 
 format: ## format C and C++ as .clang-format says (package clang-format)
 	git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | grep -vE '$(TABLES)' | xargs clang-format -i
+
+docs: ## the manual with the API reference: build/docs/index.html (packages-docs.txt)
+	@cmake/install-packages.sh packages-docs.txt
+	mkdir -p build && rm -rf build/docs build/docs-api
+	doxygen docs/Doxyfile
+	mkdocs build --quiet --strict
+	mv build/docs-api build/docs/api
+	@echo 'open build/docs/index.html'
+
+# After a change of the program's help, its output or the schema; look at the difference before you commit it.
+docs-update: ## write generated pages and the outputs in the tutorials again
+	@test -f build/CMakeCache.txt || $(MAKE) build
+	cmake --build build -j $(JOBS) --target lensprof lensprof_program lensprof_core_archive
+	python3 -B docs/tools/commands.py . build/lensprof
+	python3 -B docs/tools/schema.py .
+	python3 -B docs/tools/draw_gamma.py docs/explanation/gamma.svg
+	python3 -B tests/docs/run_tutorials.py --build build --python "$$(sed -n 's/^LENSPROF_PYTHON_WITH_NUMPY:INTERNAL=//p' build/CMakeCache.txt)" \
+		--update docs/tutorials/*.md docs/howto/hugin-project.md
 
 clean: ## remove build/
 	rm -rf build
