@@ -11,19 +11,31 @@ import pathlib
 import re
 import subprocess
 import sys
+import textwrap
+
+COLUMNS = 112
 
 HEAD = """# Commands
 
 <!-- Made by docs/tools/commands.py from the program's help; `make docs-update` makes it again. -->
 
-This page is what `lensprof help` and `lensprof help COMMAND` print.
+This page is what `lensprof help` and `lensprof help COMMAND` print, with long lines wrapped.
 
 """
 
 
+def wrapped(line):
+    """A long line broken at COLUMNS, below the place where its explanation begins."""
+    if len(line) <= COLUMNS:
+        return [line]
+    indent = re.match(r"  \S.*?  +(?=\S)| *(?=\S)", line)[0]
+    return textwrap.wrap(line[len(indent):], COLUMNS, initial_indent=indent, subsequent_indent=" " * len(indent),
+                         break_long_words=False, break_on_hyphens=False)
+
+
 def help_of(program, *names):
     done = subprocess.run([program, "help", *names], capture_output=True, text=True, check=True)
-    lines = [line.rstrip() for line in done.stdout.splitlines()]
+    lines = [part for line in done.stdout.splitlines() for part in wrapped(line.rstrip())]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
 
 
