@@ -190,6 +190,9 @@ def check(path, build, python, update):
     page = Page(markdown, python)
     for skipped in page.skipped:
         print(f"{path.name}: skipped, {skipped}")
+    if "import numpy" in markdown and is_missing("python:numpy", python):
+        print(f"{path.name}: skipped, needs python3 with NumPy (package python3-numpy)")
+        return SKIPPED
     if not page.commands:
         return SKIPPED
     with tempfile.TemporaryDirectory() as place:
