@@ -16,7 +16,14 @@ import tempfile
 
 # What is checked, as globs below the project.
 PROSE = ("CHANGELOG.md", "CONTRIBUTING.md", "bindings/**/*.md", "docs/**/*.md", "examples/**/*.md", "src/**/*.md")
-SOURCES = ("src/cli/**/*.?pp",)
+SOURCES = (
+    "include/lensprof/*.h",
+    "bindings/python/lensprof/*.py",
+    "src/cli/**/*.?pp",
+    "src/falloff/*",
+    "src/formats/**/*",
+    "src/store/**/*",
+)
 # Files with sentences of other people, or tables that a program wrote.
 EXEMPT = ("tests/lint/", "docs/benchmark-results.md", "LICENSE", "NOTICE")
 
