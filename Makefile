@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge install abi abi-baseline abi-headers lint format docs docs-update clean
+.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -109,6 +109,9 @@ docs: ## the manual with the API reference: build/docs/index.html (packages-docs
 	@echo 'open build/docs/index.html'
 
 # After a change of the program's help, its output or the schema; look at the difference before you commit it.
+gallery: program ## draw the picture of the README again: docs/gallery.svg
+	python3 -B docs/tools/gallery.py build/lensprof docs/gallery.svg
+
 docs-update: ## write generated pages and the outputs in the tutorials again
 	@test -f build/CMakeCache.txt || $(MAKE) build
 	cmake --build build -j $(JOBS) --target lensprof lensprof_program lensprof_core_archive
