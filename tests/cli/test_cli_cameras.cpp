@@ -120,7 +120,7 @@ void test_folder(void **) {
     const std::string folder = pictures("folder"), found = work("found.pto");
     const Outcome outcome = run_words(Words{"build", folder, "--project-out", found} + quietly);
     assert_int_equal(outcome.code, done);
-    assert_true(contains(outcome.err, "of 2 cameras, sizes or processings"));
+    assert_true(contains(outcome.err, "from 2 cameras, sizes or processings"));
     const Json json = Json::parse(outcome.out);
     assert_both_found(json, 0.02);
     assert_true(json["left_out"].empty());

@@ -209,7 +209,7 @@ void test_refused(void **) {
     assert_refused(usage, against("1", two, {"--images", work("x")}), {"--images"});
     assert_refused(unreadable, against("1", text), {text});
     assert_refused(unreadable, against("1", work("none.pto")), {"none.pto"});
-    assert_refused(unreadable, against("1", in_folder("two/img000.png"), {text}), {text, "no picture"});
+    assert_refused(unreadable, against("1", in_folder("two/img000.png"), {text}), {text, "neither a picture"});
     assert_refused(unreadable, against("1", bad, {work("bad2.jpg")}), {bad});
     assert_refused(not_usable, against("1", in_folder("two/img000.png")), {"img000.png", "at least two"});
     const std::string broken = copy_of("two");

@@ -103,7 +103,7 @@ void test_a_folder_of_many_things(void **) {
     for (const Json &one : json["left_out"]) left_out[one["file"]] = one["reason"];
     assert_int_equal(left_out.size(), 7);
     assert_true(contains(left_out["x1.png"], "another group") && contains(left_out["y.png"], "no overlap"));
-    assert_true(contains(left_out["small.png"], "of a camera") && contains(left_out["damaged.png"], "damaged.png"));
+    assert_true(contains(left_out["small.png"], "of its camera") && contains(left_out["damaged.png"], "damaged.png"));
     assert_true(json["seconds"]["register"].get<double>() > 0.0);
 }
 

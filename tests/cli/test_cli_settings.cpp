@@ -162,7 +162,7 @@ void test_a_setting_that_is_not_shown(void **) {
     assert_true(json["settings"][0]["usable"] == true && json["settings"][0]["profile"] == 1);
     assert_true(json["settings"][1]["usable"] == false);
     assert_true(json["settings"][1]["profile"].is_null());
-    assert_true(contains(run.err, "f/8: not a profile to store"));
+    assert_true(contains(run.err, "f/8: not stored as a profile"));
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ static void what_is_wrong_is_said(void **) {
          [](FlatPictures &p) {
              p.defect = [](double x, double y, uint32_t) { return 1 + 0.04 * std::sin(0.3 * x) * std::sin(0.27 * y); };
          }},
-        {"turned", LENSPROF_REASON_FLAT_STEEP_ALONE, [](FlatPictures &p) { p.gradient[0] = 0.3; }},
+        {"rotated", LENSPROF_REASON_FLAT_STEEP_ALONE, [](FlatPictures &p) { p.gradient[0] = 0.3; }},
         {"noisy", LENSPROF_REASON_FLAT_CORNER_UNCERTAIN,
          [](FlatPictures &p) { p.noise = 0.1, p.width = 150, p.height = 100; }},
     };

@@ -143,8 +143,7 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
             if (is_same_file(output, other))
-                throw Failure(ExitCode::usage, output + ": is an input and would be overwritten; give the output "
-                                                        "another name");
+                throw Failure(ExitCode::usage, output + ": would be overwritten; give the output another name");
         check_is_no_photograph(output, output == o.preview || output == o.gain_chart);
         if (output == o.exposures_out) check_is_no_other_file(output);
         check_output_file(output);
