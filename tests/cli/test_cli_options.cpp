@@ -42,7 +42,7 @@ Words options_with_values(const std::string &help) {
 
 void test_all_commands_are_walked(void **) {
     const std::vector<Words> commands = all_commands();
-    assert_int_equal(commands.size(), 12 + 11);
+    assert_int_equal(commands.size(), 15 + 11);
     size_t options = 0;
     for (const Words &command : commands)
         options += options_with_values(must_exit(done, Words{"help"} + command)).size();

@@ -162,7 +162,7 @@ int run_report(const Options &o, Streams &streams) {
 }  // namespace
 
 void declare_report(Command &program) {
-    Command command = program.add("report", "pictures, profiles or a database -> a report to look at, as HTML",
+    Command command = program.add("report", "write a report on pictures, profiles or a database as a web page",
                                   "Writes a web page: verdict, pictures before and after, charts and numbers.");
     auto o = std::make_shared<Options>();
     declare(command, *o);

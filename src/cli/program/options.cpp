@@ -371,8 +371,6 @@ void Command::size(const char *names, uint32_t &width, uint32_t &height, std::pa
     add_option(names, "WIDTHxHEIGHT", read, about);
 }
 
-namespace {}  // namespace
-
 int64_t profile_id_of(const std::string &word) {
     const bool digits = word.find_first_not_of("0123456789") == std::string::npos;
     errno = 0;

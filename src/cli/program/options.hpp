@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/program/description.hpp"
 #include "cli/program/numbers.hpp"
 #include "cli/program/run.hpp"
 
@@ -112,6 +113,9 @@ public:
 
     // Help of the command and verbs in `words`, or of the program for an empty list; Failure (usage).
     std::string help(const std::vector<std::string> &words) const;
+
+    // All commands with their options.
+    CommandDescription describe() const;
 
 private:
     friend class Command;

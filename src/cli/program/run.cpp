@@ -7,6 +7,7 @@
 #include "cli/program/commands.hpp"
 #include "cli/program/error.hpp"
 #include "cli/program/message.hpp"
+#include "cli/program/shell.hpp"
 
 namespace lensprof {
 namespace {
@@ -52,6 +53,9 @@ void declare_all(Command root, const Program &program) {
     declare_profile(root);
     declare_report(root);
     declare_simulate(root);
+    declare_doctor(root);
+    declare_completion(root, program);
+    declare_man(root, program);
     root.add("version", "print the version").run(print_version);
     declare_help(root, program);
     declare_root(root, program);  // last: commands would inherit its footer

@@ -1,0 +1,187 @@
+// Completions are made of one table of words per command; files complete where a value is a file or folder.
+#include <algorithm>
+
+#include "cli/program/description.hpp"
+
+namespace lensprof {
+namespace {
+
+// All commands and verbs, the program first.
+void collect(const CommandDescription &command, std::vector<const CommandDescription *> &all) {
+    all.push_back(&command);
+    for (const CommandDescription &verb : command.commands) collect(verb, all);
+}
+
+std::vector<const CommandDescription *> all_of(const CommandDescription &program) {
+    std::vector<const CommandDescription *> all;
+    collect(program, all);
+    return all;
+}
+
+// "profile list" of "lensprof profile list"; empty for the program.
+std::string words_of(const CommandDescription &command) {
+    const size_t space = command.path.find(' ');
+    return space == std::string::npos ? std::string() : command.path.substr(space + 1);
+}
+
+bool is_path(const OptionDescription &option) { return option.type == "FILE" || option.type == "FOLDER"; }
+
+std::string joined(const std::vector<std::string> &words) {
+    std::string text;
+    for (const std::string &word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+std::string first_line(const std::string &text) { return text.substr(0, text.find('\n')); }
+
+// In single quotes of a shell.
+std::string quoted(const std::string &text) {
+    std::string escaped;
+    for (const char c : text) escaped += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return "'" + escaped + "'";
+}
+
+// A description in a list of zsh, where colons and brackets have a meaning.
+std::string zsh_text(const std::string &text) {
+    std::string escaped;
+    for (const char c : text) escaped += c == ':' || c == '[' || c == ']' ? std::string("\\") + c : std::string(1, c);
+    return escaped;
+}
+
+// case lines: the words that may follow a command, and those that may follow an option of it.
+std::string bash_cases(const CommandDescription &program) {
+    std::string lines;
+    for (const CommandDescription *command : all_of(program)) {
+        std::vector<std::string> words;
+        for (const CommandDescription &verb : command->commands) words.push_back(verb.name());
+        for (const OptionDescription &option : command->options)
+            if (!option.is_positional) words.insert(words.end(), option.names.begin(), option.names.end());
+        lines += "    " + quoted(words_of(*command)) + ") words=" + quoted(joined(words)) + " ;;\n";
+    }
+    return lines;
+}
+
+std::string bash_values(const CommandDescription &program) {
+    std::string lines;
+    for (const CommandDescription *command : all_of(program))
+        for (const OptionDescription &option : command->options)
+            for (const std::string &name : option.names) {
+                if (option.is_positional || option.type.empty()) continue;
+                lines += "    " + quoted(words_of(*command) + " " + name) + ") "
+                         + (is_path(option) ? std::string("files=1")
+                                            : "values=" + quoted(joined(option.choices)) + "; files=")
+                         + "; takes=1 ;;\n";
+            }
+    return lines;
+}
+
+}  // namespace
+
+std::string bash_completion(const CommandDescription &program) {
+    return "# bash completion of lensprof; made by `lensprof completion bash`.\n"
+           "_lensprof() {\n"
+           "  local command='' word i words='' values='' files=1 takes=''\n"
+           "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"
+           "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
+           "    word=${COMP_WORDS[i]}\n"
+           "    case \" $(_lensprof_verbs \"$command\") \" in *\" $word \"*) command=${command:+$command }$word ;; esac\n"
+           "  done\n"
+           "  case \"$command $previous\" in\n"
+           + bash_values(program)
+           + "  esac\n"
+             "  if [[ $takes ]]; then\n"
+             "    COMPREPLY=($(compgen ${files:+-f} -W \"$values\" -- \"$current\"))\n"
+             "    return\n"
+             "  fi\n"
+             "  words=$(_lensprof_words \"$command\")\n"
+             "  [[ $current == -* || $(_lensprof_verbs \"$command\") ]] && files=\n"
+             "  [[ $current != -* && $files ]] && words=''\n"
+             "  COMPREPLY=($(compgen ${files:+-f} -W \"$words\" -- \"$current\"))\n"
+             "}\n"
+             "_lensprof_words() {\n"
+             "  local words=''\n"
+             "  case \"$1\" in\n"
+           + bash_cases(program)
+           + "  esac\n"
+             "  printf '%s' \"$words\"\n"
+             "}\n"
+             "_lensprof_verbs() {\n"
+             "  local word\n"
+             "  for word in $(_lensprof_words \"$1\"); do [[ $word != -* ]] && printf '%s ' \"$word\"; done\n"
+             "}\n"
+             "complete -o filenames -F _lensprof lensprof\n";
+}
+
+std::string zsh_completion(const CommandDescription &program) {
+    std::string text =
+        "#compdef lensprof\n# zsh completion of lensprof; made by `lensprof completion zsh`.\n"
+        "_lensprof() {\n"
+        "  local command='' word\n"
+        "  local -a entries\n"
+        "  for word in ${words[2,CURRENT-1]}; do\n"
+        "    case \"$command $word\" in\n";
+    for (const CommandDescription *command : all_of(program))
+        for (const CommandDescription &verb : command->commands)
+            text += "      " + quoted(words_of(*command) + " " + verb.name()) + ") command=" + quoted(words_of(verb))
+                    + " ;;\n";
+    text += "    esac\n  done\n  case \"$command\" in\n";
+    for (const CommandDescription *command : all_of(program)) {
+        text += "    " + quoted(words_of(*command)) + ")\n";
+        if (!command->commands.empty()) {
+            text += "      entries=(";
+            for (const CommandDescription &verb : command->commands)
+                text += "\n        " + quoted(verb.name() + ":" + zsh_text(first_line(verb.brief)));
+            text += ")\n      _describe command entries ;;\n";
+            continue;
+        }
+        text += "      _arguments -s";
+        for (const OptionDescription &option : command->options) {
+            if (option.is_positional) continue;
+            for (const std::string &name : option.names) {
+                std::string entry = (option.is_repeated ? "*" : "") + name;
+                if (!option.type.empty() && name.size() > 2) entry += "=";
+                entry += "[" + zsh_text(first_line(option.about)) + "]";
+                if (!option.type.empty())
+                    entry += is_path(option)          ? ":file:_files"
+                             : option.choices.empty() ? ":value:"
+                                                      : ":value:(" + joined(option.choices) + ")";
+                text += " \\\n        " + quoted(entry);
+            }
+        }
+        text += " \\\n        '*:file:_files' ;;\n";
+    }
+    return text + "  esac\n}\n_lensprof \"$@\"\n";
+}
+
+std::string fish_completion(const CommandDescription &program) {
+    std::string text = "# fish completion of lensprof; made by `lensprof completion fish`.\n";
+    for (const CommandDescription *command : all_of(program)) {
+        const std::string path = words_of(*command);
+        std::string condition = "__fish_use_subcommand";
+        if (!path.empty()) {
+            std::string seen;
+            for (size_t at = 0; at < path.size();) {
+                const size_t end = std::min(path.find(' ', at), path.size());
+                seen += (seen.empty() ? "" : "; and ") + std::string("__fish_seen_subcommand_from ")
+                        + path.substr(at, end - at);
+                at = end + 1;
+            }
+            condition = seen;
+        }
+        for (const CommandDescription &verb : command->commands)
+            text += "complete -c lensprof -f -n " + quoted(condition) + " -a " + quoted(verb.name()) + " -d "
+                    + quoted(first_line(verb.brief)) + "\n";
+        for (const OptionDescription &option : command->options) {
+            if (option.is_positional) continue;
+            text += "complete -c lensprof -n " + quoted(condition);
+            for (const std::string &name : option.names)
+                text += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
+            if (!option.type.empty()) text += is_path(option) ? " -r -F" : " -x";
+            if (!option.choices.empty()) text += " -a " + quoted(joined(option.choices));
+            text += " -d " + quoted(first_line(option.about)) + "\n";
+        }
+    }
+    return text;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,31 @@
+// `lensprof doctor`.
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+void test_databases(void **) {
+    const Outcome none = run_words({"doctor"});
+    assert_true(contains(none.out, "profiles.db (your own): not there"));
+    must_exit(done, Words{"build", scene("pano.pto"), "--camera", "C", "--lens", "L"} + quick);
+    assert_true(contains(run_words({"doctor"}).out, "1 profile, 1 lens, 1 camera"));
+    const Json json = json_of({"doctor", "--json"});
+    assert_int_equal(json["databases"][0]["profiles"].get<int>(), 1);
+    assert_true(json["libraries"].contains("OpenCV"));
+}
+
+void test_damaged(void **) {
+    save_text(work("a.db"), "SQLite format 3 and nothing more");
+    const Outcome outcome = run_words({"doctor", "--db", work("a.db")});
+    assert_int_equal(outcome.code, store_failed);
+    assert_true(contains(outcome.out, work("a.db")) && contains(outcome.out, "cannot be read"));
+    assert_int_equal(load(work("a.db")).size(), 32);  // as it was
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {CLI_TEST(test_databases), CLI_TEST(test_damaged)};
+    return cmocka_run_group_tests_name("doctor", tests, make_scene, remove_folder);
+}

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Man pages and shell completions, checked by the programs that read them.
+
+usage: test_shell.py LENSPROF
+
+mandoc checks the pages; bash completes as if a user pressed tab; zsh and fish check the syntax. What is not installed
+is reported as skipped.
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+COMPLETE = """
+source "$1"
+cd "$2"
+complete_words() {
+  COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _lensprof; printf '%s\\n' "${COMPREPLY[*]}"
+}
+complete_words lensprof bu
+complete_words lensprof profile sh
+complete_words lensprof build --repo
+complete_words lensprof build --loss ''
+complete_words lensprof build --report pi
+complete_words lensprof build pi
+complete_words lensprof profile show --cha
+complete_words lensprof --ver
+"""
+WANTED = ["build", "show", "--report", "robust huber squared", "pictures", "pictures", "--chart --chart-out --channel", "--version"]
+
+
+def output_of(*words, cwd=None):
+    return subprocess.run(words, cwd=cwd, check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True).stdout
+
+
+def is_there(program):
+    if shutil.which(program):
+        return True
+    print(f"skipped: {program} is not installed (packages-test.txt)")
+    return False
+
+
+def check_pages(lensprof, folder):
+    """Every command and verb has a page without a warning, and the page has every option of the help."""
+    output_of(lensprof, "man", "-o", folder)
+    pages = sorted(folder.glob("*.1"))
+    commands = re.findall(r"^  (\w+) ", output_of(lensprof, "help").partition("Commands:")[2], re.MULTILINE)
+    assert len(commands) > 14 and len(pages) > len(commands) + 10, (commands, pages)
+    for command in commands:
+        text = (folder / f"lensprof-{command}.1").read_text().replace("\\-", "-")
+        for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", output_of(lensprof, "help", command), re.MULTILINE):
+            assert option in text, f"lensprof-{command}.1 lacks {option}"
+    if is_there("mandoc"):
+        warnings = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", *pages], stdout=subprocess.PIPE, text=True, check=False)
+        assert warnings.returncode == 0, warnings.stdout
+
+
+def check_bash(lensprof, folder):
+    script = folder / "lensprof.bash"
+    script.write_text(output_of(lensprof, "completion", "bash"))
+    (folder / "pictures").mkdir()
+    found = output_of("bash", "-c", COMPLETE, "bash", script, folder).splitlines()
+    assert found == WANTED, found
+
+
+def check_syntax(lensprof, folder):
+    for shell in ("bash", "zsh", "fish"):
+        script = folder / f"script.{shell}"
+        script.write_text(output_of(lensprof, "completion", shell))
+        if is_there(shell):
+            output_of(shell, "-n", script)
+
+
+def main():
+    lensprof = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory() as place:
+        folder = pathlib.Path(place)
+        check_pages(lensprof, folder)
+        check_bash(lensprof, folder)
+        check_syntax(lensprof, folder)
+    refused = subprocess.run([lensprof, "completion", "tcsh"], stderr=subprocess.PIPE, text=True, check=False)
+    assert refused.returncode == 2 and "bash, zsh, fish" in refused.stderr, refused
+    print("man pages and completions are right")
+
+
+if __name__ == "__main__":
+    main()
