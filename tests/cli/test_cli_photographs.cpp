@@ -230,8 +230,8 @@ void test_outputs_are_checked_first(void **) {
     refused({"--no-store", "--preview", work("alone/img001.png")}, "is an existing photograph");
     refused({"--no-store", "--preview", work("nowhere/p.jpg")}, "cannot write", failed);
     refused({"--no-store", "--project-out", work("nowhere/p.pto")}, "cannot write", failed);
-    refused({"--no-store", "--pto-out", work("alone")}, "is not a regular file");
-    refused({"--no-store", "--pto-out", "/dev/null"}, "is not a regular file");
+    refused({"--no-store", "--pto-out", work("alone")}, "not a regular file");
+    refused({"--no-store", "--pto-out", "/dev/null"}, "not a regular file");
     for (const char *picture :
          {"first/img000.png", "first/img001.png", "first/img002.png", "first/copy.png", "first/z.png"})
         write_picture(work(picture), read_picture(work(picture)));  // without metadata

@@ -141,6 +141,49 @@ void test_database(void **) {
     assert_int_equal(data_of(out)["profiles"].get<int>(), 2);
 }
 
+// A grey RGB picture of 320 x 240 by value(x, y), 0..1.
+template <class Value>
+void write_grey(const std::string &path, const Value &value) {
+    Picture picture;
+    picture.width = 320, picture.height = 240;
+    picture.row_bytes = size_t(3) * picture.width;
+    for (uint32_t y = 0; y < picture.height; y++)
+        for (uint32_t x = 0; x < picture.width; x++)
+            picture.pixels.insert(picture.pixels.end(), 3,
+                                  uint8_t(std::lround(255 * std::clamp(value(x, y), 0.0, 1.0))));
+    write_picture(path, picture);
+}
+
+// M = 1 - 0.3 r^2 on a card.
+void test_flat(void **) {
+    write_grey(work("card.png"), [](uint32_t x, uint32_t y) {
+        const double r2 = (std::pow(x - 159.5, 2) + std::pow(y - 119.5, 2)) / (200.0 * 200.0);
+        return 0.8 * (1 - 0.3 * r2);
+    });
+    const Words flat = {"flat", work("card.png"), "--linear", "--no-store"};
+    must_exit(done, flat + Words{"--report", work("r.html")});
+    const Json page = data_of(work("r.html"));
+    assert_float_equal(page["falloffs"][0]["m"].back().get<double>(), 0.7, 0.01);
+    assert_true(page["result"]["usable"] == true);
+    assert_refused(usage, flat + Words{"--report", work("card.png")}, {"card.png", ".html"});
+}
+
+void test_bracket(void **) {
+    Words files;
+    for (int i = 0; i < 3; i++) {
+        files.push_back(work(std::to_string(i) + ".png"));
+        write_grey(files.back(), [i](uint32_t x, uint32_t y) {
+            return std::pow(0.02 * std::exp2(2 * i) * (1 + (x * 7 + y * 3) % 320 / 20.0) / 4.0, 1 / 2.2);
+        });
+    }
+    must_exit(done, Words{"bracket"} + files + Words{"--ev", "0,2,4", "--no-store", "--report", work("r.html")});
+    const Json page = data_of(work("r.html"));
+    assert_int_equal(page["images"].size(), 3);
+    assert_float_equal(page["images"][2]["ev"].get<double>() - page["images"][0]["ev"].get<double>(), 4.0, 0.2);
+    assert_true(page["falloffs"].empty() && page["responses"].size() == 1);
+    assert_float_equal(page["responses"][0]["f"][32].get<double>(), std::pow(0.5, 1 / 2.2), 0.03);
+}
+
 void test_refusals(void **) {
     const std::string db = work("a.db"), out = work("r.html");
     store_one(db, 2.8);
@@ -165,7 +208,8 @@ void test_refusals(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_fit), CLI_TEST(test_residuals), CLI_TEST(test_names),
-                                CLI_TEST(test_database), CLI_TEST(test_refusals)};
+    const CMUnitTest tests[] = {CLI_TEST(test_fit),      CLI_TEST(test_residuals), CLI_TEST(test_names),
+                                CLI_TEST(test_database), CLI_TEST(test_flat),      CLI_TEST(test_bracket),
+                                CLI_TEST(test_refusals)};
     return cmocka_run_group_tests_name("report", tests, make_scene, remove_folder);
 }

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/profile_store.hpp"
@@ -25,7 +26,7 @@ struct Options {
     StoreOptions store;
     std::vector<std::string> files;
     std::vector<double> ev, times_s;
-    std::string reference;
+    std::string reference, report;
     double ev_sigma = 0.05, black = 0.0;
     bool free_balance = true, modes_only = false, json = false, progress = false;
     uint32_t seed = 1, pairs = 0, max_side = 1600;
@@ -55,6 +56,7 @@ void declare(Command &command, Options &o) {
     command.count("--max-side", o.max_side, 0, UINT32_MAX,
                   "sample pictures reduced to at least this many pixels on the longer side; default 1600; 0 = full "
                   "size");
+    command.file("--report", o.report, "write a report with charts as one .html file");
     declare_store(command, o.store);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -209,7 +211,7 @@ FitInput fit_input(const Options &o, const Project &project, const std::vector<P
 }
 
 BuildReport fit_bracket(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                        const std::vector<double> &ev, const CameraKind &kind, Streams &streams) {
+                        const std::vector<double> &ev, const CameraKind &kind, OutputFiles &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
@@ -238,6 +240,11 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     report.fit = best.result;
     report.verdict = bracket_verdict(best.result, members, project.names);
     report_members(members, images, best, report, streams);
+    if (!report.fit.usable) report.fit.evens = 0;  // a bracket must determine a response
+    if (!o.report.empty())
+        outputs.add(o.report, fit_page({report, input, best, images, project, metadata, command_text(streams.words),
+                                        streams.warnings, "Response from pictures of one scene", false},
+                                       progress));
     return report;
 }
 
@@ -253,12 +260,12 @@ int bracket_and_store(const Options &o, Streams &streams) {
     CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
     if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(project.files[0]))
         kind = {};  // the response is wanted; that of a camera raw file is known
-    BuildReport report = fit_bracket(o, project, metadata, ev, kind, streams);
-    if (!report.fit.usable) report.fit.evens = 0;  // a bracket must determine a response
+    OutputFiles outputs;
+    BuildReport report = fit_bracket(o, project, metadata, ev, kind, outputs, streams);
     return finish_fit(
         report, key, o.store,
         {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),
-         project.path, o.json},
+         project.path, o.json, false, &outputs},
         streams);
 }
 
@@ -267,6 +274,7 @@ int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     check_debevec_options(o);
     check_store_options(o.store);
+    check_report(o.report, o.files, o.store);
     if (!o.ev.empty() && !o.times_s.empty())
         throw Failure(ExitCode::usage, "--ev and --times exclude each other; give one of them");
     try {

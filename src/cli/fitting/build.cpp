@@ -174,8 +174,9 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         outputs.add(o.pto_out, result_text(done, project, o.pto_out));
     if (!o.preview.empty() && done.best.corrects()) write_preview(o.preview, project, done.best, progress);
     if (!o.report.empty())
-        outputs.add(o.report,
-                    fit_page({done, project, metadata, command_text(streams.words), streams.warnings}, progress));
+        outputs.add(o.report, fit_page({report, done.input, done.best, done.input.images, project, metadata,
+                                        command_text(streams.words), streams.warnings},
+                                       progress));
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path

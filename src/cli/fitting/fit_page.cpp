@@ -39,14 +39,14 @@ Json responses_json(const BuildReport &report) {
 }
 
 Json images_json(const FitPageInput &input) {
-    const BuildReport &report = input.done.report;
+    const BuildReport &report = input.report;
     Json json = Json::array();
     for (size_t i = 0; i < report.names.size(); i++) {
         const lensprof_exposure &exposure = report.exposures[i];
         const bool has_quality = i < report.quality.size();
         const lensprof_fit_image_quality quality = has_quality ? report.quality[i] : lensprof_fit_image_quality{};
-        const bool is_known = i < input.done.input.images.size() && input.done.input.images[i].known_ev_sigma > 0.0
-                              && quality.known_ev_residual != 0.0;
+        const bool is_known =
+            i < input.images.size() && input.images[i].known_ev_sigma > 0.0 && quality.known_ev_residual != 0.0;
         json.push_back(
             {{"name", report.names[i]},
              {"ev", number_or_null(exposure.ev)},
@@ -59,7 +59,7 @@ Json images_json(const FitPageInput &input) {
 }
 
 Json verdict_json(const FitPageInput &input) {
-    const BuildReport &report = input.done.report;
+    const BuildReport &report = input.report;
     Json details = Json::array();
     if (!report.verdict.text.empty()) details.push_back(report.verdict.text);
     for (const std::string &warning : input.warnings) details.push_back(warning);
@@ -74,7 +74,7 @@ Json verdict_json(const FitPageInput &input) {
 }
 
 Json facts_json(const FitPageInput &input) {
-    const BuildReport &report = input.done.report;
+    const BuildReport &report = input.report;
     const lensprof_fit_result &fit = report.fit;
     const auto joined = std::count_if(report.exposures.begin(), report.exposures.end(),
                                       [](const lensprof_exposure &e) { return !std::isnan(e.ev); });
@@ -110,7 +110,7 @@ constexpr size_t most_pictures = 2000;
 constexpr int quality = 78;
 
 void add_views(const FitPageInput &input, Progress &progress, Json &page) {
-    const Fitted &fitted = input.done.best;
+    const Fitted &fitted = input.best;
     std::vector<uint32_t> images = images_with_exposure(fitted);
     const size_t all = images.size();
     if (!fitted.corrects() || images.empty() || !is_regular_file(input.project.files[images[0]])) return;
@@ -143,29 +143,30 @@ void add_views(const FitPageInput &input, Progress &progress, Json &page) {
 }  // namespace
 
 std::string fit_page(const FitPageInput &input, Progress &progress) {
-    const BuildReport &report = input.done.report;
+    const BuildReport &report = input.report;
     const std::string title = std::filesystem::path(input.project.path).filename().string();
     Json page;
     page["kind"] = "fit";
     page["title"] = title.empty() ? input.project.path : title;
-    page["subtitle"] = "Calibration from overlapping pictures";
+    page["subtitle"] = input.subtitle;
     page["program"] = std::string("lensprof ") + lensprof_version();
     page["command"] = input.command;
     page["verdict"] = verdict_json(input);
     page["facts"] = facts_json(input);
     page["falloffs"] = falloffs_json(report);
-    page["falloff_points"] = report.has_falloff ? falloff_points(input.done, input.project) : Json::array();
+    page["falloff_points"] =
+        report.has_falloff ? falloff_points(input.input, input.best, input.project) : Json::array();
     page["responses"] = responses_json(report);
     page["typical"] = typical_band(report.camera_kind.kind);
     page["images"] = images_json(input);
-    page["residuals"] = residual_figures(input.done, input.project);
+    page["residuals"] = residual_figures(input.input, input.best, input.project);
     page["left_out"] = Json::array();
     for (const auto &[name, reason] : report.left_out) page["left_out"].push_back({{"name", name}, {"reason", reason}});
     for (size_t i = 0; i < report.names.size(); i++)
         if (std::isnan(report.exposures[i].ev))
             page["left_out"].push_back(
                 {{"name", report.names[i]}, {"reason", "its pairs do not agree with the other images"}});
-    add_views(input, progress, page);
+    if (input.shows_pictures) add_views(input, progress, page);
     page["result"] = build_json(report);
     return page_of(page["title"].get<std::string>() + " – lensprof", page);
 }

@@ -9,11 +9,16 @@
 namespace lensprof {
 
 struct FitPageInput {
-    const ProjectFit &done;
+    const BuildReport &report;
+    const FitInput &input;  // its pairs are between the images of `best`
+    const Fitted &best;
+    const std::vector<lensprof_fit_image> &images;  // of the report: with known exposures
     const Project &project;
-    const std::vector<PictureMetadata> &metadata;  // of each image
+    const std::vector<PictureMetadata> &metadata;  // of each image of the project
     std::string command;                           // that made the report
     std::vector<std::string> warnings;             // about the fit
+    const char *subtitle = "Calibration from overlapping pictures";
+    bool shows_pictures = true;
 };
 
 // The bytes of the page; pictures before and after are in it where the result corrects them. Deterministic.

@@ -48,14 +48,13 @@ End end_of(const Fitted &fitted, const Project &project, const lensprof_pair &pa
 bool is_exposed(const End &end) { return end.value > darkest && end.value < brightest && end.light > 0.0; }
 
 // The pairs between images that joined, within the grey range.
-std::vector<Ends> ends_of(const ProjectFit &done, const Project &project) {
+std::vector<Ends> ends_of(const FitInput &input, const Fitted &best, const Project &project) {
     std::vector<Ends> all;
     const std::vector<lensprof_pair> pairs =
-        done.input.observations.empty() ? done.input.pairs : pairs_of_tracks(done.input.observations);
+        input.observations.empty() ? input.pairs : pairs_of_tracks(input.observations);
     for (const lensprof_pair &pair : pairs) {
-        if (std::isnan(done.best.exposures[pair.image[0]].ev) || std::isnan(done.best.exposures[pair.image[1]].ev))
-            continue;
-        const Ends ends{{end_of(done.best, project, pair, 0), end_of(done.best, project, pair, 1)}};
+        if (std::isnan(best.exposures[pair.image[0]].ev) || std::isnan(best.exposures[pair.image[1]].ev)) continue;
+        const Ends ends{{end_of(best, project, pair, 0), end_of(best, project, pair, 1)}};
         if (is_exposed(ends.end[0]) && is_exposed(ends.end[1])) all.push_back(ends);
     }
     return all;
@@ -116,15 +115,15 @@ double corrected(const Fitted &fitted, const lensprof_exposure &mean, const End 
 
 }  // namespace
 
-Json falloff_points(const ProjectFit &done, const Project &project) {
+Json falloff_points(const FitInput &input, const Fitted &best, const Project &project) {
     constexpr double least_difference = 0.1;  // of radii: else a pair shows nothing of the falloff
     std::vector<std::vector<double>> bins(radius_bins);
-    for (const Ends &ends : ends_of(done, project)) {
+    for (const Ends &ends : ends_of(input, best, project)) {
         const bool second_is_far = ends.end[1].r > ends.end[0].r;
         const End &far = ends.end[second_is_far], &near = ends.end[!second_is_far];
-        const bool is_own = done.best.falloff_of(far.image) == done.best.falloff_of(done.best.reference);
+        const bool is_own = best.falloff_of(far.image) == best.falloff_of(best.reference);
         if (!is_own || far.r - near.r < least_difference) continue;
-        const double exposure = lensprof_exposure_factor(&done.best.exposures[far.image], 1);
+        const double exposure = lensprof_exposure_factor(&best.exposures[far.image], 1);
         bins[bin_of(far.r, radius_bins)].push_back(far.light / near.light * far.attenuation / exposure);
     }
     Json json = Json::array();
@@ -141,21 +140,21 @@ Json falloff_points(const ProjectFit &done, const Project &project) {
     return json;
 }
 
-Json residual_figures(const ProjectFit &done, const Project &project) {
-    const std::vector<Ends> all = ends_of(done, project);
+Json residual_figures(const FitInput &input, const Fitted &best, const Project &project) {
+    const std::vector<Ends> all = ends_of(input, best, project);
     if (all.empty()) return {};
-    const lensprof_exposure mean = mean_exposure(done.best.exposures);
-    const lensprof_camera &camera = project.images[done.best.reference].camera;
+    const lensprof_exposure mean = mean_exposure(best.exposures);
+    const lensprof_camera &camera = project.images[best.reference].camera;
     const double aspect = double(camera.height) / camera.width;
     const int rows = std::clamp(static_cast<int>(std::lround(frame_columns * aspect)), 2, 4 * frame_columns);
     std::vector<std::vector<double>> by_radius(radius_bins), by_grey(grey_bins), by_place(size_t(rows) * frame_columns);
     JointHistogram before, after;
     for (const Ends &ends : all) {
         before.add(ends.end[0].value, ends.end[1].value);
-        after.add(corrected(done.best, mean, ends.end[0]), corrected(done.best, mean, ends.end[1]));
+        after.add(corrected(best, mean, ends.end[0]), corrected(best, mean, ends.end[1]));
         for (int side = 0; side < 2; side++) {
             const End &end = ends.end[side];
-            const double residual = residual_of(done.best, end, ends.end[1 - side]);
+            const double residual = residual_of(best, end, ends.end[1 - side]);
             by_radius[bin_of(end.r, radius_bins)].push_back(residual);
             by_grey[bin_of(end.value, grey_bins)].push_back(residual);
             by_place[bin_of(end.down, rows) * frame_columns + bin_of(end.across, frame_columns)].push_back(residual);

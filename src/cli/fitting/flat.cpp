@@ -76,6 +76,7 @@ void declare(Command &command, FlatCommand &o) {
     command.number("--white", o.white, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
     command.count("--max-side", o.max_side, 0, UINT32_MAX,
                   "read pictures reduced to at least this many pixels on the longer side; default 1600; 0 = full size");
+    command.file("--report", o.report, "write a report with charts as one .html file");
     declare_store(command, o.store);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -170,11 +171,16 @@ FlatReport measure_or_say_why_not(const FlatCommand &o, FlatInput &input, Stream
 int run(const FlatCommand &o, Streams &streams) {
     check_flat_options(o);
     FlatInput input = prepare_flat(o, streams);
+    check_report(o.report, o.files, o.store);
     check_store(o.store);
     FlatReport report = measure_or_say_why_not(o, input, streams);
     const bool good = report.fit.usable || o.store.force;
     stop_if_interrupted();
+    OutputFiles outputs;
+    if (!o.report.empty())
+        outputs.add(o.report, flat_page(report, o.files.front(), command_text(streams.words), streams.warnings));
     if (good && !o.store.no_store) report.profile_id = store(o, input, report);
+    outputs.commit();
     if (o.json)
         print_json(flat_json(report), streams.out);
     else

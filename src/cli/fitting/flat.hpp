@@ -26,6 +26,7 @@ struct FlatCommand {
          progress = false;
     int64_t profile = 0;
     std::optional<double> gamma;
+    std::string report;  // .html file; empty: none
     double ev_sigma = 0.02, black = 2.0 / 255.0, white = 250.0 / 255.0;
     uint32_t max_side = 1600;
 };
@@ -68,5 +69,9 @@ struct FlatReport {
 Json flat_json(const FlatReport &report);
 
 void print_flat(const FlatReport &report, std::ostream &out);
+
+// The bytes of the report as a web page.
+std::string flat_page(const FlatReport &report, const std::string &title, const std::string &command,
+                      const std::vector<std::string> &warnings);
 
 }  // namespace lensprof

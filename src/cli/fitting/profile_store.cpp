@@ -4,6 +4,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "cli/page/page.hpp"
 #include "cli/pictures/sensor.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
@@ -156,6 +157,17 @@ int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Or
         if (is_new) remove_empty_store(store_path(o.db));
         throw;
     }
+}
+
+void check_report(const std::string &report, const std::vector<std::string> &inputs, const StoreOptions &o) {
+    if (report.empty()) return;
+    check_page_name(report);
+    std::vector<std::string> taken = inputs;
+    if (!o.no_store) taken.push_back(store_path(o.db));
+    for (const std::string &other : taken)
+        if (is_same_file(report, other))
+            throw Failure(ExitCode::usage, report + ": would be overwritten; give the report another name");
+    check_output_file(report);
 }
 
 }  // namespace lensprof

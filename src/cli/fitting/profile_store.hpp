@@ -66,4 +66,8 @@ struct Origin {
 // storing fails. Returns the profile id.
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin);
 
+// Failure (usage) for the file of --report if it is not an .html file, would overwrite an input or the database, or
+// cannot be written; nothing for an empty name.
+void check_report(const std::string &report, const std::vector<std::string> &inputs, const StoreOptions &o);
+
 }  // namespace lensprof

@@ -88,7 +88,7 @@ function drawChart(chart) {
   }
   if (named) {
     chart.x.names.forEach((name, i) => {
-      const short = name.length > 18 ? '…' + name.slice(-17) : name;
+      const base = name.split('/').pop(), short = base.length > 18 ? '…' + base.slice(-17) : base;
       add('text', { class: 'tick', transform: `translate(${x(i) + 4} ${height - edge.bottom + 14}) rotate(-55)`,
         'text-anchor': 'end', 'font-size': 11 }, short);
     });
