@@ -23,9 +23,26 @@ void test_damaged(void **) {
     assert_int_equal(load(work("a.db")).size(), 32);  // as it was
 }
 
+// What it is for: an installation where something is wrong.
+void test_no_home(void **) {
+    const std::string data = getenv("XDG_DATA_HOME"), home = getenv("HOME") ? getenv("HOME") : "";
+    unsetenv("XDG_DATA_HOME");
+    unsetenv("HOME");
+    const Outcome outcome = run_words({"doctor"});
+    setenv("XDG_DATA_HOME", data.c_str(), 1);
+    if (!home.empty()) setenv("HOME", home.c_str(), 1);
+    assert_int_equal(outcome.code, store_failed);
+    assert_true(contains(outcome.out, "lensprof ") && contains(outcome.out, "OpenCV"));
+    for (const std::string &odd : {work("none.db"), work("")}) {
+        const Outcome refused = run_words({"doctor", "--db", odd});
+        assert_int_equal(refused.code, store_failed);
+        assert_true(contains(refused.out, odd) && contains(refused.out, "cannot be read"));
+    }
+}
+
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_databases), CLI_TEST(test_damaged)};
+    const CMUnitTest tests[] = {CLI_TEST(test_databases), CLI_TEST(test_damaged), CLI_TEST(test_no_home)};
     return cmocka_run_group_tests_name("doctor", tests, make_scene, remove_folder);
 }

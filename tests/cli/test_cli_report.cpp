@@ -102,6 +102,35 @@ void test_names(void **) {
     assert_true(contains(page["command"], "'\\''x"));  // quoted for a shell
 }
 
+// Marks of the template in a title are text; the page is UTF-8 whatever the name is.
+void test_titles(void **) {
+    for (const char *name : {"@DATA@", "@SCRIPT@", "a\xff"}) {
+        const std::string folder = copy_of("scene", name);
+        fs::copy_file(folder + "/pano.pto", folder + "/" + name + ".pto");
+        must_exit(done, Words{"build", folder + "/" + name + ".pto", "--no-store", "--report", work("r.html")} + quick);
+        const Json page = data_of(work("r.html"));
+        assert_string_equal(page["kind"].get<std::string>().c_str(), "fit");
+        const std::string text = text_of(work("r.html"));
+        assert_true(text.find("function fitPage") == text.rfind("function fitPage"));
+        assert_false(contains(text, "\xff"));
+    }
+}
+
+// A report is of what is stored, and has the warnings.
+void test_stored(void **) {
+    const Words build = {"build", scene("pano.pto"), "--camera", "C", "--lens", "L", "--db", work("a.db")};
+    must_exit(done, build + Words{"--report", work("r.html")} + quick);
+    assert_int_equal(data_of(work("r.html"))["result"]["profile"].get<int>(), 1);
+    // An older file is not taken for a report that was written.
+    fs::create_directories(work("one"));
+    fs::copy_file(scene("img000.png"), work("one/img000.png"));
+    const Outcome outcome = run_words({"report", work("one"), "-o", work("r.html")});
+    assert_int_equal(outcome.code, not_usable);
+    assert_false(contains(outcome.out, "wrote"));
+    save_text(work("mine.html"), "<p>mine</p>");
+    assert_refused(usage, build + Words{"--report", work("mine.html")}, {"mine.html", "not a report"});
+}
+
 void store_one(const std::string &db, double aperture) {
     const std::string file = work("k.csv");
     auto profile = std::make_unique<lensprof_profile>();
@@ -197,10 +226,10 @@ void test_refusals(void **) {
     assert_refused(not_found, {"report", "--db", db, "--profile", "9", "-o", out}, {"9"});
     assert_refused(unreadable, {"report", work("none.pto"), "-o", out}, {"none.pto"});
     assert_refused(unreadable, {"report", work("none.db"), "-o", out}, {"none.db"});
-    save_text(work("empty.html"), "mine");
+    save_text(work("empty.html"), "");
     save(work("cut.db"), Bytes(before.begin(), before.begin() + 3000));
-    assert_refused(unreadable, {"report", work("cut.db"), "-o", work("empty.html")}, {"cut.db"});
-    assert_string_equal(text_of(work("empty.html")).c_str(), "mine");
+    assert_refused(store_failed, {"report", work("cut.db"), "-o", work("empty.html")}, {"cut.db"});
+    assert_true(text_of(work("empty.html")).empty());
     assert_true(text_of(db) == before);
     assert_false(fs::exists(out));
 }
@@ -208,8 +237,8 @@ void test_refusals(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_fit),      CLI_TEST(test_residuals), CLI_TEST(test_names),
-                                CLI_TEST(test_database), CLI_TEST(test_flat),      CLI_TEST(test_bracket),
-                                CLI_TEST(test_refusals)};
+    const CMUnitTest tests[] = {CLI_TEST(test_fit),    CLI_TEST(test_residuals), CLI_TEST(test_names),
+                                CLI_TEST(test_titles), CLI_TEST(test_stored),    CLI_TEST(test_database),
+                                CLI_TEST(test_flat),   CLI_TEST(test_bracket),   CLI_TEST(test_refusals)};
     return cmocka_run_group_tests_name("report", tests, make_scene, remove_folder);
 }

@@ -28,8 +28,12 @@ complete_words lensprof build --report pi
 complete_words lensprof build pi
 complete_words lensprof profile show --cha
 complete_words lensprof --ver
+complete_words lensprof completion ''
+complete_words lensprof man bui
+complete_words lensprof apply my
 """
-WANTED = ["build", "show", "--report", "robust huber squared", "pictures", "pictures", "--chart --chart-out --channel", "--version"]
+WANTED = ["build", "show", "--report", "robust huber squared", "pictures", "pictures", "--chart --chart-out --channel", "--version",
+          "bash zsh fish", "build", "my photo.jpg"]
 
 
 def output_of(*words, cwd=None):
@@ -62,6 +66,7 @@ def check_bash(lensprof, folder):
     script = folder / "lensprof.bash"
     script.write_text(output_of(lensprof, "completion", "bash"))
     (folder / "pictures").mkdir()
+    (folder / "my photo.jpg").touch()
     found = output_of("bash", "-c", COMPLETE, "bash", script, folder).splitlines()
     assert found == WANTED, found
 

@@ -94,8 +94,7 @@ void FolderLock::take() {
     if (file_ >= 0) return;
     file_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
-        return;  // not all file systems have
-                 // locks
+        return;  // some file systems have no locks
     close(file_);
     throw Failure(ExitCode::failed, folder_ + ": another calibrate is using this folder; wait until it ends, or give "
                                               "another folder with -o");

@@ -211,7 +211,7 @@ FitInput fit_input(const Options &o, const Project &project, const std::vector<P
 }
 
 BuildReport fit_bracket(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                        const std::vector<double> &ev, const CameraKind &kind, OutputFiles &outputs, Streams &streams) {
+                        const std::vector<double> &ev, const CameraKind &kind, Json &page, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
@@ -242,9 +242,9 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     report_members(members, images, best, report, streams);
     if (!report.fit.usable) report.fit.evens = 0;  // a bracket must determine a response
     if (!o.report.empty())
-        outputs.add(o.report, fit_page({report, input, best, images, project, metadata, command_text(streams.words),
-                                        streams.warnings, "Response from pictures of one scene", false},
-                                       progress));
+        page = fit_page_data({report, input, best, images, project, metadata, command_text(streams.words),
+                              "Response from pictures of one scene", false},
+                             progress);
     return report;
 }
 
@@ -261,11 +261,15 @@ int bracket_and_store(const Options &o, Streams &streams) {
     if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(project.files[0]))
         kind = {};  // the response is wanted; that of a camera raw file is known
     OutputFiles outputs;
-    BuildReport report = fit_bracket(o, project, metadata, ev, kind, outputs, streams);
+    Json page;
+    BuildReport report = fit_bracket(o, project, metadata, ev, kind, page, streams);
+    const auto page_text = [&](const BuildReport &stored, const std::vector<std::string> &warnings) {
+        return fit_page(std::move(page), stored, warnings);
+    };
     return finish_fit(
         report, key, o.store,
         {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),
-         project.path, o.json, false, &outputs},
+         project.path, o.json, false, o.report, page_text, &outputs},
         streams);
 }
 

@@ -159,7 +159,8 @@ CameraKind usual_kind(const lensprof_profile_key &key) {
 }
 
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                  const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Streams &streams) {
+                  const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Json &page,
+                  Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ProjectFit done(progress);
     done.report.camera_kind = kind;
@@ -174,9 +175,9 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         outputs.add(o.pto_out, result_text(done, project, o.pto_out));
     if (!o.preview.empty() && done.best.corrects()) write_preview(o.preview, project, done.best, progress);
     if (!o.report.empty())
-        outputs.add(o.report, fit_page({report, done.input, done.best, done.input.images, project, metadata,
-                                        command_text(streams.words), streams.warnings},
-                                       progress));
+        page = fit_page_data(
+            {report, done.input, done.best, done.input.images, project, metadata, command_text(streams.words)},
+            progress);
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path
@@ -290,9 +291,14 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     EarlierProfile prior;
     if (takes_stored_prior(o.fit))
         prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, project.path);
-    BuildReport report = build(o, project, metadata, prior, kind, outputs, streams);
-    int code = finish_fit(report, key, o.store,
-                          {method_name(o.fit.method), project.path, o.json, true, &outputs, &prior}, streams);
+    Json page;
+    BuildReport report = build(o, project, metadata, prior, kind, outputs, page, streams);
+    const auto page_text = [&](const BuildReport &stored, const std::vector<std::string> &warnings) {
+        return fit_page(std::move(page), stored, warnings);
+    };
+    int code = finish_fit(
+        report, key, o.store,
+        {method_name(o.fit.method), project.path, o.json, true, o.report, page_text, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     for (const std::string &file : {o.exposures_out, o.pto_out})
         if (!report.fit.usable && !report.fit.evens && !file.empty() && !o.store.force)

@@ -58,11 +58,14 @@ Json images_json(const FitPageInput &input) {
     return json;
 }
 
-Json verdict_json(const FitPageInput &input) {
-    const BuildReport &report = input.report;
+Json verdict_json(const BuildReport &report, const std::vector<std::string> &warnings) {
     Json details = Json::array();
-    if (!report.verdict.text.empty()) details.push_back(report.verdict.text);
-    for (const std::string &warning : input.warnings) details.push_back(warning);
+    const std::string &verdict = report.verdict.text;
+    const bool is_repeated = std::any_of(warnings.begin(), warnings.end(), [&](const std::string &warning) {
+        return warning.find(verdict) != std::string::npos;
+    });
+    if (!verdict.empty() && !is_repeated) details.push_back(verdict);
+    for (const std::string &warning : warnings) details.push_back(warning);
     const bool is_good = report.fit.usable && details.empty();
     const char *headline = is_good             ? "Usable: a profile that later pictures can rely on."
                            : report.fit.usable ? "Usable, with a warning."
@@ -73,14 +76,13 @@ Json verdict_json(const FitPageInput &input) {
     return {{"level", is_good ? "good" : corrects ? "warn" : "bad"}, {"headline", headline}, {"details", details}};
 }
 
-Json facts_json(const FitPageInput &input) {
-    const BuildReport &report = input.report;
+Json facts_json(const BuildReport &report) {
     const lensprof_fit_result &fit = report.fit;
     const auto joined = std::count_if(report.exposures.begin(), report.exposures.end(),
                                       [](const lensprof_exposure &e) { return !std::isnan(e.ev); });
     Json facts = Json::array();
     const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
-    add("images joined", format("%d of %zu", static_cast<int>(joined), report.names.size()));
+    add("images joined", format("%d of %zu", static_cast<int>(joined), report.names.size() + report.left_out.size()));
     add("pairs", std::to_string(fit.pairs));
     if (report.has_falloff && report.settings.empty()) {
         double sigma = 0.0;
@@ -142,7 +144,7 @@ void add_views(const FitPageInput &input, Progress &progress, Json &page) {
 
 }  // namespace
 
-std::string fit_page(const FitPageInput &input, Progress &progress) {
+Json fit_page_data(const FitPageInput &input, Progress &progress) {
     const BuildReport &report = input.report;
     const std::string title = std::filesystem::path(input.project.path).filename().string();
     Json page;
@@ -151,8 +153,6 @@ std::string fit_page(const FitPageInput &input, Progress &progress) {
     page["subtitle"] = input.subtitle;
     page["program"] = std::string("lensprof ") + lensprof_version();
     page["command"] = input.command;
-    page["verdict"] = verdict_json(input);
-    page["facts"] = facts_json(input);
     page["falloffs"] = falloffs_json(report);
     page["falloff_points"] =
         report.has_falloff ? falloff_points(input.input, input.best, input.project) : Json::array();
@@ -164,9 +164,15 @@ std::string fit_page(const FitPageInput &input, Progress &progress) {
     for (const auto &[name, reason] : report.left_out) page["left_out"].push_back({{"name", name}, {"reason", reason}});
     for (size_t i = 0; i < report.names.size(); i++)
         if (std::isnan(report.exposures[i].ev))
-            page["left_out"].push_back(
-                {{"name", report.names[i]}, {"reason", "its pairs do not agree with the other images"}});
+            page["left_out"].push_back({{"name", report.names[i]},
+                                        {"reason", "no exposure was found: the warnings or its verdict state why"}});
     if (input.shows_pictures) add_views(input, progress, page);
+    return page;
+}
+
+std::string fit_page(Json page, const BuildReport &report, const std::vector<std::string> &warnings) {
+    page["verdict"] = verdict_json(report, warnings);
+    page["facts"] = facts_json(report);
     page["result"] = build_json(report);
     return page_of(page["title"].get<std::string>() + " – lensprof", page);
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "cli/fitting/project_fit.hpp"
 
 namespace lensprof {
@@ -16,12 +18,15 @@ struct FitPageInput {
     const Project &project;
     const std::vector<PictureMetadata> &metadata;  // of each image of the project
     std::string command;                           // that made the report
-    std::vector<std::string> warnings;             // about the fit
     const char *subtitle = "Calibration from overlapping pictures";
     bool shows_pictures = true;
 };
 
-// The bytes of the page; pictures before and after are in it where the result corrects them. Deterministic.
-std::string fit_page(const FitPageInput &input, Progress &progress);
+// Everything in the page but the verdict and what depends on the stored profile; pictures before and after are in it if
+// the result corrects them. Deterministic.
+nlohmann::ordered_json fit_page_data(const FitPageInput &input, Progress &progress);
+
+// The bytes of the page, once the profile is stored and all warnings are known.
+std::string fit_page(nlohmann::ordered_json data, const BuildReport &report, const std::vector<std::string> &warnings);
 
 }  // namespace lensprof

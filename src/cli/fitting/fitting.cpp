@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -357,18 +358,8 @@ bool is_any_usable(const BuildReport &report) {
            });
 }
 
-}  // namespace
-
-int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
-               Streams &streams) {
-    stop_if_interrupted();
-    if (!store.no_store) store_result(report, key, store, finish);
-    if (finish.outputs) finish.outputs->commit();
-    if (finish.json)
-        print_json(build_json(report), streams.out);
-    else
-        print_build(report, streams.out);
-    if (!finish.json) print_stored(report, key, store, streams.out);
+// Everything that is wrong with a result, on standard error. Whether the command succeeds.
+bool name_doubts(const BuildReport &report, const StoreOptions &store, const Finish &finish, Streams &streams) {
     if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
     const bool evens = finish.evens_pictures && report.fit.evens;
     if (report.fit.usable) name_left_out(report, streams);
@@ -384,6 +375,27 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     if (!is_good)
         tell(streams, not_usable_text(finish.source, report.verdict, store)
                           + (evens ? "; it does correct these pictures: use --no-store to accept it" : ""));
+    return is_good;
+}
+
+}  // namespace
+
+int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
+               Streams &streams) {
+    stop_if_interrupted();
+    if (!store.no_store) store_result(report, key, store, finish);
+    std::ostringstream said;  // after the result, but known before the outputs are complete
+    Streams later{streams.out, said, streams.words, streams.warnings};
+    const bool is_good = name_doubts(report, store, finish, later);
+    if (finish.outputs && !finish.page.empty())
+        finish.outputs->add(finish.page, finish.page_text(report, later.warnings));
+    if (finish.outputs) finish.outputs->commit();
+    if (finish.json)
+        print_json(build_json(report), streams.out);
+    else
+        print_build(report, streams.out);
+    if (!finish.json) print_stored(report, key, store, streams.out);
+    streams.err << said.str();
     return static_cast<int>(is_good ? ExitCode::done : ExitCode::not_usable);
 }
 

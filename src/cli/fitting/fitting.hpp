@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -106,8 +107,10 @@ struct Finish {
     std::string method;  // for the provenance
     std::string source;  // the inputs
     bool json = false;
-    bool evens_pictures = false;            // a result that corrects the pictures counts as success if nothing is to be
-                                            // stored
+    bool evens_pictures = false;  // a result that corrects the pictures counts as success if nothing is to be
+                                  // stored
+    std::string page;             // .html file of the report; empty: none
+    std::function<std::string(const BuildReport &, const std::vector<std::string> &warnings)> page_text = {};
     OutputFiles *outputs = nullptr;         // committed after the profile is stored; or NULL
     const EarlierProfile *prior = nullptr;  // the prior of the fit; or NULL
 };

@@ -157,13 +157,13 @@ void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &
 
 void check_is_no_part(const std::string &path) {
     const std::filesystem::path file(path);
-    const std::string name = file.filename().string(), stem = file.stem().string();
+    const std::string name = file.filename().string(), stem = file.stem().string(), end = file.extension().string();
     std::string advice;
     if (is_exposure_file(path))
         advice = "a file of exposures; give it to `apply --model`";
     else if (name == "reconstruction.json")
         advice = "a part of an OpenSfM reconstruction; give tracks.csv, which lies next to it";
-    else if (stem == "cameras" || stem == "images" || stem == "points3D")
+    else if ((stem == "cameras" || stem == "images" || stem == "points3D") && (end == ".bin" || end == ".txt"))
         advice = "a part of a COLMAP model; give its folder";
     if (!advice.empty()) throw Failure(ExitCode::unreadable, path + ": is " + advice);
 }

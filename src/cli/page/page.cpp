@@ -7,13 +7,23 @@
 
 #include "cli/pictures/jpeg_bytes.hpp"
 #include "cli/program/error.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
 
-std::string replaced(std::string text, const std::string &mark, const std::string &with) {
-    const size_t at = text.find(mark);
-    return at == std::string::npos ? text : text.replace(at, mark.size(), with);
+// The template with a text in place of each mark; marks within a text are text.
+std::string filled(const std::string &page, const std::vector<std::pair<std::string, std::string>> &texts) {
+    std::string out;
+    for (size_t at = 0; at < page.size();) {
+        const auto mark = std::find_if(texts.begin(), texts.end(), [&](const auto &text) {
+            return page.compare(at, text.first.size(), text.first) == 0;
+        });
+        out += mark == texts.end() ? std::string(1, page[at]) : mark->second;
+        at += mark == texts.end() ? 1 : mark->first.size();
+    }
+    return out;
 }
 
 std::string html_text(const std::string &text) {
@@ -49,10 +59,12 @@ std::string base64(const std::vector<uint8_t> &bytes) {
 }  // namespace
 
 std::string page_of(const std::string &title, const nlohmann::ordered_json &data) {
-    std::string page = replaced(page_html, "@TITLE@", html_text(title));
-    page = replaced(page, "@STYLE@", page_style);
-    page = replaced(page, "@SCRIPT@", page_script);
-    return replaced(page, "@DATA@", script_json(data));  // last: a text in it may look like a mark
+    using Json = nlohmann::ordered_json;
+    const std::string name = Json::parse(Json(title).dump(-1, ' ', false, Json::error_handler_t::replace));  // UTF-8
+    return filled(page_html, {{"@TITLE@", html_text(name)},
+                              {"@STYLE@", page_style},
+                              {"@SCRIPT@", page_script},
+                              {"@DATA@", script_json(data)}});
 }
 
 std::string data_url(const Picture &picture, int quality) {
@@ -64,6 +76,9 @@ void check_page_name(const std::string &path) {
     for (char &c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (end != ".html" && end != ".htm")
         throw Failure(ExitCode::usage, path + ": a report is an HTML file; give a name that ends in .html");
+    constexpr const char *generator = "content=\"lensprof\"";  // of page.html
+    if (is_regular_file(path) && file_bytes(path) > 0 && read_head(path, 512).find(generator) == std::string::npos)
+        throw Failure(ExitCode::usage, path + ": is an existing file and not a report; give another name");
 }
 
 }  // namespace lensprof

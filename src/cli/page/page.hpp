@@ -17,7 +17,7 @@ std::string page_of(const std::string &title, const nlohmann::ordered_json &data
 // A JPEG of an 8 bit grey or RGB picture, as a data URL.
 std::string data_url(const Picture &picture, int quality);
 
-// Failure (usage) unless the name ends in .html or .htm.
+// Failure (usage) unless the name ends in .html or .htm, and if it is of an existing file that is not a report.
 void check_page_name(const std::string &path);
 
 }  // namespace lensprof

@@ -229,6 +229,12 @@ function fitPage(report) {
   page.append(...parts.filter((part) => part));
 }
 
+function cameras(report) {
+  if (!report.cameras.length) return '';
+  return section('Cameras', table(['camera', 'profiles', 'response'], report.cameras.map((camera) =>
+    [camera.name, String(camera.profiles), camera.response])));
+}
+
 // A database: lenses in a table that a search narrows, and the curves of one lens over its apertures.
 function databasePage(report) {
   const count = (n, word) => `${n} ${word}${n === 1 ? '' : word.endsWith('s') ? 'es' : 's'}`;
@@ -240,6 +246,10 @@ function databasePage(report) {
   const focalLabel = element('label', {}, 'focal length', focal), distanceLabel = element('label', {}, 'focus distance', distance);
   let shown = null;
 
+  if (!report.lenses.length) {
+    page.append(section('Lenses', element('p', {}, 'No profile has a falloff.')), cameras(report));
+    return;
+  }
   const millimetres = (value) => value === null ? 'any focal length' : `${+value.toFixed(1)} mm`;
   const metres = (value) => value === null ? 'any distance' : value >= 1000 ? 'infinity' : `${+value.toFixed(2)} m`;
   const distinct = (list) => [...new Set(list)].sort((a, b) => (a === null ? -1 : a) - (b === null ? -1 : b));
@@ -309,9 +319,7 @@ function databasePage(report) {
   const curves = section(null, name, element('div', { class: 'filter' }, focalLabel, distanceLabel), chart);
   page.append(curves);
   filter();
-  if (report.cameras.length)
-    page.append(section('Cameras', table(['camera', 'profiles', 'response'], report.cameras.map((camera) =>
-      [camera.name, String(camera.profiles), camera.response]))));
+  page.append(cameras(report));
 }
 
 function profilePage(report) {

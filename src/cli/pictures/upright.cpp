@@ -5,15 +5,20 @@
 namespace lensprof {
 namespace {
 
-// Mean of a channel over the part of a picture that a pixel of the reduced picture covers.
-uint8_t box_mean(const Picture &picture, uint32_t step, uint32_t x, uint32_t y, uint32_t channel) {
+// Mean of a channel over the part of a picture that a pixel of its copy of w x h covers.
+uint8_t box_mean(const Picture &picture, uint32_t w, uint32_t h, uint32_t x, uint32_t y, uint32_t channel) {
     const uint32_t samples = lensprof_layout_samples(picture.layout);
-    const uint32_t right = std::min((x + 1) * step, picture.width), bottom = std::min((y + 1) * step, picture.height);
-    uint32_t sum = 0, count = 0;
-    for (uint32_t v = y * step; v < bottom; v++)
-        for (uint32_t u = x * step; u < right; u++, count++)
+    const auto edge = [](uint32_t at, uint32_t side, uint32_t copy) {
+        return static_cast<uint32_t>(uint64_t(at) * side / copy);
+    };
+    const uint32_t left = edge(x, picture.width, w), right = std::max(left + 1, edge(x + 1, picture.width, w));
+    const uint32_t top = edge(y, picture.height, h), bottom = std::max(top + 1, edge(y + 1, picture.height, h));
+    uint32_t sum = 0;
+    for (uint32_t v = top; v < bottom; v++)
+        for (uint32_t u = left; u < right; u++)
             sum += picture.pixels[v * picture.row_bytes + size_t(u) * samples + (samples < 3 ? 0 : channel)];
-    return static_cast<uint8_t>((sum + count / 2) / std::max(count, 1u));
+    const uint32_t count = (right - left) * (bottom - top);
+    return static_cast<uint8_t>((sum + count / 2) / count);
 }
 
 }  // namespace
@@ -32,8 +37,11 @@ std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uin
 }
 
 Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side) {
-    const uint32_t step = std::max(1u, (std::max(stored.width, stored.height) + side - 1) / side);
-    const uint32_t width = std::max(1u, stored.width / step), height = std::max(1u, stored.height / step);
+    const uint32_t longer = std::max(stored.width, stored.height);
+    const auto reduced = [=](uint32_t length) {
+        return longer <= side ? length : std::max(1u, static_cast<uint32_t>(uint64_t(length) * side / longer));
+    };
+    const uint32_t width = reduced(stored.width), height = reduced(stored.height);
     const bool is_turned = orientation >= 5 && orientation <= 8;
     Picture copy;
     copy.width = is_turned ? height : width;
@@ -44,7 +52,7 @@ Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side)
         for (uint32_t x = 0; x < copy.width; x++) {
             const auto [u, v] = stored_place(orientation, width, height, x, y);
             for (uint32_t c = 0; c < 3; c++)
-                copy.pixels[y * copy.row_bytes + size_t(3) * x + c] = box_mean(stored, step, u, v, c);
+                copy.pixels[y * copy.row_bytes + size_t(3) * x + c] = box_mean(stored, width, height, u, v, c);
         }
     return copy;
 }

@@ -88,7 +88,9 @@ std::string profile_page(const StoredProfile &stored, const std::string &command
     page["command"] = command;
     const bool in_doubt = *p.provenance.doubt || p.provenance.forced;
     page["verdict"] = {{"level", in_doubt ? "warn" : "good"},
-                       {"headline", in_doubt ? "This profile is in doubt." : "A stored profile."},
+                       {"headline", in_doubt    ? "This profile is in doubt."
+                                    : stored.id ? "A stored profile."
+                                                : "A profile of a file."},
                        {"details", Json::array()}};
     if (*p.provenance.doubt) page["verdict"]["details"].push_back(p.provenance.doubt);
     if (p.provenance.forced) page["verdict"]["details"].push_back("It was stored although its fit was not usable.");

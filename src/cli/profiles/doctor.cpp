@@ -8,6 +8,7 @@
 #include "cli/program/databases.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/paths.hpp"
+#include "cli/program/utf8.hpp"
 #include "cli/registration/registration.hpp"
 #include "cli/report/report.hpp"
 
@@ -38,7 +39,8 @@ struct DatabaseState {
 DatabaseState state_of(const std::string &file, const std::string &role) {
     DatabaseState state{file, role, is_regular_file(file), {}, {}};
     lensprof_store_stats_init(&state.stats);
-    if (!state.exists) return state;
+    if (!state.exists && path_exists(file)) state.exists = true, state.fault = "not a regular file";
+    if (!state.exists || !state.fault.empty()) return state;
     lensprof_store *opened = nullptr;
     lensprof_error error{};
     lensprof_status status = lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &opened, &error);
@@ -50,9 +52,16 @@ DatabaseState state_of(const std::string &file, const std::string &role) {
 
 std::vector<DatabaseState> databases_to_check(const std::vector<std::string> &named) {
     std::vector<DatabaseState> states;
-    for (const std::string &file : named) states.push_back(state_of(file, "named by --db"));
+    for (const std::string &file : named) {
+        states.push_back(state_of(file, "named by --db"));
+        if (!states.back().exists) states.back().fault = "no such file";
+    }
     if (!named.empty()) return states;
-    states.push_back(state_of(store_path(""), "your own"));
+    try {
+        states.push_back(state_of(store_path(""), "your own"));
+    } catch (const Failure &failure) {  // no home folder
+        states.push_back({"profiles.db", "your own", false, failure.what(), {}});
+    }
     const std::string installed = installed_database();
     if (installed.empty())
         states.push_back({"lensprof/lensfun.db", "of Lensfun, made by `make profiles && make install`", false, {}, {}});
@@ -62,7 +71,7 @@ std::vector<DatabaseState> databases_to_check(const std::vector<std::string> &na
 }
 
 std::string describe(const DatabaseState &state) {
-    if (!state.exists) return "not there";
+    if (!state.exists && state.fault.empty()) return "not there";
     if (!state.fault.empty()) return "cannot be read: " + state.fault;
     const lensprof_store_stats &stats = state.stats;
     return counted(stats.profiles, "profile") + ", " + counted(stats.lenses, "lens", "lenses") + ", "
@@ -75,7 +84,7 @@ void print(const std::vector<DatabaseState> &databases, std::ostream &out) {
     for (const Part &part : optional_parts())
         out << format("%-8s  %s: %s\n", part.library, part.is_there ? "yes" : "no", part.use);
     for (const DatabaseState &state : databases)
-        out << "database  " << state.file << " (" << state.role << "): " << describe(state) << "\n";
+        out << "database  " << one_line(state.file + " (" + state.role + "): " + describe(state)) << "\n";
 }
 
 Json json_of(const std::vector<DatabaseState> &databases) {

@@ -222,7 +222,8 @@ void declare_show(Command &profile) {
 }  // namespace
 
 void declare_profile(Command &program) {
-    Command profile = program.add("profile", "list, show, change, remove, export, import, merge or check profiles");
+    Command profile =
+        program.add("profile", "list, show, change, remove, export, import, merge, check or count profiles");
     declare_list(profile);
     declare_show(profile);
     declare_profile_names(profile);

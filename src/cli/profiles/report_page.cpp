@@ -43,13 +43,12 @@ void declare(Command &command, Options &o) {
         "numbers as JSON. Example: lensprof report photos -o report.html");
 }
 
-// Whether a file is a database of lensprof; other databases of SQLite are reconstructions of COLMAP, or damaged.
+// Whether a file is a database of lensprof, intact or damaged: by SQLite's name and the application id, at bytes 68 to
+// 71 of the header.
 bool is_profile_database(const std::string &path) {
-    if (!is_regular_file(path) || read_head(path, 15) != "SQLite format 3") return false;
-    lensprof_store *store = nullptr;
-    const lensprof_status status = lensprof_store_open(path.c_str(), LENSPROF_STORE_READ, &store, nullptr);
-    lensprof_store_close(store);
-    return status == LENSPROF_OK;
+    if (!is_regular_file(path)) return false;
+    const std::string head = read_head(path, 72);
+    return head.size() == 72 && head.compare(0, 15, "SQLite format 3") == 0 && head.compare(68, 4, "LPRF") == 0;
 }
 
 // Whether a file is one that another program keeps profiles in, by its content.
@@ -62,16 +61,24 @@ bool is_profile_file(const std::string &path) {
     }
 }
 
-std::vector<StoredProfile> profiles_of_file(const std::string &path) {
-    std::vector<StoredProfile> profiles;
+std::vector<StoredProfile> profiles_of_file(const std::string &path, Streams &streams) {
+    struct Found {
+        std::vector<StoredProfile> profiles;
+        size_t invalid = 0;
+    } found;
     const auto keep = [](void *user, const lensprof_import_entry *entry) {
-        auto profile = std::make_unique<lensprof_profile>(*entry->profile);
-        static_cast<std::vector<StoredProfile> *>(user)->push_back({0, std::move(profile)});
+        Found &all = *static_cast<Found *>(user);
+        if (entry->usable)
+            all.profiles.push_back({0, std::make_unique<lensprof_profile>(*entry->profile)});
+        else
+            all.invalid++;
         return LENSPROF_OK;
     };
-    read_profiles(format_to_read(path, ""), path, keep, &profiles);
-    if (profiles.empty()) throw Failure(ExitCode::not_found, path + ": has no profile with a falloff or a response");
-    return profiles;
+    read_profiles(format_to_read(path, ""), path, keep, &found);
+    if (found.invalid)
+        warn(streams, path + ": " + counted(found.invalid, "profile") + " with an invalid falloff left out");
+    if (found.profiles.empty()) throw Failure(ExitCode::not_found, path + ": has no valid profile; give another file");
+    return std::move(found.profiles);
 }
 
 // Everything in the databases, except rows that are damaged: a warning counts these.
@@ -105,7 +112,7 @@ std::string page_of_profiles(const Options &o, const std::vector<std::string> &f
     std::vector<StoredProfile> profiles;
     std::string name = files.empty() ? std::string() : files[0];
     if (is_of_file) {
-        profiles = profiles_of_file(files[0]);
+        profiles = profiles_of_file(files[0], streams);
     } else {
         const Databases databases(databases_of(files));
         const std::vector<int64_t> ids = o.id ? std::vector<int64_t>{o.id} : std::vector<int64_t>{};
@@ -126,9 +133,10 @@ int report_fit(const Options &o, Streams &streams) {
     words.insert(words.end(), o.inputs.begin(), o.inputs.end());
     std::ostringstream table;  // what build prints is in the report
     Streams quiet{table, streams.err};
+    bool is_written = false;
+    const CommitWatch watch([&](const std::string &path, const std::string &) { is_written |= path == o.output; });
     const int code = run(words, quiet);
-    const bool is_written = code == static_cast<int>(ExitCode::done) || code == static_cast<int>(ExitCode::not_usable);
-    if (is_written && is_regular_file(o.output)) streams.out << "wrote " << o.output << "\n";
+    if (is_written) streams.out << "wrote " << o.output << "\n";
     return code;
 }
 
@@ -145,8 +153,10 @@ int run_report(const Options &o, Streams &streams) {
         throw Failure(ExitCode::usage, "--images: applies to a reconstruction, not to profiles; leave it out");
     for (const std::string &input : o.inputs)
         if (!is_profile_database(input) && (o.inputs.size() > 1 || asks_profiles || !is_profile_file(input)))
-            throw Failure(ExitCode::usage,
-                          input + ": is not a profile database; give databases only, or pictures only");
+            throw Failure(
+                ExitCode::usage,
+                input
+                    + ": is not a profile database; give one kind of files: pictures, databases, or one file of profiles without --profile and names");
     std::vector<std::string> files = o.inputs.empty() ? o.dbs : o.inputs;
     for (const std::string &file : databases_of(files))
         if (is_same_file(o.output, file))

@@ -48,16 +48,31 @@ std::string zsh_text(const std::string &text) {
     return escaped;
 }
 
-// case lines: the words that may follow a command, and those that may follow an option of it.
+// The words that may follow a command: verbs, choices of its arguments, and options.
+std::vector<std::string> following_words(const CommandDescription &program, const CommandDescription &command) {
+    std::vector<std::string> words;
+    for (const CommandDescription &verb : command.commands) words.push_back(verb.name());
+    for (const OptionDescription &option : command.options) {
+        if (!option.is_positional)
+            words.insert(words.end(), option.names.begin(), option.names.end());
+        else if (option.names[0] == "COMMAND")  // of help and man
+            for (const CommandDescription &named : program.commands) words.push_back(named.name());
+        else
+            words.insert(words.end(), option.choices.begin(), option.choices.end());
+    }
+    return words;
+}
+
+bool takes_files(const CommandDescription &command) {
+    return std::any_of(command.options.begin(), command.options.end(),
+                       [](const OptionDescription &option) { return option.is_positional && is_path(option); });
+}
+
 std::string bash_cases(const CommandDescription &program) {
     std::string lines;
-    for (const CommandDescription *command : all_of(program)) {
-        std::vector<std::string> words;
-        for (const CommandDescription &verb : command->commands) words.push_back(verb.name());
-        for (const OptionDescription &option : command->options)
-            if (!option.is_positional) words.insert(words.end(), option.names.begin(), option.names.end());
-        lines += "    " + quoted(words_of(*command)) + ") words=" + quoted(joined(words)) + " ;;\n";
-    }
+    for (const CommandDescription *command : all_of(program))
+        lines += "    " + quoted(words_of(*command)) + ") words=" + quoted(joined(following_words(program, *command)))
+                 + (takes_files(*command) ? "; files=1" : "; files=") + " ;;\n";
     return lines;
 }
 
@@ -79,35 +94,28 @@ std::string bash_values(const CommandDescription &program) {
 
 std::string bash_completion(const CommandDescription &program) {
     return "# bash completion of lensprof; made by `lensprof completion bash`.\n"
-           "_lensprof() {\n"
-           "  local command='' word i words='' values='' files=1 takes=''\n"
-           "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"
-           "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
-           "    word=${COMP_WORDS[i]}\n"
-           "    case \" $(_lensprof_verbs \"$command\") \" in *\" $word \"*) command=${command:+$command }$word ;; esac\n"
-           "  done\n"
-           "  case \"$command $previous\" in\n"
-           + bash_values(program)
-           + "  esac\n"
-             "  if [[ $takes ]]; then\n"
-             "    COMPREPLY=($(compgen ${files:+-f} -W \"$values\" -- \"$current\"))\n"
-             "    return\n"
-             "  fi\n"
-             "  words=$(_lensprof_words \"$command\")\n"
-             "  [[ $current == -* || $(_lensprof_verbs \"$command\") ]] && files=\n"
-             "  [[ $current != -* && $files ]] && words=''\n"
-             "  COMPREPLY=($(compgen ${files:+-f} -W \"$words\" -- \"$current\"))\n"
-             "}\n"
-             "_lensprof_words() {\n"
-             "  local words=''\n"
-             "  case \"$1\" in\n"
+           "_lensprof_words() {\n"
+           "  case \"$1\" in\n"
            + bash_cases(program)
            + "  esac\n"
-             "  printf '%s' \"$words\"\n"
              "}\n"
-             "_lensprof_verbs() {\n"
-             "  local word\n"
-             "  for word in $(_lensprof_words \"$1\"); do [[ $word != -* ]] && printf '%s ' \"$word\"; done\n"
+             "_lensprof() {\n"
+             "  local command='' word i words='' values='' files='' takes=''\n"
+             "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"
+             "  _lensprof_words ''\n"
+             "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
+             "    word=${COMP_WORDS[i]}\n"
+             "    [[ $word != -* && \" $words \" == *\" $word \"* && $command != help && $command != man ]] || continue\n"
+             "    command=${command:+$command }$word\n"
+             "    _lensprof_words \"$command\"\n"
+             "  done\n"
+             "  case \"$command $previous\" in\n"
+           + bash_values(program)
+           + "  esac\n"
+             "  [[ $takes ]] && words=$values\n"
+             "  [[ $current == -* && ! $takes ]] && files=\n"
+             "  [[ $current != -* && ! $takes ]] && words=$(printf '%s\\n' $words | grep -v '^-')\n"
+             "  mapfile -t COMPREPLY < <(compgen ${files:+-f} -W \"$words\" -- \"$current\")\n"
              "}\n"
              "complete -o filenames -F _lensprof lensprof\n";
 }

@@ -124,7 +124,7 @@ std::string empty_text(const CLI::Option &option) {
     return (type == "FILE"     ? std::string("empty file name; give one")
             : type == "FOLDER" ? "empty folder name; give one"
                                : "empty value; give one")
-           + (option.get_required() ? "" : ", or omit the option");
+           + (option.get_required() || option.get_positional() ? "" : ", or omit the option");
 }
 
 bool is_flag(const CLI::Option &option) { return option.get_items_expected_max() == 0; }
@@ -440,6 +440,7 @@ void Command::footer(const std::string &text) { app_->footer(text); }
 Program::Program(const std::string &name, const std::string &about)
     : app_(std::make_unique<CLI::App>(about, name)), actions_(std::make_unique<Actions>()) {
     app_->formatter(std::make_shared<HelpText>());
+    app_->set_help_flag("-h,--help", "print this help");
 }
 
 Program::~Program() = default;

@@ -69,7 +69,8 @@ void declare_man(Command &root, const Program &program) {
         }
         if (!o->words.empty())
             throw Failure(ExitCode::usage, "man: -o writes the pages of all commands; leave COMMAND out");
-        streams.out << "wrote " << counted(write_pages(all, o->folder), "man page") << " to " << o->folder << "\n";
+        const size_t pages = write_pages(all, o->folder);
+        streams.out << "wrote " << counted(pages, "man page") << " to " << o->folder << "\n";
         return 0;
     });
 }
