@@ -13,7 +13,7 @@
 namespace lensprof {
 namespace {
 
-// The template with a text in place of each mark; marks within a text are text.
+// The template with a text instead of each mark; marks within a text are text.
 std::string filled(const std::string &page, const std::vector<std::pair<std::string, std::string>> &texts) {
     std::string out;
     for (size_t at = 0; at < page.size();) {
