@@ -22,7 +22,7 @@ build: ## build the library and the program build/lensprof
 	cmake --preset release -DLENSPROF_WERROR=$(WERROR)
 	cmake --build --preset release -j $(JOBS)
 
-profiles: build ## a database of the installed Lensfun data (liblensfun-data-v1): build/lensfun.db
+profiles: program ## a database of the installed Lensfun data (liblensfun-data-v1): build/lensfun.db
 	@cmake/install-packages.sh packages-profiles.txt
 	rm -f build/lensfun.db.part
 	build/lensprof profile import --db build/lensfun.db.part /usr/share/lensfun/version_1/*.xml
@@ -57,33 +57,35 @@ soak: test-deps build ## the campaigns in full, and under sanitizers: nightly, a
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset soak-sanitize -j $(JOBS)
 
-bench: test-deps build ## measure accuracy and speed beside the peers
+bench: test-deps build ## compare accuracy and speed with other programs
 	tests/bench/run.sh
 	$(MAKE) bench-apply
 	$(MAKE) bench-store
 	$(MAKE) bench-lookup
 
-bench-apply: build ## measure how fast profiles are applied, beside memcpy, Lensfun, OpenCV and a plain loop
+bench-apply: build ## measure how fast profiles are applied, compared with memcpy, Lensfun, OpenCV and a plain loop
 	@cmake/install-packages.sh packages-bench.txt
 	tests/bench/apply.sh
 
 bench-store: build ## measure the store with 100 000 profiles
 	tests/bench/store.sh
 
-bench-lookup: build ## measure lookups between stored settings on Lensfun's data, beside Lensfun's own rule
+bench-lookup: build ## measure lookups between stored settings on Lensfun's data, compared with Lensfun's rule
 	@cmake/install-packages.sh packages-test.txt
 	tests/bench/run.sh --lookup
 
 SEQUENCES ?= 60
 
-bench-knowledge: build ## measure what knowledge of the camera and the lens is worth to a fit (SEQUENCES=N)
+bench-knowledge: build ## measure what prior knowledge of camera and lens gains (SEQUENCES=N)
 	@cmake/install-packages.sh packages-test.txt
 	tests/bench/run.sh --only knowledge --sequences $(SEQUENCES)
 
-install: build ## install under PREFIX (default /usr/local), with the database of `make profiles` where that was made
+install: deps ## install under PREFIX (default /usr/local), with the database of `make profiles` where that was made
+	cmake --preset release -DLENSPROF_TESTS=OFF >/dev/null
+	cmake --build --preset release -j $(JOBS)
 	cmake --install build --prefix $(PREFIX)
 
-abi-baseline: ## make tests/install/abi-baseline.xml anew, when a change of the binary interface is compatible
+abi-baseline: ## write tests/install/abi-baseline.xml again, after a compatible change of the ABI
 	python3 tests/install/abi_check.py write
 
 abi-headers: ## save the public headers as those of this release, whose programs all later libraries must serve
@@ -97,7 +99,7 @@ lint: test-deps build ## format, cppcheck, clang's warnings and clang-tidy over 
 	@cmake/install-packages.sh packages-lint.txt
 	tests/lint/lint.sh build
 
-format: ## format C and C++ as .clang-format says (package clang-format)
+format: ## format C and C++ with .clang-format (package clang-format)
 	git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | grep -vE '$(TABLES)' | xargs clang-format -i
 
 docs: ## the manual with the API reference: build/docs/index.html (packages-docs.txt)

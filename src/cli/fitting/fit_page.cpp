@@ -97,8 +97,8 @@ Json facts_json(const BuildReport &report) {
         add("colour variance, levels²",
             format("%.0f before, %.0f by exposures alone, %.0f after", report.variance.before,
                    report.variance.exposures_only, report.variance.result));
-    add("exponent known by", std::string(gamma_name(fit.gamma_from))
-                                 + (fit.gamma_sigma > 0.0 ? format(", ± %.0f %%", 100.0 * fit.gamma_sigma) : ""));
+    add("exponent from", std::string(gamma_name(fit.gamma_from))
+                             + (fit.gamma_sigma > 0.0 ? format(", ± %.0f %%", 100.0 * fit.gamma_sigma) : ""));
     if (report.profile_id) add("stored as profile", std::to_string(report.profile_id));
     return facts;
 }
@@ -115,6 +115,7 @@ void add_views(const FitPageInput &input, Progress &progress, Json &page) {
     const Fitted &fitted = input.best;
     std::vector<uint32_t> images = images_with_exposure(fitted);
     const size_t all = images.size();
+    if (!fitted.corrects()) page["views_note"] = "The result is not usable, so that no picture is corrected.";
     if (!fitted.corrects() || images.empty() || !is_regular_file(input.project.files[images[0]])) return;
     if (all > most_pictures) {
         std::vector<uint32_t> some;

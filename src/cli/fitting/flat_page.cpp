@@ -17,7 +17,7 @@ Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
     const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
     double sigma = 0.0;
     const double corner = lensprof_profile_corner_falloff(&profile, report.fit.vignettings == 3 ? 1 : 0, &sigma);
-    add("corner illuminance", sigma > 0.0 ? format("%.3f ± %.3f (%+.2f EV)", corner, sigma, std::log2(corner))
+    add("corner illuminance", sigma > 0.0 ? format("%.4f ± %.4f (%+.2f EV)", corner, sigma, std::log2(corner))
                                           : format("%.3f (%+.2f EV)", corner, std::log2(corner)));
     add("pictures", std::to_string(report.names.size()));
     add("shots", std::to_string(report.fit.shots));

@@ -42,7 +42,7 @@ function comparison(view) {
 }
 
 function pictures(views, note) {
-  if (!views || !views.length) return null;
+  if (!views || !views.length) return note ? section('Before and after', element('p', {}, note)) : null;
   const stage = element('div'), name = element('p', { class: 'quiet' });
   const buttons = views.map((view) => element('button', { type: 'button', 'aria-pressed': 'false', title: view.name },
     element('img', { src: view.after, alt: view.name, loading: 'lazy' })));
@@ -107,7 +107,7 @@ function responses(report) {
     element('p', { class: 'quiet' }, 'The recorded value over the light.' +
       (report.typical ? ` Grey band: ${report.typical.label}.` : '') +
       (bands.length > (report.typical ? 1 : 0) ? ' Coloured band: one standard error.' : '')),
-    drawChart({ title: 'Response', x: { label: 'light, 1 = the least that is white', low: 0, high: 1 },
+    drawChart({ title: 'Response', x: { label: 'light, 1 = saturation', low: 0, high: 1 },
       y: { label: 'recorded value', low: 0, high: 1 }, bands,
       lines: curves.map((curve, i) => ({ colour: curveColour(curve, i), label: curve.label, points: points(curve.f) })) }));
 }
@@ -136,7 +136,7 @@ function exposures(report) {
   if (coloured.length) {
     const [least, most] = extent(images.flatMap((image) => [0, 2].flatMap((channel) =>
       [-1, 1].map((sign) => image.balance[channel] + sign * image.balance_sigma[channel]))), 0.1);
-    balances.push(element('p', { class: 'quiet' }, 'White balance factors of red and blue, relative to green.'),
+    balances.push(element('p', { class: 'quiet' }, 'Factors of red (red dots) and blue (blue dots), relative to green.'),
       drawChart({ title: 'White balance of each image', height, x: axis,
         y: { label: 'factor', low: least, high: most },
         dots: [0, 2].map((channel) => ({ colour: channel ? 'blue' : 'red', points: images.map((image) =>
@@ -179,7 +179,7 @@ function residuals(report) {
   const coverage = r.frame.count.map((count) => count ? { share: 0.1 + 0.9 * Math.sqrt(count / most), text: `${count} samples` } : null);
   return [
     sideBySide(section('Values of the same scene points in two pictures', element('p', { class: 'quiet' },
-      'Each cell counts pairs of grey values (green). On the diagonal both pictures agree.'),
+      'Each cell counts pairs of green values: right in the one picture, up in the other, from 0 to 255. On the diagonal both pictures agree.'),
       sideBySide(jointHistogram(r.joint_before, 'before'), jointHistogram(r.joint_after, 'after')))),
     sideBySide(section('Residual over the radius', element('p', { class: 'quiet' },
       'Mean, and band of half of all pairs. A mean away from 0 towards the edge is falloff that is left.'),
@@ -190,7 +190,7 @@ function residuals(report) {
     sideBySide(section('Residual over the frame', element('p', { class: 'quiet' },
       `Red: brighter than predicted, blue: darker. Full colour is ${fixed(limit, 1)} levels.`),
       drawCells(map, r.frame.columns, 'Mean residual over the frame', (cell) => cell.share > 0 ? 'red' : 'blue', r.frame.aspect)),
-    section('Coverage of the frame', element('p', { class: 'quiet' }, 'How many samples each part of the frame has.'),
+    section('Coverage of the frame', element('p', { class: 'quiet' }, `Samples in each part of the frame: full colour is ${most}.`),
       drawCells(coverage, r.frame.columns, 'Samples over the frame', () => 'accent', r.frame.aspect)))];
 }
 
@@ -199,7 +199,7 @@ function closing(report) {
   if (report.left_out && report.left_out.length)
     parts.push(section('Left out', table(['picture', 'reason'], report.left_out.map((out) => [out.name, out.reason]))));
   if (report.command)
-    parts.push(section('Repeat', element('p', { class: 'quiet' }, `${report.program}; run in the folder of the report's making.`),
+    parts.push(section('Repeat', element('p', { class: 'quiet' }, `${report.program}. Run this command in the folder where the report was made.`),
       element('pre', {}, report.command)));
   if (report.result)
     parts.push(section('Numbers', element('p', { class: 'quiet' },

@@ -63,8 +63,10 @@ Json profile_facts(const lensprof_profile &p) {
     if (shows_falloff(p)) {
         double sigma = 0.0;
         const double corner = lensprof_profile_corner_falloff(&p, p.vignettings == 3 ? 1 : 0, &sigma);
-        add("corner illuminance", sigma > 0.0 ? format("%.2f ± %.2f (%+.2f EV)", corner, sigma, std::log2(corner))
-                                              : format("%.2f (%+.2f EV)", corner, std::log2(corner)));
+        add("corner illuminance", sigma > 0.0
+                                      ? format(sigma < 0.01 ? "%.4f ± %.4f (%+.2f EV)" : "%.2f ± %.2f (%+.2f EV)",
+                                               corner, sigma, std::log2(corner))
+                                      : format("%.2f (%+.2f EV)", corner, std::log2(corner)));
     }
     add("response", response_kind(p));
     add("processing", processing_name(p.key.processing));

@@ -223,7 +223,7 @@ void declare_show(Command &profile) {
 
 void declare_profile(Command &program) {
     Command profile =
-        program.add("profile", "list, show, change, remove, export, import, merge, check or count profiles");
+        program.add("profile", "list, change, remove, import, export, merge, check or count profiles");
     declare_list(profile);
     declare_show(profile);
     declare_profile_names(profile);

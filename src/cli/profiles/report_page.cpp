@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "cli/page/page.hpp"
+#include "cli/pictures/picture.hpp"
 #include "cli/profiles/database_page.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/key_filter.hpp"
@@ -106,6 +107,20 @@ std::vector<StoredProfile> all_profiles(const Databases &databases, Streams &str
     return profiles;
 }
 
+// Failure (usage) for a file of a response or a falloff without the name of a camera.
+void check_is_no_part_of_profile(const std::string &path) {
+    if (!is_regular_file(path) || is_profile_database(path) || is_reconstruction(path)) return;
+    const ForeignRule *rule = nullptr;
+    try {
+        rule = &format_to_read(path, "");
+    } catch (const Failure &) {
+        return;  // a picture or a project
+    }
+    if (rule->holds != LENSPROF_HOLDS_PROFILES && !is_picture_name(path))
+        throw Failure(ExitCode::usage, path + ": holds a response or a falloff, but no profile; import it with "
+                                              "`lensprof profile import` and report the database");
+}
+
 // The page of profiles, and how many it has.
 std::string page_of_profiles(const Options &o, const std::vector<std::string> &files, size_t &count, Streams &streams) {
     const bool is_of_file = files.size() == 1 && !is_profile_database(files[0]) && is_profile_file(files[0]);
@@ -146,6 +161,7 @@ int run_report(const Options &o, Streams &streams) {
     const auto is_of_profiles = [](const std::string &input) {
         return is_profile_database(input) || (!is_reconstruction(input) && is_profile_file(input));
     };
+    if (o.inputs.size() == 1) check_is_no_part_of_profile(o.inputs[0]);
     const bool has_profiles = std::any_of(o.inputs.begin(), o.inputs.end(), is_of_profiles);
     if (!o.inputs.empty() && !has_profiles && !asks_profiles) return report_fit(o, streams);
     if (!o.inputs.empty() && !o.dbs.empty()) throw Failure(ExitCode::usage, "report: give files or --db, not both");

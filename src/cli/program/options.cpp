@@ -82,6 +82,12 @@ constexpr size_t help_columns = 100;
 class HelpText : public CLI::Formatter {
 public:
     HelpText() { label("SUBCOMMAND", "VERB"); }
+    std::string make_option_opts(const CLI::Option *option) const override {
+        if (option->get_items_expected_max() == 0) return "";
+        const bool is_positional = option->get_positional();
+        return (is_positional || option->get_type_name().empty() ? "" : " " + option->get_type_name())
+               + (option->get_items_expected_max() > 1 ? " ..." : "");
+    }
     std::string make_option_desc(const CLI::Option *option) const override {
         return wrapped(CLI::Formatter::make_option_desc(option), help_columns - get_column_width());
     }

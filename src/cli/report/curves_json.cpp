@@ -70,10 +70,9 @@ void add_response_curves(const lensprof_profile &profile, const std::string &lab
 }
 
 Json typical_band(uint32_t kind) {
-    static const char *const names[] = {"today's digital cameras", "film",   "digital cameras of the 1990s",
-                                        "today's digital cameras", "phones", "today's digital cameras"};
-    if (kind != LENSPROF_CAMERA_FILM && kind != LENSPROF_CAMERA_DIGITAL && kind != LENSPROF_CAMERA_PHONE)
-        kind = LENSPROF_CAMERA_CAMERA;
+    static const char *const names[] = {"cameras of all kinds", "film", "digital cameras of the 1990s",
+                                        "today's digital cameras", "phones"};
+    if (kind == LENSPROF_CAMERA_LINEAR) return {};
     lensprof_response response;
     std::vector<double> covariance(size_t(LENSPROF_EMOR_MODES) * LENSPROF_EMOR_MODES);
     check(lensprof_response_set_typical(&response, kind, covariance.data(), nullptr), "typical response");

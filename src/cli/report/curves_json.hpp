@@ -17,8 +17,8 @@ void add_falloff_curves(const lensprof_profile &profile, const std::string &labe
 // coefficients, is missing if the covariance does not include them.
 void add_response_curves(const lensprof_profile &profile, const std::string &label, nlohmann::ordered_json &curves);
 
-// {label, low, high}: the middle 68 % of the measured cameras of a kind (today's digital cameras for kinds without
-// measured responses), at the same steps.
+// {label, low, high}: the middle 68 % of the measured cameras of a kind (a mixture of all for LENSPROF_CAMERA_ANY),
+// at the same steps; null for LENSPROF_CAMERA_LINEAR.
 nlohmann::ordered_json typical_band(uint32_t camera_kind);
 
 }  // namespace lensprof
