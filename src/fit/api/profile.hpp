@@ -1,4 +1,4 @@
-// From a result to a profile: what fits of overlaps and of cards have in common.
+// Conversion from a result to a profile, shared by overlap fits and flat field fits.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace lensprof {
 
-// The curves and covariance of a result, and in its provenance what every fit says.
+// Copies the curves and covariance of a result, and the provenance entries common to all fits.
 template <class Result>
 void put_result(const Result &result, const char *method, uint32_t images, lensprof_profile &profile) {
     profile.vignettings = result.vignettings;
@@ -29,7 +29,7 @@ void put_result(const Result &result, const char *method, uint32_t images, lensp
     p.not_usable = !result.usable;
 }
 
-// Calls change(profile) on the caller's profile as this library's.
+// Calls change(profile) on the caller's profile, converted to this library's struct version.
 template <class Change>
 lensprof_status change_given_profile(lensprof_profile *given, Change change, lensprof_error *error) {
     if (const char *wrong = lp_sized_wrong(given, LP_FIRST_PROFILE, sizeof *given))
@@ -46,7 +46,7 @@ lensprof_status change_given_profile(lensprof_profile *given, Change change, len
     }
 }
 
-// Takes a result and its options into this library's; ARGUMENT for counts that no fit gives.
+// Converts a result and its options to this library's struct versions; ARGUMENT if the counts are impossible for a fit.
 template <class Options, class Result>
 lensprof_status take_fitted(const Options *options, size_t first_options, Options &own_options, const Result *result,
                             size_t first_result, Result &own, lensprof_error *error) {

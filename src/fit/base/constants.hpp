@@ -1,4 +1,4 @@
-// Numbers that several rooms need.
+// Constants used in several folders.
 #pragma once
 
 namespace lensprof {

@@ -1,4 +1,4 @@
-// Functions of the grey value that are known at the levels 1..255 of 255 and straight between them, as ln f^-1 is.
+// Functions of the grey value sampled at the levels 1..255 of 255 and linear in between, such as ln f^-1.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 
 namespace lensprof {
 
-constexpr int kLevels = 255;  // element k - 1 belongs to level k
+constexpr int kLevels = 255;  // element k - 1 holds level k
 
-// Levels about a grey value: the lower one's element and the share of the upper one.
+// Position of a grey value between two levels: element of the lower one and weight of the upper one.
 struct Place {
     int low;
     double share;
 };
 
-// Of a grey value 0..1; below level `first` the function is what it is there.
+// Position of a grey value 0..1; below level `first` the function is constant.
 inline Place place_of(double b, double first = 1.0) {
     double level = std::clamp(b * 255.0, first, 255.0) - 1.0;
     int low = std::min(static_cast<int>(level), kLevels - 2);
@@ -31,7 +31,7 @@ inline double value_at(const std::array<double, kLevels> &function, Place p) {
     return (1.0 - p.share) * function[low] + p.share * function[low + 1];
 }
 
-// f at the 1024 samples of irradiance from inverse(grey value 0..1), made to rise and scaled to 1 at white.
+// f at the 1024 samples of irradiance from inverse(grey value 0..1), made monotone and scaled to 1 at white.
 template <class Inverse>
 std::array<double, LENSPROF_RESPONSE_SAMPLES> response_samples(Inverse inverse) {
     constexpr int kFine = 16;  // samples of the inverse between two levels
@@ -49,7 +49,7 @@ std::array<double, LENSPROF_RESPONSE_SAMPLES> response_samples(Inverse inverse) 
     return f;
 }
 
-// The normal equations of linear least squares, put together row by row.
+// The normal equations of linear least squares, accumulated row by row.
 struct NormalRows {
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
@@ -57,7 +57,7 @@ struct NormalRows {
     explicit NormalRows(Eigen::Index size)
         : normal(Eigen::MatrixXd::Zero(size, size)), right(Eigen::VectorXd::Zero(size)) {}
 
-    // value = sum of coefficients times unknowns; those with column -1 are fixed at 0.
+    // Adds the row  value = sum of coefficients times unknowns; unknowns in column -1 are fixed at 0.
     void add(const int *column, const double *coefficient, int count, double value, double weight) {
         for (int i = 0; i < count; i++) {
             if (column[i] < 0) continue;

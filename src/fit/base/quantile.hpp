@@ -6,7 +6,7 @@
 
 namespace lensprof {
 
-// Value at a share 0..1 of the values in order, the lower one of two; the values change places. 0 of none.
+// The value at quantile `share` (0..1), the lower of two candidates; reorders the values. 0 if there are no values.
 template <class Value>
 Value quantile(std::vector<Value> &values, double share) {
     if (values.empty()) return Value{};

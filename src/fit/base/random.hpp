@@ -1,11 +1,11 @@
-// Random numbers of a stated seed.
+// Random numbers from a given seed.
 #pragma once
 
 #include <cstdint>
 
 namespace lensprof {
 
-// splitmix64: a fixed sequence from a seed, uniform in [0, 1).
+// splitmix64: a reproducible sequence for each seed, uniform in [0, 1).
 struct Random {
     uint64_t state;
 

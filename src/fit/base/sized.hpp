@@ -1,4 +1,4 @@
-// Arrays of structs that grow, to and from the caller's version of them.
+// Conversion of arrays of extensible structs between the caller's struct version and this library's.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace lensprof {
 
-// The caller's array as one of this library's structs, each of which init(struct, its index) has set to the defaults.
-// All elements have the struct_size of the first, which is the step from one to the next.
+// Copies the caller's array into structs of this library's version; init(struct, its index) sets the defaults first.
+// The struct_size of the first element applies to all elements and is the stride of the array.
 template <class T, class Init>
 lensprof_status take_all(const T *given, uint32_t count, size_t first, lensprof_item_kind kind, Init init,
                          std::vector<T> &own, lensprof_error *error) {
@@ -32,13 +32,13 @@ lensprof_status take_all(const T *given, uint32_t count, size_t first, lensprof_
     return LENSPROF_OK;
 }
 
-// The results of the images, as many bytes of each as the caller's struct has, into his array.
+// Copies the per-image results into the caller's array, as many bytes of each as the caller's struct has.
 template <class T>
 void give_all(const std::vector<T> &own, T *given, size_t step) {
     for (size_t i = 0; i < own.size(); i++) std::memcpy(reinterpret_cast<char *>(given) + i * step, &own[i], step);
 }
 
-// Refuses the caller's result, or the size of its image_quality, if this library's structs cannot stand for them.
+// Rejects the caller's result, or the size of its image_quality, if it is incompatible with this library's structs.
 template <class Result, class Quality>
 lensprof_status check_result(const Result &result, size_t first, size_t first_quality, const Quality *quality,
                              const char *what, lensprof_error *error) {
@@ -51,7 +51,7 @@ lensprof_status check_result(const Result &result, size_t first, size_t first_qu
     return LENSPROF_OK;
 }
 
-// A fit's result and its image_quality, found, to the caller's, whose size, array and step stay.
+// Copies the result `found` and its image_quality to the caller's; the caller's size, array and stride stay.
 template <class Result, class Quality>
 void give_result(Result &found, const std::vector<Quality> &quality, Result *given) {
     found.image_quality = given->image_quality;

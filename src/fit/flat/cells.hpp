@@ -1,4 +1,4 @@
-// A picture of an even light in cells: robust means, their noise, and what is beyond black and white.
+// Division of a picture of an even light into cells: robust means, their noise, and clipping at black and white.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace lensprof {
 
-// The frame in cells of equal size; the same for all pictures.
+// The frame divided into cells of equal size; the same for all pictures.
 struct CellGrid {
     uint32_t width = 0, height = 0;  // frame, px
     int columns = 0, rows = 0;
@@ -21,21 +21,21 @@ struct CellGrid {
     double cell_height() const { return static_cast<double>(height) / rows; }
 };
 
-// About 96 cells along the longer side, and no less than eight pixels of the smallest view along a cell.
+// About 96 cells along the longer side, and at least eight pixels of the smallest view along a cell.
 CellGrid make_cell_grid(const lensprof_flat_image *images, uint32_t count);
 
 enum class CellState : uint8_t {
-    masked,  // less than nine tenths of its pixels are the card, or in the view
-    white,   // holds pixels above the white limit
-    black,   // holds pixels below the black limit
+    masked,  // less than nine tenths of its pixels are on the card, or in the view
+    white,   // contains pixels above the white limit
+    black,   // contains pixels below the black limit
     used
 };
 
 struct Cell {
     CellState state = CellState::masked;
-    float low_share = 0.0f;  // pixels far darker than the rest, of the worst channel
+    float low_share = 0.0f;  // share of pixels far darker than the rest, in the worst channel
     uint32_t pixels = 0;
-    double x = 0.0, y = 0.0;       // their middle, px of the frame
+    double x = 0.0, y = 0.0;       // centre of these pixels, px of the frame
     std::array<float, 3> value{};  // robust mean of the grey values
     std::array<float, 3> noise{};  // standard deviation of a pixel, from differences of neighbours
 };
@@ -48,13 +48,13 @@ struct NoiseCurve {
 
 struct CellPicture {
     std::vector<Cell> cells;
-    std::array<NoiseCurve, 3> noise;  // of the channels
+    std::array<NoiseCurve, 3> noise;  // per channel
 };
 
-// The picture as what the sampler reads; its camera has the frame's size alone.
+// The picture in the form that the sampler reads; its camera has only the frame's size.
 lensprof_sample_image sample_image_of(const lensprof_flat_image &image);
 
-// Cells of every picture, on several threads; false when cancelled.
+// Measures the cells of every picture, on several threads; false when cancelled.
 bool measure_cells(const lensprof_flat_options &options, const lensprof_flat_image *images, uint32_t count,
                    const CellGrid &grid, std::vector<CellPicture> &pictures);
 

@@ -1,11 +1,11 @@
-// The flat field fit from pictures to verdict.
+// The flat field fit, from pictures to verdict.
 #pragma once
 
 #include "fit/flat/solver.hpp"
 
 namespace lensprof {
 
-// All that a call holds.
+// All data of one call.
 struct FlatFit {
     const lensprof_flat_options &options;
     const lensprof_flat_image *images;
@@ -13,30 +13,30 @@ struct FlatFit {
     CellGrid grid;
     std::vector<CellPicture> pictures;
     std::vector<Shot> shots;
-    std::vector<std::vector<bool>> left_out;  // of every shot: cells of dust
+    std::vector<std::vector<bool>> left_out;  // per shot: cells with dust
     FlatProblem problem;
     FlatEstimate estimate;
-    Eigen::MatrixXd covariance;  // empty when not determined
+    Eigen::MatrixXd covariance;  // empty if not determined
 };
 
-// Throws Cancelled. False when no cell lies between black and white.
+// Throws Cancelled. False if no cell lies between black and white.
 bool fit_flat(const lensprof_flat_options &options, const lensprof_flat_image *images, uint32_t count,
               lensprof_flat_result &result);
 
-// Relative residual E / P - 1 of every cell of a shot and channel, less that of the gain grid (may be NULL); NaN where
-// there is none. With `dust`, also of the cells left out.
+// Relative residual E / P - 1 of every cell of a shot and channel, less that of the gain grid (may be NULL); NaN for
+// cells without a residual. With `dust`, includes the cells that are left out.
 std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, const lensprof_gain_grid *gain, bool dust);
 
-// Looks for small dark places and fills left_out with them and the cells around them, and the result's spots.
+// Looks for small dark spots. Adds their cells and the cells around them to left_out, and fills the result's spots.
 void find_spots(FlatFit &fit, lensprof_flat_result &result);
 
-// What the falloff leaves at the same place of all shots, on nodes; false when the cells do not cover the frame.
+// Fits a grid of nodes to the residual of the falloff common to all shots; false if the cells do not cover the frame.
 bool fit_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);
 
-// Makes it 1 at the centre of M, which is 1 there too.
+// Scales the grid to 1 at the centre of M, where M is 1 as well.
 void normalise_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);
 
-// Fills everything but the verdict.
+// Fills everything except the verdict.
 void describe_flat(const FlatFit &fit, lensprof_flat_result &result);
 
 // Fills `usable` and `reason`.

@@ -1,6 +1,6 @@
-// The light that the model predicts in a cell, and its derivatives (Goldman & Chen 2005, equation 14):
+// The light predicted for a cell, and its derivatives (Goldman & Chen 2005, equation 14):
 //     P = t L0 M(r) = exp(level + light . basis(q)) (1 + k1 r^2 + k2 r^4 + k3 r^6)
-// q is the cell's place turned into the scene, in half diagonals about the frame's centre.
+// q is the cell's position rotated into the scene, in half diagonals from the frame's centre.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@ namespace lensprof {
 
 constexpr int kMostLightTerms = 4;  // x, y, x^2 - y^2, 2 x y
 
-// What is unknown, and where it stands in the vector of unknowns: curves, centre, levels, light.
+// Layout of the vector of unknowns: curves, centre, levels, light.
 struct FlatModel {
     CellGrid grid;
     int channels = 3, curves = 1, shots = 1;
     int light_terms = 2;
     bool own_light = false, several = false;
-    std::vector<std::array<double, 2>> turn;  // of the shots: cosine and sine
+    std::vector<std::array<double, 2>> turn;  // per shot: cosine and sine
 
     int k(int curve) const { return 3 * curve; }
     int center() const { return 3 * curves; }
     int levels() const { return center() + 2; }
-    // A shot's level is level(channel) alone, or with `several` that plus the error of its exposure.
+    // The level of a shot is level(channel) alone; with `several` exposures, plus the error of its exposure.
     int level(int shot, int channel) const { return levels() + (several ? 0 : shot * channels) + channel; }
     int exposure_error(int shot) const { return levels() + channels + shot; }
     int light(int shot, int channel) const {
@@ -54,7 +54,8 @@ struct Prediction {
 
 Prediction predict(const FlatModel &model, const Eigen::VectorXd &u, int shot, int channel, double x, double y);
 
-// Slope of the light's logarithm in a shot's frame, to the right and down, a half diagonal: mean of the channels.
+// Slope of the logarithm of the light in a shot's frame, to the right and down, per half diagonal: mean of the
+// channels.
 std::array<double, 2> light_gradient(const FlatModel &model, const Eigen::VectorXd &u, int shot);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// Shots: the exposures of one pose merged into one picture of light, and where the card is in it.
+// Shots: the exposures of one pose, merged into one picture of the light, and the area of the card in it.
 #pragma once
 
 #include <array>
@@ -8,27 +8,27 @@
 
 namespace lensprof {
 
-// The light that fell on one cell, on the scale of exposure 0 EV.
+// The light received by one cell, on the scale of exposure 0 EV.
 struct Light {
     CellState state = CellState::masked;  // white or black: in every exposure
-    float low_share = 0.0f;               // pixels far darker than the rest
-    double x = 0.0, y = 0.0;              // where, px of the frame
-    std::array<double, 3> value{};        // E; where white or black, the limit's
+    float low_share = 0.0f;               // share of pixels far darker than the rest
+    double x = 0.0, y = 0.0;              // centre of these pixels, px of the frame
+    std::array<double, 3> value{};        // E; if white or black, that of the limit
     std::array<double, 3> variance{};     // of E, from the noise of its pixels
 };
 
 struct Shot {
-    uint32_t number = 0;           // the caller's
+    uint32_t number = 0;           // the caller's number
     double turn = 0.0;             // radians
-    std::vector<uint32_t> images;  // by exposure, the least first
-    std::vector<Light> light;      // of every cell
-    std::vector<bool> card;        // cells of the card
+    std::vector<uint32_t> images;  // in order of exposure, the lowest first
+    std::vector<Light> light;      // per cell
+    std::vector<bool> card;        // cells on the card
 };
 
-// Shots in the order in which their first pictures come.
+// Groups the pictures into shots, in the order of their first pictures.
 std::vector<Shot> group_shots(const lensprof_flat_image *images, uint32_t count);
 
-// The response of a channel; a straight line when there is none.
+// The response per channel; a straight line if none is given.
 class Responses {
 public:
     explicit Responses(const lensprof_flat_options &options);
@@ -45,17 +45,17 @@ private:
 void merge_exposures(const lensprof_flat_options &options, const lensprof_flat_image *images,
                      const std::vector<CellPicture> &pictures, const Responses &responses, Shot &shot);
 
-// By how much every picture's light differs from that of the others of its shot, EV, median over its cells; 0 where
-// there are none. One a picture of the shot.
+// Difference of every picture's light from that of the other pictures of its shot, EV: median over its cells, 0 if
+// there are none. One value per picture of the shot.
 std::vector<double> exposure_residuals(const lensprof_flat_options &options, const lensprof_flat_image *images,
                                        const std::vector<CellPicture> &pictures, const Responses &responses,
                                        const Shot &shot);
 
-// Marks the cells of the card: all that hold data, or with `find` the largest even region among the bright ones,
+// Marks the cells of the card: all cells with data or, with `find`, the largest even region among the bright cells,
 // without its rim.
 void mark_card(const CellGrid &grid, bool find, int channels, Shot &shot);
 
-// Groups of cells that touch (4 neighbours), each in ascending order; `joins` says whether two neighbours belong
+// Groups of connected cells (4 neighbours), each in ascending order; `joins` decides whether two neighbours belong
 // together.
 template <class Joins>
 std::vector<std::vector<int>> connected_cells(const CellGrid &grid, const std::vector<bool> &member, Joins joins) {

@@ -5,14 +5,14 @@
 
 namespace lensprof {
 
-// A cell of a shot that takes part.
+// A cell of a shot that is used in the fit.
 struct FlatCell {
     int shot, cell;
     double x, y;                            // px of the frame
     std::array<double, 3> value, variance;  // E and the variance of its noise
 };
 
-// Gaussian knowledge of the unknowns: (u - mean)' precision (u - mean) / 2.
+// Gaussian prior on the unknowns: (u - mean)' precision (u - mean) / 2.
 struct FlatPrior {
     Eigen::VectorXd mean;
     Eigen::MatrixXd precision;
@@ -29,16 +29,17 @@ struct FlatProblem {
 struct FlatEstimate {
     Eigen::VectorXd u;
     double unevenness = 0.0;  // relative standard deviation of a cell beyond its noise
-    double inflation = 1.0;   // variance of the residuals' sums over blocks of cells, in that of independent cells
-    double scale = 1.0;       // residuals are so many times what noise and unevenness say
+    double inflation = 1.0;   // variance of the residuals' sums over blocks of cells, relative to independent cells
+    double scale = 1.0;       // ratio of the residuals to what noise and unevenness predict
     uint32_t iterations = 0;
     bool converged = false;
 };
 
-// Which unknowns are estimated: those of the lens as `free` (LENSPROF_FREE_...) says, and all others.
+// Indices of the unknowns that are estimated: those of the lens that `free` (LENSPROF_FREE_...) includes, and all
+// others.
 std::vector<int> free_unknowns(const FlatModel &model, uint32_t free);
 
-// From k = 0 (or the values held), even light and the levels that the cells have.
+// Start values: k = 0 (or the held values), even light and the levels of the cells.
 Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting &given);
 
 // Residual of a cell and channel, (E - P) / sigma, and P with its derivatives.
@@ -48,14 +49,15 @@ struct FlatResidual {
 };
 FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell, int channel);
 
-// Sum of squared residuals of a cell, in units of scale^2: chi-squared, one degree of freedom a channel.
+// Sum of squared residuals of a cell, in units of scale^2: chi-squared, one degree of freedom per channel.
 double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);
 
-// Neighbouring cells whose residuals agree count as fewer: what all cells say weighs less, beside the prior and in the
-// covariance, by what their sums over blocks of 4 to 32 cells a side vary more than those of independent cells.
+// Neighbouring cells whose residuals are correlated count as fewer cells. The weight of the cells against the prior and
+// in the covariance is divided by the inflation: how much more their sums over blocks of 4 to 32 cells per side vary
+// than those of independent cells.
 void solve_flat(const FlatProblem &problem, FlatEstimate &estimate);
 
-// Covariance of all unknowns, zero where held. Empty when the cells do not determine every free unknown.
+// Covariance of all unknowns, zero for held ones. Empty if the cells do not determine every free unknown.
 Eigen::MatrixXd flat_covariance(const FlatProblem &problem, const FlatEstimate &estimate);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// Data of several cameras, parted: what each is fitted to.
+// Splits the data of several cameras into the input of one fit per camera.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@ namespace lensprof {
 
 constexpr uint32_t kNoPlace = UINT32_MAX;
 
-// Images of one camera that pairs of its own join, and the data between them.
+// Images of one camera that are connected by its own pairs, and the data between them.
 struct CameraInput {
-    lensprof_fit_options options;   // its reference and links are of these images
-    uint32_t number = 0;            // the caller's, of the camera
-    std::vector<uint32_t> numbers;  // of its images among all
-    std::vector<uint32_t> place;    // of each image of all among these; kNoPlace
+    lensprof_fit_options options;   // its reference and links refer to these images
+    uint32_t number = 0;            // the caller's camera number
+    std::vector<uint32_t> numbers;  // index of each image among all images
+    std::vector<uint32_t> place;    // for each of all images, its index here; else kNoPlace
     std::vector<lensprof_fit_image> images;
     std::vector<lensprof_link> links;
     std::vector<lensprof_pair> pairs;
@@ -23,7 +23,7 @@ struct CameraInput {
     bool has_data() const { return images.size() > 1 && !(pairs.empty() && observations.empty()); }
 };
 
-// What a fit of several cameras is given. `observations`: tracks, which are fitted in place of their `pairs`; or none.
+// Input of a fit of several cameras. If there are `observations` (tracks), they are fitted instead of the `pairs`.
 struct CamerasData {
     const lensprof_fit_options &options;
     const std::vector<lensprof_fit_image> &images;
@@ -31,12 +31,12 @@ struct CamerasData {
     std::vector<lensprof_observation> observations;
 };
 
-// Of each image the camera, numbered as they come.
+// Camera of each image, numbered in order of first appearance.
 std::vector<uint32_t> camera_numbers(const std::vector<lensprof_fit_image> &images);
 
-// Of each camera, by these numbers, the largest group of its images that what they share joins, with the data between
-// them. Unknowns that images of several cameras share are shared within each. Options point into the inputs, which must
-// not be copied.
+// For each camera, by these numbers, the largest group of its images that shared data connects, with the data between
+// them. Unknowns shared by images of several cameras are shared only within each camera. Options point into the inputs,
+// which must not be copied.
 std::vector<CameraInput> part_cameras(const CamerasData &data, const std::vector<uint32_t> &camera_of);
 
 }  // namespace lensprof

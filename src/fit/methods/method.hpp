@@ -1,5 +1,5 @@
-// What the methods that alternate between candidates have in common: the pairs or tracks in three parts, the prior of
-// the falloff curves, the first short fits, and how candidates are chosen by held-out error.
+// Common parts of the methods that alternate between candidates: the pairs or tracks in three parts, the prior of the
+// falloff curves, the first short fits, and the choice between candidates by held-out error.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace lensprof {
 
 class Method {
 protected:
-    // The problems come later: `all_` with a method's own, `train_` and `heldout_` from the split.
+    // The problems are set later: `all_` from a method's own data, `train_` and `heldout_` from the split.
     Method(const lensprof_fit_options &options, uint32_t count, uint32_t image_count)
         : options_(options), split_(split_pairs(count, image_count)) {}
 
@@ -25,11 +25,11 @@ protected:
         return l;
     }
 
-    // The pairs or tracks of short first fits.
+    // The pairs or tracks used for short first fits.
     const std::vector<uint32_t> &few() const { return split_.few.empty() ? split_.all : split_.few; }
 
-    // The best of short fits from every start, all at one fixed noise level, so that their costs compare. A gauge that
-    // leaves gamma open suits them.
+    // The best of short fits from every start, all at one fixed noise level so that their costs are comparable. Use a
+    // gauge that leaves gamma open.
     Estimate best_brief_fit(const Problem &problem, Gauge &gauge, const std::function<bool()> &cancelled,
                             std::vector<Estimate> starts) const {
         Control brief;
@@ -59,14 +59,14 @@ protected:
         prior_ = make_prior(options_.prior_weight, count, all_.settings, all_.by_radiance);
     }
 
-    // Whether held-out error may choose between one falloff curve and three.
+    // Whether held-out error may decide between one falloff curve and three.
     bool may_choose_vignettings(bool has_heldout) const {
         constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
         return options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout;
     }
 
-    // One falloff curve per channel when held-out pairs are clearly better for it. set(curves) sets their number;
-    // fit() fits a candidate with what is set.
+    // Chooses one falloff curve per channel if held-out pairs are clearly better for it. set(curves) sets their number;
+    // fit() fits a candidate with the current number.
     template <class Candidate, class Set, class FitAgain>
     static void choose_vignettings(Candidate &best, Set set, FitAgain fit) {
         set(3);
@@ -81,7 +81,7 @@ protected:
     const Split split_;
     Problem all_, train_, heldout_;
     Prior prior_;
-    Loss common_;  // of the candidates: what held-out losses are measured with
+    Loss common_;  // common to all candidates: measures held-out losses
     double done_ = 0.0;
 };
 

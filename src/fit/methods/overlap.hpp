@@ -9,7 +9,7 @@ void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *
                  const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
                  lensprof_fit_result &result);
 
-// The same by method `radiance`; some track must have a pair.
+// The same by method `radiance`; at least one track must have a pair.
 void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                   const Tracks &tracks, lensprof_exposure *exposures, lensprof_fit_result &result);
 

@@ -1,5 +1,5 @@
-// A finished result moved along its family: (f, M, e) to (f o x^(1/gamma), M^gamma, e^gamma), which make the same
-// pictures, and its exposures moved to another reference.
+// Moves a finished result along its family: (f, M, e) to (f o x^(1/gamma), M^gamma, e^gamma), which produce the same
+// pictures. Also moves its exposures to another reference.
 #pragma once
 
 #include <array>
@@ -10,22 +10,22 @@
 
 namespace lensprof {
 
-// Raises response, falloffs and exposures of a result to the exponent exp(log_gamma), whose standard error then is
-// `sigma`, and states their errors by that. The response becomes a TABLE, which follows exactly; the coefficients that
-// are not `free` (LENSPROF_FREE_K1.._K3) stay. `settings`: those of the result that are its own. Exposures are relative
-// to its reference's.
+// Raises response, falloffs and exposures of a result to the exponent exp(log_gamma), whose standard error is then
+// `sigma`, and updates their errors accordingly. The response becomes a TABLE, which follows exactly; coefficients that
+// are not `free` (LENSPROF_FREE_K1.._K3) stay. `settings`: the settings of the result that are its own. Exposures are
+// relative to its reference's.
 void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<uint32_t> &settings,
                   std::vector<lensprof_exposure> &exposures, lensprof_fit_result &result);
 
-// By how much the light of images differs, natural logarithm, with its standard errors: that of the channel which
-// exposures are measured in, and of the others less that one.
+// Difference of the light of images, natural logarithm, with its standard errors: of the channel in which exposures are
+// measured, and of the other channels relative to it.
 struct Offset {
     std::array<double, 3> log_light;
     double sigma;
     std::array<double, 3> balance_sigma;
 };
 
-// Multiplies the light of all images, as their exposures have it.
+// Multiplies the light of all images by adjusting their exposures.
 void offset_exposures(const Offset &offset, uint32_t channels, std::vector<lensprof_exposure> &exposures,
                       lensprof_fit_result &result);
 

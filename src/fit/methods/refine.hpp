@@ -1,8 +1,8 @@
 // The response by its logarithmic inverse G = ln f^-1 at the grey levels 1..255 of 255, free at every level.
 //
 // Two grey values of one scene point obey  G(B1) - G(B2) = ln M1/M2 + a1 - a2  (Kim & Pollefeys 2004, eq. 3; Debevec &
-// Malik 1997, eq. 2, with the radiance eliminated): linear in G and in the exposures. What an EMoR basis cannot follow,
-// steep ends above all, is refined that way, as a smooth correction D = G - G0 of the fitted curve G0.
+// Malik 1997, eq. 2, with the radiance eliminated): linear in G and in the exposures. A smooth correction D = G - G0
+// of the fitted curve G0 refines what an EMoR basis cannot represent, steep ends above all.
 #pragma once
 
 #include "fit/prior/gauge.hpp"
@@ -12,14 +12,15 @@ namespace lensprof {
 
 constexpr uint32_t kMostRefinedImages = 256;  // their exposures are solved for densely
 
-// Refines the response and the exposures of an estimate that has an EMoR response: its response becomes a table.
-// `loss` has the noise. gamma, which no pair tells, stays where it is.
+// Refines the response and the exposures of an estimate that has an EMoR response: its response becomes a table. `loss`
+// provides the noise. gamma, which no pair determines, stays.
 void refine_response(const Problem &problem, const Loss &loss, Estimate &estimate);
 
-// Its parts, for tests of the derivatives. D at levels 1..254 of 255, as `by`; changes of the images' log exposures.
+// Its parts, for tests of the derivatives. `by`: D at levels 1..254 of 255; `changes`: changes of the images' log
+// exposures.
 constexpr int kCorrections = 254;
 
-// The estimate with a corrected response, which becomes a table, and changed exposures.
+// The estimate with a corrected response (then a table) and changed exposures.
 Estimate corrected(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
                    const Eigen::VectorXd &changes);
 

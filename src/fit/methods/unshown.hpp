@@ -1,4 +1,4 @@
-// Responses that pictures do not show.
+// Responses that the pictures do not determine.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@ namespace lensprof {
 using FitHeld =
     std::function<void(const lensprof_fit_options &options, lensprof_exposure *exposures, lensprof_fit_result &result)>;
 
-// Where the light at the ends of the pairs differs too little for what was fitted to be a response, the result becomes
-// one with the response held: at that of the profile that is the prior, or by another fit at the typical one of the
-// kind of camera, with the errors of that. The paper's own variant, without a prior, stays as it is.
+// If the light at the ends of the pairs differs too little to determine a response, replaces the result by one with a
+// held response, including its errors: that of the prior profile, or else, by another fit, the typical response of the
+// kind of camera. The paper's own variant, without a prior, is unchanged.
 void settle_unshown_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
                              lensprof_exposure *exposures, lensprof_fit_result &result);
 

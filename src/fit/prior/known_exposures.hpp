@@ -1,4 +1,4 @@
-// Whether known exposures agree with each other and with the pictures, and what explains it best where they do not.
+// Whether known exposures agree with each other and with the pictures, and the best explanation if they do not.
 #pragma once
 
 #include "fit/problem/problem.hpp"
@@ -14,16 +14,16 @@ struct KnownExposures {
         any
     };
 
-    int count = 0;       // known ones in the reference's group
-    double slope = 1.0;  // of the found exposures on them
+    int count = 0;       // number of known exposures in the reference's group
+    double slope = 1.0;  // of the found exposures against them
     // none: they agree within their errors. order: they do not follow the pictures at all.
     Explanation explanation = Explanation::none;
-    uint32_t image = 0;  // one: that is wrong; step: the first after it
+    uint32_t image = 0;  // one: the wrong image; step: the first image after the step
     double off_ev =
-        0.0;  // by how much it is wrong, the step, or the largest distance of any; order: how the pictures differ
+        0.0;  // size of the error, of the step, or largest distance of any image; order: spread of the pictures
 };
 
-// With `open`, a factor between known and found exposures is as good as none: gamma.
+// With `open`, a factor between known and found exposures is accepted: it is gamma.
 KnownExposures compare_known(const Problem &problem, const Estimate &estimate, bool open);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// Standard errors of an estimator that no formula describes: how it scatters where a part of the pairs is left out
+// Standard errors of an estimator that has no formula for them: its scatter if a part of the pairs is left out
 // (delete-a-group jackknife).
 #pragma once
 
@@ -8,11 +8,11 @@
 
 namespace lensprof {
 
-constexpr uint32_t kJackknifeGroups = 20;  // a standard error is then itself known to a sixth
+constexpr uint32_t kJackknifeGroups = 20;  // a standard error then has a relative error of a sixth
 
-// `without(keep)` is the estimate from the pairs of these numbers, to be compared with that of all; called on several
-// threads. What is told of the `modes` of the response, the falloff's and the images' unknowns is the scatter of these.
-// Not determined where any of them failed (no log exposures).
+// `without(keep)` returns the estimate from the pairs with these numbers, comparable to that of all pairs; it is called
+// on several threads. The result is the scatter of the `modes` of the response, of the falloff and of the images'
+// unknowns. Not determined if any call fails (no log exposures).
 Covariance jackknife(const Problem &problem, uint32_t pair_count,
                      const std::function<Estimate(const std::vector<uint32_t> &keep)> &without,
                      const std::function<bool()> &cancelled);

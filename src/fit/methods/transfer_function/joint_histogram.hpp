@@ -11,7 +11,7 @@ namespace lensprof {
 // Grey values of one scene point in two images, levels of 255 with fraction.
 using LevelPair = std::array<double, 2>;
 
-// count[b1 * bins + b2]: pairs, each in the bin nearest to it; bin b stands for level 255 b / (bins - 1).
+// count[b1 * bins + b2]: number of pairs, each in its nearest bin; bin b represents level 255 b / (bins - 1).
 struct JointHistogram {
     int bins;
     std::vector<double> count;
@@ -23,13 +23,13 @@ struct JointHistogram {
 
 JointHistogram joint_histogram(const std::vector<LevelPair> &pairs, int bins);
 
-// ln( G(0, sigma) * J + P0 ), eq. 5: sigma in bins, P0 what as many pairs would give that lie evenly over all bins.
+// ln( G(0, sigma) * J + P0 ), eq. 5: sigma in bins; P0 is the value if as many pairs were spread evenly over all bins.
 JointHistogram log_likelihood(const JointHistogram &histogram, double sigma);
 
 JointHistogram transposed(const JointHistogram &histogram);
 
-// The path b2 = T(b1) of the greatest sum of logarithms (eq. 6) that does not fall, with T(0) = 0, T(max) = max, and
-// T >= identity everywhere or T <= identity everywhere, whichever is the likelier.
+// The non-decreasing path b2 = T(b1) with the greatest sum of logarithms (eq. 6), with T(0) = 0, T(max) = max, and
+// either T >= identity everywhere or T <= identity everywhere, whichever is likelier.
 struct TransferPath {
     std::vector<int> to;
     double log_likelihood;

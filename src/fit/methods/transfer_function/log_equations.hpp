@@ -1,4 +1,4 @@
-// The linear equations of response and exposures that transfer functions make (Kim & Pollefeys 2004, eq. 9 to 13):
+// The linear equations of response and exposures given by transfer functions (Kim & Pollefeys 2004, eq. 9 to 13):
 //     g(b2) - g(b1) - (a2 - a1) = 0,    g = g0 + sum c_n h'_n,
 // over the points (b1, b2) of all curves, solved by least squares with the images' exposures eliminated.
 #pragma once
@@ -12,7 +12,7 @@
 namespace lensprof {
 
 struct LogModel {
-    bool is_free = true;  // the response; else `g` stays as it is
+    bool is_free = true;  // whether the response is estimated; else `g` stays
     int modes = 0;        // coefficients in use
     LogCoefficients c = LogCoefficients::Zero();
     LogInverse g = log_inverse(LogCoefficients(LogCoefficients::Zero()));
@@ -20,13 +20,13 @@ struct LogModel {
 
 struct LogWeights {
     double noise = 1.0;     // of a grey value, levels
-    bool as_paper = false;  // all points as they are, and alike but for the mask over the grey levels
-    bool adjusted = false;  // derivatives at the points' nearest places on the estimate's curve, not at the points
+    bool as_paper = false;  // all points unadjusted and of equal weight except for the mask over the grey levels
+    bool adjusted = false;  // derivatives at the nearest places on the estimate's curve, not at the points
 };
 
 class LogEquations {
 public:
-    // Points weighed by the noise they carry at the model's response, by the mask over the grey levels, and by how well
+    // Weights points by the noise they carry at the model's response, by the mask over the grey levels, and by how well
     // they agree with the estimate: its response and exposures.
     LogEquations(const Problem &problem, const std::vector<TransferCurve> &curves, const LogWeights &weights,
                  const LogModel &model, const Estimate &estimate);
@@ -34,12 +34,12 @@ public:
     // Adds known exposures of images.
     void add_known(const std::vector<Prior::KnownExposure> &known, const Estimate &estimate);
 
-    // Eliminates the images; false when that failed numerically.
+    // Eliminates the images; false if that failed numerically.
     bool eliminate();
 
-    // Coefficients with `prior_weight` of the database's spread; then the exposures. With `hold_scale` the estimate's
-    // exposures keep their scale: (g, k) and (alpha g, alpha k) solve the same equations, and so does k = 0. False when
-    // the equations do not determine the unknowns.
+    // Solves for the coefficients with `prior_weight` times the prior of the database's spread, then for the exposures.
+    // With `hold_scale` the estimate's exposures keep their scale, because (g, k) and (alpha g, alpha k) solve the same
+    // equations, and so does k = 0. False if the equations do not determine the unknowns.
     bool solve(double prior_weight, bool hold_scale, LogModel &model, Estimate &estimate) const;
 
     double points() const { return points_; }  // effective number
@@ -51,7 +51,7 @@ private:
 
     const Problem &problem_;
     double points_ = 0.0;
-    Eigen::MatrixXd response_;  // by the coefficients, all of them
+    Eigen::MatrixXd response_;  // by all coefficients
     Eigen::VectorXd response_right_;
     Eigen::MatrixXd cross_;        // images x coefficients
     Eigen::VectorXd image_right_;  // by changes of the images' unknowns

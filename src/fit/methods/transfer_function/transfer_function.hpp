@@ -1,5 +1,5 @@
-// Response and exposures from the brightness transfer functions of image pairs (Kim & Pollefeys 2004), the falloff by
-// alternation: from checked input to result.
+// Response and exposures from the brightness transfer functions of image pairs (Kim & Pollefeys 2004), alternating with
+// the falloff: from checked input to result.
 #pragma once
 
 #include <lensprof/fit.h>
