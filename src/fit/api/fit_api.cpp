@@ -1,4 +1,4 @@
-// The C face of the overlap fit: checks, and the exception fence.
+// The C interface of the overlap fit: argument checks, and conversion of exceptions to status codes.
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -32,7 +32,7 @@ constexpr size_t kFirstSetting = sizeof(lensprof_fit_setting);
 constexpr size_t kFirstCamera = sizeof(lensprof_fit_camera);
 constexpr size_t kFirstQuality = LP_END_OF(lensprof_fit_image_quality, known_ev_left_out);
 
-// The profile that is to be the prior.
+// Checks the profile that is used as the prior.
 lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *error) {
     if (o.method != LENSPROF_METHOD_TRANSFER && o.method != LENSPROF_METHOD_RADIANCE)
         return fail(LENSPROF_ERROR_UNSUPPORTED, error,
@@ -54,7 +54,7 @@ lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *err
     return LENSPROF_OK;
 }
 
-// The first option that is out of its range, with that range; NULL when none is.
+// The first option that is out of range, with its range; NULL if all are valid.
 const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
     const Rule rules[] = {
         {o.channels == 1 || o.channels == 3, "channels must be 1 or 3"},
@@ -137,7 +137,7 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
     return LENSPROF_OK;
 }
 
-// A setting is that of a lens on one camera.
+// Checks that every setting belongs to one camera.
 lensprof_status check_cameras(const std::vector<lensprof_fit_image> &images, lensprof_error *error) {
     std::map<uint32_t, uint32_t> first;  // image of each setting
     for (uint32_t i = 0; i < images.size(); i++) {
@@ -150,7 +150,7 @@ lensprof_status check_cameras(const std::vector<lensprof_fit_image> &images, len
     return LENSPROF_OK;
 }
 
-// A position and grey values in an image; they are those of item `what` and its number.
+// Checks a position and grey values in an image; errors name the item `what` and its number.
 lensprof_status check_end(const double xy[2], const double value[3], const lensprof_fit_image &frame, uint32_t image,
                           int channels, lensprof_item_kind what, uint32_t number, lensprof_error *error) {
     double x = xy[0], y = xy[1];
@@ -214,7 +214,7 @@ lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error) {
     return LENSPROF_OK;
 }
 
-// What the method `debevec` takes as known, and the one thing that it finds.
+// Checks what the method `debevec` requires as known, and that only the response is free.
 lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_image *images, uint32_t image_count,
                               lensprof_error *error) {
     if (o.free != LENSPROF_FREE_RESPONSE)
@@ -233,20 +233,20 @@ lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_
 }
 
 bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t count) {
-    if (options.method == LENSPROF_METHOD_DEBEVEC) return true;  // the response, by no modes
+    if (options.method == LENSPROF_METHOD_DEBEVEC) return true;  // the response, without modes
     Problem problem = make_problem(options, images, count, nullptr, {});
     return problem.image_unknowns > 0 || !free_columns(problem, options.modes == 0 ? 0 : 1).empty();
 }
 
-// Everything that a call reads and writes but pairs, observations and exposures, as this library's structs.
+// All arguments and results of a call except pairs, observations and exposures, in this library's struct versions.
 struct Call {
     lensprof_fit_options options;
     lensprof_response linear;
     std::vector<lensprof_fit_image> images;
     lensprof_fit_result result;
     std::vector<lensprof_fit_image_quality> quality;
-    std::vector<lensprof_fit_setting> settings;      // none where all images are of setting 0
-    std::vector<lensprof_fit_camera> cameras;        // none where all images are of camera 0
+    std::vector<lensprof_fit_setting> settings;      // empty if all images have setting 0
+    std::vector<lensprof_fit_camera> cameras;        // empty if all images have camera 0
     lensprof_fit_setting *given_settings = nullptr;  // the caller's arrays, or NULL
     lensprof_fit_camera *given_cameras = nullptr;
     uint32_t given_setting_count = 0, given_camera_count = 0;
@@ -263,11 +263,11 @@ lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std
     return status == LENSPROF_OK ? check_cameras(own, error) : status;
 }
 
-// Methods that estimate one falloff take one setting of a camera.
+// Rejects more than one setting per camera for methods that estimate a single falloff.
 lensprof_status check_settings(const Call &call, lensprof_error *error) {
     const uint32_t method = call.options.method;
     if (method != LENSPROF_METHOD_TRANSFER_FUNCTION && method != LENSPROF_METHOD_DEBEVEC) return LENSPROF_OK;
-    std::map<uint32_t, uint32_t> setting_of;  // of each camera
+    std::map<uint32_t, uint32_t> setting_of;  // per camera
     for (uint32_t i = 0; i < call.count(); i++) {
         const lensprof_fit_image &image = call.images[i];
         const uint32_t camera = method == LENSPROF_METHOD_DEBEVEC ? 0 : image.camera;
@@ -281,8 +281,8 @@ lensprof_status check_settings(const Call &call, lensprof_error *error) {
     return LENSPROF_OK;
 }
 
-// Room for what is found of lens settings or cameras: of as many as images name, or as the caller asks for. None where
-// all are 0 and nobody asks.
+// Allocates results for lens settings or cameras: as many as the images name, or as the caller asks for. None if all
+// numbers are 0 and the caller does not ask for any.
 template <class Item, class Init>
 lensprof_status take_items(Item *given, uint32_t given_count, uint32_t last, uint32_t most, size_t first_size,
                            Init init, std::vector<Item> &own, lensprof_error *error) {
@@ -296,7 +296,7 @@ lensprof_status take_items(Item *given, uint32_t given_count, uint32_t last, uin
 }
 
 lensprof_status take_settings(const lensprof_fit_result &given, Call &call, lensprof_error *error) {
-    lensprof_fit_result taken;  // without these members where the caller's is older
+    lensprof_fit_result taken;  // without these members if the caller's version is older
     lensprof_fit_result_init(&taken);
     lp_sized_copy(&taken, &given);
     call.given_settings = taken.settings, call.given_setting_count = taken.setting_count;
@@ -338,8 +338,8 @@ void give_items(Item *given, uint32_t given_count, const std::vector<Item> &own)
         lp_sized_copy(bytes + n * step, &own[n]);
 }
 
-// Into the caller's arrays, which may have fewer elements than this library's. Their places and sizes stay in the
-// result.
+// Copies the settings into the caller's arrays, which may have fewer elements than this library's. Their addresses and
+// sizes in the result stay.
 void give_settings(Call &call) {
     give_items(call.given_settings, call.given_setting_count, call.settings);
     give_items(call.given_cameras, call.given_camera_count, call.cameras);
@@ -347,7 +347,7 @@ void give_settings(Call &call) {
     call.result.cameras = call.given_cameras, call.result.camera_count = call.given_camera_count;
 }
 
-// What both fits ask of everything but the pairs or observations.
+// Checks common to both fits: everything except the pairs or observations.
 lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
                           bool has_data, const lensprof_exposure *exposures, const lensprof_fit_result *result,
                           Call &call, lensprof_error *error) {
@@ -375,7 +375,7 @@ lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fi
     return status == LENSPROF_OK ? take_settings(*result, call, error) : status;
 }
 
-// The exception fence around a fit, which returns a status.
+// Runs a fit, which returns a status, and converts exceptions to status codes.
 template <class Fit>
 lensprof_status at_boundary(lensprof_error *error, Fit fit) {
     try {
@@ -391,7 +391,7 @@ lensprof_status at_boundary(lensprof_error *error, Fit fit) {
     }
 }
 
-// A fit, whose result and time the caller receives.
+// Runs a fit, and gives the result and the elapsed time to the caller.
 template <class Fit>
 lensprof_status run(Call &call, lensprof_fit_result *result, lensprof_error *error, Fit fit) {
     if (!has_unknowns(call.options, call.images.data(), call.count()))
@@ -426,7 +426,7 @@ lensprof_status fit_tracks(Call &call, const lensprof_observation *observations,
     return LENSPROF_OK;
 }
 
-// By a method of pairs, of the largest group of images that agree.
+// Fits the largest group of images that agree, with a method of pairs.
 template <class Method>
 void fit_group(Call &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures, Method method) {
     const auto pairs_within = [&](const Group &group) {
@@ -460,7 +460,7 @@ lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count
     return LENSPROF_OK;
 }
 
-// One camera of several: the call of its images alone.
+// Fits one camera of several, using only its images.
 bool fit_camera(const CameraInput &input, lensprof_exposure *exposures, lensprof_fit_result &result) {
     if (!has_unknowns(input.options, input.images.data(), static_cast<uint32_t>(input.images.size()))) return false;
     Call own;
@@ -494,7 +494,7 @@ const char *method_name(uint32_t method) {
     }
 }
 
-// Of counts, which do not run over.
+// Sum of counts; saturates instead of overflowing.
 uint32_t sum_of(uint32_t a, uint32_t b) { return a + std::min(b, UINT32_MAX - a); }
 
 lensprof_status check_model(const lensprof_response &response, const lensprof_vignetting *vignetting, uint32_t channels,
@@ -669,7 +669,7 @@ lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result, con
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
     if (!camera.images) return fail(LENSPROF_ERROR_ARGUMENT, error, "camera: it has no fit; choose one with images");
     copy_camera(camera, own);
-    own.usable = 0;  // until a setting is taken
+    own.usable = 0;  // until a setting is copied
     lp_sized_copy(result, &own);
     return LENSPROF_OK;
 }

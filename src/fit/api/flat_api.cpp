@@ -1,4 +1,4 @@
-// The C face of the flat field fit: checks, and the exception fence.
+// The C interface of the flat field fit: argument checks, and conversion of exceptions to status codes.
 #include <cmath>
 #include <memory>
 #include <new>
@@ -19,7 +19,7 @@ constexpr size_t kFirstImage = LP_END_OF(lensprof_flat_image, turn_deg);
 constexpr size_t kFirstResult = LP_END_OF(lensprof_flat_result, image_quality);
 constexpr size_t kFirstQuality = LP_END_OF(lensprof_flat_image_quality, reserved);
 
-// The first option that is out of its range, with that range; NULL when none is.
+// The first option that is out of range, with its range; NULL if all are valid.
 const char *broken_option(const lensprof_flat_options &o) {
     const Rule rules[] = {
         {o.channels == 1 || o.channels == 3, "channels must be 1 or 3"},
@@ -79,7 +79,7 @@ lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_
     return LENSPROF_OK;
 }
 
-// Everything that the call reads and writes, as this library's structs.
+// All arguments and results of the call, in this library's struct versions.
 struct Call {
     lensprof_flat_options options;
     std::vector<lensprof_flat_image> images;

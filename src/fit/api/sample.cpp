@@ -1,4 +1,4 @@
-// The C functions of sampling, and what they refuse.
+// The C interface of sampling and its argument checks.
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -15,7 +15,7 @@ constexpr uint32_t kLargestCount = 1u << 24;
 constexpr size_t kFirstOptions = LP_END_OF(lensprof_sample_options, progress_user);
 constexpr size_t kFirstImage = LP_END_OF(lensprof_sample_image, white);
 
-// `by_cameras`: else only their width and height are looked at.
+// `by_cameras`: otherwise only width and height of the camera are checked.
 lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, bool by_cameras, lensprof_error *error) {
     if (image.reserved) return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "reserved is not 0");
     const lensprof_status status = by_cameras ? lensprof_camera_validate(&image.camera) : LENSPROF_OK;
@@ -44,7 +44,7 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
     return LENSPROF_OK;
 }
 
-// The caller's options as this library's.
+// Converts the caller's options to this library's struct version.
 lensprof_status take_options(const lensprof_sample_options *given, uint32_t count, lensprof_sample_options &own,
                              lensprof_error *error) {
     lensprof_sample_options_init(&own);
@@ -95,7 +95,7 @@ Sampler sampler_of(const lensprof_sample_options &options, const std::vector<len
                    : Sampler(options, images.data(), count);
 }
 
-// draw(sampler) -> what was found; by `matches`, or by the cameras where that is NULL.
+// Runs draw(sampler), which returns what was found; by `matches`, or by the cameras if that is NULL.
 template <class Item, class Draw>
 lensprof_status sample(const lensprof_sample_options &options, const lensprof_sample_image *given, uint32_t count,
                        const Matches *matches, Draw draw, std::vector<Item> &items, lensprof_error *error) {
@@ -134,7 +134,7 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
     }
 }
 
-// Both samplings: `room` for what is wanted, what `draw` finds into `items`.
+// Common to both samplings: writes up to `room` results of `draw` into `items`.
 template <class Item, class Draw>
 lensprof_status sample_into(const lensprof_sample_options &options, const lensprof_sample_image *images,
                             uint32_t image_count, const Matches *matches, uint64_t room, Item *items, uint32_t capacity,

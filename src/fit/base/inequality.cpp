@@ -16,8 +16,8 @@ struct Inequality {
     double limit;
 };
 
-// The quadratic in the unknowns y = L' d / scale, where its Hessian is the identity and its gradient at 0 has length 1:
-// SLSQP's first model is then exact, and its tolerances mean what they say.
+// The quadratic in the unknowns y = L' d / scale. Its Hessian is the identity and its gradient at 0 has length 1, so
+// that SLSQP's first model is exact and its tolerances have their nominal meaning.
 struct Quadratic {
     Eigen::VectorXd b;
 };
@@ -75,7 +75,7 @@ Eigen::VectorXd solve_working_set(const std::vector<Inequality> &set, const Eige
     return factor.matrixL().transpose().solve(Eigen::VectorXd(scale * solution));
 }
 
-// Adds the worst violated inequality of each contiguous run; false when there is none.
+// Adds the worst violated inequality of each contiguous run; false if no inequality is violated.
 bool add_violated(const Inequalities &all, const Eigen::VectorXd &d, std::vector<bool> &in_set,
                   std::vector<Inequality> &set) {
     std::vector<double> gap = all.gaps(d);
@@ -116,7 +116,7 @@ Eigen::VectorXd constrained_step(const Inequalities &all, const Eigen::MatrixXd 
     std::vector<bool> in_set(static_cast<size_t>(all.count()), false);
     for (int round = 0; round < 30 && add_violated(all, d, in_set, set); round++) d = solve_working_set(set, factor, b);
 
-    // The region is convex and holds d = 0: what rounding left outside is pulled back along the step.
+    // The region is convex and contains d = 0: pulls a step that rounding left outside back towards 0.
     double t = 1.0;
     for (int halving = 0; halving < 40 && !all.is_kept(t * d); halving++) t *= halving < 8 ? 0.98 : 0.7;
     return all.is_kept(t * d) ? Eigen::VectorXd(t * d) : Eigen::VectorXd(Eigen::VectorXd::Zero(b.size()));

@@ -15,7 +15,7 @@ bool for_each_parallel(uint32_t count, uint32_t threads, const std::function<voi
             work(i);
             return thread != 0 || !stop();
         });
-    return all && !stop();  // also where the other threads did all of it
+    return all && !stop();  // also if the other threads did all the work
 }
 
 }  // namespace lensprof

@@ -12,19 +12,19 @@ namespace {
 
 constexpr int kCells = 96;               // along the longer side
 constexpr int kFewestPixels = 8;         // of the smallest view, along a cell
-constexpr double kSmallestPart = 0.9;    // of a cell's pixels that must be the card
-constexpr double kLargestBeyond = 0.01;  // of a cell's pixels beyond black or white: more would move its mean
-constexpr float kCut = 3.0f;             // sigmas from the median that the mean takes in
-constexpr float kFar = 5.0f;             // sigmas: no noise
-constexpr double kFewestLow = 4.0;       // pixels far below the rest: fewer come by chance, or are single dead ones
+constexpr double kSmallestPart = 0.9;    // of a cell's pixels that must be on the card
+constexpr double kLargestBeyond = 0.01;  // of a cell's pixels beyond black or white: more would bias its mean
+constexpr float kCut = 3.0f;             // sigmas from the median that the mean includes
+constexpr float kFar = 5.0f;             // sigmas: not noise
+constexpr double kFewestLow = 4.0;       // pixels far below the rest: fewer occur by chance, or are single dead pixels
 constexpr size_t kNoiseLevels = 8;       // grey levels of a noise curve
 
-// One step of the samples: what two neighbours differ by at least when they differ.
+// One step of the samples: the smallest difference of two neighbours that are not equal.
 float quantum(uint32_t sample) {
     return sample == LENSPROF_SAMPLE_U8 ? 1.0f / 255.0f : sample == LENSPROF_SAMPLE_U16 ? 1.0f / 65535.0f : 1e-7f;
 }
 
-// Standard deviation of a pixel from differences of neighbours (which change places), those of edges left out.
+// Standard deviation of a pixel from differences of neighbours (which are reordered), excluding those across edges.
 float noise_of(std::vector<float> &differences, float step) {
     if (differences.empty()) return step;
     float center = median(differences);
@@ -58,11 +58,11 @@ Robust robust_mean_of(std::vector<float> &values, float noise) {
             low < kFewestLow ? 0.0f : static_cast<float>(low / static_cast<double>(values.size()))};
 }
 
-// Where the cells of one direction begin, in pixels of the view.
+// First pixel of each cell in one direction, in pixels of the view.
 std::vector<int> borders(int cells, uint32_t frame, uint32_t view, uint32_t reduction) {
     std::vector<int> border(static_cast<size_t>(cells) + 1);
     for (int i = 0; i <= cells; i++) {
-        double pixel = static_cast<double>(i) * frame / cells / reduction;  // its middle is at + 0.5
+        double pixel = static_cast<double>(i) * frame / cells / reduction;  // its centre is at + 0.5
         border[static_cast<size_t>(i)] = std::min(static_cast<int>(std::ceil(pixel - 0.5)), static_cast<int>(view));
     }
     return border;
@@ -201,7 +201,7 @@ bool measure_cells(const lensprof_flat_options &options, const lensprof_flat_ima
     for (uint32_t i = 0; i < count; i++) samples.push_back(sample_image_of(images[i]));
     pictures.assign(count, {});
     for (auto &picture : pictures) picture.cells.resize(static_cast<size_t>(grid.count()));
-    uint32_t done = 0;  // rows that the calling thread has seen end: a lower bound of the progress
+    uint32_t done = 0;  // rows that the calling thread knows to be complete: a lower bound of the progress
     auto work = [&](uint32_t k) {
         View view(samples[k / rows]);
         int row = static_cast<int>(k % rows);

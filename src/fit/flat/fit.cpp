@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDiffers = 22.5;             // chi-squared of the curves' differences, 6 degrees of freedom: 99.9 %
 constexpr double kSmallestDifference = 2e-3;  // of M in the corner: half a level
-constexpr double kTurned = 0.5;               // radians between two shots that tell light from lens
+constexpr double kTurned = 0.5;               // radians between two shots that separate light from lens
 
 void report(const lensprof_flat_options &options, double done) {
     if (options.progress && options.progress(done, options.progress_user) != 0) throw Cancelled();
@@ -78,7 +78,7 @@ bool curves_differ(const FlatFit &fit) {
     return difference.dot(solve_symmetric(spread, difference)) > kDiffers;
 }
 
-// Whether the pictures tell the light's gradient from the falloff's centre.
+// Whether the pictures separate the light's gradient from the falloff's centre.
 bool is_separated(const FlatFit &fit) {
     const FlatModel &model = fit.problem.model;
     if (!(fit.options.free & LENSPROF_FREE_CENTER)) return false;
@@ -101,7 +101,7 @@ void fill_lens(const FlatFit &fit, lensprof_flat_result &r) {
     r.separated = is_separated(fit);
     r.iterations = fit.estimate.iterations;
     r.converged = fit.estimate.converged;
-    // Of the responses, which are held: zero rows.
+    // The responses are held: zero rows.
     const uint32_t modes = fit.options.response ? lp_covariance_modes(fit.options.response, fit.options.responses) : 0;
     const auto lens = static_cast<uint32_t>(model.levels()), n = modes + lens;
     r.covariance_size = fit.covariance.size() && n <= LENSPROF_COVARIANCE_MAX ? n : 0;

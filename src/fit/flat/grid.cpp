@@ -1,4 +1,4 @@
-// The residual gain grid: what the polynomial leaves, by least squares on bilinear nodes that are kept smooth.
+// The residual gain grid: the residual of the polynomial, by least squares on bilinear nodes with a smoothness term.
 #include <algorithm>
 #include <cmath>
 
@@ -12,20 +12,20 @@ namespace {
 
 constexpr int kNodes = 24;               // along the longer side
 constexpr int kCellsPerNode = 3;         // at least
-constexpr double kSmallestNoise = 2e-3;  // of a cell's light: what its noise does not tell
-constexpr double kStiffness = 0.02;      // of second differences, of the weight of a node's cells
-constexpr double kRidge = 1e-6;          // pull to 1, of the same: nodes that no cell reaches
+constexpr double kSmallestNoise = 2e-3;  // of a cell's light: error not included in its noise
+constexpr double kStiffness = 0.02;      // of second differences, relative to the weight of a node's cells
+constexpr double kRidge = 1e-6;          // pull to 1, on the same scale: for nodes that no cell reaches
 constexpr double kSmallestCover = 0.8;   // of the frame's cells
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-// Nodes about a place and their shares.
+// Nodes around a place and their weights.
 struct Bilinear {
     int node[4];
     double share[4];
 };
 
-// The shares with which lensprof_gain_grid_eval takes the nodes about a cell.
+// The weights with which lensprof_gain_grid_eval interpolates the nodes around a cell.
 Bilinear bilinear(const lensprof_gain_grid &gain, const CellGrid &grid, const FlatCell &cell) {
     const lp_grid_cell column = lp_grid_cell_at(cell.x, grid.width, gain.columns);
     const lp_grid_cell row = lp_grid_cell_at(cell.y, grid.height, gain.rows);
@@ -36,7 +36,7 @@ Bilinear bilinear(const lensprof_gain_grid &gain, const CellGrid &grid, const Fl
             {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
 }
 
-// Squared second differences of nodes in one direction.
+// Adds the squared second differences of nodes in one direction.
 void add_stiffness(const lensprof_gain_grid &gain, bool across, double weight, Entries &entries) {
     const int columns = static_cast<int>(gain.columns), rows = static_cast<int>(gain.rows);
     const int step = across ? 1 : columns;

@@ -1,4 +1,4 @@
-// The verdict on a flat field: why it is not usable, or the caution about it.
+// The verdict on a flat field: why it is not usable, or the warning about it.
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +14,8 @@ constexpr double kSmallestRadius = 0.6, kWholeRadius = 0.9;  // half diagonals
 constexpr double kMuchBeyond = 0.2, kSomeBeyond = 0.005;     // of the card, white or black in every exposure
 constexpr double kLargestCornerSigma = 0.01;                 // of M
 constexpr double kMuchTexture = 0.01, kSomeTexture = 0.005;  // of the light
-constexpr double kSteepAlone = 0.2, kSlantAlone = 0.1;       // of the light a half diagonal, not turned:
-constexpr double kSteepTurned = 0.5;                         // its square is about what a plane leaves out
+constexpr double kSteepAlone = 0.2, kSlantAlone = 0.1;       // of the light per half diagonal, not rotated:
+constexpr double kSteepTurned = 0.5;                         // its square is about the error of a plane
 constexpr double kMuchOwn = 0.015, kSomeOwn = 0.004;         // of the light
 constexpr double kNotRadial = 0.003;                         // of the light
 constexpr double kWrongEv = 0.3, kDoubtfulEv = 0.1;          // EV, within a shot
@@ -45,7 +45,7 @@ Worst beyond(const FlatFit &fit, CellState state) {
     return worst;
 }
 
-// The shot without a card in it; false when all have one.
+// Finds a shot without a card; false if all shots have one.
 bool lacks_card(const FlatFit &fit, uint32_t &number) {
     for (const Shot &shot : fit.shots)
         if (number = shot.number; std::find(shot.card.begin(), shot.card.end(), true) == shot.card.end()) return true;
@@ -61,14 +61,14 @@ Worst steepest(const FlatFit &fit) {
     return worst;
 }
 
-// The picture farthest from the others of its shot, by its index.
+// The picture whose exposure differs most from the others of its shot, by its index.
 Worst wrong_exposure(const FlatFit &fit, const lensprof_flat_result &r) {
     Worst worst;
     for (uint32_t i = 0; i < fit.count && r.image_quality; i++) worst.take(std::abs(r.image_quality[i].ev_residual), i);
     return worst;
 }
 
-// By how much a picture's light changes with its grey values, d ln E / d ln B: median over cells and channels.
+// Change of a picture's light with its grey values, d ln E / d ln B: median over cells and channels.
 double contrast_of_light(const FlatFit &fit, uint32_t image) {
     Responses responses(fit.options);
     std::vector<double> contrasts;
@@ -82,7 +82,7 @@ double contrast_of_light(const FlatFit &fit, uint32_t image) {
     return contrasts.empty() ? 1.0 : median(contrasts);
 }
 
-// The response says next to nothing about light where the picture's grey values lie.
+// Whether the response has almost no gradation in the range of the picture's grey values.
 bool has_no_gradation(const FlatFit &fit, lensprof_flat_result &r) {
     for (uint32_t i = 0; i < fit.count; i++) {
         double contrast = contrast_of_light(fit, i);
@@ -120,7 +120,7 @@ bool contradicts_model(const FlatFit &fit, lensprof_flat_result &r) {
 bool is_undetermined(const FlatFit &fit, lensprof_flat_result &r) {
     if (!r.converged) return refuse(r, {LENSPROF_REASON_NOT_SETTLED, {double(r.iterations)}});
     if (fit.covariance.size() == 0) return refuse(r, {LENSPROF_REASON_FLAT_UNDETERMINED, {}});
-    // What is not radial makes the polynomial uncertain, but not what polynomial and grid are together.
+    // A residual that is not radial makes the polynomial uncertain, but not the product of polynomial and grid.
     const bool radial = r.frame_residual < kNotRadial;
     if (r.corner_sigma > kLargestCornerSigma && !radial && !r.gain_grid.columns)
         return refuse(r, {LENSPROF_REASON_FLAT_CORNER_NOT_RADIAL, {r.frame_residual, r.corner_sigma}});
@@ -129,7 +129,7 @@ bool is_undetermined(const FlatFit &fit, lensprof_flat_result &r) {
     return false;
 }
 
-// The weightiest caution about the card and the pictures.
+// The most important warning about the card and the pictures.
 bool warns_of_card(const FlatFit &fit, lensprof_flat_result &r) {
     Worst wrong = wrong_exposure(fit, r), white = beyond(fit, CellState::white), black = beyond(fit, CellState::black);
     if (r.radius < kWholeRadius) return warn(r, {LENSPROF_REASON_FLAT_EXTRAPOLATED, {r.radius}});
@@ -142,7 +142,7 @@ bool warns_of_card(const FlatFit &fit, lensprof_flat_result &r) {
     return r.texture > kSomeTexture && warn(r, {LENSPROF_REASON_FLAT_SOME_TEXTURE, {r.texture}});
 }
 
-// The same about light and lens.
+// The most important warning about light and lens.
 bool warns_of_light(const FlatFit &fit, lensprof_flat_result &r) {
     const auto &centre = r.vignetting[0].center;
     const double off_centre = std::hypot(centre[0], centre[1]), slant = steepest(fit).value;

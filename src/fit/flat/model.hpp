@@ -24,7 +24,7 @@ struct FlatModel {
     int k(int curve) const { return 3 * curve; }
     int center() const { return 3 * curves; }
     int levels() const { return center() + 2; }
-    // The level of a shot is level(channel) alone; with `several` exposures, plus the error of its exposure.
+    // The level of a shot is level(channel) alone; with `several`, the error of its exposure is added.
     int level(int shot, int channel) const { return levels() + (several ? 0 : shot * channels) + channel; }
     int exposure_error(int shot) const { return levels() + channels + shot; }
     int light(int shot, int channel) const {

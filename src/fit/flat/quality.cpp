@@ -1,4 +1,4 @@
-// What a flat field result is worth: what the model leaves, fine and coarse, of the frame and of each shot.
+// The quality of a flat field result: residuals of the model, fine and coarse, for the frame and for each shot.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,10 +13,10 @@ namespace {
 
 constexpr int kSmooth = 2;             // coarse: means over 5 x 5 cells
 constexpr double kSmoothed = 25.0;     // cells
-constexpr double kTrimming = 1.06;     // variance of a robust mean of a few pixels, in that of the mean
+constexpr double kTrimming = 1.06;     // variance of a robust mean of a few pixels, relative to that of the mean
 constexpr double kGridNeeded = 0.003;  // of the light, rms
 
-// Mean over the cells about each that have a value.
+// Mean over the cells around each cell that have a value.
 std::vector<double> smooth(const CellGrid &grid, const std::vector<double> &map) {
     std::vector<double> out(map.size(), std::numeric_limits<double>::quiet_NaN());
     for (int cell = 0; cell < grid.count(); cell++) {
@@ -72,7 +72,7 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
                     own.add(std::pow(map[i] - common[i].value(), 2) * common[i].count / (common[i].count - 1.0));
         }
     }
-    depth = frame.count > 0.0 ? depth / frame.count : 1.0;  // mean of 1 / shots that see a cell
+    depth = frame.count > 0.0 ? depth / frame.count : 1.0;  // mean of 1 / number of shots that see a cell
     return {root_of_rest(fine.value() * kSmoothed / (kSmoothed - 1.0), noise),
             root_of_rest(frame.value(), noise * depth / kSmoothed), root_of_rest(own.value(), noise / kSmoothed)};
 }
@@ -185,7 +185,7 @@ void describe_flat(const FlatFit &fit, lensprof_flat_result &r) {
     if (wanted && fit_gain_grid(fit, r.gain_grid)) {
         Patterns left = split_residuals(fit, &r.gain_grid, noise.value());
         r.grid_residual = left.frame;
-        r.texture = left.texture;  // a steep residual has some at the frame's border
+        r.texture = left.texture;  // a steep residual contributes to it at the frame's border
         normalise_gain_grid(fit, r.gain_grid);
     }
     describe_images(fit, r);

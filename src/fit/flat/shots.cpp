@@ -9,11 +9,11 @@ namespace lensprof {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kOuter = 0.1;          // of the range of grey values, where a sample's weight falls towards its limit
-constexpr double kCardEdge = 0.06;      // step of log E between two cells that ends the card,
-constexpr double kSteepest = 3.0;       // or this a half diagonal, which is steeper than a falloff
+constexpr double kOuter = 0.1;      // of the range of grey values, over which a sample's weight falls to 0 at its limit
+constexpr double kCardEdge = 0.06;  // step of log E between two cells that ends the card,
+constexpr double kSteepest = 3.0;   // or this per half diagonal, which is steeper than a falloff
 constexpr double kSmallestCard = 0.01;  // of the frame's cells
-constexpr double kDarkCard = 0.5;       // of the brightest region's light: what is darker is no white card
+constexpr double kDarkCard = 0.5;       // of the brightest region's light: anything darker is not a white card
 
 // Weight of a grey value by its distance from the limits, 0..1.
 double trust(double grey, double black, double white) {
@@ -21,9 +21,9 @@ double trust(double grey, double black, double white) {
     return std::clamp(inside / kOuter, 0.0, 1.0);
 }
 
-// One picture's light of a cell and channel.
+// The light of a cell and channel in one picture.
 struct Sample {
-    double light = 0.0, variance = 0.0, weight = 0.0;  // weight 0: it says nothing
+    double light = 0.0, variance = 0.0, weight = 0.0;  // weight 0: no information
 };
 
 Sample sample_of(const lensprof_flat_image &image, const CellPicture &picture, const Cell &cell, int channel,
@@ -39,7 +39,7 @@ Sample sample_of(const lensprof_flat_image &image, const CellPicture &picture, c
     return sample;
 }
 
-// What is beyond the limits in every exposure: white in the least, else black in the greatest.
+// Sets the state of cells that are beyond the limits in every exposure: white in the lowest, or black in the highest.
 void set_beyond(const lensprof_flat_image *images, const std::vector<CellPicture> &pictures, size_t cell, int channels,
                 const Responses &responses, const Shot &shot, Light &light) {
     uint32_t least = shot.images.front(), greatest = shot.images.back();
@@ -59,11 +59,11 @@ double brightness(const Light &light, int channels) {
     return sum / channels;
 }
 
-// Cells whose neighbours all belong to the group: those at its rim may be half card, half not.
+// Marks the cells whose neighbours all belong to the group: cells at its rim may be only partly on the card.
 void mark_inside(const CellGrid &grid, const std::vector<int> &group, std::vector<bool> &card) {
     std::vector<bool> member(card.size());
     for (int cell : group) member[static_cast<size_t>(cell)] = true;
-    auto is_member = [&](int column, int row) {  // the frame's border is no rim of the card
+    auto is_member = [&](int column, int row) {  // the frame's border is not a rim of the card
         column = std::clamp(column, 0, grid.columns - 1), row = std::clamp(row, 0, grid.rows - 1);
         return static_cast<bool>(member[static_cast<size_t>(row * grid.columns + column)]);
     };

@@ -45,8 +45,8 @@ private:
 void merge_exposures(const lensprof_flat_options &options, const lensprof_flat_image *images,
                      const std::vector<CellPicture> &pictures, const Responses &responses, Shot &shot);
 
-// Difference of every picture's light from that of the other pictures of its shot, EV: median over its cells, 0 if
-// there are none. One value per picture of the shot.
+// Difference of every picture's light from that of the other pictures of its shot, EV: median over its cells; 0 without
+// other pictures. One value per picture of the shot.
 std::vector<double> exposure_residuals(const lensprof_flat_options &options, const lensprof_flat_image *images,
                                        const std::vector<CellPicture> &pictures, const Responses &responses,
                                        const Shot &shot);

@@ -15,14 +15,14 @@ namespace lensprof {
 namespace {
 
 constexpr double kCutoff = 4.0;    // of the robust loss, sigmas of a cell's typical size
-constexpr int kRounds = 12;        // of noise and fit in turn
-constexpr double kSettled = 1e-3;  // change of what measures the noise
+constexpr int kRounds = 12;        // of estimating noise and fit in turn
+constexpr double kSettled = 1e-3;  // largest change of the noise parameters at convergence
 constexpr DescentLimits kLimits{60, 1e-6, 1e12, 1e-8};
 constexpr double kSmallestScale = 0.2;
 constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;   // of chi-squared, 1 and 3 degrees of freedom
-constexpr double kInlierSquare = 0.973, kInlierSquare3 = 0.988;  // mean square of what inlier_limit lets through
+constexpr double kInlierSquare = 0.973, kInlierSquare3 = 0.988;  // mean square of the residuals within inlier_limit
 constexpr int kBlocks[] = {4, 8, 16, 32};                        // cells along a block
-constexpr double kSmallestPivot = 1e-11;  // of the scaled normal equations: below, they are singular
+constexpr double kSmallestPivot = 1e-11;  // of the scaled normal equations: below it, they are singular
 
 double cutoff(const FlatProblem &problem) { return kCutoff * kCutoff * problem.model.channels; }
 
@@ -36,7 +36,7 @@ double prior_objective(const FlatProblem &problem, const Eigen::VectorXd &u) {
     return 0.5 * d.dot(problem.prior.precision * d);
 }
 
-// What sigma is relative to, held while the solver steps: the prediction at its start.
+// The reference of sigma, held while the solver steps: the prediction at its start.
 using Sigmas = std::vector<std::array<double, 3>>;
 
 Sigmas all_sigmas(const FlatProblem &problem, const FlatEstimate &estimate) {
@@ -67,7 +67,7 @@ double objective(const FlatProblem &problem, const Eigen::VectorXd &u, const Sig
     return sum / inflation + prior_objective(problem, u);
 }
 
-// Over the free unknowns.
+// Restricted to the free unknowns.
 QuadraticModel normal_equations(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas,
                                 double inflation) {
     const int n = problem.model.unknowns();
@@ -94,7 +94,7 @@ QuadraticModel normal_equations(const FlatProblem &problem, const Eigen::VectorX
             }
         }
     }
-    Eigen::MatrixXd full = data + data.transpose();  // an entry stands in one triangle, whichever: both are filled
+    Eigen::MatrixXd full = data + data.transpose();  // an entry is in one triangle only, in either one: both are filled
     full.diagonal() -= data.diagonal();
     normal.hessian = full(problem.free, problem.free) / inflation + problem.prior.precision(problem.free, problem.free);
     gradient = gradient / inflation + problem.prior.precision * (problem.prior.mean - u);
@@ -111,7 +111,7 @@ bool is_falloff(const FlatModel &model, const Eigen::VectorXd &u) {
     return u.allFinite();
 }
 
-// Steps until the objective settles, sigmas held.
+// Steps until the objective converges, with sigmas held.
 void descend(const FlatProblem &problem, FlatEstimate &estimate) {
     const Sigmas sigmas = all_sigmas(problem, estimate);
     const auto moved = [&](const Eigen::VectorXd &change) {
@@ -136,7 +136,7 @@ struct Scaled {
     std::vector<double> chi2;
 };
 
-// How many times the variance of independent cells the residuals' sums over blocks have.
+// Ratio of the variance of the residuals' sums over blocks to that of independent cells.
 double block_inflation(const FlatProblem &problem, const Scaled &residuals, int side) {
     const CellGrid &grid = problem.model.grid;
     const int across = (grid.columns + side - 1) / side, blocks = across * ((grid.rows + side - 1) / side);
@@ -161,7 +161,7 @@ double block_inflation(const FlatProblem &problem, const Scaled &residuals, int 
     return worst;
 }
 
-// Unevenness, from relative residuals and the relative variance of their noise, robust against cells that are wrong.
+// Unevenness, from relative residuals and the relative variance of their noise, robust against outlier cells.
 double unevenness(const FlatProblem &problem, const std::vector<std::array<double, 3>> &predicted) {
     std::vector<double> squares, noises;
     for (size_t i = 0; i < predicted.size(); i++)
@@ -174,7 +174,7 @@ double unevenness(const FlatProblem &problem, const std::vector<std::array<doubl
     return std::sqrt(std::max(beyond, 0.0));
 }
 
-// Mean square of the residuals that are no outliers, per degree of freedom.
+// Mean square of the residuals without outliers, per degree of freedom.
 double residual_variance(const FlatProblem &problem, const std::vector<double> &chi2) {
     std::vector<double> order = chi2;
     const int channels = problem.model.channels;
@@ -285,8 +285,8 @@ double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const
 
 void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     auto state = [&] { return Eigen::Vector3d(estimate.unevenness, estimate.scale, estimate.inflation); };
-    // First with the centre held and every cell counted as one: before the falloff is near, all cells err together, and
-    // the priors would hold what they should not.
+    // The first fit holds the centre and counts cells as independent: before the falloff is near its solution, the
+    // errors of all cells are correlated, and the priors would be too strong.
     FlatProblem held = problem;
     const FlatModel &model = problem.model;
     auto is_center = [&](int i) { return i >= model.center() && i < model.levels(); };

@@ -14,14 +14,14 @@ constexpr int kSurroundings = 5;          // cells about a cell
 constexpr double kFar = 5.5;              // sigmas below the surroundings
 constexpr double kSmallestDepth = 0.004;  // of the light: one level of 255
 constexpr double kLowShare = 0.02;        // of a cell's pixels far below the rest
-constexpr size_t kLargestSpot = 60;       // cells: what is larger is no dust
+constexpr size_t kLargestSpot = 60;       // cells: anything larger is not dust
 
 struct SpotMap {
-    std::vector<double> below;  // of every cell: light less its surroundings', share; 0 without data
+    std::vector<double> below;  // per cell: light minus that of its surroundings, relative; 0 without data
     std::vector<bool> dark;
 };
 
-// Standard deviation that the noise of its pixels gives the mean of a cell's channels, share of the light.
+// Standard deviation of the mean over a cell's channels from the noise of its pixels, relative to the light.
 std::vector<double> noise_of_shot(const FlatFit &fit, int shot) {
     const Shot &own = fit.shots[static_cast<size_t>(shot)];
     const auto channels = static_cast<size_t>(fit.problem.model.channels);
@@ -50,7 +50,7 @@ SpotMap spots_of_shot(const FlatFit &fit, int shot) {
     for (size_t i = 0; i < count; i++) {
         if (std::isnan(residual[i])) continue;
         const int column = static_cast<int>(i) % grid.columns, row = static_cast<int>(i) / grid.columns;
-        // as far to one side as to the other, so that a slope towards the corners is no spot
+        // symmetric, so that a slope towards the corners does not look like a spot
         const int across = std::min({kSurroundings, column, grid.columns - 1 - column});
         const int down = std::min({kSurroundings, row, grid.rows - 1 - row});
         std::vector<double> near;

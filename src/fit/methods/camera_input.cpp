@@ -7,7 +7,7 @@
 namespace lensprof {
 namespace {
 
-// The groups of images, each by its smallest index, that what images of one camera share joins.
+// Groups of images connected by data of one camera; each group is identified by its smallest index.
 std::vector<uint32_t> groups_of_own(const CamerasData &data, const std::vector<uint32_t> &camera_of) {
     std::vector<uint32_t> parent(data.images.size());
     std::iota(parent.begin(), parent.end(), 0u);
@@ -20,14 +20,14 @@ std::vector<uint32_t> groups_of_own(const CamerasData &data, const std::vector<u
         if (camera_of[i] == camera_of[j]) parent[std::max(a, b)] = std::min(a, b);
     };
     for (const lensprof_pair &pair : data.pairs) join(pair.image[0], pair.image[1]);
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> first;  // of a point's images those of a camera
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> first;  // for each point and camera, its first image
     for (const lensprof_observation &o : data.observations)
         join(first.try_emplace({o.point, camera_of[o.image]}, o.image).first->second, o.image);
     for (uint32_t i = 0; i < parent.size(); i++) parent[i] = root(i);
     return parent;
 }
 
-// The images of each camera that are fitted.
+// Selects the images of each camera that are fitted.
 void part_images(const CamerasData &data, const std::vector<uint32_t> &camera_of, std::vector<CameraInput> &inputs) {
     const std::vector<uint32_t> groups = groups_of_own(data, camera_of);
     std::vector<uint32_t> size(data.images.size()), largest(inputs.size(), kNoPlace);
@@ -47,11 +47,11 @@ void part_images(const CamerasData &data, const std::vector<uint32_t> &camera_of
     }
 }
 
-// Images that share unknowns with one that is not among these share them with the first such image that is.
+// If images share unknowns with an image that is not included, they share them with the first included image of these.
 void link_images(const std::vector<lensprof_fit_image> &all, CameraInput &input) {
     for (uint32_t lensprof_fit_image::*of :
          {&lensprof_fit_image::ev_of, &lensprof_fit_image::red_of, &lensprof_fit_image::blue_of}) {
-        std::map<uint32_t, uint32_t> first;  // by the image whose unknown it is
+        std::map<uint32_t, uint32_t> first;  // by the image that owns the unknown
         for (uint32_t n = 0; n < input.images.size(); n++) {
             const uint32_t owner = all[input.numbers[n]].*of;
             const uint32_t own = input.place[owner] != kNoPlace ? input.place[owner] : n;
@@ -60,7 +60,7 @@ void link_images(const std::vector<lensprof_fit_image> &all, CameraInput &input)
     }
 }
 
-// Pairs or links within the images of a camera, by their places.
+// Selects pairs or links within the images of a camera, with local indices.
 template <class Item, class Add>
 void part(const std::vector<uint32_t> &camera_of, std::vector<CameraInput> &inputs, Item item, Add add) {
     CameraInput &input = inputs[camera_of[item.image[0]]];
@@ -73,7 +73,7 @@ void part(const std::vector<uint32_t> &camera_of, std::vector<CameraInput> &inpu
 
 void part_observations(const CamerasData &data, const std::vector<uint32_t> &camera_of,
                        std::vector<CameraInput> &inputs) {
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> seen;  // camera and point: observations
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> seen;  // for each camera and point: observations
     const auto is_taken = [&](const lensprof_observation &o) {
         return inputs[camera_of[o.image]].place[o.image] != kNoPlace;
     };
@@ -117,7 +117,7 @@ std::vector<CameraInput> part_cameras(const CamerasData &data, const std::vector
         input.options.reference = own != kNoPlace               ? own
                                   : alike != input.images.end() ? static_cast<uint32_t>(alike - input.images.begin())
                                                                 : 0;
-        // Its falloff and response are of the reference's setting.
+        // Its falloff and response belong to the reference's setting.
         if (alike == input.images.end()) input.options.profile = nullptr;
     }
     return inputs;

@@ -23,15 +23,15 @@
 namespace lensprof {
 namespace {
 
-constexpr double kUnsettledSigma = 1.0;  // of ln gamma that nothing settles
-constexpr double kBetter = 0.9;          // standard error, relative, from which on other cameras settle gamma
-// What a response's light at white is uncertain by, natural logarithm: no pair shows greys near it, and exposures are
+constexpr double kUnsettledSigma = 1.0;  // of ln gamma if nothing determines it
+constexpr double kBetter = 0.9;          // relative standard error below which other cameras determine gamma
+// Uncertainty of a response's light at white, natural logarithm: no pair shows grey values near it, and exposures are
 // defined by it. Over 60 pairs of measured responses of today's cameras the exposures of two cameras were .37 EV off,
 // RMS, median .24.
 constexpr double kWhiteSigma = 0.18;
 constexpr double kDarkest = 2.0 / 255.0;
 
-// What a camera's fit tells of its progress, as a part of all.
+// Reports the progress of a camera's fit as a part of the whole.
 struct PartOfProgress {
     lensprof_progress progress = nullptr;
     void *user = nullptr;
@@ -43,7 +43,7 @@ struct PartOfProgress {
     }
 };
 
-// One camera: what its fit is given, and what it found.
+// One camera: input and result of its fit.
 struct Camera {
     CameraInput input;
     std::unique_ptr<Output> found;
@@ -88,11 +88,11 @@ private:
     const lensprof_fit_options &options_;
     const std::vector<lensprof_fit_image> &images_;
     const std::vector<lensprof_pair> &pairs_;
-    const std::vector<uint32_t> camera_of_;  // of each image, numbered as they come
+    const std::vector<uint32_t> camera_of_;  // camera of each image, numbered in order of first appearance
     std::vector<Camera> cameras_;
     std::vector<Joint> joints_;
-    std::vector<lensprof_exposure> exposures_;  // of all images, relative to the reference; ev NaN where not known
-    std::vector<lensprof_fit_image_quality> quality_;  // of those
+    std::vector<lensprof_exposure> exposures_;         // of all images, relative to the reference; ev NaN if not known
+    std::vector<lensprof_fit_image_quality> quality_;  // of the same images
 };
 
 void CamerasFit::fit_each(const FitCamera &fit, const lensprof_fit_result &result) {
@@ -111,8 +111,8 @@ void CamerasFit::fit_each(const FitCamera &fit, const lensprof_fit_result &resul
     }
 }
 
-// The camera that the others are joined to: that of the reference, or where its pictures are not evened out that with
-// most images which are.
+// Chooses the camera that the others are joined to: that of the reference or, if its pictures are not evened out, the
+// camera with the most images among those whose pictures are.
 uint32_t CamerasFit::choose_base() const {
     uint32_t base = camera_of_[options_.reference];
     if (cameras_[base].corrects()) return base;
@@ -126,8 +126,8 @@ uint32_t CamerasFit::choose_base() const {
     return base;
 }
 
-// The light behind an end of a pair, by the fit of its camera and this exposure of the image. False where that does not
-// tell it.
+// The light at an end of a pair, by the fit of its camera and this exposure of the image. False if it cannot be
+// determined.
 bool CamerasFit::light_of(const lensprof_pair &pair, int side, const lensprof_exposure &exposure, double log_light[3],
                           double variance[3]) const {
     const Camera &camera = cameras_[camera_of_[pair.image[side]]];
@@ -171,16 +171,16 @@ std::vector<LightPair> CamerasFit::light_pairs() const {
     return light;
 }
 
-// Variance of the light behind the grey values that a camera shares with others, natural logarithm, by what its fit
-// does not know of the response but for gamma: the scale of its light beside that of others. A table states white's
-// alone.
+// Variance of the light at the grey values that a camera shares with others, natural logarithm, from the uncertainty of
+// its response except gamma: the uncertainty of its light's scale relative to the others. A table only states that of
+// white.
 double CamerasFit::response_variance(uint32_t number) const {
     const Camera &camera = cameras_[number];
     const lensprof_fit_result &r = camera.result();
     const double at_white = r.response_from == LENSPROF_FIT_RESPONSE_OPTIONS ? 0.0 : kWhiteSigma * kWhiteSigma;
     const uint32_t modes = lp_covariance_modes(&r.response, 1), size = r.covariance_size;
     if (!modes || size < modes) return at_white;
-    Eigen::VectorXd slopes = Eigen::VectorXd::Zero(modes);  // mean change of ln f^-1 with each mode
+    Eigen::VectorXd slopes = Eigen::VectorXd::Zero(modes);  // mean derivative of ln f^-1 by each mode
     double count = 0.0;
     for (const lensprof_pair &pair : pairs_)
         for (int side = 0; side < 2; side++) {
@@ -206,7 +206,8 @@ double CamerasFit::response_variance(uint32_t number) const {
     return at_white + std::max(0.0, variance);
 }
 
-// What each camera's fit knows of ln gamma. Where nothing settles any of them, that of the base is held.
+// Standard error of ln gamma according to each camera's fit. If nothing determines any of them, that of the base is
+// held.
 std::vector<double> CamerasFit::gamma_sigmas(uint32_t base) const {
     std::vector<double> sigmas;
     bool is_any_settled = false;
@@ -220,8 +221,8 @@ std::vector<double> CamerasFit::gamma_sigmas(uint32_t base) const {
     return sigmas;
 }
 
-// What is known of ln gamma in the end. Priors of cameras err together where pictures are all that was given: none is
-// then known better than the best of them.
+// The final knowledge of ln gamma. If there are only pictures, the errors of the cameras' priors are correlated: no
+// gamma is then known better than the best of them.
 void CamerasFit::state_gamma(uint32_t number, const std::vector<double> &sigmas, double &sigma, uint32_t &from) const {
     double best = HUGE_VAL, best_other = HUGE_VAL;
     bool are_priors = true, is_unsettled = true;
@@ -239,7 +240,7 @@ void CamerasFit::state_gamma(uint32_t number, const std::vector<double> &sigmas,
     if (is_unsettled) from = LENSPROF_GAMMA_NONE, sigma = LENSPROF_UNKNOWN;
 }
 
-// Brings every camera's result to where it agrees with the others.
+// Moves every camera's result to agree with the others.
 void CamerasFit::join(uint32_t base) {
     const std::vector<double> sigmas = gamma_sigmas(base);
     std::vector<double> variances;
@@ -274,8 +275,8 @@ void CamerasFit::join(uint32_t base) {
     }
 }
 
-// Raises a camera's result to its exponent. That holds the exposure of its reference, so that the light which was l is
-// gamma l + shift then, in each channel.
+// Raises a camera's result to its exponent. This holds the exposure of its reference, so that light l becomes gamma l +
+// shift in each channel.
 void CamerasFit::raise(uint32_t number, double gamma_sigma, uint32_t gamma_from, std::array<double, 3> &shift) {
     const Joint &joint = joints_[number];
     Camera &camera = cameras_[number];
@@ -290,7 +291,7 @@ void CamerasFit::raise(uint32_t number, double gamma_sigma, uint32_t gamma_from,
     r.gamma_from = gamma_from;
 }
 
-// Exposures and qualities of the images that are fitted.
+// Collects exposures and qualities of the images that are fitted.
 void CamerasFit::collect() {
     exposures_.resize(images_.size());
     quality_.resize(images_.size());
@@ -312,8 +313,8 @@ void CamerasFit::collect() {
     }
 }
 
-// The exposure of an image that its camera's fit is without, by pairs with images whose exposures are known. False
-// where these are too few, or disagree.
+// Determines the exposure of an image that is not in its camera's fit, from pairs with images whose exposures are
+// known. False if these are too few, or disagree.
 bool CamerasFit::attach_image(uint32_t image, const std::vector<uint32_t> &pairs) {
     std::vector<double> log_exposure[3];
     lensprof_exposure zero;
@@ -347,7 +348,8 @@ bool CamerasFit::attach_image(uint32_t image, const std::vector<uint32_t> &pairs
         exposures_[image].white_balance[c] = std::exp(found[c] - found[green]);
         quality.white_balance_sigma[c] = exposures_[image].white_balance[c] * std::hypot(sigma[c], sigma[green]);
     }
-    const double of_response = joints_[camera_of_[image]].offset_sigma / kLn2;  // its own camera's, and others'
+    const double of_response =
+        joints_[camera_of_[image]].offset_sigma / kLn2;  // that of its own camera, and of the others
     quality.ev_sigma =
         std::hypot(sigma[green] / kLn2, std::sqrt(other_variance / static_cast<double>(count)), of_response);
     quality.pairs = quality.inliers = static_cast<uint32_t>(count);
@@ -365,10 +367,11 @@ void CamerasFit::number_components() {
     }
 }
 
-// Images that no pairs join to others of their camera, by what other cameras saw: first those that share something with
-// images that are fitted, then those that do with these.
+// Attaches images that no pairs join to others of their camera, by pairs with other cameras: first those that share
+// data with fitted images, then those that share data with these.
 void CamerasFit::attach() {
-    std::map<uint32_t, std::vector<uint32_t>> pairs_of;  // images that may be attached, and pairs with an end in them
+    std::map<uint32_t, std::vector<uint32_t>>
+        pairs_of;  // images that may be attached, and the pairs with an end in each
     const auto may_be = [&](uint32_t i) {
         const Camera &camera = cameras_[camera_of_[i]];
         return camera.input.place[i] == kNoPlace && camera.corrects() && joints_[camera_of_[i]].joined;
@@ -393,7 +396,7 @@ void renumber(const std::vector<uint32_t> &numbers, Verdict &verdict) {
     verdict.reason_item.index = numbers[verdict.reason_item.index];
 }
 
-// A camera and its settings.
+// Writes a camera and its settings to the result.
 void CamerasFit::give_camera(uint32_t number, lensprof_fit_result &r) const {
     const Camera &camera = cameras_[number];
     const Joint &joint = joints_[number];

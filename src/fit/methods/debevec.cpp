@@ -15,25 +15,25 @@
 namespace lensprof {
 namespace {
 
-constexpr int kGaugeLevel = 128;  // G is 0 there (section 2.1)
-constexpr double kLambda = 10.0;  // weight of the smoothness, at a prior weight of 1,
-constexpr double kTheirRows =
-    300.0;  // beside as many equations as the paper has; here there are more, and lambda grows
-constexpr double kSmallestPrior = 1e-6;  // without smoothness, levels that no pair has would be anything
-constexpr double kRidge = 1e-9;          // beside the equations: holds what neither pairs nor smoothness tell
+constexpr int kGaugeLevel = 128;      // G is 0 there (section 2.1)
+constexpr double kLambda = 10.0;      // weight of the smoothness, at a prior weight of 1,
+constexpr double kTheirRows = 300.0;  // relative to as many equations as in the paper; more equations increase lambda
+constexpr double kSmallestPrior = 1e-6;  // without smoothness, levels without pairs would be undetermined
+constexpr double kRidge =
+    1e-9;  // relative to the equations: holds unknowns that neither pairs nor smoothness determine
 constexpr double kFirstNoise = 1.0 / 255.0;
 
 using LogInverse = std::array<double, kLevels>;
 
-// Unknown of an element of G; -1 is fixed at 0.
+// Column of an element of G; -1 if fixed at 0.
 int column_of(int element) { return element + 1 == kGaugeLevel ? -1 : element - (element + 1 > kGaugeLevel); }
 
-// The hat (eq. 4). One is added, so that the levels at the ends have a say.
+// The hat function (eq. 4), plus one, so that the levels at the ends have some weight.
 double hat(double level) { return std::min(level, 255.0 - level) + 1.0; }
 
-// One equation  G(B1) - G(B2) = ln t, t = s1/s2,  of a pair and channel. Of the two terms w^2 (G(B) - ln L - ln s)^2 of
-// eq. 3 the radiance L of the pair is eliminated: what is left has the weight w1^2 w2^2 / (w1^2 + w2^2). Values below
-// level 1 have no unknown, and white ones say nothing: false for these.
+// One equation  G(B1) - G(B2) = ln t, t = s1/s2,  of a pair and channel. Eliminating the radiance L of the pair from
+// the two terms w^2 (G(B) - ln L - ln s)^2 of eq. 3 leaves the weight w1^2 w2^2 / (w1^2 + w2^2). False for
+// values below level 1, which have no unknown, and for white values, which carry no information.
 bool add_equation(double b1, double b2, double log_ratio, NormalRows &rows) {
     if (std::min(b1, b2) * 255.0 < 1.0 || std::max(b1, b2) >= 1.0) return false;
     const Place one = place_of(b1), two = place_of(b2);
@@ -44,7 +44,7 @@ bool add_equation(double b1, double b2, double log_ratio, NormalRows &rows) {
     return true;
 }
 
-// The number of equations that pairs and channels give.
+// Adds the equations of all pairs and channels and returns their number.
 size_t add_pairs(const Problem &problem, const Estimate &given, NormalRows &rows) {
     size_t count = 0;
     for (const Edge &edge : problem.edges) {
@@ -69,7 +69,7 @@ void add_smoothness(double lambda, NormalRows &rows) {
     }
 }
 
-// One curve for all channels (the paper: one each), by least squares alone: it may fall.
+// One curve for all channels (the paper: one per channel), by plain least squares: it may fall.
 LogInverse log_inverse_of(const Problem &problem, const Estimate &given, double prior_weight) {
     NormalRows rows(kLevels - 1);
     auto count = static_cast<double>(add_pairs(problem, given, rows));
@@ -82,7 +82,7 @@ LogInverse log_inverse_of(const Problem &problem, const Estimate &given, double 
     return g;
 }
 
-// f = G^-1, made to rise where G falls. Up to level 1 it is straight.
+// Sets f = G^-1, made monotone where G falls. Up to level 1 it is linear.
 void set_log_inverse(const LogInverse &g, Estimate &estimate) {
     const double highest = *std::max_element(g.begin(), g.end());
     const auto f = response_samples(
@@ -90,7 +90,7 @@ void set_log_inverse(const LogInverse &g, Estimate &estimate) {
     set_table(estimate, f.data());
 }
 
-// Over the middle half of the grey values: exposures that are the wrong way round make it fall.
+// Whether G rises over the middle half of the grey values: it falls if the exposures are in reverse order.
 bool rises(const LogInverse &g) { return g[191] > g[63]; }
 
 class Fit {
@@ -113,7 +113,7 @@ private:
         if (options_.progress && options_.progress(done, options_.progress_user) != 0) throw Cancelled();
     }
     Estimate fit(const Problem &problem, bool &is_rising) const {
-        Estimate estimate = start_estimates(problem, options_, 0).front();  // everything but the response is given
+        Estimate estimate = start_estimates(problem, options_, 0).front();  // everything except the response is given
         const LogInverse g = log_inverse_of(problem, estimate, options_.prior_weight);
         is_rising = rises(g);
         set_log_inverse(g, estimate);
@@ -128,7 +128,7 @@ private:
     const Problem all_;
 };
 
-// What makes the equations of the response say nothing, or the wrong thing.
+// Detects exposures that make the equations of the response uninformative or wrong.
 void Fit::judge_exposures(const Estimate &estimate, bool is_rising, lensprof_fit_result &r) const {
     const double usual = exposure_spread(all_, estimate);
     if (usual >= kSmallestSpread && is_rising) return;

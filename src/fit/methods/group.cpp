@@ -14,7 +14,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kMostFits = 6;
-constexpr size_t kFewestPairs = 10;     // of a link that can contradict the others
+constexpr size_t kFewestPairs = 10;     // of a link that is able to contradict the others
 constexpr double kSmallestShare = 0.2;  // of a link's pairs that agree
 
 class GroupFit {
@@ -49,14 +49,14 @@ private:
     const uint32_t count_;
     const PairsWithin &pairs_within_;
     Group group_;
-    std::vector<bool> had_pairs_ = std::vector<bool>(count_, false);  // images, of all pairs
-    std::vector<lensprof_fit_image_quality> quality_;                 // of every image in the last fit that it was in
-    std::vector<bool> banned_ = std::vector<bool>(count_, false);     // images
-    std::vector<uint32_t> component_;                                 // of all images, through links that hold
+    std::vector<bool> had_pairs_ = std::vector<bool>(count_, false);  // images, considering all pairs
+    std::vector<lensprof_fit_image_quality> quality_;              // of every image, from the last fit that included it
+    std::vector<bool> banned_ = std::vector<bool>(count_, false);  // images
+    std::vector<uint32_t> component_;                              // of all images, through links that are not broken
 };
 
-// The groups of images, each by its smallest index, that pairs, unknowns that they share, or exposures that are held
-// tie together.
+// Groups of images connected by pairs, shared unknowns or held exposures; each group is identified by its smallest
+// index.
 std::vector<uint32_t> tied_groups(const Problem &problem) {
     std::vector<uint32_t> group = problem.component;
     std::map<std::array<int, 3>, uint32_t> first;
@@ -69,7 +69,7 @@ std::vector<uint32_t> tied_groups(const Problem &problem) {
     return group;
 }
 
-// All images, the pairs of the group's images by links that hold.
+// The problem of all images, with the pairs of the group's images along links that are not broken.
 Problem GroupFit::problem() const {
     const std::vector<lensprof_pair> pairs = pairs_within_(group_);
     std::vector<uint32_t> keep(pairs.size());
@@ -81,12 +81,12 @@ void GroupFit::join_all() {
     for (uint32_t i = 0; i < count_; i++) group_.joined[i] = !banned_[i];
 }
 
-// Of all images that are not banned: the component with the most images, and of several that of the reference, or with
-// the most pairs. False where none has pairs.
+// Selects the component with the most images among those that are not banned; of several, that of the reference, or the
+// one with the most pairs. False if no component has pairs.
 bool GroupFit::take_largest(const Problem &all) {
     component_ = tied_groups(all);
     std::vector<uint32_t> members(count_, 0), pairs(count_, 0);
-    // An image is out where all of its pairs are of broken links, even if what is held ties it to the others.
+    // An image is left out if all of its pairs belong to broken links, even if held values tie it to the others.
     std::vector<bool> is_out(had_pairs_);
     for (const Edge &edge : all.edges) is_out[edge.image[0]] = is_out[edge.image[1]] = false;
     for (uint32_t i = 0; i < count_; i++) {
@@ -100,7 +100,7 @@ bool GroupFit::take_largest(const Problem &all) {
     };
     uint32_t best = 0;
     for (uint32_t c = 0; c < count_; c++) {
-        if (pairs[c] == 0) members[c] = 0;  // tied by what they share or hold, which shows nothing
+        if (pairs[c] == 0) members[c] = 0;  // tied only by shared or held values, which is no evidence
         if (size_of(c) > size_of(best)) best = c;
     }
     if (members[best] < 2) return false;
@@ -109,7 +109,7 @@ bool GroupFit::take_largest(const Problem &all) {
     return true;
 }
 
-// That of the options, else the next image of its setting, else the next image.
+// The reference of the options, else the next image of its setting, else the next image.
 void GroupFit::choose_reference() {
     const auto next = [&](const auto &is_good) {
         for (uint32_t n = 0; n < count_; n++)
@@ -121,7 +121,7 @@ void GroupFit::choose_reference() {
     if (!next([&](uint32_t i) { return images_[i].setting == setting; })) next([](uint32_t) { return true; });
 }
 
-// Of each setting of the problem.
+// For each setting of the problem.
 std::vector<Falloffs> falloffs_of(const Problem &problem, const lensprof_fit_result &r) {
     std::vector<Falloffs> falloffs;
     for (uint32_t number : problem.setting_number) {
@@ -131,7 +131,7 @@ std::vector<Falloffs> falloffs_of(const Problem &problem, const lensprof_fit_res
     return falloffs;
 }
 
-// Breaks the links of which hardly a pair agrees with the result. Returns whether there are any.
+// Breaks the links with almost no pair that agrees with the result. Returns whether there are any.
 bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
     Problem judged = problem();
     judged.vignettings = static_cast<int>(r.vignettings);
@@ -149,7 +149,7 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fi
     return any;
 }
 
-// What the verdict says of a single image.
+// Leaves out the image that the verdict is about, if it is about a single one.
 bool GroupFit::leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
     bool any = break_links(exposures, r);
     const bool is_of_one = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE
@@ -160,7 +160,7 @@ bool GroupFit::leave_out(const lensprof_exposure *exposures, const lensprof_fit_
     return any;
 }
 
-// Images of the group that no verified links join to the reference, and the first of them.
+// Counts the images of the group that no verified links join to the reference, and finds the first of them.
 uint32_t GroupFit::count_unverified(uint32_t &first) const {
     std::vector<uint32_t> root(count_);
     std::iota(root.begin(), root.end(), 0u);
@@ -179,7 +179,7 @@ uint32_t GroupFit::count_unverified(uint32_t &first) const {
     return count;
 }
 
-// What the last fit says of its images.
+// Stores the quality that the last fit reports for its images.
 void GroupFit::note_quality(const lensprof_fit_result &r) {
     quality_.resize(r.image_quality ? count_ : 0);
     for (uint32_t i = 0; i < quality_.size(); i++)
@@ -204,7 +204,7 @@ void GroupFit::describe(lensprof_exposure *exposures, lensprof_fit_result &r) co
     for_each_verdict(r, [&](auto &verdict) { warn_of_links(r, verdict); });
 }
 
-// Refuses a group that is too small; else warns of what does not hold together.
+// Rejects a group that is too small; otherwise warns about data that contradict each other.
 template <class Verdict>
 void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
     const auto first = std::find(group_.joined.begin(), group_.joined.end(), false) - group_.joined.begin();
@@ -246,7 +246,7 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
     for (int n = 1;; n++) {
         own.reference = group_.reference;
         const bool is_same_setting = images_[own.reference].setting == images_[options_.reference].setting;
-        own.profile = is_same_setting ? options_.profile : nullptr;  // whose falloff is of that one
+        own.profile = is_same_setting ? options_.profile : nullptr;  // if it has the falloff of that setting
         fit(own, group_, exposures, result);
         note_quality(result);
         const Group before = group_;

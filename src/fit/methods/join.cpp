@@ -15,19 +15,19 @@ namespace {
 
 constexpr double kSmallestScatter = 0.01;  // of light, natural logarithm: misplaced texture
 constexpr double kCutoff = 3.0;            // standard deviations beyond which a pair loses its weight
-constexpr double kKnownSigma = 1e-6;       // of ln gamma where that is known
-constexpr double kLargestLogGamma = 1.2;   // in all
+constexpr double kKnownSigma = 1e-6;       // of ln gamma if known
+constexpr double kLargestLogGamma = 1.2;   // in total
 constexpr int kRounds = 40;
 constexpr double kConverged = 1e-7;
 
-// A weighted residual, and its change with gamma and offset of both cameras.
+// A weighted residual, and its derivatives by gamma and offset of both cameras.
 struct Slopes {
     double residual;
     int column[4];
     double slope[4];
 };
 
-// What is estimated: ln gamma of every camera, then its offsets, one a channel.
+// The estimated values: ln gamma of every camera, then its offsets, one per channel.
 class Join {
 public:
     Join(std::vector<LightPair> pairs, const std::vector<double> &gamma_sigma, uint32_t reference, int channels,
@@ -89,7 +89,7 @@ private:
     Eigen::MatrixXd cov_;
 };
 
-// Cameras that enough pairs join to the reference's, directly or through others.
+// Selects the cameras that enough pairs join to the reference's, directly or through others.
 void Join::take_reached(const std::vector<bool> &may_join) {
     std::map<std::array<uint32_t, 2>, size_t> between;
     for (const LightPair &pair : pairs_)
@@ -106,7 +106,8 @@ void Join::take_reached(const std::vector<bool> &may_join) {
     }
 }
 
-// The camera whose light differs most from that of the others, but for the reference's; that one where it is alone.
+// The camera, other than the reference's, whose light differs most from that of the others; the reference's if it is
+// alone.
 size_t Join::farthest() const {
     size_t worst = reference_;
     for (size_t k = 0; k < joints_.size(); k++)
@@ -138,7 +139,7 @@ double Join::chi2(const LightPair &pair) const {
     return sum / channels_;
 }
 
-// r / s, where gamma is in the standard deviation s, too.
+// r / s; gamma also affects the standard deviation s.
 Slopes Join::slopes(const LightPair &pair, int c) const {
     const double r = residual(pair, c), v = variance(pair, c), s = std::sqrt(v);
     Slopes result{r / s, {}, {}};
@@ -154,14 +155,14 @@ Slopes Join::slopes(const LightPair &pair, int c) const {
     return result;
 }
 
-// Medians, from camera to camera.
+// Start values from medians, from camera to camera.
 void Join::start_offsets() {
     at_ = Eigen::VectorXd::Zero(count_ * (1 + channels_));
     std::vector<bool> is_known(joints_.size());
     is_known[reference_] = true;
     for (bool any = true; any;) {
         any = false;
-        std::map<std::pair<uint32_t, int>, std::vector<double>> differences;  // of a new camera and channel
+        std::map<std::pair<uint32_t, int>, std::vector<double>> differences;  // for a new camera and channel
         for (const LightPair &pair : pairs_) {
             if (!takes(pair) || is_known[pair.camera[0]] == is_known[pair.camera[1]]) continue;
             const uint32_t camera = pair.camera[is_known[pair.camera[0]]];
@@ -175,7 +176,7 @@ void Join::start_offsets() {
     }
 }
 
-// What residuals have beyond the noise of grey values, robustly.
+// Robustly estimates the scatter of the residuals beyond the noise of grey values.
 void Join::find_scatter() {
     std::vector<double> squares;
     for (const LightPair &pair : pairs_)
@@ -207,7 +208,7 @@ double Join::step(Eigen::MatrixXd &normal) {
         const int g = gamma_column(k);
         const double precision = 1.0 / std::pow(std::max(sigma_[k], kKnownSigma), 2);
         normal(g, g) += precision, right[g] -= precision * at_[g];
-        for (int c = 0; c < channels_; c++) {  // of the reference 0; of cameras that did not join nothing is known
+        for (int c = 0; c < channels_; c++) {  // of the reference 0; cameras that are not joined are undetermined
             const int b = offset_column(k, c);
             if (k != reference_ && joints_[k].joined) continue;
             normal.row(b).setZero(), normal.col(b).setZero();
@@ -233,9 +234,9 @@ void Join::solve() {
     cov_ = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
 }
 
-// The covariance of the estimate where not pairs but links of images, each as a whole, are independent.
+// The covariance of the estimate if not pairs but links of images, each as a whole, are independent.
 Eigen::MatrixXd Join::covariance_by_links() const {
-    std::map<std::array<uint32_t, 2>, Eigen::VectorXd> gradients;  // of each link's part of the objective
+    std::map<std::array<uint32_t, 2>, Eigen::VectorXd> gradients;  // for each link's part of the objective
     for (const LightPair &pair : pairs_) {
         if (!takes(pair)) continue;
         const double trust = weight(pair);
@@ -251,7 +252,7 @@ Eigen::MatrixXd Join::covariance_by_links() const {
     return cov_ * squares * cov_;
 }
 
-// How many pairs join each camera, and how well.
+// Counts the pairs that join each camera, and how well they agree.
 void Join::count_pairs() {
     std::vector<std::vector<double>> residuals(joints_.size());
     std::vector<size_t> inliers(joints_.size());
@@ -269,7 +270,7 @@ void Join::count_pairs() {
     }
 }
 
-// The estimate and its standard errors, the larger of those by pairs and by links.
+// Writes the estimate and its standard errors, the larger of those by pairs and by links.
 void Join::describe() {
     count_pairs();
     const Eigen::MatrixXd by_links = covariance_by_links();
@@ -303,7 +304,7 @@ double light_in(const LightPair &pair, bool is_other) {
     return pair.log_light[(pair.camera[0] > pair.camera[1]) != is_other][0];
 }
 
-// Middle and spread of such light.
+// Centre and spread of such light.
 struct Spread {
     double middle, spread;
 };
@@ -316,7 +317,7 @@ Spread spread_of(const std::vector<const LightPair *> &pairs, bool is_other) {
     return found;
 }
 
-// Whether light that two cameras saw may be the same: roughly, by the ratio of its spreads as the exponent.
+// Whether light that two cameras saw may be the same: a rough test, with the ratio of its spreads as the exponent.
 bool may_agree(const std::vector<const LightPair *> &pairs) {
     const Spread a = spread_of(pairs, false), b = spread_of(pairs, true);
     const double exponent = a.spread > 0.0 && b.spread > 0.0 ? std::sqrt(a.spread / b.spread) : 1.0;
@@ -327,7 +328,8 @@ bool may_agree(const std::vector<const LightPair *> &pairs) {
     return median(differences) < 2.0 * kLargestLightDifference;
 }
 
-// Without pairs of two cameras whose light has nothing in common: a solution of all would have to find them one by one.
+// Drops the pairs of two cameras whose light has nothing in common; otherwise the joint solution would have to find
+// them one by one.
 std::vector<LightPair> agreeing(const std::vector<LightPair> &pairs) {
     std::map<std::array<uint32_t, 2>, std::vector<const LightPair *>> between;
     for (const LightPair &pair : pairs)

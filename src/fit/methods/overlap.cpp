@@ -21,9 +21,9 @@
 namespace lensprof {
 namespace {
 
-constexpr int kStartModes = 5;               // enough to tell the starts apart
-constexpr double kFollows = 0.02;            // of ln gamma, that modes may be away from where it is asked to be
-constexpr uint32_t kEnoughForModes = 20000;  // pairs, where more are there to refine the response
+constexpr int kStartModes = 5;               // enough to distinguish the starts
+constexpr double kFollows = 0.02;            // of ln gamma, allowed distance of modes from the requested value
+constexpr uint32_t kEnoughForModes = 20000;  // pairs, if there are more to refine the response
 
 // A fit to the training data.
 struct Candidate : HeldoutLoss {
@@ -32,10 +32,10 @@ struct Candidate : HeldoutLoss {
 
 class Fit : Method {
 public:
-    // make(keep): the problem of some of `count` pairs or tracks.
+    // make(keep): the problem with a subset of `count` pairs or tracks.
     using Make = std::function<Problem(const std::vector<uint32_t> &keep)>;
 
-    // `profile`: of the options, or NULL for a fit without it. Progress goes from `from` to `to`.
+    // `profile`: that of the options, or NULL for a fit without it. Progress goes from `from` to `to`.
     Fit(const lensprof_fit_options &options, uint32_t image_count, Make make, uint32_t count,
         const lensprof_profile *profile, double from, double to)
         : Method(options, count, image_count),
@@ -53,7 +53,7 @@ public:
 
     void run();
 
-    // Standard errors by which held-out pairs are worse for this fit than for one without its profile; 0 without such
+    // Increase of the held-out loss compared with a fit without the profile, in standard errors; 0 without held-out
     // pairs.
     double worse_than(const Fit &other) const;
 
@@ -86,7 +86,7 @@ private:
             options_.vignettings == 3 || (options_.vignettings == 0 && stored_ && stored_->vignettings() == 3);
         return three && options_.channels == 3 ? 3 : 1;
     }
-    // Fewer modes than the profile's would leave out what is known of the others.
+    // Fewer modes than the profile's would discard what is known of the others.
     int start_modes() const { return stored_ ? std::max(kStartModes, stored_->modes()) : kStartModes; }
     Estimate best_start(int modes);
     void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
@@ -100,7 +100,7 @@ private:
 
     uint32_t image_count_;
     const Make problem_;
-    size_t step_;  // of the pairs, every so manieth is taken until the response is refined
+    size_t step_;  // only every so manieth pair is used until the response is refined
     bool has_heldout_ = false;
     const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
     std::unique_ptr<StoredPrior> stored_;
@@ -112,13 +112,13 @@ private:
     Control control_;
 };
 
-// The best of short fits from every start, its gamma settled.
+// The best of short fits from every start, with its gamma determined.
 Estimate Fit::best_start(int modes) {
     Problem brief = problem_(few());
     brief.vignettings = all_.vignettings;
     Gauge unheld = gauge_.unheld();
     Estimate best = best_brief_fit(brief, unheld, control_.cancelled, start_estimates(brief, options_, modes));
-    start_exposures(all_, kRoughWidth, best);  // images that had few pairs here get theirs
+    start_exposures(all_, kRoughWidth, best);  // sets the exposures of images that had few pairs here
     gauge_.settle(train_, best);
     return best;
 }
@@ -146,7 +146,7 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
     return result;
 }
 
-// Frees the response of its modes, once at the noise that they left and once at the noise that is left then.
+// Frees the response from its modes, first at the noise level that they left, then at the remaining noise level.
 void Fit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
     const Estimate of_modes = estimate;
     refine_response(problem, used, estimate);
@@ -155,7 +155,7 @@ void Fit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
     refine_response(problem, used, estimate);
 }
 
-// Whether held-out pairs are not worse by more than a standard error for a response free of its modes.
+// Whether a response free of its modes is not worse on held-out pairs by more than a standard error.
 bool Fit::is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined) {
     HeldoutLoss modes = heldout_loss(heldout_, best.estimate, common_);
     refined.estimate = best.estimate;
@@ -166,8 +166,8 @@ bool Fit::is_as_good_refined(const Candidate &best, const Loss &used, Candidate 
     return difference < error;
 }
 
-// Exposures anew from the response as fitted and all pairs: where an image was drawn to pairs that agree by chance, the
-// fit of `problem` from there costs less.
+// Recomputes the exposures from the fitted response and all pairs. If pairs that agree by chance had misled an image,
+// the fit of `problem` from there has a lower cost.
 void Fit::reconsider(const Problem &problem, const Loss &used, Estimate &estimate) {
     constexpr double kAway = 0.15;  // natural logarithm
     Estimate other = estimate;
@@ -188,7 +188,7 @@ void Fit::reconsider(const Problem &problem, const Loss &used, Estimate &estimat
 // The smallest number of modes whose held-out loss is within one standard error (of the paired difference) of the best.
 // More modes are tried until two in a row have not helped, fewer until one is worse.
 Candidate Fit::choose_modes(const Estimate &start) {
-    std::vector<Candidate> tried;  // by falling number of modes, once complete
+    std::vector<Candidate> tried;  // in order of falling number of modes, once complete
     tried.push_back(candidate(start, start_modes()));
     double lowest = tried[0].mean;
     int failures = 0;
@@ -209,7 +209,7 @@ Candidate Fit::choose_modes(const Estimate &start) {
     return tried[0];
 }
 
-// Start, modes and falloff curves.
+// Chooses start, modes and falloff curves.
 Candidate Fit::choose(Loss &used) {
     bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && has_heldout_;
     bool any_curves = may_choose_vignettings(has_heldout_);
@@ -249,7 +249,7 @@ void Fit::take_all() {
     set_vignettings(vignettings);
 }
 
-// Whether modes can follow to the gamma that is asked: the estimate is then that of a fit which holds it.
+// Whether modes can follow to the requested gamma: the estimate is then that of a fit which holds it.
 bool Fit::follows(const Loss &used, Estimate &estimate, Outcome &outcome) {
     Estimate there = estimate;
     Loss own = used;
@@ -261,8 +261,8 @@ bool Fit::follows(const Loss &used, Estimate &estimate, Outcome &outcome) {
     return true;
 }
 
-// The response freed of its modes where that is better, or where these cannot follow to the gamma that is asked. What
-// was fitted until here has the gamma of most cameras.
+// Frees the response from its modes if that is better, or if these cannot follow to the requested gamma. The fits so
+// far have the gamma of most cameras.
 void Fit::free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
     const bool was_thinned = step_ > 1;
     take_all();
@@ -313,7 +313,7 @@ void Fit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
            nullptr, exposures, result);
 }
 
-// What of a profile is the prior, and what is said where the pictures contradict the rest.
+// The part of a profile used as the prior, and the reason reported if the pictures contradict the rest.
 struct Part {
     bool response, falloff;
     lensprof_profile_prior verdict;
@@ -322,7 +322,7 @@ constexpr Part kParts[] = {{true, true, LENSPROF_PROFILE_PRIOR_USED},
                            {false, true, LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED},
                            {true, false, LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED}};
 
-// The profile with a covariance that knows but this part of it; NULL where that knows nothing.
+// The profile with a covariance restricted to this part of it; NULL if that contains no information.
 std::unique_ptr<lensprof_profile> part_of(const lensprof_profile &profile, const Part &part) {
     auto own = std::make_unique<lensprof_profile>(profile);
     const uint32_t n = own->covariance_size, modes = lp_covariance_modes(own->response, own->responses);
@@ -334,7 +334,7 @@ std::unique_ptr<lensprof_profile> part_of(const lensprof_profile &profile, const
     return says_how_sure(*own) ? std::move(own) : nullptr;
 }
 
-// How far the pictures are from a profile as the prior, standard errors.
+// Distance of the pictures from a profile used as the prior, standard errors.
 struct Contradiction {
     double falloff, response, worse, gamma;  // the response's shape, held-out pairs, gamma of the kind of camera
 
@@ -346,9 +346,9 @@ struct Contradiction {
     }
 };
 
-// Fits, and where a profile is the prior, without it too. Where the pictures contradict the profile, its falloff and
-// its response are tried each by itself, and that is the result which they and the kind of camera contradict less, if
-// it is none; else the one without.
+// Fits, and if a profile is the prior, also fits without it. If the pictures contradict the profile, tries its falloff
+// and its response separately and takes the result that the pictures and the kind of camera contradict less, provided
+// that they do not contradict it; otherwise the result without the profile.
 class InformedFit {
 public:
     InformedFit(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count)
@@ -383,7 +383,7 @@ public:
     }
 
 private:
-    // Into `r` where the pictures do not contradict this part of the profile.
+    // Stores the fit in `r` if the pictures do not contradict this part of the profile.
     Contradiction attempt(const Part &part, lensprof_exposure *exposures, const lensprof_fit_result &alone,
                           lensprof_fit_result &r) {
         const auto profile = part_of(*options_.profile, part);
@@ -416,7 +416,7 @@ private:
 
 void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
               lensprof_exposure *exposures, lensprof_fit_result &result) {
-    Output own(result, exposures, image_count);  // the caller's stay as they are until all is done
+    Output own(result, exposures, image_count);  // the caller's stay unchanged until all is done
     own.result->profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
     InformedFit(options, image_count, make, count).run(own.exposures.data(), *own.result);
     own.give(result, exposures);

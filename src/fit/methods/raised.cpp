@@ -20,11 +20,11 @@ lensprof_response raised_response(const lensprof_response &response, double gamm
     return table.fixed;
 }
 
-// What a result, or one of its lens settings, knows of its falloffs.
+// The uncertainty of the falloffs of a result, or of one of its lens settings.
 template <class Result>
 class RaisedFalloff {
 public:
-    // `size`, `modes`: of the covariance, of which the response's part is left out.
+    // `size`, `modes`: of the covariance, without the response's part.
     RaisedFalloff(Result &r, uint32_t size, uint32_t modes, uint32_t free)
         : r_(r), size_(size), modes_(modes), free_(free) {}
 

@@ -15,11 +15,11 @@ constexpr int kRounds = 8;                  // Gauss-Newton,
 constexpr double kWorthwhile = 1.0;         // as long as a round lowers the cost by more
 constexpr double kBend = 0.002;             // levels: expected second difference of the correction from level to level,
 constexpr double kEndBend = 1.0;            // and at the ends, where responses are steep,
-constexpr double kEndReach = 6.0;           // levels from there
-constexpr double kLargestCorrection = 8.0;  // levels, one standard deviation: holds what no pair tells
+constexpr double kEndReach = 6.0;           // reach of the ends, levels
+constexpr double kLargestCorrection = 8.0;  // levels, one standard deviation: holds levels that no pair determines
 
-// D at every level. f is straight up to its first sample of irradiance, so that up to the grey value there, and up to
-// level 1, D is one number.
+// D at every level. f is linear up to its first sample of irradiance; up to the grey value there, and up to level 1, D
+// is therefore constant.
 struct Correction {
     double first;  // that grey value, levels
     std::array<double, kLevels> at{};
@@ -55,8 +55,8 @@ Row row_of(const Problem &problem, const lensprof_pair &pair, int c, int side, P
             {1.0 - b.share, b.share, p.share - 1.0, -p.share, 1.0, 1.0, -1.0, -1.0}};
 }
 
-// The linear problem of one round: unknowns are the corrections and the changes of the images' log exposures, both from
-// where the refinement began.
+// The linear problem of one round: the unknowns are the corrections and the changes of the images' log exposures, both
+// relative to the start of the refinement.
 class Equations {
 public:
     Equations(const Problem &problem, const Estimate &first)
@@ -107,7 +107,7 @@ void Equations::add_pairs(const Loss &loss, const Correction &d, const Estimate 
     });
 }
 
-// The correction, in grey levels, is smooth and small.
+// Adds the prior that the correction, in grey levels, is smooth and small.
 void Equations::add_smoothness() {
     auto in_levels = [&](int k) {  // grey levels of a correction of 1 at unknown k: 1 / G'
         double b = (k + 1) / 255.0, low = b - 0.5 / 255.0, high = std::min(b + 0.5 / 255.0, 1.0);
@@ -125,7 +125,7 @@ void Equations::add_smoothness() {
     }
 }
 
-// Changes of the exposures have no part along the exposures themselves: that part would be a change of gamma.
+// Keeps changes of the exposures orthogonal to the exposures themselves, because a parallel part would change gamma.
 void Equations::hold_gamma() {
     constexpr double firmly = 1e12;
     Eigen::VectorXd along = Eigen::VectorXd::Zero(size_);
@@ -146,7 +146,7 @@ struct Refinement {
     Eigen::VectorXd changes;
 };
 
-// The estimate that a refinement makes of the first one.
+// The first estimate after applying a refinement.
 Estimate refined(const Problem &problem, const Estimate &first, const Refinement &by) {
     Estimate estimate = first;
     set_table(estimate, table_of(first.curve, by.d).data());
@@ -166,7 +166,7 @@ double cost_of(const Problem &problem, const Loss &loss, const Estimate &estimat
     return cost;
 }
 
-// The share of the way to the solution of a round, of 1, 1/2, 1/4 and 1/8, that lowers the cost; false for none.
+// Tries 1, 1/2, 1/4 and 1/8 of the step to the solution of a round; false if none lowers the cost.
 bool advance(const Problem &problem, const Loss &loss, const Estimate &first, const Eigen::VectorXd &found,
              Refinement &by, Estimate &estimate, double &cost) {
     for (double share = 1.0; share > 0.1; share *= 0.5) {

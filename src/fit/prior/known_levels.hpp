@@ -33,7 +33,7 @@ public:
 private:
     struct Visit {
         uint32_t image;
-        int before;  // the nearest visit on the way from the start; -1 if there is none
+        int before;  // the nearest visit on the way from the start, or -1
     };
     std::vector<Visit> visits_;  // of known images, each after the one it is reached from
 };

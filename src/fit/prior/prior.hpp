@@ -27,7 +27,7 @@ struct Prior {
     Eigen::VectorXd pin = Eigen::VectorXd::Zero(kMaxModes);
     double pin_value = 0.0, pin_precision = 0.0;
 
-    // Known exposures: precision (a - log_exposure)^2 / 2 of the measured channel; empty if there are none.
+    // Known exposures: precision (a - log_exposure)^2 / 2 of the measured channel; may be empty.
     struct KnownExposure {
         double log_exposure = 0.0, precision = 0.0;
         double hold = 1.0;  // how much more firmly it is held than its standard error implies

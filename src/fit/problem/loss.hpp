@@ -1,9 +1,9 @@
-// What a residual costs.
+// The cost of a residual.
 //
 // SQUARED and HUBER take every residual as it is, in grey values (d'Angelo eq. 10 and 11). ROBUST weighs a residual by
 // the noise it carries: a noise of sigma in both grey values puts sigma sqrt(1 + tau'^2) into B1 - tau(B2), and the two
-// directions are then the same measurement twice. A pair's residuals of all channels form z, chi-squared with one
-// degree of freedom a channel; the pair is trusted or distrusted as a whole by
+// directions are then the same measurement twice. A pair's residuals of all channels form z, chi-squared with
+// one degree of freedom per channel; the pair is trusted or distrusted as a whole by
 //     rho(z) = c^2 atan(z / c^2),    weight rho'(z) = 1 / (1 + (z / c^2)^2),
 // quadratic for noise and bounded for outliers.
 #pragma once
@@ -21,11 +21,11 @@ struct Loss {
     double huber = 5.0 / 255.0;  // HUBER: sigma, grey value 0..1
     double noise = 2.0 / 255.0;  // sigma of one grey value
     double cutoff = 4.0;         // ROBUST: c, in sigmas of a pair's typical size
-    bool distrusts = false;      // ROBUST: does without single observations of a track (radiance.hpp)
+    bool distrusts = false;      // ROBUST: can leave out single observations of a track (radiance.hpp)
 };
 
 // 1 / sqrt(1 + tau'^2) of every pair, [channel][direction], at one estimate; 1 for the unweighted losses. Held constant
-// while the solver steps, so that cost and Jacobian belong together.
+// while the solver steps, so that cost and Jacobian are consistent.
 using PairWeights = std::array<std::array<float, 2>, 3>;
 using NoiseWeights = std::vector<PairWeights>;
 NoiseWeights noise_weights(const Problem &problem, const Estimate &estimate, const Loss &loss);
@@ -34,7 +34,7 @@ NoiseWeights noise_weights(const Problem &problem, const Estimate &estimate, con
 using PairResiduals = std::array<std::array<double, 2>, 3>;
 PairResiduals weighted_residuals(const PairTransfer &transfer, int channels, const PairWeights &weights);
 
-// The pair's z in units of the noise variance (chi-squared, one degree of freedom a channel).
+// The pair's z in units of the noise variance (chi-squared, one degree of freedom per channel).
 double pair_chi2(const PairResiduals &residuals, int channels, double noise);
 
 // rho(z) of the robust loss for a cut-off c^2; *divisor receives 1 / rho'(z).

@@ -17,7 +17,7 @@ struct Transfer {
     double residual[2];
     double by_delta[2];  // d prediction / d delta
     double by_value[2];  // d prediction / d the other grey value: tau'
-    double x[2], y[2];   // irradiances behind the two values, and arguments of f in the two predictions
+    double x[2], y[2];   // irradiances of the two values, and arguments of f in the two predictions
 };
 
 // f and g of an estimate; slopes as lensprof_response_eval and _invert.
@@ -33,7 +33,7 @@ struct Attenuation {
 Attenuation attenuation(const Problem &problem, const Estimate &estimate, size_t curve, uint32_t image,
                         const double xy[2]);
 
-// M(p1) / M(p2) of a pair, and what it is made of.
+// M(p1) / M(p2) of a pair, and its parts.
 struct Falloff {
     double ratio;
     Attenuation end[2];
@@ -44,7 +44,7 @@ Transfer transfer(const Estimate &estimate, double value1, double value2, double
 
 // All channels of a pair, at an estimate. exposure_ratio[c]: e1 w1 / (e2 w2).
 struct PairTransfer {
-    std::array<Falloff, 3> fall;  // the first alone when one curve serves all channels
+    std::array<Falloff, 3> fall;  // only the first if one curve serves all channels
     std::array<Transfer, 3> channel;
 };
 void evaluate_pair(const Problem &problem, const Estimate &estimate, const lensprof_pair &pair,
@@ -60,7 +60,7 @@ inline std::array<double, 3> exposure_ratios(const Problem &problem, const Estim
     return ratio;
 }
 
-// visit(number of the pair, its transfer) for every pair of a chunk, in order.
+// Calls visit(number of the pair, its transfer) for every pair of a chunk, in order.
 template <class Visit>
 void for_each_transfer(const Problem &problem, const Chunk &chunk, const Estimate &estimate, Visit visit) {
     PairTransfer transfer;
@@ -79,10 +79,10 @@ void for_each_transfer(const Problem &problem, const Estimate &estimate, Visit v
     for (const Chunk &chunk : problem.chunks) for_each_transfer(problem, chunk, estimate, visit);
 }
 
-// work(number of a chunk) for every chunk, on the problem's threads.
+// Calls work(number of a chunk) for every chunk, on the problem's threads.
 void for_each_chunk(const Problem &problem, const std::function<void(uint32_t)> &work);
 
-// The EMoR modes in use, sample by sample: all modes at one irradiance lie together.
+// The EMoR modes in use, interleaved: all modes at one irradiance are adjacent.
 class ModeTable {
 public:
     explicit ModeTable(int modes);

@@ -10,9 +10,10 @@ namespace lensprof {
 
 constexpr int kRadiusBins = 10, kGreyBins = 10;
 
-// Numbers of `wanted` of `count` candidates, ascending: those of lowest gradient(i) first, as long as no group, radius
-// or grey level has had more than its share; the shares grow until enough are found. group(i) is below `groups`;
-// ends(i, use) calls use(radius bin, grey bin) for each of a candidate's ends; all wanted ones have `wanted_ends`.
+// Selects `wanted` of `count` candidates and returns their numbers, ascending: those of lowest gradient(i) first, as
+// long as no group, radius or grey level exceeds its share; the shares grow until enough are found. group(i) is below
+// `groups`; ends(i, use) calls use(radius bin, grey bin) for each of a candidate's ends; all wanted candidates together
+// have `wanted_ends`.
 template <class Gradient, class Group, class Ends>
 std::vector<uint32_t> balance(size_t count, uint32_t wanted, double wanted_ends, uint32_t groups, Gradient gradient,
                               Group group, Ends ends) {

@@ -1,5 +1,5 @@
-// Blocks of grey levels and how alike they are: by normalised cross-correlation, which exposure, white balance and
-// falloff leave as it is.
+// Blocks of grey levels and their similarity: normalised cross-correlation, which is invariant to exposure, white
+// balance and falloff.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@
 
 namespace lensprof {
 
-constexpr double kTexture = 0.015;  // standard deviation of a block, grey value 0..1, that can be compared
+constexpr double kTexture = 0.015;  // smallest standard deviation of a comparable block, grey value 0..1
 
-// Grey levels of a view, or the light behind them, at a quarter and at half its size.
+// Grey levels of a view, or the corresponding light, at a quarter and at half its size.
 class GreyLevels {
 public:
     struct Level {
@@ -26,42 +26,41 @@ public:
 
     GreyLevels(const View &view, const Light &light);
 
-    // Share of a block's variance that is of the scene: `texture` is its standard deviation on the coarse level, and
-    // noise is what two halves of the pixels behind it do not share.
+    // Share of a block's variance that comes from the scene. `texture` is its standard deviation on the coarse level;
+    // noise is what two halves of the underlying pixels do not share.
     double reliability(double x, double y, double texture) const;
 
     std::array<Level, 2> level;  // the coarse one first
-    std::array<Level, 2> wide;   // half of the coarse one, and half of that: for what lies about a smooth place
+    std::array<Level, 2> wide;   // half of the coarse one, and half of that: for the surroundings of a smooth place
 
 private:
     std::vector<float> noise_;  // variance about every coarse pixel
 };
 
-// Square of level pixels about a place, without its mean and of length 1. Pixels that are black or saturated do not
-// count.
+// A square of level pixels about a place, normalised to mean 0 and length 1. Black and saturated pixels do not count.
 template <int reach>
 struct Block {
     static constexpr int kSide = 2 * reach + 1, kCount = kSide * kSide;
     std::array<float, kCount> value;
     std::array<float, kCount> grey;
-    double texture = 0.0;  // standard deviation before
-    int lost = 0;          // pixels that are black or saturated
+    double texture = 0.0;  // standard deviation before normalisation
+    int lost = 0;          // number of black or saturated pixels
 
-    // (x, y): full frame. `map` turns and scales the square, given in px of the full frame `pixel` apart.
+    // (x, y): full frame. `map` rotates and scales the square, given in px of the full frame `pixel` apart.
     bool cut(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
         const bool is_seen = gather(level, x, y, pixel, map);
         if (is_seen) normalise();
         return is_seen;
     }
 
-    // The same without the gradient over the block, which is that of light or falloff and shows no place.
+    // The same without the gradient over the block, which comes from light or falloff and does not identify a place.
     bool cut_flat(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
         const bool is_seen = gather(level, x, y, pixel, map);
         if (is_seen) take_out_gradient(), normalise();
         return is_seen;
     }
 
-    // 0 where too few pixels count.
+    // 0 if too few pixels count.
     double correlation(const Block &other) const {
         if (lost || other.lost) return correlation_of_rest(other);
         float sum = 0.0f;
@@ -69,7 +68,7 @@ struct Block {
         return sum;
     }
 
-    // Pixels that count in both.
+    // Number of pixels that count in both.
     int shared(const Block &other) const {
         int count = 0;
         for (size_t k = 0; k < kCount; k++) count += !is_lost_grey(grey[k]) && !is_lost_grey(other.grey[k]);
@@ -77,7 +76,7 @@ struct Block {
     }
 
 private:
-    // `value` less its mean.
+    // Reads `value`, less its mean.
     bool gather(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
         const double u0 = (x + 0.5) / level.pixel, v0 = (y + 0.5) / level.pixel, step = pixel / level.pixel;
         float sum = 0.0f;
@@ -131,12 +130,12 @@ private:
 
 constexpr double kUpright[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
 
-// Correlation of the surroundings of a place, corrected for noise; nothing where they have no texture of the scene that
-// both show. Low where something moved, stands in the way, or the project is wrong.
+// Correlation of the surroundings of a place, corrected for noise; empty if they have no scene texture that both images
+// show. It is low if something moved or stands in the way, or if the project is wrong.
 std::optional<double> likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
                                const Sight &sight);
 
-// The same of what lies farther about a place without texture of its own: the square that has texture, of one twice and
+// The same for the wider surroundings of a place without texture of its own: the square with texture, of one twice and
 // one four times as wide.
 std::optional<double> wide_likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
                                     const Sight &sight);

@@ -1,4 +1,4 @@
-// Where two images show the same: by the geometry of a project, and by what corrects that between the two.
+// Where two images show the same scene point: by the geometry of a project, and by a correction between the two images.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace lensprof {
 
-// Of a direction in longitude and latitude, radians, and back.
+// Converts a direction in longitude and latitude, radians, to a unit vector, and back.
 void unit_vector(const double direction[2], double v[3]);
 void direction_of_vector(const double v[3], double direction[2]);
 
-// Axis times angle, radians: where direction v of one image is in the other; the other way round with sign -1.
+// Axis times angle, radians: maps direction v of one image to the other; the opposite way with sign -1.
 using Rotation = std::array<double, 3>;
 void rotate(const Rotation &rotation, double sign, double direction[2]);
 
@@ -25,8 +25,8 @@ struct Bend {
     Eigen::Matrix3d forward, back;
 };
 
-// What is wrong with a project between two images: the second camera is turned by `rotation`, and `bend` maps a place
-// of its frame to the place that shows the same.
+// The error of a project between two images: the second camera is rotated by `rotation`, and `bend` maps a place of its
+// frame to the place that shows the same.
 struct Correction {
     Rotation rotation{};
     std::optional<Bend> bend;
@@ -38,12 +38,12 @@ enum class Way {
     back
 };
 
-// The place xy of image `to` that shows what image `from` shows at (x, y), px of the full frames. False where `to` does
-// not look.
+// The place xy of image `to` that shows what image `from` shows at (x, y), px of the full frames. False if `to` does
+// not see it.
 bool place_of(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
               double y, double xy[2]);
 
-// The same with the surroundings.
+// The same, with the local linear map of the surroundings.
 struct Sight {
     double x, y;
     double map[2][2];  // d to / d from
@@ -51,10 +51,11 @@ struct Sight {
 bool sight(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
            double y, Sight &out);
 
-// Whether a place of the first frame, given as shares of its width and height, lies in the second, by the project.
+// Whether a place of the first frame, given as shares of its width and height, lies in the second, according to the
+// project.
 bool sees(const lensprof_camera &first, const lensprof_camera &second, double across, double down);
 
-// Places in half diagonals of a frame from its middle, and in px.
+// Converts places between half diagonals from the middle of a frame and px.
 Eigen::Vector2d frame_place(const lensprof_camera &camera, double x, double y);
 void pixel_place(const lensprof_camera &camera, const Eigen::Vector2d &place, double xy[2]);
 

@@ -1,5 +1,5 @@
-// Finding correspondences: candidates from image to image through the geometry, then a choice among them. What looks
-// for tracks stands in track_sampler.cpp, what starts from matches in match_sampler.cpp.
+// Finds correspondences: candidates from image to image through the geometry, then a choice among them. The search for
+// tracks is in track_sampler.cpp, sampling from matches in match_sampler.cpp.
 #pragma once
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 namespace lensprof {
 
 constexpr uint32_t kLongestTrack = 16;
-constexpr double kSlack = 0.02;  // of the cosine to a cone's edge: projects may be off
+constexpr double kSlack = 0.02;  // margin on the cosine of a cone's edge, because projects may be off
 
 class Sampler {
 public:
     Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count);
 
-    // For of_matches: images with matches are neighbours, and no camera is looked at. Stands in match_sampler.cpp.
+    // For of_matches: images with matches are neighbours, and cameras are not read. Defined in match_sampler.cpp.
     Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
             const lensprof_match *matches, uint32_t match_count);
 
@@ -33,21 +33,22 @@ public:
     // d'Angelo 5.1: 5n random points, binned by radius; from each of 10 bins the n/10 of lowest gradient.
     std::vector<lensprof_pair> paper(uint32_t wanted);
 
-    // At places that match: the quietest near each match, balanced as above.
-    // `match_of_pair`, where it is not NULL, receives the index of the match of each pair.
+    // At places that match: the quietest place near each match, balanced as above. `match_of_pair`, if not NULL,
+    // receives the index of the match of each pair.
     std::vector<lensprof_pair> of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted,
                                           uint32_t *match_of_pair);
 
-    // Points spread evenly over what the pictures see, each in every picture that sees it (kLongestTrack at most),
-    // saturated channels with the value 1; of those near each other the quietest, balanced over radius and grey level.
+    // Points spread evenly over the area that the pictures see, each in every picture that sees it (kLongestTrack at
+    // most). Saturated channels have the value 1. Takes the quietest of nearby points, balanced over radius and grey
+    // level.
     std::vector<lensprof_observation> balanced_tracks(uint32_t wanted);
 
-    // Goldman & Chen, section 5: points uniform in a cylindrical system, as they come.
+    // Goldman & Chen, section 5: points uniform in a cylindrical system, without selection.
     std::vector<lensprof_observation> paper_tracks(uint32_t wanted);
 
     bool overlaps() const { return overlaps_; }
 
-    // Of balanced sampling: the neighbours that pairs were looked for between.
+    // For balanced sampling: the neighbours between which pairs were searched.
     std::vector<lensprof_link> links() const;
 
 private:
@@ -56,7 +57,7 @@ private:
         Patch patch;
         uint8_t radius, grey;
     };
-    // There may be millions: their grey values are measured again for those chosen.
+    // There may be millions, so grey values are not stored; they are measured again for the candidates chosen.
     struct Candidate {
         double x, y;  // in image[0], px of the full frame
         uint32_t image[2];
@@ -69,7 +70,7 @@ private:
         uint32_t image[2];
     };
 
-    // One near a match, where its pair is measured.
+    // A candidate near a match, at the place where its pair is measured.
     struct MatchCandidate : Candidate {
         lensprof_pair pair;
         uint32_t match;  // its index
@@ -84,7 +85,7 @@ private:
     struct TrackCandidate {
         std::vector<Visit> visits;  // the first is the anchor, from which the others were found
         float gradient = 0.0f;      // mean of the visits
-        uint32_t cell = 0;          // candidates near each other have one
+        uint32_t cell = 0;          // shared by candidates near each other
     };
     // Where to look for a track, and its cell.
     struct Aim {
@@ -92,18 +93,19 @@ private:
         uint32_t cell;
     };
 
-    // What an image sees lies within `reach` of its axis, radians (a little is added to it).
+    // An image sees only directions within `reach` of its axis, radians (with a small margin).
     struct Cone {
         double axis[3], reach;
-        double cosine;  // of reach; less than any where the cone is not known
+        double cosine;  // of reach; less than any cosine if the cone is not known
         bool known;
     };
 
-    // Places that a pair of neighbours shares, those that have texture, and those of them that may and that clearly do
-    // show the same; places beside where the other image should show them, and those that clearly do.
+    // Counts of places shared by a pair of neighbours: those with texture, and of these those that may and those that
+    // clearly do show the same; for comparison, places displaced from where the other image should show them, and those
+    // that clearly do.
     struct Likenesses {
         std::atomic<uint32_t> seen{0}, told{0}, alike{0}, surely{0}, beside{0}, chance{0};
-        uint32_t pairs = 0;  // that are used
+        uint32_t pairs = 0;  // pairs that are used
     };
 
     static Cone cone_of(const lensprof_camera &camera);
@@ -139,20 +141,20 @@ private:
     std::vector<Cone> cones_;
     std::vector<std::vector<uint32_t>> neighbours_;  // ascending
     std::vector<uint32_t> first_edge_;               // number of every image's first pair with a neighbour
-    uint32_t edge_numbers_ = 0;                      // edge_of() is less
-    std::vector<std::unique_ptr<GreyLevels>> grey_;  // of every view
-    std::vector<Correction> corrections_;            // of every pair of neighbours, from the lower image to the other
-    std::vector<Likenesses> likenesses_;             // of every pair of neighbours
+    uint32_t edge_numbers_ = 0;                      // exclusive upper bound of edge_of()
+    std::vector<std::unique_ptr<GreyLevels>> grey_;  // per view
+    std::vector<Correction> corrections_;            // per pair of neighbours, from the lower image to the other
+    std::vector<Likenesses> likenesses_;             // per pair of neighbours
     std::atomic<size_t> refused_{0};                 // pairs of places that do not show the same
-    bool patches_ = true;                            // else single points
-    bool by_matches_ = false;                        // which verify links
+    bool patches_ = true;                            // otherwise single points
+    bool by_matches_ = false;                        // matches verify links
     bool keep_white_ = false;                        // saturated channels are samples, too
     std::atomic<bool> overlaps_{false};
-    double shown_ = 0.0;  // the last fraction that the caller saw
+    double shown_ = 0.0;  // the last fraction reported to the caller
 };
 
-// The quietest candidates of links that are not contradicted, as long as no image pair, radius or grey level has had
-// more than its share; the shares grow until enough are found.
+// The quietest candidates of links that are not contradicted, as long as no image pair, radius or grey level exceeds
+// its share; the shares grow until enough are found.
 template <class Any>
 std::vector<Any> Sampler::balanced_choice(std::vector<Any> all, uint32_t wanted) {
     const auto edge = [&](const Candidate &c) { return edge_of(c.image[0], c.image[1]); };

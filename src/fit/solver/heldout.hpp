@@ -1,4 +1,4 @@
-// What the fits compare their candidates by: pairs or tracks that are left out, and what these cost under each.
+// The criterion by which fits compare their candidates: the costs of held-out pairs or tracks under each candidate.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@ namespace lensprof {
 
 constexpr size_t kFewestHeldout = 20;
 
-// Of all pairs or tracks by their numbers: four fifths to fit, one fifth that is left out, and a few of the former for
-// first fits. The same every time.
+// Splits all pairs or tracks by their numbers: four fifths to fit, one fifth held out, and a few of the former for
+// first fits. The split is deterministic.
 struct Split {
     std::vector<uint32_t> all, train, heldout, few;
 
@@ -19,10 +19,10 @@ struct Split {
 };
 Split split_pairs(uint32_t count, uint32_t images);
 
-// A number of 0..2^64-1 that belongs to a pair's number: independent of order along images, same every time.
+// A hash 0..2^64-1 of a pair's number: independent of the order along images, and deterministic.
 uint64_t pair_hash(uint32_t pair);
 
-// What every held-out pair or track costs under an estimate, at a loss common to all candidates.
+// The cost of every held-out pair or track under an estimate, with a loss common to all candidates.
 struct HeldoutLoss {
     std::vector<double> losses;
     double mean = 0.0;
@@ -35,7 +35,7 @@ double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &stand
 // Whether a candidate is within one standard error (of the paired difference) of the best one.
 bool is_as_good(const HeldoutLoss &one, const HeldoutLoss &best);
 
-// Whether it is better by more than three standard errors.
+// Whether a candidate is better by more than three standard errors.
 bool is_clearly_better(const HeldoutLoss &one, const HeldoutLoss &other);
 
 // The candidate with the smallest held-out loss.

@@ -1,7 +1,7 @@
 // The quadratic model of the objective about an estimate, with the images' unknowns eliminated (Schur complement).
 //
 // Shared unknowns s (response, falloff, centre) are dense and few. The images' log exposures a_ic count only relative
-// to each other, so their Hessian is a sum over pairs of images: a weighted graph Laplacian for each channel. Links and
+// to each other, so their Hessian is a sum over pairs of images: a weighted graph Laplacian per channel. Links and
 // fixed values are a linear map a = T q. Cost is linear in pairs, and nearly so in images (sparse Cholesky).
 #pragma once
 
@@ -24,27 +24,27 @@ public:
     double objective() const { return objective_; }  // at the estimate, priors included
     const std::vector<int> &columns() const { return columns_; }
 
-    // Eliminates the images under damping `lambda`; false when that failed numerically.
+    // Eliminates the images under damping `lambda`; false if that failed numerically.
     bool reduce(double lambda);
     const Eigen::MatrixXd &reduced_hessian() const { return S_; }
     const Eigen::VectorXd &reduced_gradient() const { return b_; }  // of -objective
 
-    // The images' step that belongs to a shared step, as changes of a_ic.
+    // The images' step for a given shared step, as changes of a_ic.
     std::vector<std::array<double, 3>> image_step(const Eigen::VectorXd &shared_step) const;
 
-    // What the model expects the objective to fall by under a shared step and the images' that belongs to it.
+    // Decrease of the objective that the model predicts for a shared step and the corresponding step of the images.
     double expected_gain(const Eigen::VectorXd &shared_step) const;
 
-    // Variance of every unknown of the images, when `shared` is the covariance of the shared unknowns.
+    // Variance of every unknown of the images, given `shared`, the covariance of the shared unknowns.
     Eigen::VectorXd image_variance(const Eigen::MatrixXd &shared) const;
 
 protected:
-    // Two images and the weight of the Laplacian between them, of each channel.
+    // Two images and the weight of the Laplacian between them, per channel.
     struct Link {
         uint32_t image[2];
         std::array<double, 3> weight;
     };
-    // What the residuals add to the model, as derivatives by a_ic: before links, fixed values and priors.
+    // Contribution of the residuals to the model, as derivatives by a_ic: before links, fixed values and priors.
     struct Sums {
         double objective = 0.0;
         Eigen::MatrixXd shared, cross;  // shared: its lower half
@@ -52,20 +52,20 @@ protected:
         std::vector<Link> links;
 
         Sums(Eigen::Index n, uint32_t image_count);
-        void add(const Sums &part);  // all but the links
+        void add(const Sums &part);  // adds everything except the links
     };
 
     NormalEquations(const Problem &problem, const Estimate &estimate);
 
-    // Adds `sign` times the derivatives of ln M at a place of an image, by a falloff curve, to those by the lens, which
-    // come after those by the modes.
+    // Adds `sign` times the derivatives of ln M at a place of an image, for one falloff curve, to the derivatives by
+    // the lens, which follow those by the modes.
     void add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign, double *by) const;
 
     void complete(const Sums &sums, const Prior &prior, const Estimate &estimate);
 
     const Problem &problem_;
     const std::vector<int> columns_;
-    const size_t modes_;  // of the columns, the first ones
+    const size_t modes_;  // number of leading columns that are modes
 
 private:
     void add_prior(const Prior &prior, const Estimate &estimate);
@@ -84,8 +84,8 @@ private:
     Eigen::VectorXd b_;
 };
 
-// Diagonal of the inverse of a factored matrix (Takahashi, Fagan and Chen 1973): only entries in the pattern of the
-// factor are ever formed, so that the cost follows the factor's.
+// Diagonal of the inverse of a factored matrix (Takahashi, Fagan and Chen 1973). Only entries in the pattern of the
+// factor are computed, so that the cost is that of the factor.
 Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> &factor);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// What the solver minimises, by the problem's method.
+// The objective that the solver minimises, depending on the problem's method.
 #pragma once
 
 #include <memory>
@@ -12,17 +12,17 @@ class Objective {
 public:
     virtual ~Objective() = default;
 
-    // The quadratic model about an estimate, and the objective's value there alone.
+    // The quadratic model about an estimate, and the value of the objective alone.
     virtual std::unique_ptr<NormalEquations> model_at(const Estimate &estimate) const = 0;
     virtual double value_at(const Estimate &estimate) const = 0;
 };
 
-// The objective with what is held while the solver steps (noise weights, trust) as it is at an estimate. It keeps
-// references to what it is made of.
+// The objective with the quantities that are held while the solver steps (noise weights, trust) evaluated at an
+// estimate. It keeps references to its arguments.
 std::unique_ptr<Objective> make_objective(const Problem &problem, const Prior &prior, const Loss &loss,
                                           const Estimate &estimate);
 
-// What every pair, or every track, costs at an estimate.
+// The cost of every pair, or every track, at an estimate.
 std::vector<double> all_costs(const Problem &problem, const Loss &loss, const Estimate &estimate);
 
 }  // namespace lensprof

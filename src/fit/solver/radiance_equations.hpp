@@ -1,9 +1,9 @@
 // The quadratic model of the radiance method: residuals of tracks, their radiances eliminated.
 //
 // With v the derivatives of a track's predictions by the logarithm of its radiance, W its weights and J those by
-// everything else, the radiance leaves  J'WJ - J'Wv v'WJ / v'Wv  behind. v is also the derivative by the images' log
-// exposures, one observation each: their part is again the Laplacian of a graph, in which a track joins its images i
-// and j by W_i v_i^2 W_j v_j^2 / v'Wv.
+// everything else, eliminating the radiance leaves  J'WJ - J'Wv v'WJ / v'Wv. v is also the derivative by the images'
+// log exposures, one observation each: their part is again the Laplacian of a graph, in which a track joins its images
+// i and j by W_i v_i^2 W_j v_j^2 / v'Wv.
 #pragma once
 
 #include "fit/problem/radiance.hpp"

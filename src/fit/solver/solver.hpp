@@ -15,8 +15,8 @@ namespace lensprof {
 struct Control {
     int max_iterations = 200;
     int rounds = 6;
-    double flat = 1e-3;  // a round ends when a step gains less: half of chi-squared, 1/20 sigma of one parameter
-    std::function<bool()> cancelled;  // asked once an iteration
+    double flat = 1e-3;  // a round ends if a step gains less: half of chi-squared, 1/20 sigma of one parameter
+    std::function<bool()> cancelled;  // called once per iteration
 };
 
 struct Outcome {
@@ -25,19 +25,19 @@ struct Outcome {
     bool converged = false;
 };
 
-// Largest change of what a user sees: grey value of the response, falloff, log exposure.
+// Largest change of a visible quantity: grey value of the response, falloff, log exposure.
 double largest_change(const Estimate &a, const Estimate &b);
 
-// Improves `estimate` (feasible, `modes` modes) until it no longer moves. Between rounds the noise weights and what is
-// known of gamma and exposures are renewed, and with `refine_noise` in the first rounds the noise level too
-// (loss.noise): every round minimises one fixed objective.
+// Improves `estimate` (feasible, `modes` modes) until it converges. Every round minimises one fixed objective. Between
+// rounds the noise weights and the knowledge of gamma and exposures are renewed and, with `refine_noise`, in the first
+// rounds also the noise level (loss.noise).
 Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
               const Control &control, Estimate &estimate);
 
 // Covariances at an estimate, gamma held: inverse of the Hessian of all unknowns.
 struct Covariance {
     bool is_determined = false;
-    Eigen::MatrixXd shared;  // full shared vector; zero rows where a parameter was held fixed
+    Eigen::MatrixXd shared;  // full shared vector; zero rows for parameters held fixed
     Eigen::VectorXd images;  // variances of the images' unknowns
 };
 Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,

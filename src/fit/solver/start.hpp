@@ -11,8 +11,8 @@ namespace lensprof {
 // kind.
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes);
 
-// Sets the free exposures of an estimate whose response and vignetting are set. `width`: by how much the logarithms of
-// a pair's ratios may differ among pairs that agree; with a response that is only guessed they differ more.
+// Sets the free exposures of an estimate whose response and vignetting are set. `width`: the largest difference between
+// the logarithms of the ratios of pairs that agree; it is larger if the response is only a guess.
 constexpr double kRoughWidth = 0.3, kFineWidth = 0.1;
 void start_exposures(const Problem &problem, double width, Estimate &estimate);
 

@@ -1,4 +1,4 @@
-// The end of a fit, the same for all methods: the result's numbers and its verdict.
+// The end of a fit, the same for all methods: the numbers of the result and its verdict.
 #pragma once
 
 #include <functional>
@@ -7,12 +7,12 @@
 
 namespace lensprof {
 
-// What a method found. The references need to live during the call only.
+// The findings of a method. The references only need to live during the call.
 struct Found {
     const Problem &problem;  // all pairs
     const Gauge &gauge;
     const Estimate &estimate;  // of all pairs
-    const Problem &tested;     // pairs that `train` has not seen; without such (`has_heldout` false) all pairs
+    const Problem &tested;     // pairs that `train` has not seen; without such pairs (`has_heldout` false) all pairs
     const Estimate &train;
     bool has_heldout;
     double noise;  // sigma of a grey value, 0..1
@@ -21,8 +21,8 @@ struct Found {
     bool converged;
 };
 
-// Fills everything but `profile_prior` and `seconds`, and the exposures. `judge_own` adds what only the method knows,
-// after the common verdict.
+// Fills the result except `profile_prior` and `seconds`, and the exposures. `judge_own` adds what only the method
+// knows, after the common verdict.
 void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_own,
             lensprof_exposure *exposures, lensprof_fit_result &result);
 

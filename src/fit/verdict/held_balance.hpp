@@ -1,4 +1,4 @@
-// White balances that are held though the pictures differ in them.
+// Detects white balances that are held although the pictures differ in them.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace lensprof {
 
-// By how much the colours of an image differ from those of its neighbours where the estimate takes them for equal: the
-// mean over its links of the median residual of red or blue beside that of green, levels of 255.
+// Colour difference of an image from its neighbours at places that should have equal colours according to the estimate:
+// the mean over its links of the median residual of red or blue relative to that of green, levels of 255.
 struct HeldBalance {
-    double levels = 0.0;  // 0: none differs clearly
+    double levels = 0.0;  // 0: no clear difference
     uint32_t image = 0;
 };
 
-// The largest, of images whose white balance is held and not that of the reference.
+// The largest difference, over images whose white balance is held and is not the reference's.
 HeldBalance held_balance(const Problem &problem, const Estimate &estimate);
 
 }  // namespace lensprof

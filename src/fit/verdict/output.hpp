@@ -1,4 +1,4 @@
-// What a fit gives, with room of its own: where several fits are tried and one of them becomes the caller's.
+// The output of a fit with its own storage, for trying several fits before one is copied to the caller's.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace lensprof {
 
-// What a result and each of its lens settings have in common: the verdict, and the numbers of one setting.
+// Copies the fields that a result and each of its lens settings share: the verdict, and the numbers of one setting.
 template <class From, class To>
 void copy_setting(const From &from, To &to) {
     to.usable = from.usable;
@@ -25,7 +25,7 @@ void copy_setting(const From &from, To &to) {
     std::copy(std::begin(from.gamma_direction), std::end(from.gamma_direction), to.gamma_direction);
 }
 
-// What a result and each of its cameras have in common.
+// Copies the fields that a result and each of its cameras share.
 template <class From, class To>
 void copy_camera(const From &from, To &to) {
     to.response = from.response;
@@ -46,7 +46,7 @@ struct Output {
     std::vector<lensprof_fit_image_quality> quality;
     std::vector<lensprof_fit_setting> settings;
 
-    // Begins as what the caller's holds.
+    // Starts with the contents of the caller's result.
     Output(const lensprof_fit_result &given, const lensprof_exposure *given_exposures, uint32_t image_count)
         : result(std::make_unique<lensprof_fit_result>(given)),
           exposures(given_exposures, given_exposures + image_count),

@@ -1,4 +1,4 @@
-// What a result is worth: residuals, covariance, coverage, and in plain words why it is not usable.
+// The quality of a result: residuals, covariance, coverage, and in plain words why it is not usable.
 #pragma once
 
 #include "fit/base/quantile.hpp"
@@ -18,26 +18,28 @@ std::vector<double> residual_levels(const Problem &problem, const Estimate &esti
 // Fills the response and the numbers of pairs and falloff curves.
 void describe_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &result);
 
-// Fills what pairs leave that the estimate has not seen; without such pairs only how different they were before.
+// Fills the residuals of pairs that the estimate has not seen; without such pairs, only their differences before
+// correction.
 void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, lensprof_fit_result &result);
 
-// Fills noise (from that of a grey value, 0..1), inlier share, patterns, coverage of the greys and the images' quality.
+// Fills noise (from that of a grey value, 0..1), inlier share, patterns, coverage of the grey values and the images'
+// quality.
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
                       const Estimate &estimate, lensprof_fit_result &result);
 
-// Fills what a result has of one lens setting: vignetting, covariance and coverage of the frame.
+// Fills the fields of one lens setting: vignetting, covariance and coverage of the frame.
 void describe_setting(const Problem &problem, const Gauge &gauge, const Covariance &found, const Estimate &estimate,
                       int setting, lensprof_fit_result &result);
 
-// Root mean square difference, EV, of pictures that overlap, over pairs and channels. Below kSmallestSpread they show
-// no response without falloff: their transfer functions are the identity.
+// Root mean square difference, EV, of overlapping pictures, over pairs and channels. Below kSmallestSpread they do not
+// determine a response without falloff: their transfer functions are the identity.
 constexpr double kSmallestSpread = 0.15;
 double exposure_spread(const Problem &problem, const Estimate &estimate);
 
-// The same of the light at the two ends of a pair, falloff included.
+// The same for the light at the two ends of a pair, falloff included.
 double light_spread(const Problem &problem, const Estimate &estimate);
 
-// What every image got, as far as it was free.
+// Writes the exposures of all images, as far as they were free.
 void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_exposure *exposures);
 
 // Fills `usable` and `reason` from everything else.

@@ -1,4 +1,4 @@
-// The verdict as data, and the sentence that is made of it.
+// The verdict as data, and the sentence made from it.
 #pragma once
 
 #include <algorithm>
@@ -10,26 +10,26 @@
 
 namespace lensprof {
 
-// What a verdict states.
+// The content of a verdict.
 struct Reason {
     lensprof_reason code;
-    std::vector<double> values;  // those that reason.h lists for the code
+    std::vector<double> values;  // the values that reason.h lists for the code
     lensprof_item_kind kind = LENSPROF_ITEM_NONE;
     uint32_t index = 0;
 };
 
-// About an image or a shot.
+// Makes a reason about an image or a shot.
 Reason of_image(lensprof_reason code, uint32_t index, std::vector<double> values = {});
 Reason of_shot(lensprof_reason code, uint32_t number, std::vector<double> values = {});
 
-// In words, and where these name the image or shot.
+// A reason in words, and the position of the image or shot in them.
 struct Sentence {
     std::string text;
     lensprof_item item;
 };
 Sentence sentence_of(const Reason &reason);
 
-// Puts a reason into a result, of an overlap fit or a flat field. Returns true.
+// Stores a reason in a result, of an overlap fit or a flat field. Returns true.
 template <class Result>
 bool give_reason(Result &r, const Reason &reason, bool usable) {
     const Sentence sentence = sentence_of(reason);
@@ -53,12 +53,13 @@ bool warn(Result &r, const Reason &reason) {
     return give_reason(r, reason, true);
 }
 
-// A warning of which greys were seen, which is worth less than one of which images hold together.
+// Whether a warning is about grey values that were seen; it has lower priority than one about images that do not
+// connect.
 inline bool is_of_greys(uint32_t reason) {
     return reason == LENSPROF_REASON_MISSING_GREYS || reason == LENSPROF_REASON_RESPONSE_NOT_SHOWN;
 }
 
-// change(verdict) for that of a result and those of its lens settings.
+// Calls change(verdict) for the result's verdict and those of its lens settings.
 template <class Change>
 void for_each_verdict(lensprof_fit_result &r, Change change) {
     change(r);
@@ -66,7 +67,7 @@ void for_each_verdict(lensprof_fit_result &r, Change change) {
         if (r.settings[n].images) change(r.settings[n]);
 }
 
-// Usable, and nothing to add.
+// Marks a result as usable, without a warning.
 template <class Result>
 void accept(Result &r) {
     give_reason(r, {LENSPROF_REASON_NONE, {}}, true);
