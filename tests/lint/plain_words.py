@@ -20,7 +20,9 @@ SOURCES = (
     "include/lensprof/*.h",
     "bindings/python/lensprof/*.py",
     "src/cli/**/*.?pp",
+    "src/core/kernels/*",
     "src/falloff/*",
+    "src/fit/**/*",
     "src/formats/**/*",
     "src/store/**/*",
 )

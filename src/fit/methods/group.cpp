@@ -100,7 +100,7 @@ bool GroupFit::take_largest(const Problem &all) {
     };
     uint32_t best = 0;
     for (uint32_t c = 0; c < count_; c++) {
-        if (pairs[c] == 0) members[c] = 0;  // tied only by shared or held values, which is no evidence
+        if (pairs[c] == 0) members[c] = 0;  // tied only by shared or held values, which proves nothing
         if (size_of(c) > size_of(best)) best = c;
     }
     if (members[best] < 2) return false;
@@ -149,7 +149,8 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fi
     return any;
 }
 
-// Leaves out the image that the verdict is about, if it is about a single one.
+// Breaks links that disagree; otherwise leaves out the image that the verdict is about. Returns whether the group
+// changed.
 bool GroupFit::leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
     bool any = break_links(exposures, r);
     const bool is_of_one = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE

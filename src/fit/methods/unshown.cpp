@@ -1,6 +1,7 @@
-// A pair whose ends received the same light, t = 1 in B1 - f( g(B2) t ), obeys every response. Where t is 1 for all
-// pairs but for noise, a fit finds the response that makes most of rounding and interpolation, and states errors that
-// do not hold. Held instead is what cameras of the kind have in common, with what they differ by as the covariance.
+// A pair whose ends received the same light, t = 1 in B1 - f( g(B2) t ), obeys every response. If t is 1 for all pairs
+// except for noise, a fit finds the response that best explains rounding and interpolation, and its errors are not
+// valid. The response is therefore held at what cameras of the kind have in common, with their differences as the
+// covariance.
 #include "fit/methods/unshown.hpp"
 
 #include <algorithm>
@@ -16,10 +17,10 @@
 namespace lensprof {
 namespace {
 
-// EV. At .06 EV what shapes of responses differ by, some 5 levels, moves grey values by .2 to .4 levels, which is what
-// rounding and interpolation do.
+// EV. At .06 EV the differences between shapes of responses, some 5 levels, move grey values by .2 to .4 levels, as
+// much as rounding and interpolation do.
 constexpr double kSmallestSpread = 0.06;
-constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one shows nothing at all
+constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one determines nothing at all
 
 // The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
 template <class Part>  // the result, or one of its settings
@@ -38,7 +39,7 @@ void state_errors(const double *covariance, const lensprof_fit_result &r, Part &
                 gamma_sigma * gamma_sigma * (part.gamma_direction[i] * part.gamma_direction[j]);
 }
 
-// Whether the profile says something of the response, and the pictures do not contradict it.
+// Whether the profile contains information about the response, and the pictures do not contradict it.
 bool holds_response(const lensprof_profile &profile, const lensprof_fit_result &r) {
     const bool is_kept =
         r.profile_prior == LENSPROF_PROFILE_PRIOR_USED || r.profile_prior == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED;
@@ -46,7 +47,7 @@ bool holds_response(const lensprof_profile &profile, const lensprof_fit_result &
            && (lp_covariance_modes(profile.response, profile.responses) > 0 || profile.provenance.gamma_sigma > 0.0);
 }
 
-// With what cameras of the kind differ by as the error.
+// With the differences between cameras of the kind as the error.
 void hold_typical(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
                   lensprof_exposure *exposures, lensprof_fit_result &r) {
     lensprof_response typical;

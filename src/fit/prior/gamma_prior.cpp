@@ -14,12 +14,13 @@ namespace {
 using Modes = Eigen::Matrix<double, LENSPROF_EMOR_MODES, 1>;
 
 constexpr double kShapeGreys[4] = {24.0 / 255.0, 80.0 / 255.0, 144.0 / 255.0, 232.0 / 255.0};
-constexpr double kShapeError = 0.02;  // of a shape: what fits leave, and 25 modes
-constexpr double kUsual = 3.5;  // standard deviations: 95 % of a kind's measured curves are nearer, and all but a few
-constexpr double kSmallestSigma = 1e-3;  // of ln gamma: LINEAR has none
-constexpr double kOdd = 0.5;             // beyond 1, by which a response is none of the kind's
+constexpr double kShapeError = 0.02;  // of a shape: error of fits, and of 25 modes
+constexpr double kUsual =
+    3.5;  // standard deviations: 95 % of a kind's measured curves are nearer, and almost all others
+constexpr double kSmallestSigma = 1e-3;  // of ln gamma: that of LINEAR is 0
+constexpr double kOdd = 0.5;             // above 1, by which a response is untypical of the kind
 
-// Where ln g lies at four grey values between 0 at the dark and 1 at the bright one of the gauge: the same for all
+// ln g at four grey values, scaled to 0 at the dark and 1 at the bright one of the gauge. It is the same for all
 // members f(x^(1/gamma)) of a family, whose ln g are multiples of each other.
 struct ShapeOf {
     Eigen::Vector4d at;

@@ -12,17 +12,17 @@ namespace lensprof {
 namespace {
 
 // How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs. Modes left out prefer some gamma by
-// accident, the more the more pairs there are: the hold keeps up with them. Over simulated cameras, a hold of 0.05 to
-// 0.1 left gamma to that accident (median error 0.14, and 0.05 with this one), at held-out pairs better by half a
-// percent.
+// accident, and more strongly with more pairs, so the hold scales with their number. Over simulated cameras, a hold of
+// 0.05 to 0.1 left gamma to that accident (median error 0.14, against 0.05 with this hold), with held-out pairs better
+// by half a percent.
 constexpr double kPinSigma = 1e-3, kSmallestPinSigma = 2e-4, kLargestPinSigma = 0.01, kPinPairs = 20000.0;
 constexpr double kLooseSigma = 0.07;  // of a response that is moved to its gamma exactly afterwards
 constexpr double kLargestStep = 1.2;  // of ln gamma in one move along the family
-constexpr double kDoubtful = 3.0;     // known exposures farther off, in standard errors, count for less
+constexpr double kDoubtful = 3.0;     // known exposures farther off, in standard errors, have less weight
 
-// Images whose exposure or white balance is held away from the reference's.
+// Whether exposures or white balances of images are held at values other than the reference's.
 bool has_fixed_exposure(const Problem &problem) {
-    auto given = [&](uint32_t i, int c) {  // log exposure that the unknowns of channel c start from
+    auto given = [&](uint32_t i, int c) {  // log exposure from which the unknowns of channel c start
         lensprof_exposure e = given_exposure(problem.images, i);
         return problem.channels == 1 ? e.ev * kLn2 : e.ev * kLn2 + std::log(e.white_balance[c]);
     };
@@ -34,7 +34,7 @@ bool has_fixed_exposure(const Problem &problem) {
     return false;
 }
 
-// Nothing that is held fixed tells one member of the family from another.
+// Whether no held value distinguishes one member of the family from another.
 bool nothing_fixes_gamma(const lensprof_fit_options &options, const Problem &problem) {
     for (int n = 0; n < 3; n++)
         if (!(options.free & (LENSPROF_FREE_K1 << n)) && options.vignetting.k[n] != 0.0) return false;
@@ -109,8 +109,9 @@ Gauge Gauge::by_prior() const {
     return other;
 }
 
-// From where cameras of the kind, or the profile, want it. A response's own gamma takes the place of that of the kind,
-// which may be in it. A falloff alone adds to that of the kind, unless its gamma may come from there.
+// Distance to the gamma expected from cameras of the kind, or from the profile. A response's own gamma replaces that of
+// the kind, which it may include. A falloff alone is combined with that of the kind, unless its gamma may come from
+// there.
 double Gauge::expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const {
     const double *table = estimate.curve.table.data();
     const double of_kind = gamma_position(table) - prior_.position(), kind_sigma = prior_.sigma_of(table);
@@ -127,8 +128,8 @@ double Gauge::expected(const Estimate &estimate, double &sigma, lensprof_gamma_f
         sigma = std::min(kind_sigma, stored_sigma);
         return is_of_kind ? of_kind : of_stored;
     }
-    // errors of falloffs of other settings have heavy tails, a kind's have none: where they contradict, the falloff
-    // counts for less
+    // errors of falloffs of other settings have heavy tails, those of a kind do not: if they contradict, the falloff
+    // has less weight
     const double z = (of_kind - of_stored) / std::hypot(kind_sigma, stored_sigma);
     const double kind = 1.0 / (kind_sigma * kind_sigma), stored = 1.0 / (stored_sigma * stored_sigma * (1.0 + z * z));
     from = kind > stored ? LENSPROF_GAMMA_PRIOR : LENSPROF_GAMMA_FALLOFF;
@@ -145,7 +146,7 @@ double Gauge::contradiction(const Estimate &estimate) const {
     return std::abs(gamma_position(table) - prior_.position() - of_stored) / std::hypot(prior_.sigma_of(table), sigma);
 }
 
-// From where that and known exposures, each by its standard error, want it.
+// Distance to the gamma expected from the prior and known exposures, each weighted by its standard error.
 double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     compare_known(problem, estimate);
     if (!open_) return 0.0;
@@ -153,9 +154,9 @@ double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     const double offset = expected(estimate, expected_sigma_, expected_from);
     bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
     double expected_precision = 1.0 / (expected_sigma_ * expected_sigma_);
-    if (says) {  // errors of the prior have heavy tails: where exposures contradict it, it counts for less
+    if (says) {  // errors of the prior have heavy tails: if exposures contradict it, it has less weight
         double z = (offset - std::log(slope_)) / std::hypot(expected_sigma_, slope_sigma_);
-        if (expected_from != LENSPROF_GAMMA_PRIOR) z /= kDoubtful;  // those of a profile's have not
+        if (expected_from != LENSPROF_GAMMA_PRIOR) z /= kDoubtful;  // those of a profile do not
         expected_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
     }
     double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
@@ -189,7 +190,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
         prior.pin = gamma_slope(estimate);
         double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
         double hold = std::clamp(kPinSigma * std::sqrt(kPinPairs / pairs), kSmallestPinSigma, kLargestPinSigma);
-        // What is known better than by the prior is held all the more.
+        // A gamma known better than by the prior is held more firmly.
         const double better = std::pow(sigma_ / expected_sigma_, 4);
         hold = std::max(hold * better, std::min(hold, kPinSigma));
         if (is_loose_) hold = kLooseSigma;

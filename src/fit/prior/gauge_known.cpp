@@ -1,4 +1,4 @@
-// What known exposures say of gamma and of the fitted exposures.
+// Information from known exposures about gamma and the fitted exposures.
 #include <algorithm>
 #include <cmath>
 
@@ -9,15 +9,15 @@
 namespace lensprof {
 namespace {
 
-constexpr double kDoubtful = 3.0;       // known exposures farther off, in standard errors, count for less
-constexpr double kSmallestSlope = 0.1;  // and its inverse: beyond, known exposures are of something else
-constexpr double kContradiction = 5.0;  // standard errors from the level of most
-constexpr size_t kFew = 4;              // one in four at most is wrong: of more nothing shows which are
-constexpr size_t kFewestOfLevels = 6;   // known exposures: of fewer, one that is wrong does not show which
+constexpr double kDoubtful = 3.0;       // known exposures farther off, in standard errors, have less weight
+constexpr double kSmallestSlope = 0.1;  // and its inverse: beyond, known exposures belong to something else
+constexpr double kContradiction = 5.0;  // standard errors from the level of most images
+constexpr size_t kFew = 4;              // one in four at most is wrong: with more it is unclear which are
+constexpr size_t kFewestOfLevels = 6;   // known exposures: with fewer, it is unclear which one is wrong
 
-// Of known exposures that are repeatable to less than kRepeatable, EV. The pairs between two pictures have errors in
-// common that no model describes (falloff that is not radial, bias by noise): what more than kLinkPairs of them say
-// adds up along a row of pictures like a drift, and the hold keeps up with them.
+// Known exposures are repeatable to less than kRepeatable, EV. The pairs between two pictures share errors that no
+// model describes (falloff that is not radial, bias by noise). With more than kLinkPairs pairs these errors add up
+// along a row of pictures like a drift, and the hold scales accordingly.
 constexpr double kRepeatable = 0.05, kLinkPairs = 40.0;
 
 bool is_known(const Problem &problem, uint32_t i) {
@@ -46,7 +46,7 @@ struct Known {
     }
 };
 
-// Of one level: how many are on it, weights and means.
+// One level: number of its images, weights and means.
 struct Level {
     size_t count = 0;
     double weight = 0.0, trust = 0.0, found = 0.0, known = 0.0;
@@ -56,7 +56,7 @@ struct Level {
 struct Regression {
     std::vector<Level> levels;
     size_t largest = 0;
-    double trust = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // trust: what yy is where exposures are equal
+    double trust = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // trust: yy if all exposures are equal
 
     Regression(const Known &known, const std::vector<int> &level, const std::vector<double> &trusts, double scatter)
         : levels(1 + static_cast<size_t>(*std::max_element(level.begin(), level.end()))) {
@@ -86,17 +86,17 @@ struct Regression {
 
 }  // namespace
 
-// Regression of the known exposures on the estimate's, over the reference's component: the known ones carry the error.
-// What they vary beyond their own error is what they say about gamma: equal ones say nothing. Where they scatter more
-// than stated, their error is what they scatter: from neighbour to neighbour, for what adds up along a row of pictures
-// is the estimate's. Those that agree are on one level (known_levels.hpp), with an offset of its own: an image alone on
-// its level is left out, and the others are known as well as before.
+// Regression of the known exposures on the estimate's, over the reference's component; the known ones carry the error.
+// Their variation beyond their own error determines gamma; equal exposures do not. If they scatter more than stated,
+// the scatter is used as their error. It is measured from neighbour to neighbour, because errors that add up along a
+// row of pictures belong to the estimate. Known exposures that agree are on one level (known_levels.hpp), which has its
+// own offset. An image alone on its level is left out; the others are known as accurately as before.
 void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0, scatter_ = 1.0;
     known_left_out_.clear();
     if (known_weight_.empty()) return;
     const Known known(problem, estimate);
-    if (known.members.size() < 2) known_weight_.clear();  // only differences say something
+    if (known.members.size() < 2) known_weight_.clear();  // only differences carry information
     if (known_weight_.empty()) return;
     const KnownNeighbours neighbours(problem, known.is_member);
     const size_t count = problem.image_count;
@@ -130,7 +130,7 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     leave_out(problem, off);
 }
 
-// The few that are far from the level of most.
+// Leaves out the few that are far from the level of most images.
 void Gauge::leave_out(const Problem &problem, const std::vector<double> &off) {
     size_t count = 0;
     for (uint32_t i = 0; i < problem.image_count; i++) {

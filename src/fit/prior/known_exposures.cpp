@@ -11,13 +11,13 @@
 namespace lensprof {
 namespace {
 
-constexpr double kOneIn = 2.33;         // standard deviations of a normal number that one in a hundred exceeds
+constexpr double kOneIn = 2.33;         // standard deviations that a normal variable exceeds with probability 1 %
 constexpr double kWorthAWord = 0.1;     // EV
-constexpr double kClearSpread = 0.7;    // EV, from the darkest to the brightest: what shows in any pictures
-constexpr double kFlatSlope = 0.1;      // of the known exposures on the found ones: they are of something else
-constexpr double kClearlyBetter = 4.0;  // of chi-squared, than the next explanation
+constexpr double kClearSpread = 0.7;    // EV, from the darkest to the brightest: visible in any pictures
+constexpr double kFlatSlope = 0.1;      // of the known exposures against the found ones: they belong to something else
+constexpr double kClearlyBetter = 4.0;  // in chi-squared, than the next explanation
 
-// Of chi-squared, by Wilson and Hilferty (1931): what one in a hundred exceeds.
+// The 99 % quantile of chi-squared, by Wilson and Hilferty (1931).
 double limit(int freedom) {
     double share = 2.0 / (9.0 * freedom), root = 1.0 - share + kOneIn * std::sqrt(share);
     return freedom * root * root * root;
@@ -48,7 +48,7 @@ public:
     }
     int freedom() const { return static_cast<int>(count()) - (open_ ? 2 : 1); }
 
-    // known = a + slope found + step from member `first` to `last`; step 0 where there are none between.
+    // known = a + slope found + step from member `first` to `last`; step 0 if the range is empty.
     Line fit(size_t first, size_t last) const {
         const Eigen::Index n = 1 + open_ + (first < last);
         Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
@@ -83,7 +83,8 @@ private:
     std::vector<double> known_, found_, sigma_;
 };
 
-// One exposure that is wrong, or all from some picture on: the explanation that leaves clearly least, if there is one.
+// Finds the explanation that clearly leaves the least error, if there is one: one wrong exposure, or a step from some
+// picture on.
 void explain(const Known &known, KnownExposures &result) {
     double best = std::numeric_limits<double>::infinity(), next = best;
     auto consider = [&](size_t first, size_t last, KnownExposures::Explanation explanation) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kChanceScatter = 2.0;  // standard errors: a scatter up to this may be chance
 constexpr double kJump = 4.0;           // standard errors of a difference between neighbours that agree
-constexpr int kReach = 6;               // neighbours that an image is compared with, one behind the other
-constexpr size_t kFewest = 3;           // distances that say something
+constexpr int kReach = 6;               // neighbours that an image is compared with, one after the other
+constexpr size_t kFewest = 3;           // distances needed
 
 using Tree = std::vector<std::vector<uint32_t>>;
 
@@ -40,7 +40,7 @@ Tree spanning_tree(const Problem &problem) {
     return tree;
 }
 
-// An end of the tree: one that is wrong there parts nothing.
+// An end of the tree: a wrong exposure there does not divide the tree.
 uint32_t end_of(const Problem &problem, const Tree &tree) {
     for (uint32_t i = 0; i < problem.image_count; i++)
         if (tree[i].size() == 1 && problem.component[i] == problem.component[problem.reference]) return i;

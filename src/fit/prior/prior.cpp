@@ -17,10 +17,10 @@ const double kFalloffMean[3] = {-0.347, 0.139, -0.118};
 const double kFalloffCovariance[3][3] = {
     {0.1298, -0.1369, 0.0682}, {-0.1369, 0.3262, -0.2656}, {0.0682, -0.2656, 0.4005}};
 
-// The falloff's centre lies where the optical axis meets the sensor: mounting tolerances, in half diagonals.
+// The falloff's centre is where the optical axis meets the sensor: mounting tolerances, in half diagonals.
 constexpr double kCenterSigma = 0.02;
 
-// Falloff curves of the channels about that of green: lateral colour and sensor stacks.
+// Falloff curves of the channels relative to that of green: lateral colour and sensor stacks.
 constexpr double kChannelSigma = 0.1;
 
 }  // namespace

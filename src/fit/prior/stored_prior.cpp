@@ -12,17 +12,18 @@
 namespace lensprof {
 namespace {
 
-// Two sequences of one lens differ by more than noise (focus, stray light, registration): share of the scatter over all
-// cameras and lenses that is added to what a profile says of itself, so that no number of sequences makes it certain.
+// Two sequences of one lens differ by more than noise (focus, stray light, registration). This share of the scatter
+// over all cameras and lenses is added to a profile's own covariance, so that no number of sequences makes it certain.
 constexpr double kDrift = 0.01;
 
-// A refined response keeps no covariance but the error of its gamma. Assumed of its shape: what refined brackets leave,
-// levels RMS, and the share of the scatter over all cameras by which a camera's curve differs from day to day.
+// A refined response stores no covariance except the error of its gamma. Assumed for its shape: the residual of refined
+// brackets, levels RMS, and the share of the scatter over all cameras by which a camera's curve differs from day to
+// day.
 constexpr int kCurveModes = 9;
 constexpr double kCurveLevels = 0.2, kCurveDrift = 0.025;
 
 constexpr double kRadii2[4] = {0.1, 0.25, 0.5, 1.0};  // r^2 at which falloffs are compared
-constexpr double kSaysNothing = 0.7;                  // a standard error of ln gamma from this on
+constexpr double kSaysNothing = 0.7;  // a standard error of ln gamma from here on carries no information
 
 double log_falloff(const lensprof_vignetting &v, double r2) {
     return std::log(std::max(lensprof_vignetting_eval(&v, r2, nullptr), 1e-3));
@@ -71,13 +72,14 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
     const uint32_t before = lp_covariance_modes(profile.response, profile.responses);
     const int falloff = static_cast<int>(lp_covariance_index(before, 0)),
               center = static_cast<int>(lp_covariance_index(before, profile.vignettings));
-    const auto is_known = [&](int row, int count) {  // parameters that were held say nothing, nor what goes with them
+    const auto is_known = [&](int row,
+                              int count) {  // held parameters are not known, nor are those correlated with them
         bool all = row + count <= stored;
         for (int i = row; i < row + count && all; i++) all = profile.covariance[i * stored + i] > 0.0;
         return all;
     };
     const Eigen::MatrixXd scatter = scatter_of_all();
-    const bool is_of_kind = lensprof_provenance_doubts_response(&profile.provenance);  // and known without it
+    const bool is_of_kind = lensprof_provenance_doubts_response(&profile.provenance);  // and known without the profile
     if (is_emor && (is_of_kind || !is_known(0, modes_))) modes_ = 0;
     std::vector<int> from, to;  // row of the profile's covariance, column of the full shared vector
     for (int l = 0; l < modes_ && is_emor; l++) from.push_back(l), to.push_back(l);
@@ -102,7 +104,8 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
     settle_gamma(problem, profile);
 }
 
-// Covariance of the modes that a refined curve was projected to: its shape's, and its gamma's along the family.
+// Covariance of the modes on which a refined curve was projected: that of its shape, and that of its gamma along the
+// family.
 void StoredPrior::take_curve_error(const Problem &problem, const lensprof_profile &profile) {
     if (modes_ == 0) return;
     constexpr double kNoise = kCurveLevels / 255.0 * kCurveLevels / 255.0 * LENSPROF_RESPONSE_SAMPLES;
@@ -122,7 +125,7 @@ Estimate StoredPrior::estimate_of(const Problem &problem, const lensprof_profile
     return stored;
 }
 
-// ln M of a falloff relative to that of the profile, over the frame: 1 where both are alike, gamma for M^gamma.
+// ln M of a falloff relative to that of the profile, over the frame: 1 if both are equal, gamma for M^gamma.
 double StoredPrior::falloff_ratio(const lensprof_vignetting &v) const {
     const int own = green_falloff(vignettings_);
     const lensprof_vignetting known{{mean_[own], mean_[own + 1], mean_[own + 2]}, {}};
@@ -134,8 +137,8 @@ double StoredPrior::falloff_ratio(const lensprof_vignetting &v) const {
     return square > 0.0 ? product / square : 0.0;
 }
 
-// Errors of ln gamma by the response's position and by the falloff's depth, and how they go together: both linear in
-// the profile's parameters.
+// Errors of ln gamma from the response's position and from the falloff's depth, and their covariance: both are linear
+// in the profile's parameters.
 void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &profile) {
     const Estimate stored = estimate_of(problem, profile);
     response_position_ = gamma_position(stored.curve.table.data());
@@ -154,7 +157,7 @@ void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &p
     if (!(falloff_sigma_ < kSaysNothing)) falloff_sigma_ = 0.0;
     gamma_covariance_ = by_response.dot(covariance_ * by_falloff);
     if (is_refined_curve(profile)
-        && profile.provenance.images > 0)  // of one fit, which does not say how they go together
+        && profile.provenance.images > 0)  // from one fit, which does not store their covariance
         gamma_covariance_ = std::pow(std::min(response_sigma_, falloff_sigma_), 2);
     if (!has_response() && !has_falloff()) return;
     gamma_direction_ = Gauge::direction(problem, stored);
@@ -163,14 +166,14 @@ void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &p
 }
 
 double StoredPrior::gamma_offset(const Estimate &estimate, double &sigma, bool &by_falloff) const {
-    constexpr double kLeast = 0.05;  // of the ratio: falloffs that have nothing to do with each other
+    constexpr double kLeast = 0.05;  // of the ratio: below it, the falloffs are unrelated
     const double of_response = gamma_position(estimate.curve.table.data()) - response_position_,
                  of_falloff = std::log(std::max(falloff_ratio(estimate.vignetting[0][1]), kLeast));
     by_falloff = !has_response() || (has_falloff() && falloff_sigma_ < response_sigma_);
     sigma = by_falloff ? falloff_sigma_ : response_sigma_;
     if (!has_response() || !has_falloff()) return by_falloff ? of_falloff : of_response;
-    // The mean of least variance; no more than the better of the two, where the other adds nothing to it. Errors of
-    // falloffs of other settings have heavy tails: where the falloff contradicts the response, it counts for less.
+    // The minimum variance mean, or only the better of the two if the other adds no information. Errors of falloffs of
+    // other settings have heavy tails: if the falloff contradicts the response, it has less weight.
     const double own = response_sigma_ * response_sigma_;
     double other = falloff_sigma_ * falloff_sigma_, both = own + other - 2.0 * gamma_covariance_;
     if (both > 0.0) other *= 1.0 + std::pow(of_response - of_falloff, 2) / both;
@@ -183,7 +186,8 @@ double StoredPrior::gamma_offset(const Estimate &estimate, double &sigma, bool &
     return share * of_response + (1.0 - share) * of_falloff;
 }
 
-// Where the knowledge goes: green's curve for one, or one for green's, to which those of the other channels are tied.
+// Indices of the known parameters: green's curve if there is one curve; otherwise the curves of the other channels are
+// tied to green's.
 StoredPrior::Places StoredPrior::places(int vignettings) const {
     Places places;
     const auto take = [&](int source, int target) {
@@ -198,8 +202,8 @@ StoredPrior::Places StoredPrior::places(int vignettings) const {
     return places;
 }
 
-// The inverse of the covariance of what is known. Where gamma is settled apart, any is as good as another here: along
-// its direction the precision is taken out.
+// The inverse of the covariance of what is known. If gamma is determined separately, its value is arbitrary here: the
+// precision along its direction is removed.
 Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from, bool settles_gamma) const {
     const auto count = static_cast<Eigen::Index>(from.size());
     Eigen::MatrixXd covariance(count, count);
@@ -260,7 +264,7 @@ void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool se
     for (size_t i = 0; i < places.to.size(); i++) {
         const int row = places.to[i];
         prior.mean[row] = mean_[places.from[i]];
-        if (tied && row >= kFalloff && row < kCenter)  // the other channels' curves are expected where green's is
+        if (tied && row >= kFalloff && row < kCenter)  // the other channels' curves are expected to equal green's
             for (int c = 0; c < 3; c++) prior.mean[kFalloff + 3 * c + (row - kFalloff) % 3] = prior.mean[row];
     }
     const bool has_falloff =

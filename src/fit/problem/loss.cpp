@@ -86,12 +86,12 @@ double inlier_limit(int channels) { return channels == 3 ? 14.2 : 9.0; }
 double estimate_noise(const Problem &problem, const Estimate &estimate, double start) {
     std::vector<double> z = all_chi2(problem, estimate, 1.0);
     if (z.empty()) return start;
-    // The 35 % quantile starts the search: with half the pairs wrong it is still a quantile (70 %) of the right ones.
+    // Starts from the 35 % quantile: with half the pairs wrong it is still a quantile (70 %) of the correct ones.
     size_t rank = z.size() * 35 / 100;
     std::nth_element(z.begin(), z.begin() + static_cast<std::ptrdiff_t>(rank), z.end());
     double quantile = problem.channels == 3 ? 1.642 : 0.206;  // chi-squared, 35 %, 3 and 1 degrees of freedom
     double variance = std::max(z[rank] / quantile, kSmallestNoise * kSmallestNoise);
-    // Mean square of the inliers per degree of freedom; the truncation takes less than 3 %.
+    // Mean square of the inliers per degree of freedom; the truncation removes less than 3 %.
     for (int round = 0; round < 10; round++) {
         double sum = 0.0;
         size_t count = 0;

@@ -18,7 +18,7 @@ uint32_t find_root(std::vector<uint32_t> &parent, uint32_t i) {
     return i;
 }
 
-// Sorts the pairs by edge: what an edge shares is then computed once, and sums come in one order.
+// Sorts the pairs by edge, so that values common to an edge are computed once and sums have a fixed order.
 void find_edges(Problem &problem) {
     auto &pairs = problem.pairs;
     for (auto &pair : pairs)
@@ -87,14 +87,14 @@ void find_components(Problem &problem) {
     for (uint32_t i = 0; i < problem.image_count; i++) problem.component.push_back(find_root(parent, i));
 }
 
-// The column of the unknown that image `of` owns, made on first use; -1 when it is fixed there.
+// The column of the unknown that image `of` owns, created on first use; -1 if it is fixed.
 int unknown_of(std::vector<int> &columns, uint32_t of, bool is_free, int &count) {
     if (!is_free) return -1;
     if (columns[of] < 0) columns[of] = count++;
     return columns[of];
 }
 
-// Whether every image whose exposure is free has white balances that are free, and that no other image shares.
+// Whether every image with a free exposure has white balances that are free and not shared with another image.
 bool are_channels_apart(const Problem &problem) {
     std::vector<bool> is_taken(static_cast<size_t>(problem.image_unknowns), false);
     for (uint32_t i = 0; i < problem.image_count && problem.channels == 3; i++)
@@ -130,7 +130,7 @@ void number_unknowns(Problem &problem) {
     problem.channels_apart = are_channels_apart(problem);
 }
 
-// Numbers the settings as they come, that of the reference first.
+// Numbers the settings in order of first appearance, that of the reference first.
 void number_settings(Problem &problem) {
     std::map<uint32_t, int> numbers{{problem.images[problem.reference].setting, 0}};
     problem.setting_number.push_back(problem.images[problem.reference].setting);
@@ -153,7 +153,7 @@ Problem empty_problem(const lensprof_fit_options &options, const lensprof_fit_im
     return problem;
 }
 
-// Everything that follows from the pairs.
+// Computes everything that depends on the pairs.
 void complete(Problem &problem) {
     find_edges(problem);
     find_chunks(problem);
@@ -250,7 +250,7 @@ void set_table(Estimate &estimate, const double *curve) {
     std::copy(curve, curve + f.size(), f.begin());
     f.front() = 0.0, f.back() = 1.0;
     for (size_t j = 1; j < f.size(); j++) f[j] = std::max(f[j], f[j - 1] + kSmallestRise);
-    f.back() = 1.0;  // a curve that reached 1 before its end was lifted above it
+    f.back() = 1.0;  // a curve that reached 1 before its end was raised above it
     for (size_t j = f.size() - 1; j-- > 1;) f[j] = std::min(f[j], f[j + 1] - kSmallestRise);
     set_fixed(estimate, table_response(estimate));
     estimate.is_refined = true;

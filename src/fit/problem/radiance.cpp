@@ -10,16 +10,16 @@
 namespace lensprof {
 namespace {
 
-constexpr int kSteps = 60;        // of the search for a radiance: two or three are usual, kinks of f take more
+constexpr int kSteps = 60;        // of the search for a radiance: two or three are usual, kinks of f need more
 constexpr double kStill = 1e-13;  // relative step at which it ends
-constexpr size_t kSuspects = 3;   // observations of a track that are tried without
+constexpr size_t kSuspects = 3;   // observations of a track that are tentatively left out
 constexpr double kHalfTurn = 1.5707963267948966;
 
 using Kind = Sighting::Kind;
 
 bool is_measured(const Sighting &s) { return s.kind == Kind::measured; }
 
-// The most that the robust loss takes for an observation: so much costs one that is not trusted.
+// The largest robust loss of an observation, which is also the cost of one that is not trusted.
 double most_cost(const Problem &problem, const Loss &loss) {
     return loss.cutoff * loss.cutoff * problem.channels * kHalfTurn;
 }
@@ -60,8 +60,8 @@ void TrackEvaluator::predict(double radiance, std::vector<Sighting> &sightings) 
     }
 }
 
-// Newton's method between bounds: every residual falls with L, so that the minimum lies between the radiances that the
-// single observations ask for. f is linear between its samples, where a step is exact.
+// Newton's method within bounds. Every residual falls with L, so that the minimum is between the radiances that single
+// observations require. f is linear between its samples, where a step is exact.
 double TrackEvaluator::solve(std::vector<Sighting> &sightings) const {
     double low = std::numeric_limits<double>::infinity(), high = 0.0, top = 0.0, bottom = 0.0;
     if (!std::any_of(sightings.begin(), sightings.end(), is_measured)) {
@@ -130,8 +130,8 @@ double TrackEvaluator::cost(const Range &track, const uint8_t *trust, const Trac
     return c2 * std::atan(q) + static_cast<double>(out) * most_cost(problem_, loss_);
 }
 
-// Without an observation the sum of squares falls by about its squared residual over what the others do not already
-// explain of it: the few for which that is most are tried.
+// Leaving out an observation reduces the sum of squares by about its squared residual divided by the share of it that
+// the others do not explain. Tries the few observations with the largest reduction.
 void TrackEvaluator::distrust(const Range &track, uint8_t *trust) const {
     size_t count = track.last - track.first;
     TrackFit fit;

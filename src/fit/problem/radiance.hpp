@@ -70,7 +70,7 @@ private:
     std::vector<std::array<double, 3>> exposure_;  // e w per image
 };
 
-// Trusts all observations of a problem, at an estimate.
+// Trust in the observations of a problem: in all of them, or as found at an estimate.
 Trust trust_all(const Problem &problem);
 Trust find_trust(const Problem &problem, const Estimate &estimate, const Loss &loss);
 

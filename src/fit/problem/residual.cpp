@@ -68,7 +68,7 @@ void for_each_chunk(const Problem &problem, const std::function<void(uint32_t)> 
 }
 
 ModeTable::ModeTable(int modes) : modes_(modes) {
-    // A row more than there are samples: interpolation at 1 reads it, and finds what the last sample holds.
+    // One row more than there are samples: interpolation at 1 reads it, and must find the last sample.
     rows_.resize(static_cast<size_t>(LENSPROF_RESPONSE_SAMPLES + 1) * static_cast<size_t>(modes));
     for (int j = 0; j <= LENSPROF_RESPONSE_SAMPLES; j++)
         for (int l = 0; l < modes; l++)

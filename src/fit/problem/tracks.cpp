@@ -18,7 +18,7 @@ lensprof_observation end_of(const lensprof_pair &pair, int side, int channels) {
     lensprof_observation o{};
     o.image = pair.image[side];
     std::copy(pair.xy[side], pair.xy[side] + 2, o.xy);
-    std::copy(pair.value[side], pair.value[side] + channels, o.value);  // the others may be anything
+    std::copy(pair.value[side], pair.value[side] + channels, o.value);  // the others are undefined
     return o;
 }
 
@@ -26,7 +26,7 @@ auto key(const lensprof_observation &o) {
     return std::tuple(o.image, o.xy[0], o.xy[1], o.value[0], o.value[1], o.value[2]);
 }
 
-// Numbers of the ends, equal ones alike: 2p and 2p + 1 are those of pair p.
+// Numbers the ends; equal ends have equal numbers. 2p and 2p + 1 are those of pair p.
 std::vector<uint32_t> number_ends(const std::vector<lensprof_observation> &ends) {
     std::vector<uint32_t> order(ends.size()), number(ends.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -38,7 +38,7 @@ std::vector<uint32_t> number_ends(const std::vector<lensprof_observation> &ends)
     return number;
 }
 
-// Points as lists of ends, while pairs are joined to them.
+// Points as lists of ends, to which pairs are added.
 class Joiner {
 public:
     explicit Joiner(const std::vector<lensprof_observation> &ends) : ends_(ends), point_(ends.size(), kNone) {}
@@ -67,7 +67,7 @@ private:
                 if (ends_[a].image == ends_[b].image) return false;
         return true;
     }
-    // A point of its own; an end that has none yet gets this one.
+    // Makes a separate point of both ends; an end without a point gets this one.
     void keep_apart(uint32_t a, uint32_t b) {
         for (uint32_t end : {a, b})
             if (point_[end] == kNone) point_[end] = static_cast<uint32_t>(points_.size());
@@ -75,7 +75,7 @@ private:
     }
 
     const std::vector<lensprof_observation> &ends_;
-    std::vector<uint32_t> point_;  // of each end
+    std::vector<uint32_t> point_;  // per end
     std::vector<std::vector<uint32_t>> points_;
 };
 

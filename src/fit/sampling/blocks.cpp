@@ -6,10 +6,10 @@
 namespace lensprof {
 namespace {
 
-constexpr double kOfScene = 0.5;  // share of a block's variance: below, noise decides how alike blocks are
-constexpr double kFlat = 0.05;    // of the other's texture: less no exposure explains
+constexpr double kOfScene = 0.5;  // share of a block's variance: below it, noise dominates the similarity of blocks
+constexpr double kFlat = 0.05;    // of the other's texture: no exposure explains less
 
-// Of every four pixels the mean of the middle two: one that is wrong does not count.
+// The mean of the middle two of every four pixels: a single wrong pixel has no effect.
 GreyLevels::Level halved(const GreyLevels::Level &from) {
     GreyLevels::Level to;
     to.width = from.width / 2, to.height = from.height / 2, to.pixel = 2.0 * from.pixel;
@@ -26,7 +26,7 @@ GreyLevels::Level halved(const GreyLevels::Level &from) {
     return to;
 }
 
-// Of every four pixels: variance of their mean, by the difference of the two diagonals.
+// Variance of the mean of every four pixels, from the difference of the two diagonals.
 std::vector<float> noise_of_halved(const GreyLevels::Level &from) {
     const int width = from.width / 2, height = from.height / 2;
     std::vector<float> noise(static_cast<size_t>(width) * static_cast<size_t>(height));
@@ -41,7 +41,7 @@ std::vector<float> noise_of_halved(const GreyLevels::Level &from) {
     return noise;
 }
 
-// Mean over the square of pixels about every pixel, as far as it lies in the frame; along rows, then along columns.
+// Mean over the square of pixels around every pixel, clipped to the frame; along rows, then along columns.
 std::vector<float> mean_about(std::vector<float> values, int width, int height) {
     constexpr int kReach = 3;
     if (values.empty()) return values;

@@ -13,7 +13,7 @@ namespace {
 
 double half_diagonal(const lensprof_camera &camera) { return lensprof_half_diagonal(camera.width, camera.height); }
 
-// False for places behind the homography's horizon.
+// False for places beyond the homography's horizon.
 bool apply_homography(const lensprof_camera &camera, const Eigen::Matrix3d &homography, double xy[2]) {
     const Eigen::Vector3d moved = homography * frame_place(camera, xy[0], xy[1]).homogeneous();
     constexpr double kHorizon = 0.1;

@@ -7,7 +7,7 @@ namespace lensprof {
 namespace {
 
 constexpr double kGamma = 2.2;
-constexpr double kDarkest = 0.05;  // of M: beyond the corner a polynomial may say anything
+constexpr double kDarkest = 0.05;  // of M: beyond the corner a polynomial may have any value
 constexpr int kSteps = 32;
 
 double falloff(const lensprof_vignetting &vignetting, double r2) {

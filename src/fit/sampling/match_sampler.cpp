@@ -1,4 +1,4 @@
-// Correspondences at places that are known to match: the quietest place near each match, where both pictures show the
+// Correspondences at places that are known to match: the quietest place near each match at which both pictures show the
 // same.
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,14 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kPiece = 32;    // matches that a thread looks at in one go
-constexpr size_t kPerWanted = 16;  // matches that are looked at for one wanted pair
-// Features lie on edges and corners, where a pixel of misplacement shows. Places this far off, view pixels, may be
-// quieter; the map of the surroundings holds at that distance, whatever the scene is behind.
+constexpr uint32_t kPiece = 32;    // matches that a thread processes as a unit
+constexpr size_t kPerWanted = 16;  // matches examined per wanted pair
+// Features lie on edges and corners, where a misplacement of one pixel is visible. Places at this distance, view
+// pixels, may be quieter; the map of the surroundings is valid at that distance for any scene.
 constexpr int kRings = 2;
 constexpr double kRing = 4.0;
 
-// At most `most` of every link, evenly chosen, in their order.
+// At most `most` of every link, evenly chosen, in the original order.
 std::vector<uint32_t> thinned(const lensprof_match *matches, uint32_t count, size_t most,
                               const std::function<uint32_t(const lensprof_match &)> &link_of, uint32_t links) {
     std::vector<size_t> of_link(links), seen(links);
@@ -47,7 +47,7 @@ Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_i
     number_edges();
 }
 
-// The quietest place about a match; false where none can be measured, or the two pictures do not show the same there.
+// The quietest place around a match; false if none can be measured, or if the two pictures do not show the same there.
 bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
     const bool has_map = match.map[0][0] != 0.0 || match.map[0][1] != 0.0;
     const int rings = has_map ? kRings : 0;

@@ -1,5 +1,5 @@
-// What is estimated first is a rotation w (axis times angle, radians) of the second camera, which a project that is off
-// by turns needs. The similarity of two blocks a and b of grey levels is their normalised cross-correlation
+// The first estimate is a rotation w (axis times angle, radians) of the second camera, which corrects wrong rotations
+// of a project. The similarity of two blocks a and b of grey levels is their normalised cross-correlation
 //
 //     sum (a - mean a)(b - mean b) / sqrt(sum (a - mean a)^2 sum (b - mean b)^2),      -1 .. 1,
 //
@@ -9,26 +9,26 @@
 //
 //     sum_m c_m |o_m - J_m d|^2 + (p / T)^2 |d|^2,     (sum_m c_m J_m'J_m + (p / T)^2 I) d = sum_m c_m J_m'o_m.
 //
-// p is a pixel of the level, which is what a place is known to, and T = kTrust the radians that a project is off
-// beforehand: turns that no block shows (about the axis of view, with all blocks at one place) stay 0. The trust
+// p is a pixel of the level, the accuracy of a place, and T = kTrust the expected error of a project in
+// radians: rotations that no block determines (about the axis of view, with all blocks at one place) stay 0. The trust
 //
 //     c_m = correlation / (1 + |o_m - J_m d|^2 / s^2),      s = 4 p at first, then p,
 //
-// is that of a Cauchy loss, iterated: blocks on things that moved do not draw the rest along. From the coarse level,
-// whose first guess is the shift under which all blocks match best together, to the fine one.
+// is that of a Cauchy loss, iterated: blocks on things that moved do not bias the rest. The search goes from
+// the coarse level, whose first guess is the shift under which all blocks match best together, to the fine one.
 //
-// A wrong angle of view, distortion or a camera that was moved leave more than a rotation. Where blocks do not match
-// under one, the second frame is bent by a homography as well. Every block is searched for by itself, far about; the
-// similarity (of two blocks) that most others follow is the first guess. With places s = (u, v) of the second frame in
-// half diagonals, the change M of the homography moves them by
+// A wrong angle of view, distortion or a camera that was moved leave more than a rotation. If blocks do not match
+// under a rotation, the second frame is bent by a homography as well. Every block is searched for separately, over a
+// wide area; the similarity (of two blocks) that most others follow is the first guess. With places s = (u, v) of the
+// second frame in half diagonals, the change M of the homography moves them by
 //
 //     du = h1 u + h2 v + h3 + u (h7 u + h8 v),     dv = h4 u + h5 v + h6 + v (h7 u + h8 v),
 //
 // linear in h, which is fitted as d is, with T = kBendTrust.
 //
-// Where blocks are few, or show but an edge each, their places one by one say little, and what all of them say together
-// is taken first: the rotation under which the mean square of their positive correlations is largest, by a search
-// along its three axes.
+// If there are few blocks, or each shows only an edge, their separate places carry little information. The first step
+// is then a joint estimate: the rotation under which the mean square of their positive correlations is largest, by a
+// search along its three axes.
 //
 // Each is accepted only where the correlations of most blocks are clearly better than without it.
 #include "fit/sampling/registration.hpp"
@@ -47,39 +47,40 @@
 namespace lensprof {
 namespace {
 
-constexpr int kColumns = 24, kRows = 18;  // places of the first image that are looked at, where the second sees it
-constexpr size_t kFewest = 8;             // blocks that take part, each by its own place,
-constexpr size_t kFewestTogether = 3;     // and together
-constexpr double kMatchOfFew = 0.75;     // mean correlation of fewer than kFewest blocks: some shift is right by chance
-constexpr int kCell = 2;                 // places side by side, of which one takes part: no single thing decides
-constexpr int kFarthest = 12;            // coarse pixels by which the project may be off,
-constexpr int kFarthestBlock = 24;       // and by which one block may be
-constexpr int kSearch = 3;               // level pixels about where a block is expected
-constexpr double kMatch = 0.5;           // correlation of blocks that show the same, at least,
-constexpr double kFarMatch = 0.6;        // and of those found far about: the best of many
-constexpr double kOfCoarse = 0.5;        // texture of a block on the fine level, in that on the coarse one,
-constexpr double kFineTexture = 0.0075;  // or standard deviation, grey value 0..1
-constexpr double kRight = 0.85;          // mean correlation of a project that is right
-constexpr double kInPlace = 0.6;         // the same, where blocks say that no small correction is needed
-constexpr double kSmallestShift = 0.5;   // fine pixels: corrections that move places by less are not made
-constexpr double kBetter = 0.02;         // mean correlation by which a correction must be better than none,
-constexpr double kClearlyBetter = 0.1;   // the same, where many blocks show what moved or lies at other distances
-constexpr double kPreferred = 0.05;      // difference of correlations that tells
-constexpr double kTrust = 0.01;          // radians: how far off a project is, for turns that blocks do not tell
-constexpr double kBendTrust = 0.02;      // the same of a homography's elements
-constexpr double kLargestBend = 0.25;    // turn or change of scale of a first guess
-constexpr double kFollows = 2.0;         // coarse pixels from where a guess has a block that follows it
-constexpr double kFewestFollow = 0.2;    // share of the blocks that follow a guess
+constexpr int kColumns = 24, kRows = 18;  // places of the first image that are examined, if the second sees them
+constexpr size_t kFewest = 8;             // blocks required if each is matched separately,
+constexpr size_t kFewestTogether = 3;     // and if they are matched together
+constexpr double kMatchOfFew = 0.75;      // mean correlation of fewer than kFewest blocks: some shift matches by chance
+constexpr int kCell = 2;                  // neighbouring places, of which one is used, so that no single object decides
+constexpr int kFarthest = 12;             // coarse pixels by which the project may be off,
+constexpr int kFarthestBlock = 24;        // and by which one block may be
+constexpr int kSearch = 3;                // level pixels around the expected place of a block
+constexpr double kMatch = 0.5;            // smallest correlation of blocks that show the same,
+constexpr double kFarMatch = 0.6;         // and of those found over a wide area: the best of many
+constexpr double kOfCoarse = 0.5;         // texture of a block on the fine level, relative to that on the coarse one,
+constexpr double kFineTexture = 0.0075;   // or standard deviation, grey value 0..1
+constexpr double kRight = 0.85;           // mean correlation of a project that is right
+constexpr double kInPlace = 0.6;          // the same, if blocks show that no small correction is needed
+constexpr double kSmallestShift = 0.5;    // fine pixels: smaller corrections are not made
+constexpr double kBetter = 0.02;          // mean correlation by which a correction must be better than none,
+constexpr double kClearlyBetter = 0.1;    // the same, if many blocks show things that moved or are at other distances
+constexpr double kPreferred = 0.05;       // significant difference of correlations
+constexpr double kTrust = 0.01;      // radians: expected error of a project, for rotations that blocks do not determine
+constexpr double kBendTrust = 0.02;  // the same of a homography's elements
+constexpr double kLargestBend = 0.25;     // rotation or change of scale of a first guess
+constexpr double kFollows = 2.0;          // coarse pixels within which a block follows a guess
+constexpr double kFewestFollow = 0.2;     // share of the blocks that follow a guess
 constexpr double kDerivativeStep = 1e-4;  // radians
 constexpr double kNoShift[2] = {0.0, 0.0};
 
-// A block of the first image, and where the project expects it in the second.
+// A block of the first image, and its place in the second according to the project.
 struct Place {
     double x, y;
     size_t cell;
-    std::array<Block<4>, 2> block;  // of each level
+    std::array<Block<4>, 2> block;  // per level
 
-    // What the larger block of the coarse level shows may lie beside the one of the fine level.
+    // Whether the block has texture on a level: that of the coarse level's larger block may be outside the fine
+    // level's.
     bool shows(size_t level) const {
         return level == 0 || block[1].texture > std::min(kOfCoarse * block[0].texture, kFineTexture);
     }
@@ -88,13 +89,13 @@ struct Place {
 // A block that was found in the second image.
 struct Match {
     const Place *place;
-    Sight at;             // where it was expected
-    Eigen::Vector2d off;  // and how far from there it is, px of the full frame
+    Sight at;             // its expected place
+    Eigen::Vector2d off;  // and its offset from there, px of the full frame
     double quality;
-    Eigen::Matrix<double, 2, Eigen::Dynamic> rows;  // change of the expected place with every unknown
+    Eigen::Matrix<double, 2, Eigen::Dynamic> rows;  // derivative of the expected place by every unknown
 };
 
-// The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, c_m being the trust.
+// The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, with c_m being the trust.
 Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, double pixel) {
     const Eigen::Index size = matches.front().rows.cols();
     Eigen::VectorXd change = Eigen::VectorXd::Zero(size);
@@ -112,7 +113,7 @@ Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, dou
     return change;
 }
 
-using Correlations = std::vector<std::optional<double>>;  // of every place; none where the second does not see it
+using Correlations = std::vector<std::optional<double>>;  // per place; empty if the second image does not see it
 
 double mean_of(const Correlations &correlations, size_t &count) {
     double sum = 0.0;
@@ -122,8 +123,9 @@ double mean_of(const Correlations &correlations, size_t &count) {
     return count ? sum / static_cast<double>(count) : 0.0;
 }
 
-// The weight of a correlation in the search for where all blocks match together. Blocks of things that moved correlate
-// at random about 0; the square keeps their share small compared with that of the blocks that match.
+// The weight of a correlation in the search for the shift under which all blocks match together. Blocks of things that
+// moved have random correlations around 0; the square keeps their share small compared with that of the blocks that
+// match.
 double agreement(double correlation) { return correlation > 0.0 ? correlation * correlation : 0.0; }
 
 struct Matcher {
@@ -152,7 +154,8 @@ struct Matcher {
     bool is_in_place(const Correlations &alike) const;
 };
 
-// What of the first frame the second sees, about: shares of its width and height. False where it sees nothing.
+// The approximate area of the first frame that the second sees: shares of its width and height. False if it sees
+// nothing.
 bool Matcher::overlap_box(double low[2], double high[2]) const {
     constexpr int kScan = 48;
     std::fill(low, low + 2, 1.0), std::fill(high, high + 2, 0.0);
@@ -166,7 +169,7 @@ bool Matcher::overlap_box(double low[2], double high[2]) const {
     return high[0] > low[0];
 }
 
-// Of the scene: clear, or faint but well above the noise, as in a picture that is dark.
+// Whether the texture comes from the scene: clear, or faint but well above the noise, as in a dark picture.
 bool Matcher::is_textured(const Place &p) const {
     constexpr double kFaint = 0.004, kReliable = 0.8;
     const double texture = p.block[0].texture;
@@ -174,7 +177,7 @@ bool Matcher::is_textured(const Place &p) const {
     return texture > kFaint && first_grey.reliability(p.x, p.y, texture) > kReliable;
 }
 
-// The block with most texture of every cell of the first image, where the second sees it too.
+// Finds the block with the most texture in every cell of the first image that the second sees too.
 void Matcher::find_places() {
     double low[2], high[2];
     if (!overlap_box(low, high)) return;
@@ -197,7 +200,7 @@ void Matcher::find_places() {
     places.erase(std::remove_if(places.begin(), places.end(), is_taken), places.end());
 }
 
-// The second image's block, (du, dv) level pixels beside where it is expected.
+// The second image's block, (du, dv) level pixels from its expected place.
 bool Matcher::cut(size_t n, const Sight &at, double du, double dv, Block<4> &out) const {
     const auto &level = second_grey.level[n];
     return out.cut_flat(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
@@ -241,7 +244,7 @@ void Matcher::common_shift(double shift[2]) const {
     }
 }
 
-// Searches for every block around its expected place: by the correction, and `shift` level pixels beside that.
+// Searches for every block around its expected place: under the correction, plus a `shift` in level pixels.
 std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int step, double least,
                                  const Correction &correction) const {
     const double pixel = second_grey.level[n].pixel;
@@ -262,7 +265,7 @@ std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int s
     return matches;
 }
 
-// Of the blocks that are seen under the rotation; -1 where these are too few.
+// Mean over the blocks that are seen under the rotation; -1 if there are too few.
 double Matcher::mean_agreement(size_t level, const Rotation &rotation) const {
     Correlations each = correlations(level, {rotation, {}});
     for (auto &one : each)
@@ -273,8 +276,8 @@ double Matcher::mean_agreement(size_t level, const Rotation &rotation) const {
     return 2 * count > static_cast<size_t>(showing) ? mean : -1.0;
 }
 
-// The rotation under which the blocks match best together: along the axes through the middle of the second frame, steps
-// of two pixels at first.
+// The rotation under which all blocks together match best: along the axes through the middle of the second frame, with
+// steps of two pixels at first.
 Rotation Matcher::together(const double shift[2]) const {
     double middle[2], beside[2];
     const double x = 0.5 * (second.width - 1.0), y = 0.5 * (second.height - 1.0);
@@ -282,9 +285,9 @@ Rotation Matcher::together(const double shift[2]) const {
         return {};
     Eigen::Vector3d ahead, aside;
     unit_vector(middle, ahead.data()), unit_vector(beside, aside.data());
-    const double angle = std::acos(std::min(1.0, ahead.dot(aside)));  // of a px of the full frame
+    const double angle = std::acos(std::min(1.0, ahead.dot(aside)));  // of one px of the full frame
     const Eigen::Vector3d right = (aside - ahead * ahead.dot(aside)).normalized(), up = right.cross(ahead);
-    // A turn by +angle about `up` moves what is ahead to the right or to the left: both are tried.
+    // A rotation by +angle about `up` moves what is ahead to the right or to the left: both are tried.
     const Eigen::Vector3d axes[3] = {angle * up, angle * right, ahead * 2.0 / std::hypot(second.width, second.height)};
     const double coarse = second_grey.level[0].pixel;
     Rotation best{};
@@ -311,7 +314,7 @@ Rotation Matcher::together(const double shift[2]) const {
     return best;
 }
 
-// Fits the rotation to where blocks are: least squares, with less trust in blocks that are far from the others.
+// Fits the rotation to the places of the blocks: least squares, with less trust in blocks that are far from the others.
 bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
     const double pixel = second_grey.level[n].pixel;
     std::vector<Match> matches = look(n, shift, kSearch, 1, kMatch, {rotation, {}});
@@ -333,7 +336,7 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
     return change.allFinite();
 }
 
-// The same of the homography.
+// The same for the homography.
 bool Matcher::refine_bend(size_t n, Correction &correction) const {
     const double pixel = second_grey.level[n].pixel, scale = lensprof_half_diagonal(second.width, second.height);
     std::vector<Match> matches = look(n, kNoShift, kSearch, 1, kMatch, correction);
@@ -352,7 +355,7 @@ bool Matcher::refine_bend(size_t n, Correction &correction) const {
     return h.allFinite() && correction.bend->forward.determinant() > 0.0;
 }
 
-// The similarity that most blocks follow, of those that two blocks give; false where too few follow any. Tries all
+// The similarity that most blocks follow, among those defined by two blocks; false if too few follow any. Tries all
 // pairs of blocks, or evenly chosen ones.
 bool Matcher::guess_bend(Correction &correction) const {
     constexpr size_t kMostGuesses = 4000;
@@ -386,7 +389,7 @@ bool Matcher::guess_bend(Correction &correction) const {
     return true;
 }
 
-// By how much one correction has blocks elsewhere than another, px of the full frame.
+// Median distance between the places of blocks under two corrections, px of the full frame.
 double Matcher::median_shift(const Correction &a, const Correction &b) const {
     std::vector<double> shifts;
     for (const Place &p : places) {
@@ -401,8 +404,8 @@ double Matcher::median_shift(const Correction &a, const Correction &b) const {
     return *middle;
 }
 
-// Whether most blocks match better by the correction than without: what moved prefers it, too, but not the scene about
-// it.
+// Whether most blocks match better with the correction than without: things that moved prefer it, too, but the scene
+// around them does not.
 bool most_prefer(const Correlations &by, const Correlations &without) {
     size_t better = 0, worse = 0;
     for (size_t p = 0; p < by.size(); p++) {
@@ -412,8 +415,8 @@ bool most_prefer(const Correlations &by, const Correlations &without) {
     return better > 2 * worse;
 }
 
-// Most blocks match clearly better, at places that are clearly others. `by` and `without` are the correlations of the
-// two.
+// Whether most blocks match clearly better, at places that are clearly different. `by` and `without` are the
+// correlations of the two.
 bool Matcher::is_better(const Correction &correction, const Correlations &by, const Correction &than,
                         const Correlations &without) const {
     size_t compared, found_in;
@@ -423,8 +426,8 @@ bool Matcher::is_better(const Correction &correction, const Correlations &by, co
            && median_shift(than, correction) > kSmallestShift * second_grey.level[1].pixel;
 }
 
-// Whether blocks match where the project has them, and no better a little off: noise keeps their correlations low where
-// it is right, too. `alike`: without a correction.
+// Whether blocks match where the project has them, and no better slightly displaced: noise keeps their correlations low
+// even if the project is right. `alike`: without a correction.
 bool Matcher::is_in_place(const Correlations &alike) const {
     size_t compared;
     const double mean = mean_of(alike, compared);
@@ -469,7 +472,7 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
         if (matcher.is_better(other, own, found, alike)) found = other, alike = own;
     };
     if (is_right() || matcher.is_in_place(alike)) return found;
-    double shift[2];  // where both rotations begin
+    double shift[2];  // start of both rotations
     matcher.common_shift(shift);
     if (const auto rotation = matcher.rotation(shift)) take_if_better({*rotation, {}});
     if (is_right()) return found;

@@ -9,27 +9,28 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kPiece = 32;  // places of one image that a thread looks at in one go
+constexpr uint32_t kPiece = 32;  // places of one image that a thread processes as a unit
 constexpr uint32_t kPaperRound = 8192;
-constexpr double kWidestCone = 1.5;  // radians: beyond, the border of a frame may be farther off than its samples
-constexpr double kAlike = 0.5;       // correlation of places that may show the same,
-constexpr double kSurely = 0.8;      // and of those that clearly do
-// Shares of the places with texture. Alike: .05 to .31 where a project is wrong, .43 and more in real sequences and
-// with 30 % of random pixels. Where things moved on 44 % of the places it can be .22, too, but .08 and more are surely
-// alike, 3.2 times as many as beside; of a wrong project up to .1 are, 2.4 times.
+constexpr double kWidestCone =
+    1.5;  // radians: beyond it, the border of a frame may be farther from the axis than its samples
+constexpr double kAlike = 0.5;   // correlation of places that may show the same,
+constexpr double kSurely = 0.8;  // and of those that clearly do
+// Shares of the places with texture. Alike: .05 to .31 if a project is wrong, .43 and more in real sequences and with
+// 30 % of random pixels. If things moved on 44 % of the places, it can be .22, too, but .08 and more are clearly alike,
+// 3.2 times as many as among displaced places; with a wrong project, up to .1 are, 2.4 times.
 constexpr double kEnoughAlike = 0.4, kFewestSurely = 0.05, kAboveChance = 2.8;
 constexpr double kBeside = 12.0;  // coarse pixels
 constexpr uint32_t kFewestTold = 20;
-constexpr double kMostlySmooth = 0.25;        // of the places has texture: what has none does not care for a few pixels
-constexpr size_t kMostNeighbours = 8;         // of an image that are registered, those with the largest overlap
+constexpr double kMostlySmooth = 0.25;  // of the places with texture: smooth places tolerate a shift of a few pixels
+constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap
 constexpr double kShareOfRegistration = 0.5;  // of the progress that is shown
-constexpr size_t kMostRefused = 4;            // pairs of places for one wanted candidate, before the search ends
+constexpr size_t kMostRefused = 4;            // pairs of places per wanted candidate, before the search ends
 
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 double angle_between(const double a[3], const double b[3]) { return std::acos(std::clamp(dot(a, b), -1.0, 1.0)); }
 
-// Unit vector of a pixel's direction; false when it has none.
+// Unit vector of a pixel's direction; false if it has no direction.
 bool direction_of(const lensprof_camera &camera, double x, double y, double v[3]) {
     double direction[2];
     if (!lensprof_camera_unproject(&camera, x, y, direction)) return false;
@@ -46,7 +47,7 @@ int overlap_of(const lensprof_camera &first, const lensprof_camera &second) {
     return seen;
 }
 
-// Moves the lists, in order, one after the other.
+// Moves the elements of the lists, in order, into one list.
 template <class T>
 void append(std::vector<std::vector<T>> &lists, std::vector<T> &all) {
     for (auto &list : lists) {
@@ -63,7 +64,7 @@ Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_i
     find_neighbours();
 }
 
-// Cones do not tell anything about translated cameras or frames that reach beyond the projection.
+// Cones are not valid for translated cameras, or for frames that reach beyond the projection.
 Sampler::Cone Sampler::cone_of(const lensprof_camera &camera) {
     Cone cone{};
     cone.known = !camera.translation[0] && !camera.translation[1] && !camera.translation[2]
@@ -78,7 +79,7 @@ Sampler::Cone Sampler::cone_of(const lensprof_camera &camera) {
     return cone;
 }
 
-// Images whose view cones touch; an image without a cone is everybody's neighbour.
+// Images whose view cones touch; an image without a cone is a neighbour of all images.
 void Sampler::find_neighbours() {
     for (const View &view : views_) cones_.push_back(cone_of(view.image().camera));
     neighbours_.resize(views_.size());
@@ -103,7 +104,7 @@ bool Sampler::are_neighbours(uint32_t i, uint32_t j) const {
     return std::binary_search(neighbours_[i].begin(), neighbours_[i].end(), j);
 }
 
-// Number of the pair of images, the same both ways round.
+// Number of the pair of images, independent of their order.
 uint32_t Sampler::edge_of(uint32_t i, uint32_t j) const {
     auto [low, high] = std::minmax(i, j);
     const auto &list = neighbours_[low];
@@ -111,7 +112,7 @@ uint32_t Sampler::edge_of(uint32_t i, uint32_t j) const {
     return first_edge_[low] + static_cast<uint32_t>(place);
 }
 
-// Work on all threads; the caller hears the fraction done() as long as it rises.
+// Runs work on all threads; reports the fraction done() to the caller as long as it rises.
 void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done) {
     auto stop = [&] {
         shown_ = std::max(shown_, std::min(done(), 1.0));
@@ -133,8 +134,8 @@ void Sampler::show_done() {
         1, [](uint32_t) {}, [] { return 1.0; });
 }
 
-// Where the project is off between neighbours, as the pictures show. A camera that stands still is not off: pictures
-// that are mostly white, or mostly black, would only seem to be.
+// Measures the error of the project between neighbours from the pictures. The project of a static camera is not off:
+// pictures that are mostly white, or mostly black, would only seem to show an error.
 void Sampler::register_neighbours() {
     corrections_.assign(edge_numbers_, {});
     likenesses_ = std::vector<Likenesses>(edge_numbers_);
@@ -177,14 +178,14 @@ const Correction &Sampler::correction(uint32_t i, uint32_t j) const {
     return patches_ ? corrections_[edge_of(i, j)] : none;
 }
 
-// Where image j sees what image i sees at (x, y); false when it does not.
+// The place at which image j sees what image i sees at (x, y); false if it does not.
 bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const {
     return place_of(views_[i].image().camera, views_[j].image().camera, correction(i, j),
                     i < j ? Way::forward : Way::back, x, y, xy)
            && views_[j].holds(xy[0], xy[1]);
 }
 
-// Whether both show the same there, as far as texture tells. Single points, as the paper samples them, are not asked.
+// Whether both show the same there, as far as texture shows. Single points, as the paper samples them, are not checked.
 bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     Sight at;
     if (!patches_ || options_.sampling == LENSPROF_SAMPLING_BRACKET) return true;
@@ -194,7 +195,7 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     return is_alike(i, x, y, j, at);
 }
 
-// The same of a place and the one that is to show the same.
+// The same for a place and its expected counterpart.
 bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight at) {
     Likenesses &edge = likenesses_[edge_of(i, j)];
     edge.seen++;
@@ -203,7 +204,7 @@ bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight at) {
     edge.told++;
     if (*told > kAlike) edge.alike++;
     if (*told > kSurely) edge.surely++;
-    const auto side = static_cast<int>(std::abs(x) + std::abs(y));  // another one from place to place
+    const auto side = static_cast<int>(std::abs(x) + std::abs(y));  // alternates from place to place
     (side % 2 ? at.x : at.y) += (side / 2 % 2 ? kBeside : -kBeside) * grey_[j]->level[0].pixel;
     std::optional<double> beside = likeness(*grey_[i], x, y, *grey_[j], at);
     if (beside) edge.beside++;
@@ -211,9 +212,9 @@ bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight at) {
     return *told > kAlike;
 }
 
-// Where hardly more places show the same than do beside where they should, the project has one of the two images
-// somewhere else: what agrees there agrees by chance. Not so where few places have texture: a project that is off by
-// some pixels is wrong there and nowhere else, and those places are left out one by one.
+// If barely more places show the same than displaced places do, the project has one of the two images at a wrong
+// position: places that agree do so by chance. This does not apply if few places have texture: a project that is off by
+// some pixels is wrong only there, and those places are left out one by one.
 lensprof_link_state Sampler::state_of(uint32_t number) const {
     const Likenesses &edge = likenesses_[number];
     const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
@@ -247,7 +248,7 @@ bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
     return true;
 }
 
-// The candidates between a place of image i and the other images that see it.
+// Finds the candidates between a place of image i and the other images that see it.
 void Sampler::look(uint32_t i, double x, double y, const uint32_t *others, size_t count,
                    std::vector<Candidate> &found) {
     double v[3], xy[2];
@@ -274,8 +275,8 @@ void Sampler::look(uint32_t i, double x, double y, const uint32_t *others, size_
     }
 }
 
-// Candidates spread evenly over every image (a low-discrepancy sequence), until there are enough or overlaps are used
-// up. The rounds end where they end on any number of threads.
+// Candidates spread evenly over every image (a low-discrepancy sequence), until there are enough or the overlaps are
+// exhausted. The rounds end at the same candidate for any number of threads.
 std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
     std::vector<Candidate> all;
     Random random{options_.seed};
@@ -335,7 +336,7 @@ std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
     return pairs_of(balanced_choice(candidates(8 * static_cast<size_t>(wanted)), wanted));
 }
 
-// A random place of a random image, and one of its neighbours; the image itself when it has none.
+// A random place of a random image, and one of its neighbours; the image itself if there are no neighbours.
 Sampler::Look Sampler::draw(Random &random) const {
     auto i = static_cast<uint32_t>(random.next() * static_cast<double>(views_.size()));
     const auto &camera = views_[i].image().camera;

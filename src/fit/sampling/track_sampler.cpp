@@ -12,18 +12,18 @@ namespace lensprof {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr uint32_t kPiece = 64;     // points that a thread looks at in one go,
-constexpr uint32_t kRound = 4096;   // and all together before it is seen whether there are enough
+constexpr uint32_t kPiece = 64;     // points that a thread processes as a unit,
+constexpr uint32_t kRound = 4096;   // and all threads together, before counting whether there are enough
 constexpr uint32_t kHopeless = 64;  // rounds without any track
 constexpr uint32_t kMostRounds = 4096;
-constexpr size_t kPerWanted = 8;                  // candidates for one wanted point,
-constexpr double kCells = 2.0;                    // and cells; of a cell the quietest candidates are taken
-constexpr double kBinSlack = 1.5;                 // an even spread comes before a balance of radius and grey level
+constexpr size_t kPerWanted = 8;                  // candidates per wanted point,
+constexpr double kCells = 2.0;                    // and cells; each cell contributes its quietest candidates
+constexpr double kBinSlack = 1.5;                 // an even spread has priority over a balance of radius and grey level
 constexpr double kSteepest = 80.0 * kPi / 180.0;  // latitude at which a cylinder ends
 
 }  // namespace
 
-// The cap that holds every image's cone; the whole sphere where one is not known.
+// The cap that contains every image's cone; the whole sphere if one is not known.
 Sampler::Cone Sampler::cone_of_all() const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     bool known = true;
@@ -45,8 +45,8 @@ Sampler::Cone Sampler::cone_of_all() const {
     return all;
 }
 
-// The point in one of the images that see it, by turns, and from there in the others: the small rotations that were
-// found between neighbours count.
+// Takes the point in one of the images that see it, in turn, and from there in the others, using the small rotations
+// found between neighbours.
 bool Sampler::find_track(const Aim &aim, uint32_t number, TrackCandidate &found) {
     std::vector<Visit> seen;
     double v[3], xy[2];
@@ -84,7 +84,7 @@ bool Sampler::find_track(const Aim &aim, uint32_t number, TrackCandidate &found)
     return found.visits.size() > 1 && measured > 0;
 }
 
-// The rounds end where they end on any number of threads.
+// The rounds end at the same point for any number of threads.
 std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim) {
     std::vector<TrackCandidate> all;
     const double before = shown_;  // of the progress
@@ -104,7 +104,7 @@ std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, co
     return all;
 }
 
-// Without the visits of images that the project has somewhere else than the anchor's.
+// Removes the visits of images that the project has at a wrong position relative to the anchor's.
 std::vector<Sampler::TrackCandidate> Sampler::in_place(std::vector<TrackCandidate> all) const {
     for (TrackCandidate &c : all) {
         auto is_out = [&, anchor = c.visits[0].image](const Visit &visit) {
@@ -150,7 +150,7 @@ std::vector<lensprof_observation> Sampler::balanced_tracks(uint32_t wanted) {
         a -= std::floor(a), b -= std::floor(b);
         double cosine = 1.0 - a * (1.0 - cap.cosine), sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
         Eigen::Vector3d d = cosine * axis + sine * (std::cos(2.0 * kPi * b) * u + std::sin(2.0 * kPi * b) * v);
-        // Lambert's azimuthal projection, too, has equal areas, and its squares are places near each other.
+        // Lambert's azimuthal projection has equal areas, too, and its squares contain nearby places.
         auto line = [&](double x) { return static_cast<uint32_t>((0.5 + 0.4999 * std::sqrt(a) * x) * side); };
         Aim at{{}, line(std::cos(2.0 * kPi * b)) * side + line(std::sin(2.0 * kPi * b))};
         direction_of_vector(d.data(), at.direction);
@@ -160,7 +160,7 @@ std::vector<lensprof_observation> Sampler::balanced_tracks(uint32_t wanted) {
     std::sort(all.begin(), all.end(), [](const TrackCandidate &a, const TrackCandidate &b) {
         return a.cell != b.cell ? a.cell < b.cell : a.gradient < b.gradient;
     });
-    std::vector<uint32_t> rank(all.size(), 0);  // within a cell: every cell's quietest come first
+    std::vector<uint32_t> rank(all.size(), 0);  // within a cell: every cell's quietest are first
     for (size_t n = 1; n < all.size(); n++) rank[n] = all[n].cell == all[n - 1].cell ? rank[n - 1] + 1 : 0;
     size_t ends = 0;
     for (const TrackCandidate &c : all) ends += c.visits.size();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kReach = 2;  // patches are (2 kReach + 1) pixels square
 constexpr int kSide = 2 * kReach + 1, kCount = kSide * kSide;
-constexpr double kAlmostWhite = 1.0 - 1e-9;       // 1 itself is a channel that is white in every pixel
+constexpr double kAlmostWhite = 1.0 - 1e-9;       // 1 itself means a channel that is white in every pixel
 constexpr float kSmallestSpread = 1.0f / 255.0f;  // of a patch without noise
 
 const uint8_t *pixel(const lensprof_image &view, int u, int v, uint32_t sample) {
@@ -36,8 +36,8 @@ double load(const lensprof_image &view, int u, int v, uint32_t sample) {
     return value;
 }
 
-// The channels of a patch's pixel side by side (the last lane is a copy), in one register: what follows does all of
-// them at once, without a branch.
+// The channels of a patch's pixel side by side (the last lane is a copy), in one register: the following code processes
+// all of them together, without a branch.
 constexpr int kLanes = 4;
 typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
 
@@ -54,7 +54,7 @@ float grey_value(uint8_t sample) { return kByteValues.at[sample]; }
 float grey_value(uint16_t sample) { return static_cast<float>(sample / 65535.0); }
 float grey_value(float sample) { return sample; }
 
-// The pixels about (u, v), row by row; `offset` has the place of every lane's sample in a pixel.
+// The pixels around (u, v), row by row; `offset` has the place of every lane's sample in a pixel.
 template <class Sample>
 void gather(const lensprof_image &view, int u, int v, const int *offset, Lanes *out) {
     const size_t samples = lensprof_layout_samples(view.layout);
@@ -92,8 +92,8 @@ void sort_two(Lanes &low, Lanes &high) {
     high = higher(a, b);
 }
 
-// Value number count / 2 in order, of every lane; `count` is even. The largest ones are carried to the end, one a
-// round. Values change places.
+// Value number count / 2 in order, for every lane; `count` is even. Each round moves the largest value to the end.
+// Reorders the values.
 template <int count>
 Lanes upper_median(Lanes *values) {
     for (int last = count - 1; last >= count / 2; last--)
@@ -102,11 +102,11 @@ Lanes upper_median(Lanes *values) {
 }
 
 // Median of every lane; `count` is odd. Of any count / 2 + 2 values the least and the largest cannot be the median of
-// all: they make room, until one value is left. Values change places.
+// all: they are dropped until one value is left. Reorders the values.
 template <int count>
 Lanes median(Lanes *values) {
     constexpr int end = count / 2 + 2;
-    int first = 0;  // values[first..end) are looked at
+    int first = 0;  // values[first..end) are considered
     for (int next = end;; next++) {
         for (int i = first + 1; i < end; i++) sort_two(values[first], values[i]);
         for (int i = first + 1; i < end - 1; i++) sort_two(values[i], values[end - 1]);
@@ -116,8 +116,8 @@ Lanes median(Lanes *values) {
     }
 }
 
-// Mean of the values within 2.5 standard deviations of the centre, which starts at the median: nearly as exact as a
-// mean for plain noise, and hardly moved where a third of the pixels are wrong, even all on one side.
+// Mean of the values within 2.5 standard deviations of the centre, which starts at the median: nearly as accurate as a
+// mean for plain noise, and barely biased if a third of the pixels are wrong, even all on one side.
 Lanes robust_mean(const Lanes *values) {
     Lanes scratch[kCount];
     std::copy(values, values + kCount, scratch);
@@ -137,14 +137,14 @@ Lanes robust_mean(const Lanes *values) {
         const Lanes count = higher(kept, one);
         Lanes deviation;
         for (int c = 0; c < kLanes; c++) deviation[c] = std::sqrt(square[c] / count[c]);
-        // 1.1: what the cut takes away from plain noise
+        // 1.1: corrects the spread of plain noise for the cut
         spread = kept > none ? lower(spread, 1.1f * deviation) : spread;
         center += sum / count;
     }
     return center;
 }
 
-// A quick look before the work: in some channel, the middle and its four neighbours are all black or saturated.
+// A quick check first: in some channel, the middle and its four neighbours are all black or saturated.
 bool is_out_of_range(const Lanes *values, float black, float white) {
     constexpr int middle = kCount / 2;
     for (int c = 0; c < kLanes; c++) {
@@ -156,8 +156,8 @@ bool is_out_of_range(const Lanes *values, float black, float white) {
     return false;
 }
 
-// Whether a channel is above white in more than a quarter of the pixels: it is saturated, and what is left below white,
-// by noise and coding, says little of its mean.
+// Whether a channel is above white in more than a quarter of the pixels: it is saturated, and the values left below
+// white, by noise and coding, do not represent its mean.
 bool is_saturated(const Lanes *values, float white) {
     for (int c = 0; c < kLanes; c++) {
         int above = 0;
@@ -175,10 +175,10 @@ bool all_in_range(const Lanes *values, float black, float white) {
 }
 
 struct Slope {
-    Lanes across, down;  // a view pixel
+    Lanes across, down;  // per view pixel
 };
 
-// Medians of the halves keep single wrong pixels out; the halves' centres are kReach + 1 pixels apart.
+// Medians of the halves suppress single wrong pixels; the halves' centres are kReach + 1 pixels apart.
 Slope slope_of(const Lanes *values) {
     constexpr int half = kReach * kSide;
     Lanes left[half], right[half], above[half], below[half];

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRadii = 33;  // samples of r^2 at which M is held positive
 constexpr double kSmallestM = 0.01;
-constexpr double kReach2 = 1.8 * 1.8;  // (1 + largest |centre|)^2 that the bound below leaves
+constexpr double kReach2 = 1.8 * 1.8;  // (1 + largest |centre|)^2 that the bound below allows
 
 // The r^2 up to which M must be positive for the centre of a setting: the farthest corner, with a margin for the
 // centre's own step.
@@ -28,7 +28,7 @@ Eigen::VectorXd moved(const Region &region, const Eigen::VectorXd &d) {
     return value;
 }
 
-// In this order: rises of f; then of each setting values of each M, and bounds of the centre.
+// Order: rises of f; then for each setting the values of each M, and the bounds of the centre.
 class CameraInequalities : public Inequalities {
 public:
     explicit CameraInequalities(const Region &r) : region(r) {
@@ -81,8 +81,8 @@ public:
     }
 
 private:
-    // What an inequality from kRises on is about: M of the curve that begins in `column` at radius2, or the coordinate
-    // of a centre in `column`.
+    // Meaning of an inequality from kRises on: M at radius2 of the curve that begins in `column`, or the coordinate of
+    // a centre in `column`.
     struct Place {
         int column;
         bool is_center, is_upper;
@@ -98,7 +98,7 @@ private:
     int of_setting() const { return kRadii * region.vignettings + 4; }
 
     const Region &region;
-    std::vector<double> limit2;  // of each setting
+    std::vector<double> limit2;  // per setting
 };
 
 }  // namespace

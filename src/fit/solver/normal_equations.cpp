@@ -3,19 +3,20 @@
 //     F(d, e) = F - g'd - h'e + 1/2 d'A d + e'C d + 1/2 e'B e
 //
 // with A = shared_, B = images_, C = cross_q_ (images x shared), g = gradient_ and h = gradient_q_, which are those of
-// -F. F has no unit: squares of residuals over the variance of the noise, priors included, so that the inverse Hessian
-// is a covariance. q are natural logarithms. A is small and dense, B large and sparse: where images overlap.
+// -F. F is dimensionless: squared residuals over the variance of the noise, priors included, so that the inverse
+// Hessian is a covariance. q are natural logarithms. A is small and dense, B large and sparse: where images overlap.
 //
-// For a given d, F is least at  e = B^-1 (h - C d)  = image_only_ - eliminated_ d.  Put in, that leaves
+// For a given d, F is least at  e = B^-1 (h - C d)  = image_only_ - eliminated_ d.  Substituting this gives
 //
 //     S d = b,     S = A - C'B^-1 C   (the Schur complement of B),     b = g - C'B^-1 h,
 //
 // which is as small as A: one sparse factorisation and as many solutions as there are shared unknowns. S and b are
-// those of F minimised over the images, so that inequalities on d (constrained_step) need not know of the images. What
-// a step gains is  1/2 h'B^-1 h + b'd - 1/2 d'S d.  Levenberg-Marquardt's lambda raises the diagonals of A and B alike.
+// those of F minimised over the images, so that inequalities on d (constrained_step) do not involve the images. The
+// gain of a step is  1/2 h'B^-1 h + b'd - 1/2 d'S d.  Levenberg-Marquardt's lambda raises the diagonals of A and B
+// alike.
 //
-// With V = S^-1, the covariance of the shared unknowns, the images' is  B^-1 + B^-1 C V C'B^-1:  what their own pairs
-// leave open, and what the shared unknowns add. Only its diagonal is wanted (inverse_diagonal).
+// With V = S^-1, the covariance of the shared unknowns, the images' is  B^-1 + B^-1 C V C'B^-1:  the uncertainty
+// left by their own pairs, and that added by the shared unknowns. Only its diagonal is computed (inverse_diagonal).
 #include "fit/solver/normal_equations.hpp"
 
 #include <algorithm>
@@ -121,7 +122,7 @@ bool NormalEquations::reduce(double lambda) {
     for (Eigen::Index u = 0; u < n; u++) S_(u, u) += lambda * shared_(u, u) + 1e-12;
     b_ = gradient_;
     if (problem_.image_unknowns == 0) return true;
-    // A weak pull (sigma 30 EV) keeps images without usable pairs, and unconnected groups, where they are.
+    // A weak pull (sigma 30 EV) holds images without usable pairs, and unconnected groups, at their values.
     Eigen::SparseMatrix<double> damped = images_, diagonal(images_.rows(), images_.cols());
     diagonal.setIdentity();
     for (Eigen::Index q = 0; q < images_.rows(); q++) diagonal.coeffRef(q, q) = lambda * images_.coeff(q, q) + 2e-3;
@@ -163,7 +164,7 @@ Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) c
     };
     Eigen::VectorXd variance = inverse_diagonal(factor_);
     if (!problem_.channels_apart) return has_shared ? variance + added(eliminated_) : variance;
-    // ln w_ic = a_ic - a_i1: the first part of their covariance is 0, for the channels are apart.
+    // ln w_ic = a_ic - a_i1: the first part of their covariance is 0, because the channels are apart.
     Eigen::MatrixXd by_shared = eliminated_;
     const Eigen::VectorXd alone = variance;
     for (uint32_t i = 0; i < problem_.image_count; i++)
@@ -180,9 +181,9 @@ Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix
     // For Z, the inverse of the permuted matrix L D L', L'Z = D^-1 L^-1, whose right side is lower triangular and has
     // 1 / d_j on its diagonal. Row j of it, from column j on, is
     //     Z_ij = -sum over k > j of L_kj Z_ki   (i > j),        Z_jj = 1 / d_j - sum over k > j of L_kj Z_kj.
-    // Only k with L_kj != 0 count. To know Z_ij where L_ij != 0 takes Z_ki for i and k both in the pattern of column j,
-    // and there L_ik (i > k) is in the pattern, too: eliminating j has filled it. So from the last column to the first
-    // no entry outside the pattern is ever asked for.
+    // Only k with L_kj != 0 count. Computing Z_ij with L_ij != 0 requires Z_ki for i and k both in the pattern of
+    // column j. L_ik (i > k) is then in the pattern, too, because eliminating j has filled it. Going from the last
+    // column to the first, no entry outside the pattern is therefore needed.
     Eigen::SparseMatrix<double> l = factor.matrixL();
     l.makeCompressed();
     Eigen::VectorXd d = factor.vectorD(), diagonal(l.cols());
@@ -196,7 +197,7 @@ Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix
         const double *l_j = l.valuePtr() + first;
         sum.assign(static_cast<size_t>(count), 0.0);
         for (int a = 0; a < count; a++) place[static_cast<size_t>(row[first + a])] = a;
-        for (int a = 0; a < count; a++) {  // what Z_ki and Z_ik = Z_ki of column k add to the rows k and i
+        for (int a = 0; a < count; a++) {  // contribution of Z_ki and Z_ik = Z_ki of column k to the rows k and i
             const int k = row[first + a];
             double own = l_j[a] * diagonal[k];
             for (int b = first_below(k); b < start[k + 1]; b++) {

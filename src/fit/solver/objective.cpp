@@ -8,7 +8,7 @@
 namespace lensprof {
 namespace {
 
-// What the two objectives share.
+// Common parts of the two objectives.
 class Base : public Objective {
 public:
     Base(const Problem &problem, const Prior &prior, const Loss &loss, const Estimate &estimate)

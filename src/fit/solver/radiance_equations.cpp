@@ -5,14 +5,14 @@
 
 namespace lensprof {
 
-// What a chunk of tracks adds to the model, and room for its rows: one a residual, scaled by the root of its weight,
-// free of the radiance: d prediction / d shared, residual.
+// Contribution of a chunk of tracks to the model, and room for its rows. There is one row per residual, scaled by the
+// root of its weight, with the radiance eliminated: d prediction / d shared, residual.
 struct RadianceEquations::Part : Sums {
     static constexpr Eigen::Index kCapacity = 128;
     Eigen::MatrixXd rows, product;
     Eigen::Index count = 0;
-    Eigen::MatrixXd by_shared;                       // of the channel at hand, a column each observation
-    std::vector<std::array<double, 3>> link_weight;  // of the problem's links
+    Eigen::MatrixXd by_shared;                       // of the current channel, one column per observation
+    std::vector<std::array<double, 3>> link_weight;  // per link of the problem
 
     Part(Eigen::Index n, const Problem &problem)
         : Sums(n, problem.image_count),

@@ -13,20 +13,21 @@ namespace lensprof {
 namespace {
 
 constexpr double kLargestLogBalance = 12.0;  // white balance factors stay valid, 1e-6..1e6
-constexpr double kHeldFirmly = 1e4;  // times as firmly as in the fit: gamma's own error is stated apart from the data's
+constexpr double kHeldFirmly =
+    1e4;  // factor relative to the fit: gamma's own error is stated separately from the data's
 
-// One accepted Levenberg-Marquardt step; false when no damping finds an improvement. The model of the accepted point is
-// kept for the next step. Not falloff/levenberg_marquardt.hpp, which is for few unknowns without constraints: here the
-// images are eliminated from each model (which may fail), the step keeps inequalities, and a place costs so much that
-// after a failure its value alone is computed first.
+// One accepted Levenberg-Marquardt step; false if no damping finds an improvement. The model of the accepted point is
+// kept for the next step. falloff/levenberg_marquardt.hpp is not used because it is for few unknowns without
+// constraints. Here the images are eliminated from each model (which may fail), the step satisfies inequalities, and
+// evaluations are expensive, so that after a failure only the value is computed first.
 struct Stepper {
     const Problem &problem;
     const Objective &objective;
-    double flat;  // a step that promises less is not worth its evaluation
+    double flat;  // a step with a smaller expected gain is not evaluated
     std::unique_ptr<NormalEquations> model;
     double lambda = 1e-4;
     int steps = 0;
-    bool is_solved = false;  // some step could be formed
+    bool is_solved = false;  // whether some step could be computed
 
     Estimate moved(const Estimate &from, const Eigen::VectorXd &d) const {
         Estimate to = from;
@@ -75,7 +76,7 @@ struct Stepper {
     }
 };
 
-// Exposures that are held firmly and their common offset, which is renewed between rounds, follow each other slowly.
+// Exposures that are held firmly and their common offset, which is renewed between rounds, converge slowly together.
 bool is_held(const Prior &prior) {
     return std::any_of(prior.known.begin(), prior.known.end(), [](const auto &known) { return known.hold > 1.0; });
 }
@@ -102,7 +103,7 @@ double largest_change(const Estimate &a, const Estimate &b) {
 
 Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
               const Control &control, Estimate &estimate) {
-    constexpr double kStill = 3e-5;  // nothing a user sees moves by more in a step
+    constexpr double kStill = 3e-5;  // largest visible change in a step at convergence
     constexpr int kNoiseRounds = 4, kHeldRounds = 10;
     Prior renewed = prior_of(prior, estimate.modes);
     Outcome outcome;
@@ -144,7 +145,7 @@ Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, 
     Eigen::MatrixXd inverse(n, n);
     if (n) {
         Eigen::LLT<Eigen::MatrixXd> factor(model.reduced_hessian());
-        if (factor.info() != Eigen::Success) return result;  // not determined: no statement
+        if (factor.info() != Eigen::Success) return result;  // not determined: no covariance
         inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
         if (!inverse.allFinite() || inverse.diagonal().minCoeff() <= 0.0) return result;
     }

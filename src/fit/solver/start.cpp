@@ -12,27 +12,28 @@
 namespace lensprof {
 namespace {
 
-constexpr double kDarkest = 0.03, kBrightest = 0.97;  // grey values whose ratio is worth something
+constexpr double kDarkest = 0.03, kBrightest = 0.97;  // grey values whose ratio is reliable
 
 using Ratios = std::array<double, 3>;
 using TieFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
-// What the exposures of two images must explain: ln g(B1)/M1 - ln g(B2)/M2, where most of an edge's pairs agree, or of
-// one pair where there are too few to tell.
+// The log ratio that the exposures of two images must explain: ln g(B1)/M1 - ln g(B2)/M2, on which most of an edge's
+// pairs agree, or that of one pair if there are too few.
 struct Tie {
     uint32_t image[2];
     Ratios ratios;
-    double votes;  // that agree on it
+    double votes;  // number that agree on it
     double trust = 1.0;
 };
 
 struct Vote {
     Ratios ratios{};
-    uint32_t colour = 0;  // of both ends, coarsely
+    uint32_t colour = 0;  // of both ends, quantised
     double weight = 1.0;
 };
 
-// A colour has one vote, however many pairs have it: a thing of one colour before another agrees with itself alone.
+// A colour has one vote, however many pairs have it: an object of one colour in front of another agrees only with
+// itself.
 void weigh(std::vector<Vote> &votes) {
     std::vector<uint32_t> colours;
     for (const Vote &v : votes) colours.push_back(v.colour);
@@ -50,8 +51,9 @@ uint32_t colour_of(const lensprof_pair &pair, int channels) {
     return colour;
 }
 
-// The vector about which most votes lie within about `width`, all channels together, then the mean of those: half and
-// more of the pairs may be wrong, as long as they do not agree with each other. `support`: the votes that lie there.
+// The vector around which most votes lie within about `width`, all channels together, then the mean of those votes.
+// Half and more of the pairs may be wrong, as long as they do not agree with each other. `support`: the votes that lie
+// there.
 Ratios mode_of(const std::vector<Vote> &all, int channels, double width, double &support) {
     constexpr size_t kGuesses = 48, kVoters = 192;
     auto closeness = [&](const Ratios &a, const Ratios &b) {
@@ -106,7 +108,7 @@ std::vector<Vote> votes_of(const Problem &problem, const Estimate &estimate, con
 }
 
 std::vector<Tie> ties_of(const Problem &problem, const Estimate &estimate, double width) {
-    constexpr size_t kElectorate = 8;  // so many pairs can outvote the wrong ones among them
+    constexpr size_t kElectorate = 8;  // with this many pairs, the correct ones can outvote the wrong ones
     std::vector<Tie> ties;
     for (const Edge &edge : problem.edges) {
         std::vector<Vote> votes = votes_of(problem, estimate, edge);
@@ -122,8 +124,8 @@ std::vector<Tie> ties_of(const Problem &problem, const Estimate &estimate, doubl
     return ties;
 }
 
-// Least squares over the ties as trusted; false when it failed numerically. `factor` keeps the order of elimination
-// from one call to the next: the ties change their weights alone.
+// Weighted least squares over the ties; false if it failed numerically. `factor` keeps the order of elimination from
+// one call to the next, because only the weights of the ties change.
 bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, TieFactor &factor, Estimate &estimate) {
     int count = problem.image_unknowns;
     std::vector<Eigen::Triplet<double>> entries;
@@ -131,7 +133,7 @@ bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, TieFact
     for (int q = 0; q < count; q++) entries.emplace_back(q, q, 1e-3);
     for (const Tie &tie : ties)
         for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
-            // One equation: sum of the unknowns of image 1 minus those of image 2 = ratio minus what is fixed.
+            // One equation: sum of the unknowns of image 1 minus those of image 2 = ratio minus fixed values.
             uint32_t i = tie.image[0], j = tie.image[1];
             const auto first = problem.columns_of(i, static_cast<int>(c)),
                        second = problem.columns_of(j, static_cast<int>(c));
@@ -173,11 +175,11 @@ double surprise_of(const Problem &problem, const Tie &tie, const Estimate &estim
 
 }  // namespace
 
-// Least sum of the distances (convex: the wrong ties are outvoted by the loops they are in, from any start), then
-// least squares over those that are near.
+// Minimises the sum of the distances (convex: the loops outvote wrong ties, from any start), then least squares over
+// the ties that are near.
 void start_exposures(const Problem &problem, double width, Estimate &estimate) {
     constexpr int kDistanceRounds = 8, kNearRounds = 4;
-    constexpr double kExact = 0.05, kNear = 0.3;  // natural logarithm by which a tie may be off
+    constexpr double kExact = 0.05, kNear = 0.3;  // natural logarithm: allowed error of a tie
     if (problem.image_unknowns == 0) return;
     auto ties = ties_of(problem, estimate, width);
     TieFactor factor;

@@ -6,20 +6,20 @@
 
 namespace lensprof {
 
-// One row a residual, scaled by the root of its weight: d prediction / d shared, d prediction / d delta, residual. The
-// product of the rows with themselves holds everything that the edge adds to the model.
+// One row per residual, scaled by the root of its weight: d prediction / d shared, d prediction / d delta, residual.
+// The product of the rows with themselves contains the edge's whole contribution to the model.
 struct TransferEquations::Rows {
     static constexpr Eigen::Index kCapacity = 128;
-    Eigen::MatrixXd rows;  // a column each
+    Eigen::MatrixXd rows;  // one per column
     Eigen::MatrixXd product;
     Eigen::Index count = 0;
 
     explicit Rows(Eigen::Index n) : rows(n + 2, kCapacity), product(n + 2, n + 2) {}
 };
 
-// What a chunk of pairs adds to the model; its links are the edges from its first one on.
+// Contribution of a chunk of pairs to the model; its links are the edges from its first one on.
 struct TransferEquations::Part : Sums {
-    std::vector<Rows> rows;  // of each channel, while the chunk is read
+    std::vector<Rows> rows;  // per channel, while the chunk is read
 
     using Sums::Sums;
 };
@@ -62,7 +62,7 @@ void TransferEquations::add_edge(const Edge &edge, const Loss &loss, const Noise
     auto emor = static_cast<Eigen::Index>(modes_);
     part.links.push_back({{edge.image[0], edge.image[1]}, {0.0, 0.0, 0.0}});
     PairTransfer t;
-    std::array<std::vector<double>, 3> lens;  // d delta / d shared, after the modes, of each falloff curve
+    std::array<std::vector<double>, 3> lens;  // d delta / d shared, after the modes, per falloff curve
     for (size_t p = edge.first; p < edge.last; p++) {
         evaluate_pair(problem_, estimate, problem_.pairs[p], ratio.data(), t);
         PairResiduals factor, residuals = weighted_residuals(t, problem_.channels, weights[p]);

@@ -13,25 +13,25 @@ namespace {
 
 // Levels of 255.
 constexpr double kEven = 2.0;     // between pictures that look alike,
-constexpr double kOfNoise = 1.5;  // as much more as noise makes of it,
+constexpr double kOfNoise = 1.5;  // this much above the effect of noise,
 constexpr double kMostNoise = 4.0;
 constexpr double kUneven = 6.0;   // and between those that do not
-constexpr double kSeen = 3.0;     // a seam that is no worse than the texture about it,
-constexpr double kGrown = 1.25;   // or so many times what it was before;
+constexpr double kSeen = 3.0;     // a seam that is comparable to the texture around it,
+constexpr double kGrown = 1.25;   // or this many times its size before;
 constexpr double kOddLink = 5.0;  // of a link that contradicts the result, and this many times the noise,
 constexpr double kOddNoise = 4.0;
-constexpr double kGain = 0.5;  // unless it is so many times what it was before
+constexpr double kGain = 0.5;  // unless it is at most this many times its size before
 constexpr double kLargestRms = 15.0;
-constexpr double kFewestAgree = 0.6;    // of all pairs: fewer, and what is even is half a picture;
+constexpr double kFewestAgree = 0.6;    // of all pairs: with fewer, only part of the picture is even;
 constexpr double kSmallestShare = 0.7;  // of the pairs that agree
-constexpr size_t kFewestPairs = 20;     // of a link that says something
+constexpr size_t kFewestPairs = 20;     // of a link that is informative
 
-// Median difference of grey values, and what a result leaves of it.
+// Median difference of grey values, before and after the correction.
 struct Seam {
     double before = 0.0, after = 0.0;
 };
 
-// Of every pair, in their order: mean over the channels.
+// For every pair, in their order: mean over the channels.
 std::vector<Seam> seams_of(const Problem &problem, const Estimate &estimate) {
     std::vector<Seam> seams(problem.pairs.size());
     for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
@@ -69,7 +69,7 @@ std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &se
     return std::nullopt;
 }
 
-// Verdicts on the profile that leave the pictures as even as they are.
+// Verdicts on the profile that do not affect how even the pictures are.
 bool is_of_profile(uint32_t reason) {
     switch (reason) {
     case LENSPROF_REASON_PATTERNS:

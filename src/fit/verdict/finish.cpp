@@ -12,7 +12,7 @@ namespace lensprof {
 
 namespace {
 
-// Of a result that holds one setting's numbers: the verdict.
+// The verdict on a result that holds the numbers of one setting.
 void judge_all(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_own,
                lensprof_fit_result &r) {
     judge(found.problem, found.estimate, r);
@@ -28,7 +28,7 @@ bool has_pairs(const Problem &problem, int setting) {
     });
 }
 
-// What a result holds of a setting, into the caller's array.
+// Copies a result's values for one setting into the caller's array.
 void give_setting(const Problem &problem, int number, const lensprof_fit_result &r) {
     lensprof_fit_setting &setting = r.settings[problem.setting_number[static_cast<size_t>(number)]];
     setting.images = setting.pairs = 0;
@@ -50,13 +50,13 @@ void finish(const Found &found, const std::function<void(lensprof_fit_result &)>
     lensprof_fit_result r = result;
     r.iterations = found.iterations;
     r.converged = found.converged;
-    std::vector<lensprof_fit_image_quality> own(found.problem.image_count);  // the verdict needs it anyway
+    std::vector<lensprof_fit_image_quality> own(found.problem.image_count);  // the verdict always needs it
     if (!r.image_quality) r.image_quality = own.data();
     describe_model(found.problem, found.estimate, r);
     describe_heldout(found.tested, found.train, found.has_heldout, r);
     describe_quality(found.problem, found.gauge, found.noise, found.covariance, found.estimate, r);
-    uint32_t evens = 1;                                      // all settings that have pictures do
-    for (int s = found.problem.settings - 1; s >= 0; s--) {  // the first one last: it stays in the result
+    uint32_t evens = 1;                                      // 1 if all settings with pictures are even
+    for (int s = found.problem.settings - 1; s >= 0; s--) {  // the first one last, because it stays in the result
         describe_setting(found.problem, found.gauge, found.covariance, found.estimate, s, r);
         judge_all(found, judge_own, r);
         if (has_pairs(found.problem, s)) evens = std::min(evens, r.evens);

@@ -15,13 +15,13 @@ namespace {
 constexpr size_t kFewestPairs = 30;   // of a link
 constexpr double kClearLevels = 1.5;  // of 255, and this many standard errors of a median
 constexpr double kClearly = 5.0;
-constexpr double kMedianError = 1.2533;  // sqrt(pi / 2): of a median, in those of a mean
+constexpr double kMedianError = 1.2533;  // sqrt(pi / 2): standard error of a median relative to that of a mean
 
 bool is_held(const Problem &problem, uint32_t image, size_t channel) {
     return image != problem.reference && problem.balance_unknown[image][channel] < 0;
 }
 
-// Differences of an image from its neighbours, added up.
+// Sum of the differences of an image from its neighbours.
 struct Sum {
     double levels = 0.0, variance = 0.0, links = 0.0;
 
@@ -30,7 +30,7 @@ struct Sum {
     bool is_clear() const { return mean() > kClearLevels && std::abs(levels) > kClearly * std::sqrt(variance); }
 };
 
-// Of red (k = 0) or blue (1).
+// For red (k = 0) or blue (1).
 HeldBalance held_balance_of(const Problem &problem, size_t k, const std::vector<std::array<double, 2>> &beside_green) {
     std::vector<Sum> sums(problem.image_count);
     for (const Edge &edge : problem.edges) {

@@ -1,4 +1,4 @@
-// The verdict: why a result is not usable, or the caution about it.
+// The verdict: why a result is not usable, or the warning about it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,32 +18,32 @@ namespace {
 
 constexpr double kBlack = 0.004;                        // one level of 255
 constexpr uint32_t kFewestGreys = 4, kEnoughGreys = 8;  // tenths of the grey values that hold more than a few
-constexpr double kSmallestRadius = 0.6;                 // half diagonals: beyond, k1..k3 extrapolate
-constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noise, but a model that does not fit
-constexpr double kLargestImageShare = 0.2;     // of residual variance that follows a map of each image's own,
-constexpr double kSuspiciousImageShare = 0.1;  // and worth a word; noise and moving things stay below
+constexpr double kSmallestRadius = 0.6;                 // half diagonals: beyond it, k1..k3 extrapolate
+constexpr double kLargestNoise = 6.0;       // levels of 255: above the noise of any camera, so the model does not fit
+constexpr double kLargestImageShare = 0.2;  // of residual variance explained by separate maps of each image,
+constexpr double kSuspiciousImageShare = 0.1;  // and worth a warning; noise and moving things stay below
 constexpr double kContradiction = 5.0;         // standard errors between an exposure and its known value
 constexpr int kMany = 12;                      // known exposures
 constexpr double kUnfollowed = 0.05;           // of ln gamma
-constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word,
-constexpr double kHarmfulPattern = 0.5;        // and too much: less is what rounding and JPEG do
-constexpr double kStillPattern = 1.0;          // the same where no falloff can be misled
+constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a warning,
+constexpr double kHarmfulPattern = 0.5;        // and too much: rounding and JPEG cause less
+constexpr double kStillPattern = 1.0;          // the same if no falloff can be biased
 constexpr double kHarmfulStillPattern = 2.0;
-constexpr double kNotRadial = 0.3;           // share that follows one map over the frame
+constexpr double kNotRadial = 0.3;           // share explained by one map over the frame
 constexpr double kLargestCornerSigma = 0.1;  // of M
-constexpr double kLargestEvSigma = 0.3;      // EV, gamma apart
+constexpr double kLargestEvSigma = 0.3;      // EV, without the error of gamma
 constexpr uint32_t kFewestInliers = 3;       // of an image: fewer agree by chance,
 constexpr double kSmallestShare = 0.2;       // or a smaller share of its pairs
-constexpr double kSmallestStillShare = 0.7;  // of all pairs, where equal places are compared,
-constexpr double kStillMedian = 1.5;         // and levels of 255 that half of them are farther off than
+constexpr double kSmallestStillShare = 0.7;  // of all pairs, if equal places are compared,
+constexpr double kStillMedian = 1.5;         // and levels of 255 that half of them exceed
 constexpr double kFarCentre = 0.1;           // half diagonals: five standard errors of its prior
-constexpr double kOnLimit = 0.98;            // of the largest offset of the centre
-constexpr double kImpossibleRise = 1.1;      // of M beyond the middle: no lens brightens so much
-constexpr double kDarkest = 0.05;            // least M of a lens: those of Lensfun leave more
+constexpr double kOnLimit = 0.98;            // of the largest allowed offset of the centre
+constexpr double kImpossibleRise = 1.1;      // of M outside the middle: no lens brightens so much
+constexpr double kDarkest = 0.05;            // smallest M of a lens: those of Lensfun are above it
 constexpr double kClearly = 3.0;             // standard errors
 constexpr double kOddImage = 5.0;            // levels of 255, and four times the noise
 
-// Pairs that tell something: different from each other, with both grey values of a channel between black and white.
+// Counts informative pairs: different from each other, with both grey values of a channel between black and white.
 size_t count_informative(const Problem &problem) {
     std::vector<std::array<double, 10>> seen;
     for (const auto &p : problem.pairs) {
@@ -61,7 +61,7 @@ size_t count_informative(const Problem &problem) {
     return static_cast<size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
-// So many ends of pairs in a bin are no more than a few.
+// The number of pair ends in a bin that counts as "a few".
 uint32_t few(const lensprof_fit_result &r) { return 2 + r.pairs / 1000; }
 
 // Whether a tenth of the grey values holds more than a few samples.
@@ -91,7 +91,7 @@ constexpr uint32_t kFalloffFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPRO
 
 bool frees_falloff(const Problem &problem) { return problem.free & kFalloffFlags; }
 
-// Of the centre from the middle, along the axis where it is larger, half diagonals.
+// Offset of the centre from the middle, along the axis with the larger offset, half diagonals.
 double largest_offset(const lensprof_vignetting &v) { return std::max(std::abs(v.center[0]), std::abs(v.center[1])); }
 
 bool fits_response(const Estimate &estimate) { return estimate.modes > 0 || estimate.is_refined; }
@@ -103,7 +103,7 @@ double covered_radius(const lensprof_fit_result &r) {
     return 0.0;
 }
 
-// Covariance of k1..k3 of a curve, gamma held.
+// Covariance of k1..k3 of a curve, with gamma held.
 void covariance_held(const lensprof_fit_result &r, int curve, double held[9]) {
     const uint32_t n = r.covariance_size;
     const uint32_t first = lp_covariance_index(r.response.modes, static_cast<uint32_t>(curve));
@@ -123,7 +123,7 @@ double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
     return darkest;
 }
 
-// The largest M of a falloff that was free, and its standard error with gamma held, where it is clearly above `limit`.
+// The largest M of a falloff that was free, and its standard error with gamma held, if it is clearly above `limit`.
 std::vector<double> rise_above(double limit, const Problem &problem, const lensprof_fit_result &r) {
     double highest = 1.0, sigma = 0.0;
     for (int curve = 0; curve < problem.vignettings && r.covariance_size && frees_falloff(problem); curve++) {
@@ -137,7 +137,7 @@ std::vector<double> rise_above(double limit, const Problem &problem, const lensp
     return {};
 }
 
-// Standard error of M in the corner, gamma held.
+// Standard error of M in the corner, with gamma held.
 double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
     double worst = 0.0;
     for (int curve = 0; curve < problem.vignettings && r.covariance_size; curve++) {
@@ -148,7 +148,7 @@ double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
     return std::sqrt(worst);
 }
 
-// The image that disagrees most with those it overlaps, when it clearly does; else -1.
+// The image that disagrees most with those it overlaps, if the disagreement is clear; else -1.
 int odd_image(const Problem &problem, const lensprof_fit_result &r) {
     int odd = -1;
     double limit = std::max(kOddImage, 4.0 * r.noise_levels);
@@ -160,7 +160,7 @@ int odd_image(const Problem &problem, const lensprof_fit_result &r) {
     return odd;
 }
 
-// The image whose exposure the pairs leave most uncertain, when they do, and by how many EV (`limit`); else -1.
+// The image whose exposure the pairs leave most uncertain, if by more than `limit` EV; else -1.
 int uncertain_image(const Problem &problem, const Estimate &estimate, const lensprof_fit_result &r, double &limit) {
     int worst = -1;
     limit = kLargestEvSigma;
@@ -174,19 +174,19 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
     return worst;
 }
 
-// Whether pairs tie an image to the reference. Others are left out (methods/group.cpp).
+// Whether pairs tie an image to the reference. Other images are left out (methods/group.cpp).
 bool is_joined(const Problem &problem, uint32_t image) {
     return problem.component[image] == problem.component[problem.reference];
 }
 
-// The first image that is not.
+// The first image that is not joined.
 uint32_t apart_image(const Problem &problem) {
     uint32_t image = 0;
     while (image + 1 < problem.image_count && is_joined(problem, image)) image++;
     return image;
 }
 
-// Too few, too alike, or in places that tell nothing.
+// Whether pairs are too few, too similar, or at places that carry no information.
 bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
     size_t informative = count_informative(problem);
@@ -205,7 +205,7 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
 }
 
 bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
-    // else it is what was held that does not fit
+    // otherwise a held value does not fit
     bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & kFalloffFlags) == kFalloffFlags;
     bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
     bool is_far = r.heldout_median == LENSPROF_UNKNOWN || r.heldout_median > kStillMedian;
@@ -213,7 +213,7 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
         return refuse(r, {LENSPROF_REASON_STILL_FEW_AGREE, {r.inlier_share}});
     if (r.inlier_share < 0.3) return refuse(r, {LENSPROF_REASON_FEW_AGREE, {r.inlier_share}});
     double pattern = r.noise_levels * std::sqrt(r.image_share);
-    // A response or falloff that is held and does not fit leaves patterns, too, and is wrong however small they are.
+    // A held response or falloff that does not fit also leaves patterns, and is wrong however small they are.
     const double harmful = still ? kHarmfulStillPattern : is_free ? kHarmfulPattern : kSmallestPattern;
     if (r.image_share > kLargestImageShare && pattern > harmful)
         return refuse(r, {still     ? LENSPROF_REASON_STILL_PATTERNS
@@ -224,8 +224,8 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
     return false;
 }
 
-// The first image whose exposure has fewer pairs behind it than could agree by chance. Images that share an exposure
-// count together; so do those that are held, the reference among them.
+// The first image whose exposure is supported by fewer pairs than could agree by chance. Images that share an exposure
+// count together; so do those that are held, including the reference.
 bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint32_t &image, uint32_t &behind) {
     if (problem.image_unknowns == 0 || !r.image_quality) return false;
     auto held = static_cast<size_t>(problem.image_unknowns);
@@ -239,7 +239,7 @@ bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint3
     return false;
 }
 
-// The first image that hardly any of its pairs agrees with.
+// The first image with almost no pair that agrees.
 bool disagrees(const Problem &problem, const lensprof_fit_result &r, uint32_t &image) {
     for (image = 0; image < problem.image_count && r.image_quality; image++)
         if (r.image_quality[image].inliers < kSmallestShare * r.image_quality[image].pairs) return true;
@@ -283,8 +283,8 @@ bool leaves_out_any(const Problem &problem, const lensprof_fit_result &r) {
            });
 }
 
-// The image whose exposure is farthest from its known one, when it clearly is; else -1. Of those that are left out,
-// where some are.
+// The image whose exposure is farthest from its known one, if clearly; else -1. Considers only images that are left
+// out, if there are any.
 int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
     int odd = -1;
     const bool any = leaves_out_any(problem, r);
@@ -298,8 +298,8 @@ int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
     return odd;
 }
 
-// Says how known exposures contradict each other, or the exponent of the result, if they do. Of many, whose errors are
-// known from their scatter, only steps and single ones are told (contradicting_image).
+// Reports how known exposures contradict each other, or the exponent of the result, if they do. For many known
+// exposures, whose errors follow from their scatter, only steps and single errors are reported (contradicting_image).
 bool minds_known_exposures(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     using Explanation = KnownExposures::Explanation;
     bool open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
@@ -322,7 +322,7 @@ bool minds_known_exposures(const Problem &problem, const Estimate &estimate, len
     return is_unfollowed && warn(r, {LENSPROF_REASON_GAMMA_UNFOLLOWED, {1.0 / known.slope}});
 }
 
-// The weightiest caution about a usable result.
+// The most important warning about a usable result.
 bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     if (const HeldBalance held = held_balance(problem, estimate); held.levels > 0.0)
         return warn(r, of_image(LENSPROF_REASON_BALANCES_HELD, held.image, {held.levels}));

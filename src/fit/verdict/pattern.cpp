@@ -7,13 +7,13 @@
 //     sum_p (z_p - (e_a - e_b)'h)^2 + R |h|^2,     so that     (R I + L) h = sum_p z_p (e_a - e_b),
 //
 // where L = sum_p (e_a - e_b)(e_a - e_b)'
-// is the Laplacian of the graph whose nodes are the cells and whose edges the pairs: positive semi-definite, singular
-// for a constant added to maps that pairs join, which the ridge R settles; a cell with few pairs stays near 0.
-// Conjugate gradients need products with L alone, a sum over pairs: L, of as many rows as 48 cells times images, is
+// is the Laplacian of the graph whose nodes are the cells and whose edges the pairs: positive semi-definite,
+// singular for a constant added to maps that pairs join, which the ridge R determines; a cell with few pairs stays near
+// 0. Conjugate gradients only need products with L, a sum over pairs: L, of as many rows as 48 cells times images, is
 // never formed. They end after 40 steps, or at a millionth of the first gradient, which is exact enough for a share.
 //
 // The share is  1 - sum (z_p - (h_a - h_b))^2 / sum z_p^2  over the other half's pairs, both ways round. Maps fitted to
-// noise make it negative there, so that above 0 it is no chance; how many cells there are need not be corrected for.
+// noise make it negative there, so that a share above 0 is not chance, and needs no correction for the number of cells.
 #include "fit/verdict/pattern.hpp"
 
 #include <algorithm>
@@ -25,12 +25,12 @@ namespace lensprof {
 namespace {
 
 constexpr int kColumns = 8, kRows = 6, kCells = kColumns * kRows;
-constexpr double kRidge = 4.0;  // pairs' worth of belief that a cell shows nothing
+constexpr double kRidge = 4.0;  // weight, in pairs, of the prior that a cell shows nothing
 constexpr int kIterations = 40;
 
-// A pair as the maps see it.
+// A pair in terms of the maps.
 struct Sample {
-    Eigen::Index cell[2];  // of all maps together
+    Eigen::Index cell[2];  // numbered over all maps
     double residual;
 };
 
@@ -43,7 +43,7 @@ Eigen::Index cell_of(const Problem &problem, const lensprof_pair &pair, int side
     return cell + (own_maps ? kCells * static_cast<Eigen::Index>(pair.image[side]) : 0);
 }
 
-// Ridge regression of the residuals on the maps, by conjugate gradients: cost linear in pairs.
+// Ridge regression of the residuals on the maps, by conjugate gradients: the cost is linear in the number of pairs.
 Eigen::VectorXd fit_maps(const std::vector<Sample> &samples, Eigen::Index cells) {
     auto times = [&](const Eigen::VectorXd &h) {
         Eigen::VectorXd product = kRidge * h;
@@ -73,7 +73,7 @@ Eigen::VectorXd fit_maps(const std::vector<Sample> &samples, Eigen::Index cells)
     return h;
 }
 
-// Share of the variance of every second pair that the others' maps explain, both ways round.
+// Share of the variance of one half of the pairs that the maps of the other half explain, in both directions.
 double explained(const std::vector<Sample> (&halves)[2], Eigen::Index cells) {
     double before = 0.0, after = 0.0;
     for (int half = 0; half < 2; half++) {

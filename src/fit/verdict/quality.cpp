@@ -40,7 +40,7 @@ double signed_residual(const PairTransfer &t, int channels) {
     return sum / channels;
 }
 
-// Residuals, noise and the patterns they follow, and every image's median.
+// Fills residuals, noise and the patterns they follow, and every image's median.
 void describe_residuals(const Problem &problem, const Estimate &estimate, double noise, lensprof_fit_result &r) {
     std::vector<double> chi2 = all_chi2(problem, estimate, noise), residual(problem.pairs.size());
     std::vector<bool> is_inlier(problem.pairs.size());
@@ -79,7 +79,7 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
         q.component = problem.component[i];
         q.joined = 1;  // methods/group.cpp leaves images out
         q.known_ev_left_out = gauge.leaves_out(i);
-        auto sigma = [&](int unknown, double log_value) {  // of a logarithm: the data's and that of gamma
+        auto sigma = [&](int unknown, double log_value) {  // of a logarithm: that of the data and that of gamma
             if (unknown < 0 || !found.is_determined || q.component != problem.component[problem.reference]) return 0.0;
             return std::sqrt(std::max(0.0, found.images[unknown]) + std::pow(gamma_sigma * log_value, 2));
         };
@@ -107,8 +107,8 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
     }
 }
 
-// The covariance of the data, gamma held, and that of gamma, which moves all parameters together: of the response and
-// one setting.
+// The covariance of the data, with gamma held, and that of gamma, which moves all parameters together: for the response
+// and one setting.
 void describe_covariance(const Problem &problem, const Gauge &gauge, const Estimate &estimate, const Covariance &found,
                          int setting, lensprof_fit_result &r) {
     int modes = static_cast<int>(r.response.modes), curves = 3 * problem.vignettings, n = modes + curves + 2;

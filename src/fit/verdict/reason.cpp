@@ -165,7 +165,7 @@ std::string wording_of(lensprof_reason code) {
     return lensprof_reason_text(code);
 }
 
-// The value that a place "0.1%" stands for.
+// The value for a placeholder such as "0.1%".
 std::string spell_value(const std::string &place, const std::vector<double> &values) {
     const auto which = static_cast<size_t>(place[0] - '0');
     const size_t point = place.find('.');

@@ -2,9 +2,9 @@
 //
 //     C = (n - 1) / n  sum_g (u_g - m)(u_g - m)'.
 //
-// Why the factor: to first order u is a mean of what the groups say, u = (1 / n) sum_g x_g, of which
+// Why the factor: to first order u is a mean of contributions of the groups, u = (1 / n) sum_g x_g, of which
 // u_g - m = -(x_g - mean x) / (n - 1). The variance of that mean is sum_g (x_g - mean x)^2 / (n (n - 1)), which is the
-// above. That holds for any estimator that is smooth in its data, also for one of several stages as here (joint
+// above. This holds for any estimator that is smooth in its data, including one of several stages as here (joint
 // histograms, most likely transfer curves, least squares, falloff in turn), whose Hessians do not add up.
 //
 // A pair's group is drawn from its number by a hash, so that neighbouring pairs, whose errors are alike, are spread
@@ -62,7 +62,7 @@ Covariance jackknife(const Problem &problem, uint32_t pair_count,
     }
     for (const Estimate &one : found) {
         Eigen::VectorXd off = shared_vector(one) - shared, own = image_vector(problem, one) - images;
-        result.shared += off * off.transpose();  // symmetric to the bit, which scale * off * off' is not
+        result.shared += off * off.transpose();  // symmetric to the last bit, unlike scale * off * off'
         result.images += own.cwiseAbs2();
     }
     result.shared *= scale;

@@ -27,14 +27,14 @@ void smooth_rows(std::vector<double> &values, int bins, size_t across, size_t al
     }
 }
 
-// The best path on one side of the identity: best[b2] of all paths that have come to (b1, b2).
+// The best path on one side of the identity: best[b2] is the best of all paths that end at (b1, b2).
 TransferPath path_on_side(const JointHistogram &likelihood, bool above) {
     const int bins = likelihood.bins;
     std::vector<double> best(static_cast<size_t>(bins), kImpossible), next = best;
     std::vector<uint16_t> came_from(likelihood.count.size());
     best[0] = likelihood.at(0, 0);
     for (int b1 = 1; b1 < bins; b1++) {
-        int from = 0;  // where the best of all lower paths ends; of equal ones the nearest
+        int from = 0;  // end of the best of all lower paths; of equal ones the nearest
         for (int b2 = 0; b2 < bins; b2++) {
             if (best[static_cast<size_t>(b2)] >= best[static_cast<size_t>(from)]) from = b2;
             bool allowed = above ? b2 >= b1 : b2 <= b1;

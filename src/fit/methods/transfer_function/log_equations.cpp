@@ -10,13 +10,13 @@ namespace lensprof {
 namespace {
 
 // The mask over the grey levels: f is steep or flat near its ends, and less smooth (section 2.4). The noise of a point
-// says most of that by itself.
+// already accounts for most of this.
 constexpr double kMaskSigma = 90.0, kPaperMaskSigma = 45.0, kMiddle = 128.0;
-constexpr double kPointError = 0.1;      // levels: what no number of pairs averages out
-constexpr double kDoubtful = 3.0;        // times the usual distance: points farther off count for less
+constexpr double kPointError = 0.1;      // levels: error that no number of pairs averages out
+constexpr double kDoubtful = 3.0;        // times the usual distance: points farther away have less weight
 constexpr double kSmallestRidge = 1e-6;  // precision of a log exposure that nothing else determines
 constexpr double kHold = 1e8;            // precision of a held scale
-constexpr double kLargestShift = 5.0;    // levels: of a point to the estimate's curve
+constexpr double kLargestShift = 5.0;    // levels: from a point to the estimate's curve
 
 double mask(const TransferPoint &point, double sigma) {
     double sum = 0.0;
@@ -24,7 +24,7 @@ double mask(const TransferPoint &point, double sigma) {
     return std::exp(-0.25 * sum);  // the geometric mean of both ends' masks
 }
 
-// g(b2) - g(b1), and the variance of it that comes with a variance of 1 in both levels.
+// g(b2) - g(b1), and its variance for a variance of 1 in both levels.
 double rise(const double *g, const TransferPoint &point, double *variance) {
     double slope[2], first = at_level(g, point.level[0], &slope[0]), second = at_level(g, point.level[1], &slope[1]);
     if (variance) *variance = slope[0] * slope[0] + slope[1] * slope[1];
@@ -37,8 +37,8 @@ double log_ratio(const Problem &problem, const Estimate &estimate, const Transfe
     return estimate.log_exposure[edge.image[1]][c] - estimate.log_exposure[edge.image[0]][c];
 }
 
-// The place on the estimate's curve nearest to a point, and what the equation leaves at the point, seen from there:
-// noise in a point would otherwise enter the derivatives and draw g flat (Gauss-Helmert model).
+// The place on the estimate's curve nearest to a point, and the equation's residual at the point, linearised there:
+// otherwise noise in a point would enter the derivatives and flatten g (Gauss-Helmert model).
 struct Adjusted {
     TransferPoint at;
     double beyond;  // of g(b2) - g(b1), to first order
@@ -59,7 +59,7 @@ Adjusted adjust(const LogModel &model, const TransferPoint &point, double ratio)
     return result;
 }
 
-// Weight of every point: its precision times mask, less where it is far from the estimate beside the others.
+// Weight of every point: its precision times mask, reduced if it is far from the estimate compared with the others.
 std::vector<std::vector<double>> point_weights(const Problem &problem, const std::vector<TransferCurve> &curves,
                                                const LogWeights &weights, const LogModel &model,
                                                const Estimate &estimate) {
@@ -159,7 +159,8 @@ bool LogEquations::eliminate() {
     return eliminated_.allFinite() && image_only_.allFinite();
 }
 
-// Half the derivative of the sum of all squared log exposures, beside the reference, by the unknowns of the images.
+// Half the derivative of the sum of all squared log exposures, relative to the reference, by the unknowns of the
+// images.
 Eigen::VectorXd LogEquations::scale_of(const Estimate &estimate) const {
     Eigen::VectorXd scale = Eigen::VectorXd::Zero(problem_.image_unknowns);
     for (uint32_t i = 0; i < problem_.image_count; i++)
@@ -176,7 +177,7 @@ bool LogEquations::solve(double prior_weight, bool hold_scale, LogModel &model, 
         Eigen::MatrixXd S = response_.topLeftCorner(m, m) - (cross_.transpose() * eliminated_).topLeftCorner(m, m);
         Eigen::VectorXd b = (response_right_ - cross_.transpose() * image_only_).head(m);
         for (Eigen::Index n = 0; n < m; n++) S(n, n) += prior_weight / (kLogEmorSigma[n] * kLogEmorSigma[n]);
-        // The images' unknowns are to change by  image_only - eliminated c,  across the scale and not along it.
+        // The images' unknowns change by  image_only - eliminated c,  orthogonally to the scale.
         Eigen::VectorXd scale = scale_of(estimate), held = (eliminated_.transpose() * scale).head(m);
         if (hold_scale && m && held.squaredNorm() > 0.0) {
             double hold = (kHold + 1e3 * S.diagonal().maxCoeff()) / held.squaredNorm();

@@ -11,9 +11,9 @@
 namespace lensprof {
 namespace {
 
-constexpr double kDarkest = 1e-12;  // irradiance whose logarithm stands for that of 0
+constexpr double kDarkest = 1e-12;  // irradiance whose logarithm replaces that of 0
 
-// The rises of g as inequalities on the coefficients: at 0 they hold, for g0 rises.
+// The rises of g as inequalities on the coefficients: they hold at 0, because g0 rises.
 class RisingLog : public Inequalities {
 public:
     explicit RisingLog(Eigen::Index modes) : modes_(modes) {}
@@ -50,7 +50,7 @@ LogInverse log_inverse(const LogCoefficients &c) {
         g[i] = kLogEmor[0][i];
         for (int n = 0; n < kLogModes; n++) g[i] += c[n] * kLogEmor[n + 1][i];
     }
-    g.back() = 0.0;  // but for rounding it is
+    g.back() = 0.0;  // exact except for rounding
     return g;
 }
 

@@ -19,16 +19,16 @@ namespace {
 constexpr uint32_t kFalloff123 = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
 constexpr int kFirstModes = 5;  // of the fits that look for falloff and gauge
 constexpr int kFirstRounds = 6, kCandidateRounds = 2, kAgainRounds = 4, kLastRounds = 20;
-constexpr double kStill = 1e-3;  // nothing a user sees moves by more in a round
-// Paths that flip between two neighbours let the rounds cycle: a change this small that no longer falls is that.
+constexpr double kStill = 1e-3;  // largest visible change in a round at convergence
+// Paths that flip between two neighbours make the rounds cycle: a change this small that no longer falls indicates it.
 constexpr double kCycle = 0.03;
 constexpr int kFewestRounds = 4;
 constexpr double kHalf = 128.0 / 255.0;
-const double kPaperGrey = std::log(0.5);  // g(128) where nothing settles gamma (section 2.4)
+const double kPaperGrey = std::log(0.5);  // g(128) if nothing determines gamma (section 2.4)
 
-// What the rounds improve.
+// The state that the rounds improve.
 struct State {
-    Estimate estimate;  // response fixed at that of `model`
+    Estimate estimate;  // response fixed to that of `model`
     LogModel model;
     double grey = kPaperGrey;  // g(128)
     bool is_solved = false;
@@ -42,7 +42,7 @@ double log_grey(const Estimate &estimate) {
     return std::log(std::clamp(estimate.curve.invert(kHalf, nullptr), 1e-9, 1.0 - 1e-9));
 }
 
-// Moves a state along its family to where g(128) is what it should be.
+// Moves a state along its family to the required g(128).
 void restore_grey(const Problem &problem, State &state) {
     Estimate moved = with_exponent(problem, state.estimate, std::log(state.grey / log_grey(state.estimate)));
     if (!is_feasible(moved, problem.vignettings)) moved.vignetting = state.estimate.vignetting;
@@ -77,7 +77,7 @@ private:
         done_ = std::max(done_, done);
         if (is_cancelled(done_)) throw Cancelled();
     }
-    // True where pictures leave gamma open: g(128) is then held, where gamma is settled or at the paper's number.
+    // True if the pictures leave gamma open: g(128) is then held, at the determined gamma or at the paper's value.
     bool holds_grey() const { return is_free_ && (gauge_.is_open() || gauge_.from() == LENSPROF_GAMMA_NONE); }
 
     State start();
@@ -100,8 +100,8 @@ private:
     const bool is_free_, has_falloff_, as_paper_;
 };
 
-// From several responses, each held: the one under which falloff and exposures explain most. Without a falloff to look
-// for, the mean of the model.
+// Tries several held responses and starts from the one under which falloff and exposures explain most. Without a free
+// falloff, starts from the mean of the model.
 State Fit::start() {
     Problem brief = problem(few());
     brief.vignettings = all_.vignettings;
@@ -120,8 +120,8 @@ State Fit::start() {
     return best;
 }
 
-// Transfer functions under the falloff as it is, and the response and exposures that explain them. With `settle`, what
-// settles gamma is asked anew.
+// Computes transfer functions under the current falloff, and the response and exposures that explain them. With
+// `settle`, gamma is determined again.
 bool Fit::fit_response(const Problem &problem, Gauge &gauge, bool settle, State &state) const {
     constexpr int kRounds = 4;
     std::vector<TransferCurve> curves = transfer_curves(problem, state.estimate, as_paper_);
@@ -163,7 +163,7 @@ void Fit::fit_falloff(const Problem &problem, Gauge &gauge, State &state) const 
     solve(problem, prior_, gauge, used, true, brief, state.estimate);
 }
 
-// Falloff and response in turn, until neither moves; the number of rounds.
+// Alternates falloff and response until neither moves; returns the number of rounds.
 int Fit::alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds, State &state,
                    const std::function<void()> &tell, bool &is_still) const {
     is_still = false;
@@ -186,7 +186,7 @@ int Fit::alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds
     return round;
 }
 
-// A fit to the training pairs, and what it makes of the others.
+// A fit to the training pairs, and its loss on the others.
 Candidate Fit::candidate(const State &from, int modes) {
     Candidate result;
     result.state = from;
@@ -209,22 +209,22 @@ Candidate Fit::choose_modes(const State &start) {
     return best;
 }
 
-// The response as coefficients of all EMoR modes, as the other methods tell it; a held one stays.
+// The response as coefficients of all EMoR modes, as in the other methods; a held one stays.
 Estimate Fit::in_emor(const State &state) const {
     Estimate estimate = state.estimate;
     if (is_free_) set_response(estimate, project_curve(estimate.fixed.table, kMaxModes).data(), kMaxModes);
     return estimate;
 }
 
-// Transfer functions of pictures that are exposed alike are the identity, whatever the response.
+// Transfer functions of pictures with equal exposures are the identity, whatever the response.
 void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
-    if ((!r.usable && r.converged) || !is_free_) return;  // alike, they do not settle either
+    if ((!r.usable && r.converged) || !is_free_) return;  // with equal exposures, they do not converge either
     double usual = exposure_spread(all_, state.estimate);
     if (usual < kSmallestSpread) refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {usual}});
 }
 
-// ln of the exponent that takes the exposures of an estimate to those of another, as near as one exponent can; 0 where
-// they hardly differ and show none.
+// ln of the exponent that takes the exposures of an estimate to those of another, as nearly as one exponent can; 0 if
+// they differ too little to determine one.
 double Fit::log_exponent(const Estimate &estimate, const Estimate &other) const {
     double own = 0.0, both = 0.0;
     for (uint32_t i = 0; i < image_count_; i++)
@@ -237,7 +237,7 @@ double Fit::log_exponent(const Estimate &estimate, const Estimate &other) const 
     return own > spread * spread * terms && both > 0.0 ? std::log(both / own) : 0.0;
 }
 
-// Along the family nothing scatters: gamma has an error of its own (Gauge::sigma).
+// There is no scatter along the family: gamma has an error of its own (Gauge::sigma).
 Covariance Fit::scatter(const State &state) {
     return jackknife(
         all_, pair_count_,

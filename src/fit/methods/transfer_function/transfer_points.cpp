@@ -13,29 +13,29 @@ namespace lensprof {
 namespace {
 
 constexpr double kSmoothing = 1.5;      // bins: noise of neighbouring pictures
-constexpr double kPathSmoothing = 2.0;  // bins: what the path's steps are evened out by
+constexpr double kPathSmoothing = 2.0;  // bins: smooths the path's steps
 constexpr int kLevels = 256;
-constexpr double kNear = 4.0;            // sigmas of the noise within which a pair is of the curve
+constexpr double kNear = 4.0;            // sigmas of the noise within which a pair belongs to the curve
 constexpr double kSmallestNoise = 0.25;  // levels: that of rounding
-constexpr double kEnds = 2.0;            // sigmas from black and white where the mean of what is left is off
+constexpr double kEnds = 2.0;  // sigmas from black and white within which the mean of the remaining pairs is biased
 
-// Fewer and wider bins where pairs are sparse; deeper data than 8 bit fall into bins of 8 bit.
+// Fewer and wider bins for sparse pairs; data deeper than 8 bit fall into bins of 8 bit.
 int bins_for(size_t pairs) {
     return pairs >= 4000 ? kLevels : pairs >= 500 ? kLevels / 2 : pairs >= 100 ? kLevels / 4 : kLevels / 8;
 }
 
-// Irradiance behind a grey value, of a response that is fixed for the moment.
+// Moves a grey value's irradiance by a ratio, under the current response.
 double evened(const Estimate &estimate, double value, double ratio) {
     double x = lensprof_response_invert(&estimate.fixed, value, nullptr);
     return lensprof_response_eval(&estimate.fixed, x * ratio, nullptr);
 }
 
 // Levels of the pairs of an edge in one channel, as both ends would have recorded them at the geometric mean of their
-// falloffs. Pairs without a value between black and white say nothing.
+// falloffs. Leaves out pairs without a value between black and white.
 std::vector<LevelPair> levels_of(const Problem &problem, const Estimate &estimate, const Edge &edge, int channel) {
     std::vector<LevelPair> levels;
     const size_t curve = problem.vignettings == 3 ? static_cast<size_t>(channel) : 0;
-    const lensprof_vignetting &vignetting = estimate.vignetting[0][curve];  // of one setting
+    const lensprof_vignetting &vignetting = estimate.vignetting[0][curve];  // of the only setting
     bool even = vignetting.k[0] != 0.0 || vignetting.k[1] != 0.0 || vignetting.k[2] != 0.0;
     for (size_t p = edge.first; p < edge.last; p++) {
         const auto &pair = problem.pairs[p];
@@ -52,7 +52,7 @@ std::vector<LevelPair> levels_of(const Problem &problem, const Estimate &estimat
     return levels;
 }
 
-// T as a function of levels: the path with its steps evened out.
+// T as a function of levels: the path with its steps smoothed.
 struct SmoothTransfer {
     std::array<double, kLevels> to;
 
@@ -62,7 +62,7 @@ struct SmoothTransfer {
             double centre = histogram.bin(i), sum = 0.0, weights = 0.0;
             for (int b = static_cast<int>(centre) - reach; b <= static_cast<int>(centre) + reach + 1; b++) {
                 double z = (b - centre) / kPathSmoothing, weight = std::exp(-0.5 * z * z);
-                // Beyond the ends the path goes on as its mirror image there.
+                // Beyond the ends the path continues as its mirror image.
                 int last = histogram.bins - 1, inside = b < 0 ? -b : b > last ? 2 * last - b : b;
                 double at = path.to[static_cast<size_t>(inside)];
                 sum += weight * (b < 0 ? -at : b > last ? 2 * last - at : at);
@@ -79,8 +79,8 @@ struct SmoothTransfer {
     }
 };
 
-// A pair beside the curve: how far along the curve its nearest point lies (both its levels added up: a steep curve is
-// then told as finely as a flat one), and its distance.
+// A pair near the curve: the position along the curve of its nearest point (the sum of both levels, which resolves a
+// steep curve as finely as a flat one), and its distance.
 struct Beside {
     double along;
     double distance;
@@ -98,8 +98,9 @@ Beside beside(const SmoothTransfer &transfer, const LevelPair &pair) {
     return {foot + transfer.at(foot, slope), distance};
 }
 
-// Mean of the pairs whose nearest points of the path lie together, pairs off the curve left out: across the curve and
-// not along an axis, so that noise in both values does not tilt it. What lies by the ends of `range` is left out.
+// Mean of the pairs whose nearest points of the path are close together, without pairs off the curve. Distances are
+// across the curve and not along an axis, so that noise in both values does not tilt it. Leaves out pairs near the ends
+// of `range`.
 void add_means(const SmoothTransfer &transfer, const std::vector<LevelPair> &pairs, bool is_swapped, double reach,
                const double range[2], TransferCurve &curve) {
     std::vector<Beside> besides;
@@ -128,12 +129,12 @@ void add_means(const SmoothTransfer &transfer, const std::vector<LevelPair> &pai
         if (std::min(first, second) < range[0] + kEnds * noise || std::max(first, second) > range[1] - kEnds * noise)
             continue;
         if (is_swapped) std::swap(first, second);
-        curve.points.push_back({{first, second}, 0.5 * sum.weight});  // half: the other direction says it again
+        curve.points.push_back({{first, second}, 0.5 * sum.weight});  // half: the other direction repeats it
     }
     curve.noise = std::max(curve.noise, noise);
 }
 
-// The path's own points, as far as a pair stands behind them.
+// The path's own points, as far as pairs support them.
 void add_path(const JointHistogram &likelihood, const TransferPath &path, bool is_swapped, TransferCurve &curve) {
     double nothing = *std::min_element(likelihood.count.begin(), likelihood.count.end());
     for (int b = 1; b < likelihood.bins - 1; b++) {
@@ -170,7 +171,7 @@ TransferCurve transfer_curve(const Problem &problem, const Estimate &estimate, s
 }  // namespace
 
 std::vector<TransferCurve> transfer_curves(const Problem &problem, const Estimate &estimate, bool as_paper) {
-    double range[2] = {255.0, 0.0};  // of all grey levels: beyond, the sampler or the camera has cut
+    double range[2] = {255.0, 0.0};  // of all grey levels: the sampler or the camera clips values beyond it
     for (const auto &pair : problem.pairs)
         for (const auto &side : pair.value)
             for (int c = 0; c < problem.channels; c++) {
