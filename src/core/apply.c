@@ -1,7 +1,7 @@
-/* Plans applied to tiles (lensprof/apply.h): what is checked before a kernel runs, and the rows it gets. */
+/* Applies plans to tiles (lensprof/apply.h): checks before a kernel runs, and the rows passed to it. */
 #include "core/plan.h"
 
-#define STREAMED ((size_t)8 << 20) /* bytes of a float target to keep out of the caches; others gain nothing */
+#define STREAMED ((size_t)8 << 20) /* bytes of a float target to keep out of the caches; other types do not benefit */
 
 static lensprof_status validate_tile(const lensprof_plan *plan, const lensprof_image *source,
                                      const lensprof_image *target, uint32_t layout, uint32_t x0, uint32_t y0) {
@@ -41,7 +41,7 @@ lensprof_status lensprof_apply_planar(const lensprof_plan *plan, const lensprof_
         if (status != LENSPROF_OK) return status;
         if (source[p].width != source->width || source[p].height != source->height) return LENSPROF_ERROR_SIZE;
     }
-    for (uint32_t p = 0; p < 3; p++) /* views are compared only when all six are valid: sizes do not overflow then */
+    for (uint32_t p = 0; p < 3; p++) /* views are compared only if all six are valid: sizes do not overflow then */
         for (uint32_t other = 0; other < 3; other++)
             if (other != p
                 && (lp_images_overlap(&target[p], &source[other]) || lp_images_overlap(&target[p], &target[other])))

@@ -1,4 +1,4 @@
-/* Version, names of status codes, and their sentences. */
+/* Version, names of status codes, and their descriptions. */
 #include "core/fail.h"
 
 #define TEXT_OF(x) #x

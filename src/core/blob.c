@@ -1,4 +1,4 @@
-/* Reading profile blobs (docs/blob.md) where they lie: nothing is trusted, nothing is kept but the view. */
+/* Reads profile blobs (docs/blob.md) in place: nothing is trusted, and nothing is stored except the view. */
 #include "core/blob.h"
 
 #include <math.h>
@@ -8,10 +8,10 @@
 #include "core/response.h"
 
 #define CRC_BYTES 4
-#define FRAME_BYTES (LP_BLOB_BYTES + 4 + CRC_BYTES) /* what every layout has: magic, layout, length, CRC */
+#define FRAME_BYTES (LP_BLOB_BYTES + 4 + CRC_BYTES) /* common to all layouts: magic, layout, length, CRC */
 
 uint32_t lp_crc32(const uint8_t *bytes, size_t count) {
-    static const uint32_t of_nibble[16] = {/* the remainder of each: half a byte a step, 64 bytes of table */
+    static const uint32_t of_nibble[16] = {/* remainders: one step per half byte, 64 bytes of table */
                                            0x00000000, 0x1DB71064, 0x3B6E20C8, 0x26D930AC, 0x76DC4190, 0x6B6B51F4,
                                            0x4DB26158, 0x5005713C, 0xEDB88320, 0xF00F9344, 0xD6D6A3E8, 0xCB61B38C,
                                            0x9B64C2B0, 0x86D3D2D4, 0xA00AE278, 0xBDBDF21C};
@@ -24,13 +24,13 @@ uint32_t lp_crc32(const uint8_t *bytes, size_t count) {
     return ~crc;
 }
 
-/* What is left to be read. */
+/* The rest of the input. */
 typedef struct reader {
     const uint8_t *at;
     size_t left;
 } reader;
 
-/* The next `count` bytes; NULL when there are not so many. */
+/* The next `count` bytes; NULL if fewer remain. */
 static const uint8_t *take(reader *r, size_t count) {
     if (count > r->left) return NULL;
     const uint8_t *at = r->at;
@@ -55,7 +55,7 @@ static int open_falloff(lp_blob *blob, reader *r) {
     return 1;
 }
 
-/* From 0 to 1 and nowhere down. */
+/* Rises from 0 to 1 without falling anywhere. */
 static int is_curve(const struct lp_model_response *response) {
     double last = 0.0;
     for (uint32_t j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
@@ -124,7 +124,8 @@ static int open_covariance(lp_blob *blob, reader *r) {
 
 /* ---- texts ---- */
 
-/* Text number `index` of the five. The validate functions look at it; that no 0 is inside is seen here. */
+/* Text number `index` of the five. The validate functions check its contents; this one only checks that it contains
+ * no 0. */
 static int copy_text(const lp_blob *blob, uint32_t index, char *text, size_t capacity) {
     const uint8_t *lengths = blob->bytes + LP_BLOB_TEXTS, *from = blob->text;
     const uint32_t length = lengths[index];
@@ -168,8 +169,8 @@ static int open_texts(lp_blob *blob, reader *r) {
     return blob->text != NULL;
 }
 
-/* Checks key and provenance in place. A copy of either, with its room for future members, is too large for the stack of
- * a small processor. */
+/* Checks key and provenance in place. A copy of either, with its room for future members, is too large for the stack
+ * of a small processor. */
 static int is_key_and_provenance(const lp_blob *blob) {
     static const uint8_t capacity[5] = {
         sizeof((lensprof_profile_key *)0)->camera_maker, sizeof((lensprof_profile_key *)0)->camera_model,
@@ -188,12 +189,12 @@ static int is_key_and_provenance(const lp_blob *blob) {
 
 /* ---- the whole ---- */
 
-/* The frame, which all layouts share, tells what is damaged from what is only newer. */
+/* The frame, which all layouts share, distinguishes damaged files from newer ones. */
 static lensprof_status check_frame(const uint8_t *b, size_t count) {
     if (count < FRAME_BYTES || b[0] != 'L' || b[1] != 'P' || b[2] != 'R' || b[3] != 'F') return LENSPROF_ERROR_CORRUPT;
     if (lp_u32_at(b + LP_BLOB_BYTES) != count) return LENSPROF_ERROR_CORRUPT;
     if (lp_crc32(b, count - CRC_BYTES) != lp_u32_at(b + count - CRC_BYTES)) return LENSPROF_ERROR_CORRUPT;
-    const uint32_t layout = lp_u32_at(b + LP_BLOB_VERSION); /* the reserved bytes, which are 0, among it */
+    const uint32_t layout = lp_u32_at(b + LP_BLOB_VERSION); /* including the reserved bytes, which are 0 */
     if ((layout & 0xFFFF) > LP_BLOB_LAYOUT) return LENSPROF_ERROR_LAYOUT;
     return layout == LP_BLOB_LAYOUT ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
 }

@@ -1,5 +1,5 @@
-/* Profile blobs (docs/blob.md), read where they lie; and the model of a plan, which comes from a blob or from the
- * caller's structs. */
+/* Profile blobs (docs/blob.md), read in place; and the model of a plan, which comes from a blob or from the caller's
+ * structs. */
 #ifndef LENSPROF_CORE_BLOB_H
 #define LENSPROF_CORE_BLOB_H
 
@@ -8,7 +8,7 @@
 #include <lensprof/profile.h>
 
 #define LP_BLOB_LAYOUT 1
-#define LP_BLOB_FIXED 100 /* bytes before what varies in length */
+#define LP_BLOB_FIXED 100 /* bytes before the parts of variable length */
 
 /* Byte offsets of the fixed part. */
 enum lp_blob_offset {
@@ -52,7 +52,7 @@ static inline double lp_f64_at(const uint8_t *p) {
 
 /* ---- models ---- */
 
-/* What a plan is made of. Where samples or nodes lie in a blob, `table` or `attenuation` is NULL. */
+/* The model from which a plan is made. If samples or nodes are in a blob, `table` or `attenuation` is NULL. */
 typedef struct lp_model {
     uint32_t responses, vignettings;
     struct lp_model_response {
@@ -61,7 +61,7 @@ typedef struct lp_model {
         const double *table;   /* the samples of EMOR and TABLE */
         const uint8_t *packed; /* the same, f32 */
     } response[3];
-    struct lp_model_response output[3]; /* of what is written, where it has its own */
+    struct lp_model_response output[3]; /* of the output, if it has its own */
     uint32_t outputs;                   /* 1 or 3, or 0 */
     lensprof_vignetting vignetting[3];
     uint32_t columns, rows, channels; /* of the gain grid; 0 = none */
@@ -79,7 +79,7 @@ static inline float lp_model_node(const lp_model *m, uint32_t i) {
 
 /* ---- blobs ---- */
 
-/* Where the parts of a blob are that vary in length. */
+/* Positions of a blob's parts of variable length. */
 typedef struct lp_blob {
     const uint8_t *bytes;       /* its first byte: the fixed part */
     const uint8_t *response[3]; /* kind, modes, 0, 0; then a gamma, or coefficients and samples */
@@ -94,7 +94,7 @@ uint32_t lp_crc32(const uint8_t *bytes, size_t count);
 /* Finds the parts and checks everything in them, as lensprof_profile_unpack states. */
 lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob);
 
-/* Key and provenance of an open blob; 0 where a text does not fit. */
+/* Key and provenance of an open blob; 0 if a text does not fit. */
 int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key);
 int lp_blob_provenance(const lp_blob *blob, lensprof_provenance *provenance);
 

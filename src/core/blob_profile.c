@@ -124,7 +124,7 @@ lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t 
 
 /* ---- reading ---- */
 
-/* Every number has been checked. */
+/* All numbers have been checked. */
 static void copy_response(const lp_blob *blob, uint32_t c, lensprof_response *r) {
     const struct lp_model_response *from = &blob->model.response[c];
     lensprof_response_set_linear(r);

@@ -1,7 +1,7 @@
-/* The kind of camera that a profile's key names: whose typical response it has while none of its own is known. */
+/* The kind of camera that a profile's key names. Its typical response applies while the camera's own is unknown. */
 #include <lensprof/profile.h>
 
-/* Texts are compared without regard to the case of ASCII letters. */
+/* Compares texts, ignoring the case of ASCII letters. */
 static int lower(char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : (unsigned char)c; }
 
 static int is_letter(char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }
@@ -13,7 +13,7 @@ static int begins(const char *text, const char *word) {
     return !*word;
 }
 
-/* A word or words of a list stand in the text, and begin and end where words do: no letter is next to a letter. */
+/* Whether a text contains a word or words of a list as whole words: not adjacent to another letter. */
 static int has_word(const char *text, const char *const *words, size_t count) {
     for (size_t w = 0; w < count; w++)
         for (const char *at = text; *at; at++) {
@@ -84,7 +84,7 @@ uint32_t lensprof_camera_kind_of(const lensprof_profile_key *key) {
     if (!key) return LENSPROF_CAMERA_ANY;
     if (key->processing == LENSPROF_PROCESSING_RAW) return LENSPROF_CAMERA_LINEAR;
     if (HAS_WORD(key->camera_maker, scanner_words) || HAS_WORD(key->camera_model, scanner_words))
-        return LENSPROF_CAMERA_ANY; /* what was scanned is not known */
+        return LENSPROF_CAMERA_ANY; /* the medium that was scanned is unknown */
     if (is_phone(key)) return LENSPROF_CAMERA_PHONE;
     return *key->camera_maker || *key->camera_model ? LENSPROF_CAMERA_CAMERA : LENSPROF_CAMERA_ANY;
 }

@@ -1,4 +1,4 @@
-/* Applying a model to pixels in integers: logarithms of light, thresholds between codes (lensprof/fixed.h). */
+/* Applies a model to pixels in integers: logarithms of light, thresholds between codes (lensprof/fixed.h). */
 #include "core/fixed_plan.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@
 
 /* ---- logarithms ---- */
 
-/* The place of the highest bit of v > 0. */
+/* The position of the highest set bit of v > 0. */
 static uint32_t top_bit(uint32_t v) {
     uint32_t place = 0;
     for (uint32_t step = 16; step; step /= 2)
@@ -22,7 +22,7 @@ static int32_t log2_of(uint32_t v) {
     return (int32_t)((place << LP_LOG_SHIFT) + lp_log2_table[i] + (rise * (mantissa >> 7 & 0xffff) >> 16));
 }
 
-/* 2^f in 2^-30, of the part of a logarithm after the point. */
+/* 2^f in 2^-30, for the fractional part of a logarithm. */
 static uint32_t exp2_of(uint32_t f) {
     const uint32_t i = f >> (LP_LOG_SHIFT - 8), rest = f & (FRACTION >> 8); /* 14 bits */
     const uint32_t rise = lp_exp2_table[i + 1] - lp_exp2_table[i];          /* 23 bits */
@@ -31,7 +31,7 @@ static uint32_t exp2_of(uint32_t f) {
 
 /* ---- gains ---- */
 
-/* r^2 about the centre, in 2^-20 px^2. */
+/* r^2 from the centre, in 2^-20 px^2. */
 static uint64_t r2_of(const lensprof_fixed_plan *plan, uint32_t x, uint32_t y) {
     const int64_t dx = (int64_t)((int32_t)(x << LP_CENTER_SHIFT) - plan->center[0]);
     const int64_t dy = (int64_t)((int32_t)(y << LP_CENTER_SHIFT) - plan->center[1]);
@@ -69,7 +69,8 @@ static void find_gains(const lensprof_fixed_plan *plan, uint32_t t, int32_t *gai
 
 static uint32_t share_of(uint32_t a, uint32_t b) { return (uint32_t)((uint64_t)a * b >> 24); }
 
-/* 0 up to `low`, 1 at white, smooth between. v is of 65535, low of twice that; per_span: 2^40 over what is between. */
+/* 0 up to `low`, 1 at white, smooth in between. v is relative to 65535, low to twice that; per_span: 2^40 divided by
+ * the span in between. */
 static uint32_t ramp(uint32_t v, uint32_t low, uint32_t per_span) {
     if (2 * v <= low) return 0;
     const uint32_t t = (uint32_t)((uint64_t)(2 * v - low) * per_span >> 16);
@@ -107,7 +108,7 @@ static const int32_t *encode_table(const lensprof_fixed_plan *plan, uint32_t cha
     return tables + (plan->encode_curves == 3 ? channel * LP_CODES : 0);
 }
 
-/* How many thresholds a light has reached: its code. */
+/* The number of thresholds that a light has reached: its code. */
 static uint8_t code_of(const int32_t *thresholds, int32_t light) {
     uint32_t code = 0;
     for (uint32_t step = LP_CODES / 2; step; step /= 2)
@@ -115,7 +116,7 @@ static uint8_t code_of(const int32_t *thresholds, int32_t light) {
     return (uint8_t)code;
 }
 
-/* A linear code of 16 bit times 2^gain, to nearest, clipped. */
+/* A linear 16-bit code times 2^gain, rounded to nearest, clipped. */
 static uint16_t multiplied(uint32_t code, int32_t gain) {
     const int32_t whole = gain >> LP_LOG_SHIFT; /* towards minus infinity */
     if (whole < -17 || !code) return 0;
@@ -143,7 +144,7 @@ static void put_sample(const lensprof_fixed_plan *plan, uint32_t code, uint32_t 
 
 /* ---- rows ---- */
 
-/* One sample a pixel: grey, or a mosaic. */
+/* One sample per pixel: grey, or a mosaic. */
 static void do_single(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t channel, uint32_t t) {
     const int32_t falloff = falloff_at(plan, plan->falloffs == 3 ? channel : 0, t);
     put_sample(plan, get_code(plan->sample, from), channel, gain_of(plan, channel, falloff), to);

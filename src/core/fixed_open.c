@@ -1,5 +1,5 @@
-/* Plans in integers that were made elsewhere. A plan says of itself what it is, and is not believed: whatever its bytes
- * are, one that opens is applied without reading or writing beyond it and the pixels, and without overflow. */
+/* Integer plans that were made elsewhere. The contents of a plan are not trusted: whatever its bytes are, a plan
+ * that opens is applied without reading or writing beyond it and the pixels, and without overflow. */
 #include <string.h>
 
 #include "core/fixed_plan.h"
@@ -13,7 +13,7 @@ uint32_t lp_fixed_check(const lensprof_fixed_plan *plan) {
 
 static int is_one_or_three(uint32_t count) { return count == 1 || count == 3; }
 
-/* What follows from the layout is what it says. */
+/* Whether the fields that follow from the layout are consistent with it. */
 static int is_layout_sound(const lensprof_fixed_plan *plan) {
     uint8_t channel_of_sample[4], site[2][2] = {{0, 0}, {0, 0}};
     const uint32_t samples = lensprof_layout_samples(plan->layout);
@@ -40,7 +40,7 @@ static int is_reach_sound(const lensprof_fixed_plan *plan) {
 
 static uint32_t size_of(int32_t value) { return value < 0 ? 0u - (uint32_t)value : (uint32_t)value; }
 
-/* Sums of the falloff's terms stay within 31 bits, and so do those of gains and light. */
+/* Sums of the falloff's terms fit into 31 bits, and so do those of gains and light. */
 static int are_gains_sound(const lensprof_fixed_plan *plan) {
     if (!is_one_or_three(plan->falloffs) || !is_one_or_three(plan->gains)) return 0;
     if (plan->falloff_shift > 30 || plan->least <= 0 || plan->least > 1 << plan->falloff_shift) return 0;

@@ -1,4 +1,4 @@
-/* Plans in integers (lensprof/fixed.h). What they hold is rounded from double precision. */
+/* Plans in integers (lensprof/fixed.h), rounded from double precision. */
 #include "core/fixed_plan.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
 
-/* A linear one where pixels are light. */
+/* Returns a linear response if pixels are light. */
 static struct lp_model_response response_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
                                             uint32_t curve) {
     struct lp_model_response response = *lp_response(o, m, end, curve);
@@ -37,7 +37,8 @@ static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
 
 /* ---- falloff ---- */
 
-/* Centre, and the largest r^2 in the frame, px^2; at least that of a corner from the middle, in which k count. */
+/* Centre, and the largest r^2 in the frame, px^2; at least that of a corner from the middle, the unit in which k are
+ * defined. */
 static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     const double unit = 1 << LP_CENTER_SHIFT, size[2] = {o->frame_width, o->frame_height};
     const double rho2 = 0.25 * (size[0] * size[0] + size[1] * size[1]);
@@ -51,7 +52,7 @@ static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_opt
     return fmax(reach2, rho2);
 }
 
-/* Coefficients in powers of t = r^2 / R, R a power of 2 beyond the frame. 0 when integers do not hold them. */
+/* Coefficients in powers of t = r^2 / R, R a power of 2 beyond the frame. 0 if integers cannot represent them. */
 static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     const double w = o->frame_width, h = o->frame_height, reach2 = prepare_center(plan, o, m);
     double k[LP_CHANNELS][3], largest = 0.0, reach = 1.0; /* R, px^2 */
@@ -80,7 +81,7 @@ static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_opti
 
 /* ---- logarithms ---- */
 
-/* In the plan's units, to nearest. */
+/* In the plan's units, rounded to nearest. */
 static int32_t log_of(double light) {
     return light > 0.0 ? (int32_t)floor(log2(light) * (1 << LP_LOG_SHIFT) + 0.5) : LP_LOG_NONE;
 }

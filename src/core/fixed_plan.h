@@ -1,4 +1,5 @@
-/* What a plan in integers holds: made by fixed_plan.c, read by fixed.c. No addresses, no padding: it may be copied. */
+/* The contents of an integer plan: made by fixed_plan.c, read by fixed.c. It has no addresses and no padding, so
+ * that it may be copied. */
 #ifndef LENSPROF_CORE_FIXED_PLAN_H
 #define LENSPROF_CORE_FIXED_PLAN_H
 
@@ -9,7 +10,7 @@
 
 #define LP_FIXED_MAGIC 0x3258464cu /* "LFX2" in memory; the last byte is the layout's version */
 #define LP_LOG_SHIFT 22            /* logarithms to base 2, in units of 2^-22 */
-#define LP_LOG_NONE (-(1 << 30))   /* of no light: far below all that a plan can add to */
+#define LP_LOG_NONE (-(1 << 30))   /* for no light: far below any value that a plan can reach by adding gains */
 #define LP_CENTER_SHIFT 10         /* the falloff's centre, in units of 2^-10 px */
 #define LP_CODES 256
 
@@ -22,7 +23,7 @@ struct lensprof_fixed_plan {
     uint8_t site[2][2];
     uint8_t simulate, neutral_white;      /* LENSPROF_SATURATED_NEUTRAL is in force */
     uint8_t decode_curves, encode_curves; /* tables of each kind: 1 or 3; 0 for U16 */
-    uint8_t falloffs, gains;              /* 1, or 3 where the channels differ: in the falloff; in falloff or factor */
+    uint8_t falloffs, gains;              /* 1, or 3 if the channels differ: in the falloff; in falloff or factor */
     uint8_t reserved[2];
     int32_t center[2];
     uint32_t reach_shift;      /* 2^reach_shift times r^2 in 2^-20 px^2 has t = r^2 / R, in 2^-31, in its upper word */
@@ -30,8 +31,8 @@ struct lensprof_fixed_plan {
     int32_t k[LP_CHANNELS][3]; /* M = 1 + k0 t + k1 t^2 + k2 t^3 */
     int32_t least;             /* M, after the gain cap */
     int32_t factor[LP_CHANNELS]; /* log2 of target over source exposure */
-    /* int32_t decode[decode_curves][256]: log2 of the light of every code;
-     * int32_t encode[encode_curves][256]: log2 of the light from which on a code is code + 1 */
+    /* int32_t decode[decode_curves][256]: log2 of the light of every code; int32_t encode[encode_curves][256]: log2
+     * of the light at which code + 1 begins */
 };
 
 /* log2(1 + i/256) in 2^-22 and 2^(i/256) in 2^-30, i = 0..256. */

@@ -1,4 +1,4 @@
-/* Attenuation on a grid over the frame: what a radial polynomial leaves. */
+/* Attenuation on a grid over the frame: the residual of a radial polynomial. */
 #include "core/gain_grid.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* What a gain grid may hold; where a position lies between its nodes, and the value there: for one position, and for
- * the pixels of a row, whose columns and rows are looked up apart. */
+/* Valid contents of a gain grid, and its interpolation: for one position, and for the pixels of a row, whose columns
+ * and rows are looked up separately. */
 #ifndef LENSPROF_CORE_GAIN_GRID_H
 #define LENSPROF_CORE_GAIN_GRID_H
 
@@ -10,13 +10,14 @@ static inline int lp_is_grid_side(uint32_t nodes) { return nodes >= 2 && nodes <
 /* Also false for NaN. */
 static inline int lp_is_attenuation(float value) { return value >= 0.001f && value <= 1000.0f; }
 
-/* The node before a position on one axis, with a node after it, and how far towards that one, 0..1. */
+/* The node before a position on one axis, which has a node after it, and the fraction of the way to that node, 0..1. */
 typedef struct lp_grid_cell {
     uint32_t node;
     double fraction;
 } lp_grid_cell;
 
-/* `position` in pixels, the first and last pixel of `pixels` on the first and last of `nodes` >= 2; clamped to them. */
+/* `position` in pixels; the first and last pixel of `pixels` map to the first and last of `nodes` >= 2; clamped to
+ * them. */
 static inline lp_grid_cell lp_grid_cell_at(double position, uint32_t pixels, uint32_t nodes) {
     double t = pixels > 1 ? position / (pixels - 1.0) : 0.0;
     t = (nodes - 1.0) * (t > 0.0 ? (t < 1.0 ? t : 1.0) : 0.0);

@@ -1,12 +1,12 @@
-/* Camera projections of PanoTools: direction -> pixel in seven steps, and each step undone for the way back.
- * Inside this file vectors are right-handed for the eye: x right, y down, z forward, length 1 for directions. */
+/* Camera projections of PanoTools: direction -> pixel in seven steps, and the inverse of each step for the way back.
+ * In this file vectors are right-handed as seen by the eye: x right, y down, z forward; directions have length 1. */
 #include <lensprof/geometry.h>
 
 #include <math.h>
 
 #define PI 3.14159265358979323846
 #define MAX_SIDE_PX (1u << 20)
-#define EDGE 1e-9 /* slack at the rim of projections that turn back there: rounding must not lose the rim itself */
+#define EDGE 1e-9 /* margin at the rim of projections that turn back there: rounding must not lose the rim itself */
 
 /* Thoby 2006: radius = 1.47 F sin(0.713 angle), measured on a Nikkor 10.5 mm. */
 #define THOBY_RADIUS 1.47
@@ -16,7 +16,7 @@ static double radians(double degrees) { return degrees * (PI / 180); }
 
 /* ---- validity ------------------------------------------------------------------------------------------- */
 
-/* Widest possible field of view in degrees; *open is 1 when the limit itself is not possible. 0 = no such lens. */
+/* Largest possible field of view in degrees; *open is 1 if the limit itself is not possible. 0 = unknown projection. */
 static double widest_hfov(uint32_t projection, int *open) {
     *open = 0;
     switch (projection) {
@@ -65,7 +65,7 @@ static void camera_position(const lensprof_camera *camera, double position[3]) {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* 1 - N.T: how far the camera stands in front of the remapping plane. */
+/* 1 - N.T: distance of the camera in front of the remapping plane. */
 static double plane_distance(const lensprof_camera *camera) {
     double normal[3], position[3];
     plane_normal(camera, normal);
@@ -100,7 +100,8 @@ lensprof_status lensprof_camera_validate(const lensprof_camera *camera) {
 
 /* ---- camera position (translation) and rotation ----------------------------------------------------------- */
 
-/* Direction from the panorama's centre -> direction from the moved camera: both see the same point of the plane. */
+/* Direction from the panorama's centre -> direction from the moved camera: both point to the same point of the
+ * plane. */
 static int translate(const lensprof_camera *camera, double v[3]) {
     double normal[3], position[3];
     plane_normal(camera, normal);
@@ -165,14 +166,14 @@ static double focal_px(const lensprof_camera *camera) {
     }
 }
 
-/* Radius in px of a direction whose distance from the axis is s and along the axis z (s^2 + z^2 = 1).
- * Negative when the lens does not see it. */
+/* Radius in px of a direction with distance s from the axis and z along the axis (s^2 + z^2 = 1). Negative if the
+ * lens does not see it. */
 static double radius_px(uint32_t projection, double focal, double s, double z) {
     double angle = atan2(s, z);
     switch (projection) {
     case LENSPROF_PROJECTION_RECTILINEAR: return z > 0 ? focal * s / z : -1;
     case LENSPROF_PROJECTION_ORTHOGRAPHIC: return z >= -EDGE ? focal * s : -1;
-    case LENSPROF_PROJECTION_STEREOGRAPHIC: /* tan(angle / 2), in the form that does not cancel; none right behind */
+    case LENSPROF_PROJECTION_STEREOGRAPHIC: /* tan(angle / 2) without cancellation; undefined at 180 deg */
         return z > 0 ? 2 * focal * s / (1 + z) : s > EDGE ? 2 * focal * (1 - z) / s : -1;
     case LENSPROF_PROJECTION_THOBY:
         return THOBY_ANGLE * angle <= PI / 2 + EDGE ? THOBY_RADIUS * focal * sin(THOBY_ANGLE * angle) : -1;
@@ -181,7 +182,7 @@ static double radius_px(uint32_t projection, double focal, double s, double z) {
     }
 }
 
-/* Angle from the axis of a radius in px; NaN when there is none (asin beyond 1). */
+/* Angle from the axis of a radius in px; NaN if undefined (asin beyond 1). */
 static double angle_of_radius(uint32_t projection, double focal, double radius) {
     double q = radius / focal;
     switch (projection) {
@@ -205,7 +206,7 @@ static int lens_project(const lensprof_camera *camera, const double v[3], double
             camera->projection == LENSPROF_PROJECTION_CYLINDRICAL ? focal * v[1] / level : focal * atan2(v[1], level);
         return 1;
     }
-    if (s == 0) { /* the axis itself; behind, it is a circle or infinitely far */
+    if (s == 0) { /* the axis itself; backwards it is a circle or infinitely far */
         xy[0] = xy[1] = 0;
         return v[2] > 0;
     }
@@ -246,15 +247,15 @@ static double radial_slope(const double radial[3], double r) {
     return d + r * (2 * radial[2] + r * (3 * radial[1] + r * 4 * radial[0]));
 }
 
-/* 1 when P rises all the way from 0 to r: the slope is positive there, at r, and at its extrema in between, which
- * are the roots of 12 a R^2 + 6 b R + 2 c. */
+/* 1 if P rises all the way from 0 to r: the slope is positive at 0, at r, and at its extrema in between, which are
+ * the roots of 12 a R^2 + 6 b R + 2 c. */
 static int radial_rises(const double radial[3], double r) {
     double a = 12 * radial[0], b = 6 * radial[1], c = 2 * radial[2];
     double q = b * b - 4 * a * c;
     if (!(radial_slope(radial, r) > 0)) return 0;
     if (q < 0) return 1;
     double u = -0.5 * (b + copysign(sqrt(q), b));
-    double roots[2] = {u / a, c / u}; /* infinite or NaN where there is no such root: never inside */
+    double roots[2] = {u / a, c / u}; /* infinite or NaN if there is no such root: never inside */
     for (int i = 0; i < 2; i++) {
         if (roots[i] > 0 && roots[i] < r && !(radial_slope(radial, roots[i]) > 0)) return 0;
     }
@@ -316,7 +317,7 @@ static int undistort(const lensprof_camera *camera, double xy[2]) {
     return r >= 0;
 }
 
-/* ---- the whole way ---------------------------------------------------------------------------------------- */
+/* ---- all steps ------------------------------------------------------------------------------------------ */
 
 int lensprof_camera_project(const lensprof_camera *camera, double longitude, double latitude, double xy[2]) {
     double v[3], p[2];

@@ -1,9 +1,9 @@
-/* Views of pixels: sample types, layouts, and which tiles a plan may be applied to. */
+/* Views of pixels: sample types, layouts, and the tiles to which a plan may be applied. */
 #include "core/image.h"
 
 #include <string.h>
 
-#define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LP_LARGEST_SIDE rows it stays within an address */
+#define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LP_LARGEST_SIDE rows it fits into an address */
 
 /* ---- formats ---- */
 
@@ -31,7 +31,7 @@ lensprof_status lensprof_image_validate(const lensprof_image *image) {
     if (image->row_bytes > LARGEST_ROW || image->row_bytes < -LARGEST_ROW) return LENSPROF_ERROR_SIZE;
     int64_t row = image->row_bytes < 0 ? -(int64_t)image->row_bytes : (int64_t)image->row_bytes;
     if (row < (int64_t)image->width * samples * bytes && image->height > 1) return LENSPROF_ERROR_SIZE;
-    if (row * image->height > PTRDIFF_MAX) return LENSPROF_ERROR_SIZE; /* where addresses have 32 bits */
+    if (row * image->height > PTRDIFF_MAX) return LENSPROF_ERROR_SIZE; /* if addresses have 32 bits */
     if ((uintptr_t)image->data % bytes || (row & (bytes - 1))) return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
 }
@@ -50,7 +50,7 @@ void lp_layout_sites(uint32_t layout, uint8_t channel_of_sample[4], uint8_t site
 
 /* ---- tiles ---- */
 
-/* First and last byte that a view touches. */
+/* First and last byte that a view covers. */
 static void extent(const lensprof_image *image, uintptr_t *first, uintptr_t *last) {
     uintptr_t top = (uintptr_t)image->data;
     uintptr_t bottom = top + (uintptr_t)((intptr_t)(image->height - 1) * image->row_bytes);

@@ -1,4 +1,4 @@
-/* Options of plans: what they may be, and the model they hold, in the caller's structs or in a blob. */
+/* Options of plans: their validation, and the model they contain, in the caller's structs or in a blob. */
 #include "core/options.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static void view_response(struct lp_model_response *view, const lensprof_respons
     view->table = response->table;
 }
 
-/* The model in the caller's structs. Its size does not depend on the vignetting, which may not be there yet. */
+/* The model in the caller's structs. Its size does not depend on the vignetting, which may not be set yet. */
 static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m) {
     memset(m, 0, sizeof *m);
     if (!o->response || (o->responses != 1 && o->responses != 3)) return LENSPROF_ERROR_ARGUMENT;
@@ -148,12 +148,13 @@ double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel) {
 static lensprof_status validate_exposures(const lensprof_apply_options *o, lensprof_error *error) {
     lensprof_status status = lensprof_exposure_validate(&o->source);
     if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
-    for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) /* single precision must hold the factor */
+    for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) /* single precision must be able to represent the
+                                                               * factor */
         if (!(lp_exposure_ratio(o, c) >= 1e-12 && lp_exposure_ratio(o, c) <= 1e12)) status = LENSPROF_ERROR_EXPOSURE;
     return status == LENSPROF_OK ? status : lp_fail(error, status, "exposures invalid, or over 1e12 apart");
 }
 
-/* All but what the model decides. */
+/* Checks everything that does not depend on the model. */
 static lensprof_status validate_options(const lensprof_apply_options *o, lensprof_error *error) {
     if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
         || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE)

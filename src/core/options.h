@@ -1,4 +1,4 @@
-/* Options of plans: what they may be, and the model they hold, in the caller's structs or in a blob. */
+/* Options of plans: their validation, and the model they contain, in the caller's structs or in a blob. */
 #ifndef LENSPROF_CORE_OPTIONS_H
 #define LENSPROF_CORE_OPTIONS_H
 
@@ -8,21 +8,21 @@
 
 #define LP_LARGEST_GAIN_CAP 1e6 /* over all attenuations that are allowed */
 
-/* Text of CAPACITY for the memory of a plan. Texts are short here: a camera's flash has them. */
+/* Text of CAPACITY for the memory of a plan. Texts are short here because they are in the flash memory of cameras. */
 #define LP_MEMORY_TEXT "memory is too small or unaligned"
 
-/* The caller's options, of any version, as this library's: OK or STRUCT_SIZE. */
+/* Converts the caller's options, of any version, to this library's: OK or STRUCT_SIZE. */
 lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *own);
 
-/* The model. Of structs no more is checked than its size depends on; the vignetting may not be there yet. */
+/* The model. For structs, checks only what its size depends on; the vignetting may not be set yet. */
 lensprof_status lp_options_model(const lensprof_apply_options *options, lp_model *model);
 
-/* The status and text that lensprof_plan_init gives the caller's options; these as this library's, and their model. */
+/* The status and text that lensprof_plan_init returns for the caller's options; also these options in this library's
+ * version, and their model. */
 lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model,
                                     lensprof_error *error);
 
-/* The responses that pixels pass through where they are encoded, of what is read and of what is written. Grey is
- * treated as green. */
+/* The response with which pixels are encoded, for input and for output. Grey is treated as green. */
 enum lp_end {
     LP_INPUT,
     LP_OUTPUT
@@ -31,7 +31,7 @@ uint32_t lp_curves(const lensprof_apply_options *options, const lp_model *model)
 const struct lp_model_response *lp_response(const lensprof_apply_options *options, const lp_model *model,
                                             enum lp_end end, uint32_t curve);
 
-/* A power of light, the first included, and not a table. */
+/* Whether a response is a power of light (including the first power) rather than a table. */
 static inline int lp_is_power(const struct lp_model_response *response) {
     return response->kind == LENSPROF_RESPONSE_LINEAR || response->kind == LENSPROF_RESPONSE_GAMMA;
 }

@@ -1,7 +1,7 @@
 /* Plans: options prepared for the kernels (lensprof/apply.h).
  *
- * Pixels go  code -> irradiance -> times gain(x, y) -> code. The curves are tables (plan_curves.c); gains are
- * calculated by pixel from what the plan holds about the falloff. */
+ * Pixels go  code -> irradiance -> times gain(x, y) -> code. The curves are tables (plan_curves.c); gains
+ * are calculated per pixel from the plan's falloff data. */
 #include "core/plan.h"
 
 #include <math.h>
@@ -42,7 +42,7 @@ static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o)
     lp_layout_sites(plan->layout, plan->channel_of_sample, plan->site);
 }
 
-/* White in the linear numbers of a kernel: where no curve is between, codes stay codes. */
+/* White in the linear numbers of a kernel: without a curve in between, codes stay codes. */
 static double white_of(uint32_t sample, uint32_t curve) {
     if (curve != LP_CURVE_NONE) return 1.0;
     return sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
@@ -64,7 +64,7 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     if (at != channel) plan->nodes[at] = plan->nodes[channel];
 }
 
-/* Channels that differ by their factors alone share one division a pixel, where what that rounds is not seen. */
+/* Channels that differ only in their factors share one division per pixel, if the rounding has no visible effect. */
 static void share_gains(lensprof_plan *plan) {
     if (plan->gains == 1 || (plan->target_sample == LENSPROF_SAMPLE_F32 && plan->encode < LP_CURVE_TABLE)) return;
     for (uint32_t c = 1; c < LP_CHANNELS; c++)

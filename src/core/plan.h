@@ -1,4 +1,4 @@
-/* What a plan holds: made by plan.c, read by the kernels. */
+/* The contents of a plan: made by plan.c, read by the kernels. */
 #ifndef LENSPROF_CORE_PLAN_H
 #define LENSPROF_CORE_PLAN_H
 
@@ -6,19 +6,19 @@
 
 #define LP_FORWARD_SHIFT 10 /* log2 of the samples of a response */
 #define LP_CELL_SHIFT 11
-#define LP_CELLS (1 << LP_CELL_SHIFT) /* that values 0..1 are divided into, to find them among the samples */
+#define LP_CELLS (1 << LP_CELL_SHIFT) /* cells of the range 0..1, to find values among the samples */
 
-/* How codes or values become irradiance, and how that becomes a value 0..1 again. */
+/* How codes or values become irradiance, and how irradiance becomes a value 0..1 again. */
 enum lp_curve {
-    LP_CURVE_NONE,  /* linear; codes count in units of their own, which the plan's factors hold */
+    LP_CURVE_NONE,  /* linear; codes are in units of their own, which the plan's factors include */
     LP_CURVE_CLIP,  /* linear, cut to 0..1 */
-    LP_CURVE_TABLE, /* by the response's samples; codes by a table of all of them */
+    LP_CURVE_TABLE, /* by the response's samples; for codes, by a table of all codes */
     LP_CURVE_POWER, /* x^exponent, cut to 0..1 */
-    LP_CURVE_MIXED  /* the channels differ: a power where exponent > 0, else the table */
+    LP_CURVE_MIXED  /* the channels differ: a power if exponent > 0, else the table */
 };
 
-/* Applies a plan to `count` pixels of a row, the first of which is pixel (x, y) of the frame. `stream`: write past the
- * caches. */
+/* Applies a plan to `count` pixels of a row, the first of which is pixel (x, y) of the frame. `stream`: write past
+ * the caches. */
 typedef void lp_row_kernel(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3],
                            uint32_t x, uint32_t y, uint32_t count, int stream);
 
@@ -30,7 +30,7 @@ struct lensprof_plan {
     uint32_t simulate, dither;
     uint32_t neutral_white; /* LENSPROF_SATURATED_NEUTRAL is in force */
     uint32_t frame_width, frame_height;
-    uint32_t gains;     /* 1 when all channels have the same gain, else 3 */
+    uint32_t gains;     /* 1 if all channels have the same gain, else 3 */
     uint32_t curves;    /* 1 or 3 */
     uint8_t site[2][2]; /* channel by row and column parity, of mosaics */
     uint8_t channel_of_sample[4];
@@ -39,23 +39,23 @@ struct lensprof_plan {
     float k[LP_CHANNELS][3];     /* 1 + k1 r2 + ..., r2 in px^2 */
     float least, strength;       /* of the attenuation, after the gain cap; of the grid's part */
     float factor[LP_CHANNELS];   /* target over source exposure, and the units of linear codes */
-    float times[LP_CHANNELS];    /* the same where the gain is otherwise that of all channels; else 1 */
+    float times[LP_CHANNELS];    /* the same if the gain is otherwise that of all channels; else 1 */
     float exponent[LP_CHANNELS]; /* of the response, for LP_CURVE_POWER and _MIXED; else 0 */
     float inverse_exponent[LP_CHANNELS];
     uint32_t columns, rows;          /* of the gain grid; 0 = none */
     uint32_t inverse_shift;          /* log2 of the codes that `inverse` has an entry for */
     const float *nodes[LP_CHANNELS]; /* attenuation less 1 */
     const float *forward;            /* curves x 1024 samples of f, and one number more */
-    const float *backward;           /* the same of the f that was input, for g of values; `forward` where it is one */
-    const float *inverse;            /* curves x codes of g; NULL without */
+    const float *backward;           /* the same for the input, for g of values; may be `forward` */
+    const float *inverse;            /* curves x codes of g; NULL if not used */
     const uint16_t *start;           /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
-    int32_t step; /* from there the first step up the samples is this, then half of it, ...; 0 where a cell has <= 2 */
+    int32_t step; /* the first step from there up the samples is this, then half of it, ...; 0 if a cell has <= 2 */
 };
 
 /* The kernels. Each gives the same bytes. */
 lp_row_kernel lp_row_scalar, lp_row_sse41, lp_row_avx2, lp_row_avx512, lp_row_neon;
 
-/* The fastest one that this processor has; of at most `lanes` lanes, 0 = any. */
+/* The fastest kernel that this processor supports, with at most `lanes` lanes, 0 = any. */
 lp_row_kernel *lp_row_best(uint32_t lanes);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "core/response.h"
 
-/* The kind of curve of all channels, of what is read or written. */
+/* The common kind of curve of all channels, for input or output. */
 static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     uint32_t kind = LP_CURVE_NONE;
     for (uint32_t c = 0; c < lp_curves(o, m); c++) {
@@ -36,20 +36,20 @@ static uint32_t encode_of(const lensprof_apply_options *o, const lp_model *m) {
     return kind == LP_CURVE_CLIP && is_integer(o->target_sample) ? (uint32_t)LP_CURVE_NONE : kind;
 }
 
-/* Entries of the table of all codes; 0 without. */
+/* Entries of the table of all codes; 0 if not used. */
 static size_t codes_of(const lensprof_apply_options *o, const lp_model *m) {
     if (!is_integer(o->source_sample) || decode_of(o, m) != LP_CURVE_TABLE) return 0;
     return o->source_sample == LENSPROF_SAMPLE_U8 ? 256 : 65536;
 }
 
-/* Entries of the table of where to begin among the samples, of 16 bit; 0 where values do not go through the inverse. */
+/* Entries, of 16 bit, of the table of starting points among the samples; 0 if values do not go through the inverse. */
 static size_t starts_of(const lensprof_apply_options *o, const lp_model *m) {
     const uint32_t decode = codes_of(o, m) ? (uint32_t)LP_CURVE_NONE : decode_of(o, m);
     return decode == LP_CURVE_TABLE || decode == LP_CURVE_MIXED ? LP_CELLS + 1 : 0;
 }
 
-/* Entries of the tables of f: of what is written, which serves g of values (`starts`), too, where that is of the same;
- * and else of what is read, after it. 0 where none is asked. */
+/* Entries of the tables of f: that of the output, which also serves g of values (`starts`) if the input has the same
+ * f; otherwise followed by that of the input. 0 if none is needed. */
 static size_t samples_of(const lensprof_apply_options *o, const lp_model *m, size_t starts, enum lp_end end) {
     const uint32_t encode = encode_of(o, m);
     const int is_written = encode == LP_CURVE_TABLE || encode == LP_CURVE_MIXED;
@@ -57,7 +57,7 @@ static size_t samples_of(const lensprof_apply_options *o, const lp_model *m, siz
     return is_asked ? LENSPROF_RESPONSE_SAMPLES : 0;
 }
 
-/* g of every code. As codes rise, so does the place among the response's samples. */
+/* g of every code. The place among the response's samples rises with the code. */
 static void fill_inverse(const struct lp_model_response *response, size_t codes, float *inverse) {
     const double last = (double)(codes - 1);
     inverse[0] = 0.0f;
@@ -76,8 +76,8 @@ static void fill_inverse(const struct lp_model_response *response, size_t codes,
     }
 }
 
-/* Where to begin among the samples, for every cell of values, and the first step from there. Kernels look at four
- * samples at once after the steps, two of which a value may lie beyond. */
+/* For every cell of values, the sample at which to begin, and the first step from there. Kernels look at four
+ * samples together after the steps; a value may lie beyond two of them. */
 static void fill_start(lensprof_plan *plan, const float *samples, uint16_t *start) {
     uint32_t j = 0;
     for (uint32_t cell = 0; cell <= LP_CELLS; cell++) {
@@ -109,9 +109,9 @@ float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, c
         plan->exponent[c] = lp_is_power(out) ? (float)(1.0 / out->gamma) : 0.0f;
         plan->inverse_exponent[c] = lp_is_power(in) ? (float)in->gamma : 0.0f;
         if (codes) fill_inverse(in, codes, inverse + c * codes);
-        float *to = memory + c * forward; /* f of what is written, then of what is read where that has another table */
+        float *to = memory + c * forward; /* f of the output, then that of the input if it has another table */
         const struct lp_model_response *of = out;
-        for (size_t left = forward, end = 0; end < 2; end++) { /* not read where there is an exponent */
+        for (size_t left = forward, end = 0; end < 2; end++) { /* not read if there is an exponent */
             for (size_t j = 0; j < left; j++) to[j] = lp_is_power(of) ? 0.0f : (float)lp_model_sample(of, (uint32_t)j);
             to = memory + plan->curves * forward + c * backward, of = in, left = backward;
         }

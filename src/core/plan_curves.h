@@ -5,10 +5,10 @@
 #include "core/options.h"
 #include "core/plan.h"
 
-/* Floats that the tables take. */
+/* Number of floats that the tables need. */
 size_t lp_curve_numbers(const lensprof_apply_options *options, const lp_model *model);
 
-/* Fills the tables at `memory` and what the plan holds about curves; returns the memory after the tables. */
+/* Fills the tables at `memory` and the plan's curve data; returns the memory after the tables. */
 float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *options, const lp_model *model,
                          float *memory);
 

@@ -38,7 +38,7 @@ int lp_are_key_numbers(const lensprof_profile_key *key) {
            && is_known_or_unknown(key->color_temperature_k, 1e6);
 }
 
-/* Room for members to come: another value is of a newer lensprof. */
+/* Room for future members: any other value comes from a newer lensprof. */
 static int is_empty(const uint32_t *reserved, size_t count) {
     for (size_t i = 0; i < count; i++)
         if (reserved[i]) return 0;
@@ -130,7 +130,7 @@ static lensprof_status validate_covariance(const double *covariance, uint32_t n)
     return LENSPROF_OK;
 }
 
-/* All channels look through one lens: one centre. */
+/* All channels use one lens: one centre. */
 static lensprof_status validate_falloff(const lensprof_vignetting *vignetting, const lensprof_vignetting *first) {
     lensprof_status status = lensprof_vignetting_validate(vignetting);
     if (status != LENSPROF_OK) return status;

@@ -1,4 +1,4 @@
-/* Profiles of all versions; and the checks of their parts that lensprof_profile_validate makes, for blobs. */
+/* Profiles of all versions, and the checks of their parts by lensprof_profile_validate, for use with blobs. */
 #ifndef LENSPROF_CORE_PROFILE_H
 #define LENSPROF_CORE_PROFILE_H
 
@@ -6,20 +6,20 @@
 
 #include "core/sized.h"
 
-/* Profiles are large: they are read where the caller has them, whatever their version. Members after this one are not
- * always there; read them through a function here, which knows their default. */
+/* Profiles are large, so they are read in the caller's memory, whatever their version. Members after this one may be
+ * missing; read them through a function here, which knows their default. */
 #define LP_FIRST_PROFILE LP_END_OF(lensprof_profile, covariance)
 
-/* The doubt that lensprof_provenance_doubts_response knows. */
+/* The doubt that lensprof_provenance_doubts_response detects. */
 #define LP_DOUBT_RESPONSE "response not shown by the pictures: typical of the kind"
 
-/* No text of a profile holds a control character, which would break listings. */
+/* No text of a profile may contain a control character, which would break listings. */
 static inline int lp_is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
 /* A key's focal length, aperture and distance: each in its range, or LENSPROF_UNKNOWN. */
 int lp_is_setting(double focal_mm, double aperture, double distance_m);
 
-/* Whether all numbers of a key are: lensprof_profile_key_validate without the texts. */
+/* Whether all numbers of a key are valid: lensprof_profile_key_validate without the texts. */
 int lp_are_key_numbers(const lensprof_profile_key *key);
 
 /* A provenance's figures: each in its range, or LENSPROF_UNKNOWN. */

@@ -48,7 +48,7 @@ double lensprof_profile_falloff(const lensprof_profile *profile, uint32_t channe
     const double r2 = lensprof_vignetting_r2(v, width, height, x, y, by_center);
     const double m = lensprof_vignetting_eval(v, r2, &by_r2);
     const double grid = lensprof_gain_grid_eval(&profile->grid, width, height, x, y, channel);
-    if (!sigma) return m * grid; /* maps ask this of every pixel */
+    if (!sigma) return m * grid; /* maps evaluate this for every pixel */
     const uint32_t n = profile->covariance_size, modes = lp_covariance_modes(profile->response, profile->responses);
     const uint32_t first = lp_covariance_index(modes, curve_of(profile, channel));
     const uint32_t center = lp_covariance_index(modes, profile->vignettings);

@@ -1,4 +1,4 @@
-/* Names and sentences of reasons. */
+/* Names and descriptions of reasons. */
 #include <lensprof/reason.h>
 
 typedef struct reason_row {

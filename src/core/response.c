@@ -1,5 +1,5 @@
 /* Response curves: one table of 1024 samples, evaluated and inverted by linear interpolation; linear and gamma
- * curves by their formulas. The empirical model of response is f = f0 + sum alpha_l h_l (d'Angelo eq. 6). */
+ * curves are evaluated by formula. The empirical model of response is f = f0 + sum alpha_l h_l (d'Angelo eq. 6). */
 #include "core/response.h"
 
 #include <math.h>
@@ -41,7 +41,7 @@ void lp_emor_curve(const double *coefficients, uint32_t modes, double *table) {
     memcpy(table, lp_emor_table[0], sizeof lp_emor_table[0]);
     for (uint32_t l = 0; l < modes; l++)
         for (uint32_t j = 1; j < LAST; j++) table[j] += coefficients[l] * lp_emor_table[l + 1][j];
-    table[0] = 0.0; /* the modes vanish at both ends but for rounding of the published figures */
+    table[0] = 0.0; /* the modes vanish at both ends except for rounding of the published figures */
     table[LAST] = 1.0;
 }
 

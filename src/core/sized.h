@@ -1,7 +1,8 @@
-/* Structs that grow: the rule of struct_size (include/lensprof/base.h) in one place.
+/* Extensible structs: the rule of struct_size (include/lensprof/base.h) in one place.
  *
- * A library takes a program's struct of every size from that of the struct's first version up to its own. Inputs are
- * taken into a struct of the library's own that holds the defaults; outputs are given out up to the program's size. */
+ * A library accepts a program's struct of every size from that of the struct's first version up to its own. Inputs
+ * are copied into the library's own struct, which holds the defaults; outputs are copied back up to the program's size.
+ */
 #ifndef LENSPROF_CORE_SIZED_H
 #define LENSPROF_CORE_SIZED_H
 
@@ -9,8 +10,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Bytes up to the end of a member. The size of a struct's first version is pinned as that of the member that was its
- * last one, which holds where addresses have 32 bits too. */
+/* Bytes up to the end of a member. The size of a struct's first version is defined by its last member at that time,
+ * which is also correct for 32-bit addresses. */
 #define LP_END_OF(type, member) (offsetof(type, member) + sizeof(((type *)0)->member))
 
 static inline uint32_t lp_sized_bytes(const void *given) {
@@ -19,8 +20,8 @@ static inline uint32_t lp_sized_bytes(const void *given) {
     return bytes;
 }
 
-/* What an _init_sized function begins with: `size` zero bytes with struct_size. Returns whether the members of the
- * first version are there; a member that came later is where `size` reaches its LP_END_OF. */
+/* Begins an _init_sized function: sets `size` bytes to zero, and struct_size. Returns whether the members of the
+ * first version are present; a later member is present if `size` reaches its LP_END_OF. */
 static inline int lp_sized_begin(void *given, size_t size, size_t first) {
     const uint32_t bytes = size <= UINT32_MAX ? (uint32_t)size : 0;
     if (size < sizeof bytes) return 0;
@@ -29,7 +30,7 @@ static inline int lp_sized_begin(void *given, size_t size, size_t first) {
     return size >= first;
 }
 
-/* NULL where a struct of this library (`own` bytes) can stand for the given one, else why not and what to do. */
+/* NULL if a struct of this library (`own` bytes) is compatible with the given one, else why not and what to do. */
 static inline const char *lp_sized_wrong(const void *given, size_t first, size_t own) {
     const uint32_t bytes = lp_sized_bytes(given);
     if (bytes < first) return "struct_size is not set; call the struct's _init function first";
@@ -37,13 +38,13 @@ static inline const char *lp_sized_wrong(const void *given, size_t first, size_t
     return NULL;
 }
 
-/* Copies the members that both have, and leaves struct_size. */
+/* Copies the members that both have, except struct_size. */
 static inline void lp_sized_copy(void *to, const void *from) {
     const uint32_t there = lp_sized_bytes(to), here = lp_sized_bytes(from), head = sizeof here;
     memcpy((char *)to + head, (const char *)from + head, (there < here ? there : here) - head);
 }
 
-/* Takes the given members into `own`, which is initialised. NULL, or what lp_sized_wrong says. */
+/* Copies the given members into `own`, which is initialised. Returns NULL, or the error of lp_sized_wrong. */
 static inline const char *lp_sized_take(void *own, const void *given, size_t first) {
     const char *wrong = lp_sized_wrong(given, first, lp_sized_bytes(own));
     if (!wrong) lp_sized_copy(own, given);

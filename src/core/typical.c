@@ -1,4 +1,4 @@
-/* What is known of a camera's response from its kind: the mean of measured cameras and their scatter. */
+/* What the kind of a camera reveals about its response: the mean of measured cameras and their scatter. */
 #include "core/typical.h"
 
 #include <string.h>

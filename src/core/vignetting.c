@@ -4,7 +4,7 @@
 #include <math.h>
 
 #define SMALLEST_M 0.001
-#define LARGEST_K 1e6 /* far beyond any lens; keeps the arithmetic below exact enough */
+#define LARGEST_K 1e6 /* far beyond any lens; keeps the arithmetic below accurate enough */
 
 double lensprof_half_diagonal(uint32_t width, uint32_t height) {
     const double w = width, h = height;
