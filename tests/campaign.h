@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-/* All runs, or as many of a hundred as the environment's LENSPROF_PERCENT says; at least one. */
+/* All runs, or LENSPROF_PERCENT (environment) percent of them; at least one. */
 static inline int campaign_runs(int all) {
     const char *percent = getenv("LENSPROF_PERCENT");
     const long share = percent ? strtol(percent, NULL, 10) : 100;

@@ -60,7 +60,7 @@ inline void save_shot(const std::string &path, const Shot &shot) {
 
 inline std::string shot_name(size_t i) { return work("shot" + std::to_string(i) + ".png"); }
 
-// One picture an exposure; `like` says the rest.
+// One picture per exposure; `like` gives the other properties.
 inline Words shots(const std::vector<double> &evs, Shot like = {}) {
     Words files;
     for (double ev : evs) {
@@ -71,7 +71,7 @@ inline Words shots(const std::vector<double> &evs, Shot like = {}) {
     return files;
 }
 
-// What the camera wrote beside the picture.
+// Writes the metadata that the camera stores next to the picture.
 inline void state_exposure(const std::string &path, double ev, bool camera = true) {
     PictureMetadata metadata = unknown_metadata();
     if (camera) {

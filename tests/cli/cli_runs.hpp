@@ -134,7 +134,7 @@ inline std::string difference(const Disk &before, const Disk &after) {
     return text;
 }
 
-// The failure is told on standard error with the names it is about, and the disk is as it was.
+// Checks that the failure is reported on standard error with the names it is about, and that the disk is unchanged.
 inline void assert_refusal(const Words &words, const Outcome &outcome, int code, const Words &named,
                            const Disk &before) {
     const std::string what = joined(words);
@@ -173,7 +173,7 @@ inline std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pa
     return groups;
 }
 
-// Every match replaced; $1 stands for the first group.
+// Replaces every match; $1 is the first group.
 inline std::string replaced(const std::string &text, const std::string &pattern, const std::string &replacement) {
     std::string result;
     size_t at = 0;

@@ -27,7 +27,7 @@ namespace coded_files {
 
 using namespace picture_files;
 
-// What a file has besides its pixels.
+// What a file contains in addition to its pixels.
 struct Extras {
     Bytes exif, xmp, icc;
     uint16_t orientation = 1;  // the format's own
@@ -93,7 +93,7 @@ inline void put_riff(Bytes &bytes, const char *name, const Bytes &content) {
     if (content.size() % 2 != 0) bytes.push_back(0);
 }
 
-// An extended WebP about the chunks of `simple`, with these flags beside those of `extras`.
+// An extended WebP that contains the chunks of `simple`, with these flags in addition to those of `extras`.
 inline Bytes extended_webp(const Bytes &simple, uint32_t width, uint32_t height, uint8_t flags, const Extras &extras) {
     Bytes head, content = {'W', 'E', 'B', 'P'}, all;
     flags = static_cast<uint8_t>(flags | (extras.icc.empty() ? 0 : 0x20) | (extras.exif.empty() ? 0 : 8)

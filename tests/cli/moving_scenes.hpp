@@ -29,7 +29,7 @@ inline Pose pose_of(const Json &truth, size_t i) {
     return pose;
 }
 
-// Place of a point of the scene; false where it is behind the camera.
+// Place of a point of the scene; false if its depth is not positive.
 inline bool project(const Pose &pose, const Vector3 &point, double xy[2]) {
     const double way[3] = {point.x - pose.centre[0], point.y - pose.centre[1], point.z - pose.centre[2]};
     double seen[3] = {};

@@ -32,7 +32,7 @@ struct Dng {
     std::string maker = "TestMaker", model = "TestCam 1";
     bool is_dng = true;  // else the same structure without the tags of DNG, as of NEF and PEF
     uint16_t orientation = 1;
-    uint32_t declared = 0;  // width and height that the header has in place of the true ones; 0 = these
+    uint32_t declared = 0;  // width and height in the header instead of the true ones; 0 = the true ones
 };
 
 // Bits, the highest first.

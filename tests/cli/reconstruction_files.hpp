@@ -17,7 +17,7 @@ namespace reconstruction_files {
 
 using namespace picture_files;
 
-// In place of the file that is there: one that is cut and written again goes to the disk at once, which takes long.
+// Replaces an existing file. Truncating and rewriting it instead would flush it to the disk immediately, which is slow.
 inline void save_anew(const std::string &path, const Bytes &bytes) {
     fs::remove(path);
     save(path, bytes);
@@ -131,7 +131,7 @@ inline std::string make_database(const std::string &name, const std::string &mor
     return path;
 }
 
-// Numbers of a binary model, one behind the other.
+// Numbers of a binary model, one after the other.
 class BinaryFile {
 public:
     template <class Number>
