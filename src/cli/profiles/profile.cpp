@@ -222,8 +222,7 @@ void declare_show(Command &profile) {
 }  // namespace
 
 void declare_profile(Command &program) {
-    Command profile =
-        program.add("profile", "list, change, remove, import, export, merge, check or count profiles");
+    Command profile = program.add("profile", "list, change, remove, import, export, merge, check or count profiles");
     declare_list(profile);
     declare_show(profile);
     declare_profile_names(profile);
