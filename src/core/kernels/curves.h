@@ -1,10 +1,10 @@
-/* Responses and their inverses, of lanes. */
+/* Responses and their inverses, for lanes. */
 
 /* x^e for 0 <= x <= 1, e > 0: 2^(e log2 x). log2 by the series of atanh, 2^ by a polynomial; relative error below 2e-6
  * where the result is above 1e-3. */
 ALWAYS_INLINE lane_f power(lane_f x, lane_f e) {
     const lane_i bits = i_of_bits(f_max(x, f_set(1e-37f)));
-    const lane_i shifted = i_sub(bits, i_set(0x3f3504f3)); /* of the square root of 1/2: m lies about 1 */
+    const lane_i shifted = i_sub(bits, i_set(0x3f3504f3)); /* square root of 1/2: m is around 1 */
     const lane_f whole = f_of_i(i_sub(i_right(i_add(shifted, i_set(0x40000000)), 23), i_set(0x80)));
     const lane_f m = f_of_bits(i_add(i_and(shifted, i_set(0x007fffff)), i_set(0x3f3504f3)));
     const lane_f t = f_div(f_sub(m, f_set(1.0f)), f_add(m, f_set(1.0f))), t2 = f_mul(t, t);
@@ -26,12 +26,12 @@ ALWAYS_INLINE lane_f power(lane_f x, lane_f e) {
     return f_pick(f_less(x, f_set(1.0f)), y, f_set(1.0f));
 }
 
-/* Within 0..most; 0 for NaN. `is_light`: numbers not below 0. */
+/* Clamps to 0..most; 0 for NaN. `is_light`: numbers not below 0. */
 ALWAYS_INLINE lane_f cut(lane_f x, int is_light, float most) {
     return f_min(is_light ? x : f_max(x, f_set(0.0f)), f_set(most));
 }
 
-/* f(position / LAST) by its samples, 0 <= position <= LAST. One number more follows them. */
+/* f(position / LAST) from its samples, 0 <= position <= LAST. One extra number follows them. */
 ALWAYS_INLINE lane_f table_at(const float *samples, lane_f position, lane_i channel) {
     const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
     const lane_i j = i_of_f(position);
@@ -40,13 +40,13 @@ ALWAYS_INLINE lane_f table_at(const float *samples, lane_f position, lane_i chan
     return f_add(low, f_mul(f_sub(position, f_of_i(j)), f_sub(high, low)));
 }
 
-/* The cell of b in plan->start, of a channel; 0 <= b <= 1. */
+/* The cell of b in plan->start, for a channel; 0 <= b <= 1. */
 ALWAYS_INLINE lane_i cell_of(lane_f b, lane_i channel) {
     const lane_i cell = i_of_f(f_mul(b, f_set((float)LP_CELLS)));
     return i_add(i_add(cell, i_left(channel, LP_CELL_SHIFT)), channel); /* a table is one longer than cells */
 }
 
-/* g(b) by the four samples of f from place `low` on, one of which is the last below b: the smallest x with
+/* g(b) from the four samples of f at place `low` and after, one of which is the last below b: the smallest x with
  * f(x) >= b. */
 ALWAYS_INLINE lane_f between_four(const lane_f four[4], lane_i low, lane_f b) {
     const lane_b one = f_less(four[1], b), two = f_less(four[2], b);
@@ -59,7 +59,7 @@ ALWAYS_INLINE lane_f between_four(const lane_f four[4], lane_i low, lane_f b) {
     return f_pick(f_less(f_set(0.0f), b), x, f_set(0.0f));
 }
 
-/* g(b) by the samples of f, 0 <= b <= 1. */
+/* g(b) from the samples of f, 0 <= b <= 1. */
 ONCE_IN_SCALAR lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel) {
     const float *samples = plan->backward;
     const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
@@ -77,8 +77,8 @@ ONCE_IN_SCALAR lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i 
     return between_four(four, low, b);
 }
 
-/* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. Towards
- * codes by a table, x is a position in it. */
+/* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. For codes
+ * from a table, x is a position in the table. */
 ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, int is_light,
                                  uint32_t at, lane_f x) {
     const float *exponents = inverse ? plan->inverse_exponent : plan->exponent;
@@ -98,12 +98,12 @@ ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint
     return is_light ? y : f_pick(f_is_number(x), y, x);
 }
 
-/* Codes of 16 bit that go through a formula become values. */
+/* Converts 16-bit codes to values for evaluation by a formula. */
 ALWAYS_INLINE lane_f code_scale(const lensprof_plan *plan) {
     return f_set(plan->source_sample == LENSPROF_SAMPLE_U16 ? 1.0f / 65535.0f : 1.0f);
 }
 
-/* Samples of a strip's light, in place, through a curve; codes of 16 bit become values first. */
+/* Passes the samples of a strip's light, in place, through a curve; codes of 16 bit are converted to values first. */
 ALWAYS_INLINE void through_curve(const lensprof_plan *plan, strip *s, uint32_t curve, int inverse, uint32_t at,
                                  uint32_t count) {
     const lane_f scale = inverse ? code_scale(plan) : f_set(1.0f);

@@ -1,6 +1,6 @@
 /* Gains of the pixels of a strip, and of their samples. */
 
-/* The gain grid's nodes, interpolated to a row. They hold what the attenuation is beyond 1, which is small: single
+/* The gain grid's nodes, interpolated to a row. They hold the attenuation less 1, which is small, so that single
  * precision loses less. */
 static void blend_rows(const lensprof_plan *plan, uint32_t y, strip *s) {
     uint32_t last = plan->rows - 1, pixels = plan->frame_height > 1 ? plan->frame_height - 1 : 1;
@@ -13,7 +13,7 @@ static void blend_rows(const lensprof_plan *plan, uint32_t y, strip *s) {
     }
 }
 
-/* The grid's values at pixels of the row, to `values`. */
+/* Writes the grid's values at pixels of the row to `values`. */
 static void grid_values(const lensprof_plan *plan, const float *nodes, uint32_t x, uint32_t count, float *values) {
     uint32_t last = plan->columns - 1, pixels = plan->frame_width > 1 ? plan->frame_width - 1 : 1;
     uint32_t node = x * last / pixels, rest = x * last - node * pixels;
@@ -49,7 +49,7 @@ static void gains_of_channel(const lensprof_plan *plan, uint32_t c, uint32_t x, 
     }
 }
 
-/* Gains of the samples of `count` pixels from those of the pixels. */
+/* Copies the gains of `count` pixels to their samples. */
 static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint32_t count, strip *s) {
     const float *gain[LP_CHANNELS];
     for (uint32_t c = 0; c < LP_CHANNELS; c++) gain[c] = s->gain[plan->gains == 3 ? c : 0];

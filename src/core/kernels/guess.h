@@ -1,15 +1,15 @@
-/* Where values lie among the response's samples, by a guess that needs no memory: 0..1 is divided into as many cells as
- * a table in registers holds, and g is a parabola in each. Samples are loaded about the guess; where they do not hold
- * the value after all, it is looked for as everywhere. So a guess changes no result. */
+/* Finds values among the response's samples by a guess that needs no memory access: 0..1 is divided into as many
+ * cells as fit into a table in registers, and g is a parabola in each. Samples are loaded around the guess; if they
+ * do not contain the value, the usual search follows. A guess therefore never changes a result. */
 
-#define GUESS_CELLS (IN_TABLE * (1.0f - 1.2e-7f)) /* so that 1 lies in the last one */
-#define LEAST_GUESSED 512                         /* pixels of a row: for fewer, parabolas do not pay */
+#define GUESS_CELLS (IN_TABLE * (1.0f - 1.2e-7f)) /* so that 1 is in the last cell */
+#define LEAST_GUESSED 512                         /* pixels of a row: with fewer, parabolas do not pay off */
 
 #ifndef COUNT_LOST
-#define COUNT_LOST(lost, count) ((void)0) /* tests count how many of a run's values are not found */
+#define COUNT_LOST(lost, count) ((void)0) /* tests count the values of a run that are not found */
 #endif
 
-/* The address may be past the end of the row, where no pointer may be. */
+/* The address may be past the end of the row, where a pointer would be undefined. */
 static inline void fetch_ahead(const float *values, uint32_t ahead) {
 #if defined(__GNUC__)
     __builtin_prefetch((const void *)((uintptr_t)values + ahead * sizeof *values));
@@ -18,7 +18,7 @@ static inline void fetch_ahead(const float *values, uint32_t ahead) {
 #endif
 }
 
-/* Float values through one table both ways, as values_to_light in tables.h has them. */
+/* Float values through one table in both directions, as in values_to_light in tables.h. */
 static int is_guessable(const lensprof_plan *plan) {
     return plan->source_sample == LENSPROF_SAMPLE_F32 && plan->target_sample == LENSPROF_SAMPLE_F32 && plan->curves == 1
            && plan->decode == LP_CURVE_TABLE && plan->encode == LP_CURVE_TABLE && plan->step == 0;
@@ -43,7 +43,7 @@ static void find_guess(const lensprof_plan *plan, strip *s) {
     }
 }
 
-/* The guessed place of values; any place of what is not within 0..1 or no number. */
+/* The guessed place of values; any place for values that are NaN or not within 0..1. */
 ALWAYS_INLINE lane_i guess_place(const lane_table guess[3], lane_f value) {
     const lane_f t = f_mul(f_min(value, f_set(1.0f)), f_set(GUESS_CELLS));
     const lane_i cell = i_of_f(t);
@@ -51,8 +51,8 @@ ALWAYS_INLINE lane_i guess_place(const lane_table guess[3], lane_f value) {
     return i_least(i_of_f(f_add(table_pick(guess[0], cell), f_mul(t, slope))), i_set(LAST - 3));
 }
 
-/* g of values by the samples from the guessed place on, two steps of which are looked at; `is_found` is 0 where a value
- * lies elsewhere. NaN stays. */
+/* g of values from the samples from the guessed place on, in at most two steps; `is_found` is 0 if a value is
+ * elsewhere. NaN stays. */
 ALWAYS_INLINE lane_f inverse_from(const float *samples, const int32_t *place, lane_f value, int *is_found) {
     const lane_f b = f_min(f_set(1.0f), value), low = f_of_i(i_load(place));
     const lane_b is_dark = f_less_equal(value, f_set(0.0f));
@@ -66,12 +66,12 @@ ALWAYS_INLINE lane_f inverse_from(const float *samples, const int32_t *place, la
     return f_pick(is_dark, f_set(0.0f), f_mul(f_add(on, share), f_set(1.0f / (float)LAST)));
 }
 
-/* As table_inverse; out of the way of the registers of what calls it. */
+/* As table_inverse, but not inlined, to keep it out of the caller's registers. */
 static NEVER_INLINE lane_f inverse_by_steps(const lensprof_plan *plan, lane_f value) {
     return f_pick(f_is_number(value), table_inverse(plan, cut(value, 0, 1.0f), i_set(0)), value);
 }
 
-/* Values to light. Where too many were not found, the rest of the row is not guessed. */
+/* Converts values to light. If too many were not found, the rest of the row is not guessed. */
 static void values_by_guess(const lensprof_plan *plan, const run *r, strip *s) {
     const lane_table guess[3] = {table_load(s->guess[0]), table_load(s->guess[1]), table_load(s->guess[2])};
     const float *values = (const float *)(const void *)r->from;
@@ -85,7 +85,7 @@ static void values_by_guess(const lensprof_plan *plan, const run *r, strip *s) {
         values = light;
     }
     for (uint32_t i = 0; i < count; i += LANES) {
-        fetch_ahead(values, i + 3 * STRIP); /* of the next strip: here the least is loaded */
+        fetch_ahead(values, i + 3 * STRIP); /* of the next strip: this stage loads the least */
         i_store(place + i, guess_place(guess, f_load(values + i)));
     }
     for (uint32_t i = 0; i < count; i += LANES) {

@@ -69,8 +69,8 @@ static inline void i_store_u8(uint8_t *p, lane_i v) {
 }
 static inline void i_store_u16(uint8_t *p, lane_i v) { _mm_storeu_si128((__m128i *)(void *)p, to_u16(v)); }
 
-/* All lanes, which the compiler is not to know: it would leave out the zeros that gathers write into, and each would
- * wait for whatever was in its register before. */
+/* All lanes, hidden from the compiler: it would otherwise omit the zeros that gathers write into, and each gather
+ * would wait for the previous contents of its register. */
 static inline __m256i all_lanes(void) {
     __m256i all = _mm256_set1_epi32(-1);
     __asm__("" : "+x"(all));
@@ -116,7 +116,7 @@ static inline void f_fours(const float *base, const int32_t *at, lane_f four[4])
     four[3] = _mm256_shuffle_ps(ab_high, cd_high, 0xee);
 }
 
-/* Numbers in registers, picked by the lowest four bits of an index. */
+/* Numbers in registers, selected by the lowest four bits of an index. */
 #define IN_TABLE 16
 typedef struct lane_table {
     __m256 low, high;

@@ -63,8 +63,8 @@ static inline void i_store_u16(uint8_t *p, lane_i v) {
     _mm256_storeu_si256((__m256i *)(void *)p, _mm512_cvtepi32_epi16(v));
 }
 
-/* All lanes, which the compiler is not to know: it would leave out the zeros that gathers write into, and each would
- * wait for whatever was in its register before. */
+/* All lanes, hidden from the compiler: it would otherwise omit the zeros that gathers write into, and each gather
+ * would wait for the previous contents of its register. */
 static inline __mmask16 all_lanes(void) {
     __mmask16 all = 0xffff;
     __asm__("" : "+Yk"(all));
@@ -114,7 +114,7 @@ static inline void f_fours(const float *base, const int32_t *at, lane_f four[4])
     four[3] = _mm512_shuffle_ps(ab_high, cd_high, 0xee);
 }
 
-/* Numbers in registers, picked by the lowest five bits of an index. */
+/* Numbers in registers, selected by the lowest five bits of an index. */
 #define IN_TABLE 32
 typedef struct lane_table {
     __m512 low, high;

@@ -20,7 +20,7 @@ static inline lane_f f_add(lane_f a, lane_f b) { return vaddq_f32(a, b); }
 static inline lane_f f_sub(lane_f a, lane_f b) { return vsubq_f32(a, b); }
 static inline lane_f f_mul(lane_f a, lane_f b) { return vmulq_f32(a, b); }
 static inline lane_f f_div(lane_f a, lane_f b) { return vdivq_f32(a, b); }
-static inline lane_f f_max(lane_f a, lane_f b) { return vbslq_f32(vcgtq_f32(a, b), a, b); } /* b where a is NaN */
+static inline lane_f f_max(lane_f a, lane_f b) { return vbslq_f32(vcgtq_f32(a, b), a, b); } /* b if a is NaN */
 static inline lane_f f_min(lane_f a, lane_f b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
 static inline lane_b f_less(lane_f a, lane_f b) { return vcltq_f32(a, b); }
 static inline lane_b f_is_number(lane_f a) { return vceqq_f32(a, a); }
@@ -105,6 +105,6 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {
     vst3q_f32(p, all);
 }
 
-#define CAN_STREAM 0 /* no way past the caches */
+#define CAN_STREAM 0 /* cannot bypass the caches */
 
 #endif

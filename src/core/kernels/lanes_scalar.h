@@ -1,4 +1,4 @@
-/* One lane: plain C. What the other lane headers do is defined by this one. */
+/* One lane: plain C. This header defines the meaning of the functions in the other lane headers. */
 #ifndef LENSPROF_CORE_LANES_H
 #define LENSPROF_CORE_LANES_H
 
@@ -7,7 +7,7 @@
 
 #define LANES 1
 #ifndef STRIP
-#define STRIP 16 /* pixels that are worked on at a time */
+#define STRIP 16 /* pixels that are processed together */
 #endif
 
 typedef float lane_f;
@@ -21,7 +21,7 @@ static inline lane_f f_add(lane_f a, lane_f b) { return a + b; }
 static inline lane_f f_sub(lane_f a, lane_f b) { return a - b; }
 static inline lane_f f_mul(lane_f a, lane_f b) { return a * b; }
 static inline lane_f f_div(lane_f a, lane_f b) { return a / b; }
-static inline lane_f f_max(lane_f a, lane_f b) { return a > b ? a : b; } /* b where a is NaN */
+static inline lane_f f_max(lane_f a, lane_f b) { return a > b ? a : b; } /* b if a is NaN */
 static inline lane_f f_min(lane_f a, lane_f b) { return a < b ? a : b; }
 static inline lane_b f_less(lane_f a, lane_f b) { return a < b; }
 static inline lane_b f_is_number(lane_f a) { return a == a; }
@@ -38,7 +38,7 @@ static inline lane_i i_min(lane_i a, lane_i b) { return a < b ? a : b; }
 /* of unsigned numbers */
 static inline lane_i i_least(lane_i a, lane_i b) { return (uint32_t)a < (uint32_t)b ? a : b; }
 #define i_left(a, n) ((lane_i)((uint32_t)(a) << (n)))
-#define i_right(a, n) ((lane_i)((uint32_t)(a) >> (n))) /* zeros come in */
+#define i_right(a, n) ((lane_i)((uint32_t)(a) >> (n))) /* shifts in zeros */
 
 static inline lane_f f_of_i(lane_i a) { return (float)a; }
 static inline lane_i i_of_f(lane_f a) { return (int32_t)a; } /* towards 0; within int32 */
@@ -87,6 +87,6 @@ static inline void f_fours(const float *base, const int32_t *at, lane_f four[4])
 /* a0 b0 c0 a1 b1 c1 ... */
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) { p[0] = a, p[1] = b, p[2] = c; }
 
-#define CAN_STREAM 0 /* no way past the caches */
+#define CAN_STREAM 0 /* cannot bypass the caches */
 
 #endif

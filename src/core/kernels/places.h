@@ -6,8 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Loads of single elements are faster than gathers where the places are in memory, and two places come with one load.
- */
+/* Loads of single elements are faster than gathers if the places are in memory, and one load reads two places. */
 typedef struct two_places {
     uint64_t a, b;
 } two_places;

@@ -19,9 +19,10 @@ static inline float ramp(float value, float low) {
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* Gains of red, green and blue, in s->factor. Towards white they approach the largest one, gradually, as the brightest
- * channel nears saturation (from 0.9 on) and the darkest one follows (from 0.6 on): a clipped cloud, not a bright
- * colour. The strip's light still holds codes, `unit` of which are white; channels lie `pitch` apart, pixels `step`. */
+/* Gains of red, green and blue, in s->factor. Towards white they gradually approach the largest gain, as the
+ * brightest channel nears saturation (from 0.9 on) and the darkest one follows (from 0.6 on), so that a clipped
+ * cloud does not take on a bright colour. The strip's light still holds codes, with white at `unit`; channels are
+ * `pitch` apart, pixels `step`. */
 static void approach_white(strip *s, uint32_t count, uint32_t pitch, uint32_t step, float unit) {
     for (uint32_t i = 0; i < count; i++) {
         const float *value = s->light + i * step;
@@ -100,8 +101,8 @@ static void store_run(const lensprof_plan *plan, const run *r, const strip *s) {
 }
 
 #if LANES > 1
-/* The usual ways in one pass, or by tables in stages: samples of one type in and out, through one curve both ways. The
- * same steps as load_run, decode, encode and store_run, and so the same bytes. */
+/* The usual cases in one pass, or by tables in stages: samples of one type in and out, through one curve in both
+ * directions. The steps are those of load_run, decode, encode and store_run, and so are the bytes. */
 ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, uint32_t at,
                              const uint8_t *from) {
     const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
@@ -132,7 +133,7 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
     }
 }
 
-/* False for what is not one of the usual ways. */
+/* False if it is not one of the usual cases. */
 static int do_one_pass(const lensprof_plan *plan, const run *r, strip *s) {
     if (plan->source_sample != plan->target_sample || plan->decode != plan->encode || plan->dither
         || (plan->curves == 3 && plan->decode != LP_CURVE_NONE))
@@ -153,7 +154,7 @@ static int do_one_pass(const lensprof_plan *plan, const run *r, strip *s) {
 }
 #endif
 
-/* The largest of values; 0 of none but NaN. */
+/* The largest value; 0 if all are NaN. */
 static float largest_value(const float *values, uint32_t count) {
     lane_f mosts = f_set(0.0f);
     float each[LANES], most = 0.0f;
@@ -165,7 +166,7 @@ static float largest_value(const float *values, uint32_t count) {
     return most;
 }
 
-/* The largest of the codes or values of a run; 0 of none but NaN. Written so that compilers make vectors of it. */
+/* The largest of the codes or values of a run; 0 if all are NaN. Written so that compilers vectorise it. */
 static float largest_of(const lensprof_plan *plan, const run *r) {
     const uint16_t *codes = (const uint16_t *)(const void *)r->from;
     const float *values = (const float *)(const void *)r->from;
@@ -179,12 +180,12 @@ static float largest_of(const lensprof_plan *plan, const run *r) {
         for (uint32_t i = 0; i < r->count; i++) most16 = codes[i] > most16 ? codes[i] : most16;
         return most16;
     case LENSPROF_SAMPLE_F32: return largest_value(values, r->count);
-    default: return 1.0f; /* halves are not looked through: as if there were white */
+    default: return 1.0f; /* halves are not scanned: treated as if white were present */
     }
 }
 
 #if CAN_STREAM
-/* Whole lines of a cache past it: parts of lines would be slower than no such way. */
+/* Bypasses a cache in whole lines: partial lines would be slower than not bypassing it. */
 static void stream_copy(uint8_t *to, const uint8_t *from, size_t bytes) {
     size_t i = (size_t)(-(uintptr_t)to % 64);
     if (i > bytes) i = bytes;
@@ -194,7 +195,7 @@ static void stream_copy(uint8_t *to, const uint8_t *from, size_t bytes) {
 }
 #endif
 
-/* A run whose codes are on the strip already, `is_loaded`, or not yet. */
+/* A run whose codes are on the strip already (`is_loaded`) or not yet. */
 static void do_run(const lensprof_plan *plan, const run *r, int is_loaded, strip *s) {
 #if LANES > 1
     if (do_one_pass(plan, r, s)) return;

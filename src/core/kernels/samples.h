@@ -1,4 +1,4 @@
-/* Samples in memory to numbers on the strip, and back. */
+/* Converts samples in memory to numbers on the strip, and back. */
 
 /* Half precision (IEEE binary16), exactly. */
 static inline float float_of_half(uint16_t h) {
@@ -16,7 +16,7 @@ static inline float float_of_half(uint16_t h) {
     return f;
 }
 
-/* To nearest, halves to even; beyond the range infinity. */
+/* Rounds to nearest, ties to even; infinity beyond the range. */
 static inline uint16_t half_of_float(float f) {
     uint32_t bits, magnitude;
     memcpy(&bits, &f, sizeof bits);
@@ -66,7 +66,7 @@ ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t cou
     }
 }
 
-/* Light of codes by the table of all codes. */
+/* Light of codes from the table of all codes. */
 ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, uint32_t at, lane_f codes) {
     lane_i code = i_of_f(codes);
     if (plan->curves == 3) {
@@ -83,7 +83,7 @@ static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uin
 
 /* ---- light to samples ---- */
 
-/* One vector as samples at p. `at`: its place on the strip. `is_inside`: all within black and white. */
+/* Stores one vector as samples at p. `at`: its place on the strip. `is_inside`: all within black and white. */
 ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int is_inside, const strip *s, uint32_t at,
                                 lane_f light, uint8_t *p) {
     if (sample == LENSPROF_SAMPLE_F32) {
@@ -154,7 +154,7 @@ static float get_value(uint32_t sample, const uint8_t *p) {
                                            : value;
 }
 
-/* As it was, converted where the types differ. */
+/* Unchanged, converted if the types differ. */
 static void give_alpha(const lensprof_plan *plan, const strip *s, uint8_t *to, uint32_t count) {
     const uint32_t bytes = lensprof_sample_type_bytes(plan->target_sample);
     for (uint32_t i = 0; i < count; i++) {

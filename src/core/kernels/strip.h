@@ -1,4 +1,4 @@
-/* What the steps of a row kernel work on: a strip of pixels that stays in the first cache. A lanes_*.h comes first. */
+/* The data of a row kernel's steps: a strip of pixels that fits into the first cache. A lanes_*.h comes first. */
 #include "core/plan.h"
 
 #if defined(__GNUC__)
@@ -13,7 +13,7 @@
 #define NEVER_INLINE
 #endif
 
-/* Of one lane, which microcontrollers run, the code is to be small. */
+/* With one lane, which microcontrollers run, the code must be small. */
 #if LANES > 1
 #define ONCE_IN_SCALAR ALWAYS_INLINE
 #define ALIGNED_TO_VECTORS _Alignas(4 * LANES)
@@ -24,20 +24,20 @@
 
 #define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 #define MOST_SAMPLES (4 * STRIP)
-#define ROOM (MOST_SAMPLES + LANES) /* the last vector of a strip may go beyond */
+#define ROOM (MOST_SAMPLES + LANES) /* the last vector of a strip may extend beyond */
 
-/* Planes stand STRIP + LANES apart on it. */
+/* Distance of its planes: STRIP + LANES. */
 typedef struct strip {
     float gain[LP_CHANNELS][STRIP + LANES]; /* of the pixels */
     union {
-        int32_t channel[ROOM]; /* of the samples, where the channels have curves of their own */
-        int32_t place[ROOM];   /* of the samples in a table, where they have one curve */
+        int32_t channel[ROOM]; /* of the samples, if the channels have curves of their own */
+        int32_t place[ROOM];   /* of the samples in a table, if the channels have one curve */
     };
-    /* In this order: the vector beyond each array's samples keeps one index of two arrays from lying exactly 4 KiB
-     * apart, where processors take a load for one of what was just stored. */
+    /* Keep this order: the extra vector after each array's samples prevents one index of two arrays from being
+     * exactly 4 KiB apart, at which distance processors mistake a load for one of data just stored. */
     float light[ROOM];
     float factor[ROOM];   /* of the samples */
-    float rounding[ROOM]; /* added before a code is cut to an integer, with dither */
+    float rounding[ROOM]; /* added before a code is truncated to an integer, with dither */
     uint8_t alpha[STRIP][4];
     float grid[LP_CHANNELS][LENSPROF_GRID_SIDE + 1];
 #ifdef IN_TABLE

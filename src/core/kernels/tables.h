@@ -1,10 +1,10 @@
-/* Samples of one type in and out, through one table both ways, in stages of a whole run: places in a table go through
- * memory, and loads by them then wait for nothing. The same numbers as those of curves.h. */
+/* Samples of one type in and out, through one table in both directions, in stages of a whole run: table positions
+ * are stored in memory, so that loads from them do not wait. The numbers are the same as in curves.h. */
 #ifdef IN_TABLE
 #include "core/kernels/guess.h"
 #endif
 
-/* Keeps what is around it scalar: compilers' vectors of loads by places, which are gathers, are slower. */
+/* Keeps the surrounding code scalar: gathers, which compilers use for vectors of indexed loads, are slower. */
 #if defined(__GNUC__)
 #define ONE_BY_ONE() __asm__ volatile("")
 #else
@@ -33,7 +33,7 @@ static void look_up(const uint16_t *restrict table, int32_t *restrict place, uin
     }
 }
 
-/* Values to light, no steps being needed. */
+/* Converts values to light if no steps are needed. */
 static void values_by_table(const lensprof_plan *plan, const run *r, strip *s) {
     const uint16_t *start = plan->start;
     const float *samples = plan->backward;
@@ -52,8 +52,8 @@ static void values_by_table(const lensprof_plan *plan, const run *r, strip *s) {
     }
 }
 
-/* Light times gain to samples: first where each lies in the table, the sample before it and the share of the way to the
- * next, then what is there. A share of NaN stays NaN. */
+/* Light times gain to samples. First finds each position in the table: the sample before it and the fraction of the
+ * way to the next; then reads the table. A fraction of NaN stays NaN. */
 ALWAYS_INLINE void light_by_table(const lensprof_plan *shared, const run *r, strip *s, uint32_t sample) {
     lensprof_plan own = *shared; /* which no store can change */
     const lensprof_plan *plan = &own;
