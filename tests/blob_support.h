@@ -7,7 +7,7 @@
 #include <lensprof/apply.h>
 #include <lensprof/profile.h>
 
-/* CRC-32 bit by bit, as the standard has it: not the library's. */
+/* CRC-32 computed bit by bit, as the standard defines it, independent of the library's. */
 static inline uint32_t slow_crc32(const uint8_t *bytes, size_t count) {
     uint32_t crc = 0xFFFFFFFFu;
     for (size_t i = 0; i < count; i++) {
@@ -33,13 +33,13 @@ static inline void put_float(uint8_t *at, float value) {
     put_number(at, bits, 4);
 }
 
-/* Makes length and CRC right again. */
+/* Updates length and CRC after a change. */
 static inline void seal(uint8_t *blob, size_t bytes) {
     put_number(blob + 8, bytes, 4);
     put_number(blob + bytes - 4, slow_crc32(blob, bytes - 4), 4);
 }
 
-/* A blob of its own size, so that a sanitizer sees every byte too far. */
+/* A blob in an allocation of its exact size, so that a sanitizer detects every access beyond it. */
 static inline uint8_t *pack(const lensprof_profile *profile, uint32_t flags, size_t *bytes) {
     *bytes = 0;
     assert_ok(lensprof_profile_pack(profile, flags, NULL, 0, bytes));
@@ -58,7 +58,7 @@ static inline void random_response(lensprof_response *r, uint64_t *random) {
         double c[LENSPROF_EMOR_MODES];
         const uint32_t modes = (uint32_t)(26 * lp_random(random));
         double size = 0.5;
-        do { /* until it rises */
+        do { /* until the response rises */
             for (uint32_t l = 0; l < modes; l++) c[l] = size * lp_normal(random) / (1 + l);
             size *= 0.7;
         } while (lensprof_response_set_emor(r, c, modes) != LENSPROF_OK);
@@ -76,9 +76,9 @@ static inline void random_response(lensprof_response *r, uint64_t *random) {
 }
 
 static inline void random_text(char *text, size_t capacity, uint64_t *random) {
-    const size_t length = (size_t)((double)capacity * lp_random(random)); /* as long as it may be at times */
+    const size_t length = (size_t)((double)capacity * lp_random(random)); /* sometimes as long as allowed */
     for (size_t i = 0; i < length; i++) text[i] = (char)(0x20 + (int)(94.0 * lp_random(random)));
-    if (length > 1) text[0] = '\xc3', text[1] = '\xa4'; /* beyond ASCII */
+    if (length > 1) text[0] = '\xc3', text[1] = '\xa4'; /* not ASCII */
 }
 
 static inline void random_key(lensprof_profile *p, uint64_t *random) {
@@ -105,7 +105,7 @@ static inline void random_grid(lensprof_gain_grid *grid, uint64_t *random) {
         grid->attenuation[i] = (float)(0.6 + 0.8 * lp_random(random));
 }
 
-/* Everything a profile may hold but `source`, which is not packed. */
+/* Every member of a profile except `source`, which is not packed. */
 static inline void random_profile(lensprof_profile *p, uint64_t *random) {
     lensprof_profile_init(p);
     random_key(p, random);

@@ -1,4 +1,4 @@
-/* Campaigns: tests of hundreds of runs. `make soak` runs them whole, `make test` a slice of them
+/* Campaigns: tests of hundreds of runs. `make soak` runs all of them, `make test` only a slice
  * (tests/CMakeLists.txt). */
 #ifndef LENSPROF_TESTS_CAMPAIGN_H
 #define LENSPROF_TESTS_CAMPAIGN_H

@@ -1,4 +1,4 @@
-/* What every cmocka test includes: cmocka with its prerequisites, and comparisons it lacks. */
+/* Common header of the cmocka tests: cmocka with its prerequisites, and additional comparisons. */
 #ifndef LENSPROF_TESTS_SUPPORT_H
 #define LENSPROF_TESTS_SUPPORT_H
 
@@ -23,7 +23,7 @@ static inline void lp_assert_close(double a, double b, double tolerance, const c
     }
 }
 
-/* The reason of a fit or flat field: its code, and words of its sentence. */
+/* Checks the reason of a fit or flat field: its code, and words of its sentence. */
 #define assert_reason(result, code, words)                              \
     do {                                                                \
         assert_non_null(strstr((result).reason, (words)));              \

@@ -1,4 +1,4 @@
-// What tests of many or large pictures share: a lens to correct them with.
+// Common parts of the tests of many or large pictures: a lens to correct them with.
 #pragma once
 
 #include "cli_runs.hpp"
@@ -9,7 +9,7 @@ namespace batch_runs {
 
 using namespace cli_runs;
 
-// A falloff, a response and a gain grid, so that every pixel's place matters.
+// A falloff, a response and a gain grid, so that the correction depends on every pixel's place.
 inline std::unique_ptr<lensprof_profile> make_profile_of_lens() {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());

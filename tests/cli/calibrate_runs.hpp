@@ -1,4 +1,4 @@
-// What the tests of `calibrate` share.
+// Common parts of the tests of `calibrate`.
 #pragma once
 
 #include "cli/registration/registration.hpp"
@@ -26,7 +26,7 @@ inline Words calibrated(const std::string &input, const Words &more = {}) {
     return Words{"calibrate", input, "-o", work("out"), "--db", work("p.db"), "--json"} + more;
 }
 
-// What this run did: registered, fitted, corrected.
+// Checks what this run did: registered, fitted, corrected.
 inline void assert_now(const Json &json, bool registered, int fitted, int corrected) {
     const Json now = {{"registered", registered}, {"fitted", fitted}, {"corrected", corrected}};
     if (json["now"] != now) fail_msg("did %s, not %s", json["now"].dump().c_str(), now.dump().c_str());

@@ -1,4 +1,5 @@
-// What the tests of the program share: commands run in process, the disk before and after, and a rendered sequence.
+// Common parts of the tests of the program: commands run in process, the disk before and after, and a rendered
+// sequence.
 #pragma once
 
 #include <cerrno>
@@ -10,7 +11,7 @@
 #include <map>
 #include <sstream>
 
-#include <regex.h>  // <regex> draws false warnings from gcc under sanitizers
+#include <regex.h>  // <regex> causes false warnings from gcc under sanitizers
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -29,12 +30,12 @@ using namespace picture_files;
 using Words = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
 
-// The numbers of the contract, written again: they must not follow a change of the program.
+// The exit codes of the contract, repeated here because they must not follow a change of the program.
 constexpr int done = 0, failed = 1, usage = 2, unreadable = 3, not_usable = 4, not_found = 5, store_failed = 6,
               stopped = 130;
 
 struct Outcome {
-    int code;  // 128 + number of the signal that ended a child
+    int code;  // or 128 + number of the signal that ended a child
     std::string out, err;
 };
 
@@ -75,8 +76,8 @@ inline Json json_of(const Words &words, int code = done) {
     return json;
 }
 
-// Runs in a child that `prepare` has changed: another user, another limit. Both outputs come back through a pipe, so
-// that a full disk does not hide them.
+// Runs in a child process that `prepare` has changed: another user, another limit. Both outputs come back through a
+// pipe, so that a full disk does not hide them.
 inline Outcome run_child(
     const Words &words, const std::function<void()> &prepare = [] {}) {
     int ends[2];
@@ -157,8 +158,8 @@ inline void assert_refused(int code, const Words &words, const Words &named) {
         fail_msg("%s: printed %s", joined(words).c_str(), outcome.out.c_str());
 }
 
-// Where an extended regular expression matches in `text` from `at` on, with its groups; empty when it does not. `.`
-// stays within a line.
+// Range of the first match of an extended regular expression in `text` from `at` on, and those of its groups; empty
+// without a match. `.` does not match a line break.
 inline std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pattern, const std::string &text,
                                                            size_t at = 0) {
     regex_t compiled;
@@ -220,7 +221,7 @@ inline std::string lensfun_text(const std::string &lens, const std::vector<Lensf
 constexpr const char *mixed_names[] = {"img000.png", "img001.png", "img002.tif",
                                        "img003.tif", "img004.tif", "img005.jpg"};
 
-// Largest difference of a falloff in JSON (k1..k3) from the true one, from the centre to the corner.
+// Largest difference between a falloff in JSON (k1..k3) and the true one, from the centre to the corner.
 inline double falloff_error(const Json &k, const std::vector<double> &truth) {
     double worst = 0.0;
     for (double r = 0.0; r <= 1.0; r += 0.05) {
@@ -241,7 +242,7 @@ inline std::string copy_of(const std::string &from, const std::string &to = "cop
     return work(to);
 }
 
-// Enough for what is not about accuracy.
+// Enough for tests that are not about accuracy.
 inline const Words quick = {"--pairs", "600", "--modes", "3"};
 
 inline int make_scene(void **state) {

@@ -1,5 +1,5 @@
-// HEIF, WebP and JPEG XL files that tests make with the encoders of the libraries, where the program was built with
-// them. Without loss, so that the truth is the picture that goes in.
+// HEIF, WebP and JPEG XL files written with the encoders of the libraries, if the program was built with them. They are
+// lossless, so that the truth is the input picture.
 #pragma once
 
 #include <cstring>
@@ -19,7 +19,7 @@
 
 #include "picture_files.hpp"
 
-// x265 keeps some memory.
+// x265 does not free all memory.
 extern "C" const char *__lsan_default_suppressions();
 extern "C" const char *__lsan_default_suppressions() { return "leak:libx265\nleak:libfontconfig"; }
 
@@ -34,7 +34,7 @@ struct Extras {
     int transfer = 0;          // ITU-T H.273, of HEIF: 0 = sRGB
 };
 
-// A TIFF structure, as it stands in all of these files.
+// A TIFF structure, as embedded in all of these files.
 inline Bytes make_exif(uint16_t orientation) {
     Exiv2::ExifData exif;
     exif["Exif.Image.Make"] = "Example Works";
@@ -58,7 +58,7 @@ inline Bytes make_xmp() {
     return {text.begin(), text.end()};
 }
 
-// Four bytes before EXIF, in HEIF and JPEG XL.
+// The four bytes before EXIF, in HEIF and JPEG XL.
 inline Bytes with_offset(const Bytes &exif) {
     Bytes item(4, 0);
     item.insert(item.end(), exif.begin(), exif.end());
@@ -72,7 +72,7 @@ inline Picture of_bits(Picture picture, unsigned bits) {
     return picture;
 }
 
-// The same of the full scale of 16 bits.
+// The same, scaled to the full range of 16 bits.
 inline Picture full_scale(Picture picture, unsigned bits) {
     auto *values = reinterpret_cast<uint16_t *>(picture.pixels.data());
     const double white = (1u << bits) - 1;
@@ -85,7 +85,7 @@ inline void put_number(Bytes &bytes, uint32_t value, int count) {
     for (int i = 0; i < count; ++i) bytes.push_back(static_cast<uint8_t>(value >> 8 * i));
 }
 
-// RIFF: a name, a size, bytes, and one more where their number is odd.
+// RIFF: a name, a size, the bytes, and a padding byte if their number is odd.
 inline void put_riff(Bytes &bytes, const char *name, const Bytes &content) {
     bytes.insert(bytes.end(), name, name + 4);
     put_number(bytes, static_cast<uint32_t>(content.size()), 4);
@@ -111,7 +111,7 @@ inline Bytes extended_webp(const Bytes &simple, uint32_t width, uint32_t height,
 }
 
 #ifdef LENSPROF_HAS_WEBP
-// Of 8 bit RGB or RGBA; without loss where `quality` is negative.
+// 8 bit RGB or RGBA; lossless if `quality` is negative.
 inline Bytes webp_bytes(const Picture &picture, float quality = -1) {
     WebPConfig config;
     WebPPicture coded;
@@ -167,7 +167,7 @@ inline heif_image *heif_pixels(const Picture &picture, int bits) {
     return image;
 }
 
-// Without loss, red, green and blue as they are.
+// Lossless, without conversion of red, green and blue.
 inline void add_heif(heif_context *context, heif_encoder *encoder, const Picture &picture, int bits,
                      const Extras &extras, heif_image_handle **handle) {
     heif_image *image = heif_pixels(picture, bits);
@@ -220,7 +220,7 @@ inline void write_heif(const std::string &path, heif_compression_format format, 
 
 #ifdef LENSPROF_HAS_JXL
 struct JxlKind {
-    float distance = 0;  // 0 = without loss
+    float distance = 0;  // 0 = lossless
     uint32_t transfer = JXL_TRANSFER_FUNCTION_SRGB;
     bool boxes_compressed = false, animated = false;
     uint32_t bits = 0;  // 0: as the picture

@@ -1,4 +1,5 @@
-// An HEIC picture put together of tiles, as phones write them: libheif's encoder of Debian 12 makes none of several.
+// An HEIC picture composed of tiles, as phones write them: libheif's encoder of Debian 12 cannot write one of several
+// tiles.
 #pragma once
 
 #include <initializer_list>
@@ -32,7 +33,7 @@ inline Bytes full_box(const char *type, unsigned version, const Bytes &content) 
     return box(type, joined({number(uint64_t(version) << 24, 4), content}));
 }
 
-// The content of the first box of a type in a file of one picture, found by its name.
+// The content of the first box of a type in a file with one picture, found by its name.
 inline Bytes content_of(const Bytes &file, const char *type) {
     const std::string name = type;
     const auto at = std::search(file.begin(), file.end(), name.begin(), name.end());
@@ -43,11 +44,11 @@ inline Bytes content_of(const Bytes &file, const char *type) {
 }
 
 struct Grid {
-    unsigned columns, rows, tile, width, height;  // the last two: what is shown of all tiles
-    unsigned quarters;                            // turns anticlockwise
+    unsigned columns, rows, tile, width, height;  // the last two: the visible part of all tiles
+    unsigned quarters;                            // quarter turns anticlockwise
 };
 
-// ISO/IEC 23008-12: items 1 to n are tiles, coded alike, and the next one is the grid of them (6.6.2.3).
+// ISO/IEC 23008-12: items 1 to n are the tiles, with the same coding, and the next item is their grid (6.6.2.3).
 inline Bytes bytes_of(const std::vector<Bytes> &tiles, const Grid &grid) {
     const uint64_t count = tiles.size(), own = count + 1;
     Bytes data, tile_ids, infos, properties, sizes;

@@ -21,7 +21,7 @@ inline void put32(Bytes &bytes, uint32_t value) {
 
 inline void put_name(Bytes &bytes, const std::string &name) { bytes.insert(bytes.end(), name.begin(), name.end()); }
 
-// 10.5 of the specification: samples of 16 bit; one of them is an exponent times 256, none is y = x.
+// 10.5 of the specification: samples of 16 bit; a single sample is an exponent times 256, and an empty list is y = x.
 inline Bytes samples_curve(const std::vector<uint32_t> &samples) {
     Bytes bytes;
     put_name(bytes, "curv");

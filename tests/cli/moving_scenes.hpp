@@ -1,5 +1,5 @@
-// Pictures of `simulate --moving` with what structure from motion would find in them: points that the scene itself
-// gives.
+// Pictures of `simulate --moving` with the output that structure from motion would give for them: points computed from
+// the scene itself.
 #pragma once
 
 #include <array>
@@ -106,11 +106,11 @@ private:
     std::vector<Pose> poses_;
 };
 
-// A rotation as a quaternion (w, x, y, z); its angle is below 180 degrees where w is above 0.
+// A rotation as a quaternion (w, x, y, z); its angle is below 180 degrees if w is above 0.
 inline std::array<double, 4> quaternion_of(const double r[3][3]) {
     std::array<double, 4> q = {1 + r[0][0] + r[1][1] + r[2][2], r[2][1] - r[1][2], r[0][2] - r[2][0],
                                r[1][0] - r[0][1]};
-    if (q[0] < 1e-3) {  // about half a turn: by the largest column instead
+    if (q[0] < 1e-3) {  // about half a turn: uses the largest column instead
         const int k = r[0][0] >= r[1][1] ? (r[0][0] >= r[2][2] ? 0 : 2) : (r[1][1] >= r[2][2] ? 1 : 2);
         const int l = (k + 1) % 3, m = (k + 2) % 3;
         q[size_t(1 + k)] = 1 + r[k][k] - r[l][l] - r[m][m];
@@ -145,7 +145,7 @@ inline void MovingScene::write_colmap(const std::string &name) const {
         for (const auto &row : pose.rotation)
             images << " " << -(row[0] * pose.centre[0] + row[1] * pose.centre[1] + row[2] * pose.centre[2]);
         images << " 1 " << file(i) << "\n";
-        for (const auto &[point, sight] : of_image[i])  // COLMAP: the first pixel's middle is (.5, .5)
+        for (const auto &[point, sight] : of_image[i])  // COLMAP: the centre of the first pixel is (.5, .5)
             images << sight.xy[0] + 0.5 << " " << sight.xy[1] + 0.5 << " " << point << " ";
         images << "\n";
     }

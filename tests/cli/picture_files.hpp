@@ -1,4 +1,4 @@
-// What the tests of picture files share: a folder of their own, made up pictures, and files that the libraries
+// Common parts of the tests of picture files: a separate folder, synthetic pictures, and files that the libraries
 // themselves write, so that nothing is checked against the code under test.
 #pragma once
 
@@ -44,7 +44,7 @@ inline size_t files_in_folder() {
     return static_cast<size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-// In blocks: byte by byte it takes longer than what is tested. Empty where there is no such file.
+// Reads in blocks: byte by byte takes longer than the tested code. Empty if there is no such file.
 inline Bytes load(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
     Bytes bytes;
@@ -94,7 +94,7 @@ inline Bytes make_profile(bool grey, size_t size) {
     return profile;
 }
 
-// Every sample random: an exchange of bytes, rows or channels shows.
+// Every sample is random, so that an exchange of bytes, rows or channels is detected.
 inline Picture make_noise(uint32_t width, uint32_t height, uint32_t sample, uint32_t layout) {
     Picture picture;
     picture.width = picture.frame_width = width;
@@ -113,7 +113,7 @@ inline Picture make_noise(uint32_t width, uint32_t height, uint32_t sample, uint
     return picture;
 }
 
-// What JPEG is made for.
+// A picture suited to JPEG.
 inline Picture make_smooth(uint32_t width, uint32_t height, uint32_t layout) {
     Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U8, layout);
     const uint32_t samples = lensprof_layout_samples(layout);
@@ -267,7 +267,7 @@ inline void write_jpeg_file(const std::string &path, const Picture &picture, con
     std::fclose(file);
 }
 
-// Group fixtures: a folder that is gone afterwards.
+// Group fixtures: a folder that is removed afterwards.
 inline int make_folder(void **) {
     std::string name = (fs::temp_directory_path() / "lensprof-pictures-XXXXXX").string();
     if (!mkdtemp(name.data())) return -1;
@@ -280,7 +280,7 @@ inline int remove_folder(void **) {
     return 0;
 }
 
-// Setup of a test: nothing left from the one before.
+// Setup of a test: removes everything left by the previous one.
 inline int empty_folder(void **) {
     for (const fs::directory_entry &entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
     return 0;

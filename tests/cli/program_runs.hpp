@@ -1,4 +1,4 @@
-// The program as a process of its own, for tests of the memory that it uses.
+// The program in a separate process, for tests of its memory use.
 #pragma once
 
 #include <fcntl.h>
@@ -10,8 +10,8 @@ namespace program_runs {
 using namespace batch_runs;
 
 struct Ended {
-    int code;   // 128 and the number of a signal that ended it
-    long peak;  // of its memory, bytes
+    int code;   // or 128 + number of the signal that ended it
+    long peak;  // of its memory use, bytes
     std::string err;
 };
 

@@ -1,4 +1,4 @@
-// Camera raw files that tests make: DNGs of a mosaic or of linear values, written byte by byte (DNG 1.4; TIFF 6.0).
+// Synthetic camera raw files: DNGs of a mosaic or of linear values, written byte by byte (DNG 1.4; TIFF 6.0).
 #pragma once
 
 #include <array>
@@ -14,23 +14,23 @@ namespace raw_files {
 using picture_files::Bytes;
 
 enum class Packing {
-    words,    // 16 bits a sample, little-endian
+    words,    // 16 bits per sample, little-endian
     bits,     // without gaps, the highest bit first
     lossless  // lossless JPEG (ITU T.81, process 14), predictor 1
 };
 
 struct Dng {
-    uint32_t width = 0, height = 0, samples = 1;  // of all that is stored
+    uint32_t width = 0, height = 0, samples = 1;  // of all stored pixels
     std::vector<uint16_t> values;
     uint16_t bits = 16;
     Packing packing = Packing::words;
     uint32_t white = 65535;
-    std::vector<uint32_t> black = {0};  // one, or those of 2 x 2 places
+    std::vector<uint32_t> black = {0};  // one value, or those of 2 x 2 places
     std::array<uint8_t, 4> pattern = {0, 1, 1, 2};
-    std::vector<uint32_t> pattern6;        // of 6 x 6 places, in its place; empty = none
+    std::vector<uint32_t> pattern6;        // of 6 x 6 places, instead of 2 x 2; may be empty
     std::vector<uint32_t> active, masked;  // top, left, bottom, right
     std::string maker = "TestMaker", model = "TestCam 1";
-    bool is_dng = true;  // else the same structure without the tags of DNG, as of NEF and PEF
+    bool is_dng = true;  // otherwise the same structure without the tags of DNG, as in NEF and PEF
     uint16_t orientation = 1;
     uint32_t declared = 0;  // width and height in the header instead of the true ones; 0 = the true ones
 };
@@ -66,7 +66,7 @@ inline Bytes packed(const Dng &dng) {
     for (uint32_t y = 0; y < dng.height; y++) {
         const size_t row = size_t(dng.width) * dng.samples;
         for (size_t i = 0; i < row; i++) writer.put(dng.values[y * row + i], dng.bits);
-        while (row * dng.bits % 8 != 0) return {};  // a row ends within a byte: not made here
+        while (row * dng.bits % 8 != 0) return {};  // rows that end within a byte are not supported here
     }
     return writer.finish();
 }
@@ -161,7 +161,7 @@ inline void add_levels(Directory &directory, const Dng &dng) {
     if (dng.black.size() == 4) directory.numbers(50713, 3, {2, 2});
     directory.numbers(50714, 4, dng.black.size() == 4 ? dng.black : std::vector<uint32_t>(dng.samples, dng.black[0]));
     directory.numbers(50717, 4, std::vector<uint32_t>(dng.samples, dng.white));
-    // XYZ to the camera's colours, and its white: any that can be inverted
+    // XYZ to the camera's colours, and its white: any invertible matrix
     std::vector<uint32_t> matrix;
     for (int v : {10000, -2000, -1000, -3000, 11000, 2000, -500, 2000, 6000})
         matrix.push_back(static_cast<uint32_t>(v)), matrix.push_back(10000);

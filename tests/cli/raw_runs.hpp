@@ -1,4 +1,4 @@
-// Commands on camera raw files that tests make.
+// Runs of commands on synthetic camera raw files.
 #pragma once
 
 #include "cli_runs.hpp"
@@ -15,7 +15,7 @@ inline void needs_libraw() {
     skip();
 }
 
-// Overlapping pictures as simulate renders them, linear, made mosaics.
+// Overlapping pictures as rendered by simulate, linear, converted to mosaics.
 inline void make_mosaics(const std::string &folder) {
     must_exit(done, {"simulate", "-o", folder, "--images", "6", "--size", "480x360", "--response", "linear",
                      "--vignetting", "-0.4,0.1,-0.05", "--format", "png16", "--test-points", "2000"});

@@ -1,4 +1,4 @@
-// What must hold of a reconstruction that was read, and of one that cannot be.
+// Conditions that must hold for a reconstruction that was read, and for one that cannot be read.
 #pragma once
 
 #include "reconstruction_files.hpp"
@@ -31,7 +31,7 @@ inline void assert_unreadable(const std::string &path, const std::string &part, 
     if (text.find(part) == std::string::npos) fail_msg("'%s' does not say '%s'", text.c_str(), part.c_str());
 }
 
-// A file cut at every `step`-th byte: read, or a Failure that names its folder.
+// Cuts a file at every `step`-th byte: the result must be valid, or a Failure that names its folder.
 inline void cut_everywhere(const std::string &path, size_t step, const Read &read) {
     const Bytes whole = load(path);
     size_t failures = 0;

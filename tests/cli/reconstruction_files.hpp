@@ -1,4 +1,5 @@
-// Small files of structure-from-motion programs, written by their formats' descriptions and not by the program.
+// Small files of structure-from-motion programs, written according to the descriptions of their formats, independent of
+// the program.
 #pragma once
 
 #include <array>
@@ -44,7 +45,7 @@ inline std::string with_crlf(const std::string &text) {
     return out;
 }
 
-// A database that stays open until its end.
+// A database that stays open until this object is destroyed.
 class OpenDatabase {
 public:
     explicit OpenDatabase(const std::string &path) {
@@ -67,7 +68,7 @@ private:
 
 inline void run_sql(const std::string &path, const std::string &sql) { OpenDatabase(path).run(sql); }
 
-// Little-endian numbers as a literal of SQL.
+// Little-endian numbers as an SQL literal.
 template <class Number>
 std::string blob_of(const std::vector<Number> &numbers) {
     std::string text = "x'";
@@ -88,7 +89,7 @@ inline std::string keypoints_sql(int image, int columns, const std::vector<float
            + ");";
 }
 
-// Of the images of smaller and larger number, by the numbers of their features.
+// Matches between the images of smaller and larger number, by the numbers of their features.
 inline std::string matches_sql(int64_t smaller, int64_t larger, int configuration,
                                const std::vector<uint32_t> &features) {
     return "INSERT INTO two_view_geometries(pair_id,rows,cols,data,config) VALUES("
@@ -155,7 +156,7 @@ private:
     Bytes bytes_;
 };
 
-// A camera at (1, 2, 3) that is turned by 90 degrees about the axis z: its quaternion, rotation and -R C.
+// A camera at (1, 2, 3) that is rotated by 90 degrees about the z axis: its quaternion, rotation and -R C.
 constexpr double half_root = 0.70710678118654752;
 constexpr const char *quarter_turn = "0.70710678118654752 0 0 0.70710678118654752 2 -1 -3";
 

@@ -1,4 +1,4 @@
-// Raw files and the JPEGs that a made-up camera renders of them: its response, colours and falloff are known.
+// Raw files and the JPEGs that a simulated camera renders from them: its response, colours and falloff are known.
 #pragma once
 
 #include <array>
@@ -22,18 +22,19 @@ using Colour = std::array<double, 3>;
 struct Shot {
     uint32_t width = 900, height = 600;  // of the sensor
     lensprof_response response{};
-    double white_ev = 0.3;             // the rendering's white is so far below the sensor's saturation
+    double white_ev = 0.3;             // EV between the rendering's white and the sensor's saturation
     double exposure = 1.0;             // of the scene, 1: its mid-grey is near a sixth of the rendering's white
     double mixing = 0.5;               // off-diagonal weight of the colour matrix; 0 = none
     Colour balance = {2.0, 1.0, 1.6};  // gains of the channels
     Colour falloff = {-0.40, 0.10, -0.05};
-    bool corrects = false;    // the falloff, before the curve
-    double local_ev = 0.0;    // gain of tones by the mean of their surroundings
-    double saturation = 0.0;  // of colours, after the curve
+    bool corrects = false;    // whether it corrects the falloff, before the curve
+    double local_ev = 0.0;    // gain of tones depending on the mean of their surroundings
+    double saturation = 0.0;  // change of colours, after the curve
     double sharpen = 0.3;
-    double noise = 0.0015, shot_noise = 0.01;  // of a photosite: constant, and by the square root of the light
-    double crop = 0.01;                        // share left out at every edge
-    double bend = 0.0;                         // k1 of a distortion that is corrected
+    double noise = 0.0015,
+           shot_noise = 0.01;  // of a photosite: constant, and proportional to the square root of the light
+    double crop = 0.01;        // share left out at every edge
+    double bend = 0.0;         // k1 of a distortion that the rendering corrects
     uint32_t rendered_width = 800;
     int quarter_turns = 0;  // of the rendering
     JpegKind jpeg = {92, 2, 2};
@@ -67,7 +68,7 @@ inline double falloff_of(const Shot &shot, double r2) {
     return 1.0 + r2 * (shot.falloff[0] + r2 * (shot.falloff[1] + r2 * shot.falloff[2]));
 }
 
-// Neutral stays neutral.
+// Neutral colours stay neutral.
 inline Colour mixed(const Shot &shot, const Colour &in) {
     const double m = shot.mixing;
     return {(1 + m) * in[0] - 0.8 * m * in[1] - 0.2 * m * in[2],
@@ -75,7 +76,7 @@ inline Colour mixed(const Shot &shot, const Colour &in) {
             -0.1 * m * in[0] - 0.9 * m * in[1] + (1 + m) * in[2]};
 }
 
-// What the sensor receives, of its saturation; not clipped.
+// The light on the sensor, relative to its saturation; not clipped.
 inline Field sensor_light(const Shot &shot) {
     Field field{shot.width, shot.height, std::vector<Colour>(size_t(shot.width) * shot.height)};
     const lensprof::Scene scene(shot.seed, shot.scene);
@@ -130,7 +131,7 @@ inline Field demosaiced(const raw_files::Dng &dng) {
     return field;
 }
 
-// Of the rendering's size: linear light, white 1, in the colours of the output.
+// In the size of the rendering: linear light, white 1, in the colours of the output.
 inline Field linear_rendering(const Shot &shot, const Field &full) {
     const double kept = 1.0 - 2.0 * shot.crop, reduction = kept * shot.width / shot.rendered_width;
     Field out{shot.rendered_width, uint32_t(std::lround(kept * shot.height / reduction)), {}};
@@ -159,7 +160,7 @@ inline Field linear_rendering(const Shot &shot, const Field &full) {
     return out;
 }
 
-// Dark surroundings are made lighter and bright ones darker, as D-Lighting and its like do.
+// Brightens dark surroundings and darkens bright ones, as D-Lighting and similar functions do.
 inline void map_locally(const Shot &shot, Field &field) {
     if (shot.local_ev == 0.0) return;
     const int radius = int(field.width) / 12;
@@ -192,7 +193,7 @@ inline Picture rendered_of(const Shot &shot, const Field &full) {
     picture.pixels.resize(picture.row_bytes * picture.height);
     for (uint32_t y = 0; y < picture.height; y++)
         for (uint32_t x = 0; x < picture.width; x++) {
-            // A picture that was turned clockwise shows at (x, y) what lay at (u, v).
+            // In a picture that was turned clockwise, (x, y) shows what was at (u, v).
             uint32_t u = x, v = y;
             if (shot.quarter_turns == 1) u = y, v = field.height - 1 - x;
             if (shot.quarter_turns == 2) u = field.width - 1 - x, v = field.height - 1 - y;
