@@ -300,6 +300,7 @@ void declare_align(Command &program) {
                                   "Converts the frames of a sequence to one exposure and white balance.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
+    command.example("lensprof align --to brightest -o aligned frame1.jpg frame2.jpg frame3.jpg");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

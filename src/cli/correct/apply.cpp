@@ -534,6 +534,7 @@ void declare_apply(Command &program) {
                                   "them again.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
+    command.example("lensprof apply photos -o corrected");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

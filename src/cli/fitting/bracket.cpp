@@ -300,6 +300,7 @@ void declare_bracket(Command &program) {
                                   "Estimates the camera's response and the exposures from pictures of one scene.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
+    command.example("lensprof bracket dark.jpg middle.jpg bright.jpg --times 1/60,1/15,1/4");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

@@ -339,6 +339,7 @@ void declare_build(Command &program) {
                                   "pictures.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
+    command.example("lensprof build photos --report report.html");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

@@ -202,6 +202,7 @@ void declare_flat(Command &program) {
         "them.");
     auto o = std::make_shared<FlatCommand>();
     declare(command, *o);
+    command.example("lensprof flat card0.tif card90.tif --linear --turned 0,90 --camera \"EOS R5\"");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

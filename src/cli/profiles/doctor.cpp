@@ -115,7 +115,7 @@ void declare_doctor(Command &program) {
     auto o = std::make_shared<Options>();
     declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
-    command.footer("Example: lensprof doctor");
+    command.example("lensprof doctor");
     command.run([o](Streams &streams) {
         const std::vector<DatabaseState> databases = databases_to_check(o->dbs);
         if (o->json)

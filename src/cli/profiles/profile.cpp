@@ -199,6 +199,7 @@ void declare_list(Command &profile) {
     declare_json(command, o->json);
     command.group("Filters");
     o->filter.add_options(command);
+    command.example("lensprof profile list --db lenses.db");
     command.run([o](Streams &streams) { return list(*o, streams); });
 }
 
@@ -216,6 +217,7 @@ void declare_show(Command &profile) {
     command.file("--blob", o->blob, "read this blob (docs/blob.md) instead of the database");
     command.group("Filters, instead of ids");
     o->filter.add_options(command);
+    command.example("lensprof profile show 3 --chart");
     command.run([o](Streams &streams) { return show(*o, streams); });
 }
 

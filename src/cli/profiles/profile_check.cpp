@@ -161,6 +161,7 @@ void declare_profile_check(Command &profile) {
     declare_against(command, o->against);
     declare_db(command, o->db);
     declare_json(command, o->json);
+    command.example("lensprof profile check --db lenses.db");
     command.run([o](Streams &streams) { return run_check(*o, streams); });
 }
 
@@ -169,6 +170,7 @@ void declare_profile_stats(Command &profile) {
     auto o = std::make_shared<StatsOptions>();
     declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
+    command.example("lensprof profile stats --db lenses.db");
     command.run([o](Streams &streams) { return run_stats(*o, streams); });
 }
 

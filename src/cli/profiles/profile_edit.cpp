@@ -76,6 +76,7 @@ void declare_remove(Command &profile) {
     declare_json(command, o->json);
     command.group("Filters, instead of ids");
     o->filter.add_options(command);
+    command.example("lensprof profile remove 3");
     command.run([o](Streams &streams) { return remove(*o, streams); });
 }
 
@@ -151,6 +152,7 @@ void declare_set(Command &profile) {
     command.flag("--any-unit", o->any_unit,
                  "make the profile valid for all units of the model, no longer for a "
                  "single one");
+    command.example("lensprof profile set 3 --lens \"EF 50mm f/1.8 STM\"");
     command.run([o](Streams &streams) { return set(*o, streams); });
 }
 

@@ -197,6 +197,7 @@ void declare_profile_export(Command &profile) {
                                   "file is written.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
+    command.example("lensprof profile export 1 -o vignette.png --frame 1280x1024");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

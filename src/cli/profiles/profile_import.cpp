@@ -230,6 +230,7 @@ void declare_profile_import(Command &profile) {
     command.group("Camera, lens and setting, for files that do not name them");
     o->key.add_options(command);
     command.footer(about_foreign(false));
+    command.example("lensprof profile import pcalib.txt vignette.png --camera \"My Camera\"");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

@@ -83,6 +83,7 @@ void declare_profile_merge(Command &profile) {
     command.require("OTHER.db");
     declare_db(command, o->db, ", created if missing");
     declare_json(command, o->json);
+    command.example("lensprof profile merge other.db --db lenses.db");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

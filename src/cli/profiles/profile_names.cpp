@@ -101,6 +101,7 @@ void declare(Command &profile, const char *verb, const char *brief, bool of_lens
                   "a name or words in it, such as 24-70 canon; case, blanks and punctuation are ignored; default all");
     declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
+    command.example(of_lenses ? "lensprof profile lenses canon" : "lensprof profile cameras canon");
     command.run([o, of_lenses](Streams &streams) { return run(*o, of_lenses, streams); });
 }
 

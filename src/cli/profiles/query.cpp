@@ -213,6 +213,7 @@ void declare_query(Command &program) {
         "one predicted from other settings of the lens.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
+    command.example("lensprof query --lens \"canon 50mm f1.8 STM EF\" --focal 50 --aperture 2.5");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

@@ -410,7 +410,7 @@ namespace {
 
 size_t index_of(const std::string &word, const std::vector<std::string> &words) {
     const auto found = std::find(words.begin(), words.end(), word);
-    if (found == words.end()) throw std::invalid_argument(word + ": use " + joined(words));
+    if (found == words.end()) throw std::invalid_argument(word + ": use " + joined(words) + did_you_mean(word, words));
     return static_cast<size_t>(found - words.begin());
 }
 
@@ -442,6 +442,11 @@ void Command::require(const char *name) { app_->get_option(name)->required(); }
 void Command::group(const std::string &title) { app_->option_defaults()->group(title); }
 
 void Command::footer(const std::string &text) { app_->footer(text); }
+
+void Command::example(const std::string &command_line) {
+    const std::string above = app_->get_footer();
+    app_->footer(above + (above.empty() ? "" : "\n") + "Example: " + command_line);
+}
 
 Program::Program(const std::string &name, const std::string &about)
     : app_(std::make_unique<CLI::App>(about, name)), actions_(std::make_unique<Actions>()) {

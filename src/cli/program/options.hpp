@@ -77,9 +77,10 @@ public:
     void word(const char *names, const std::string &type, const Read &read, const std::string &about);
     void words(const char *names, const std::string &type, const Read &read, const std::string &about);
 
-    void require(const char *name);        // a declared option or positional
-    void group(const std::string &title);  // heading of the following options in the help
-    void footer(const std::string &text);  // text at the end of the help
+    void require(const char *name);                 // a declared option or positional
+    void group(const std::string &title);           // heading of the following options in the help
+    void footer(const std::string &text);           // text at the end of the help
+    void example(const std::string &command_line);  // after the footer, if there is one
 
 private:
     template <class Value>

@@ -228,6 +228,7 @@ void declare_response(Command &program) {
                     "docs/raw.md for suitable files.");
     auto o = std::make_shared<Options>();
     declare(command, *o);
+    command.example("lensprof response IMG_1.NEF");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
