@@ -69,7 +69,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     outputs.add(panorama.project, done.best.corrects() ? result_text(done, project, panorama.project)
                                                        : project_text_at(project, panorama.project));
     finish_fit(done.report, key, options.store,
-               {method_name(options.fit.method), project.path, true, true, "", {}, &outputs, &prior}, streams);
+               {method_name(options.fit.method), project.path, true, true, "", nullptr, &outputs, &prior}, streams);
     Json result = Json::parse(out.str());
     result.erase("seconds");
     result.erase("schema");

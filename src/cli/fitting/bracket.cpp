@@ -263,13 +263,10 @@ int bracket_and_store(const Options &o, Streams &streams) {
     OutputFiles outputs;
     Json page;
     BuildReport report = fit_bracket(o, project, metadata, ev, kind, page, streams);
-    const auto page_text = [&](const BuildReport &stored, const std::vector<std::string> &warnings) {
-        return fit_page(std::move(page), stored, warnings);
-    };
     return finish_fit(
         report, key, o.store,
         {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),
-         project.path, o.json, false, o.report, page_text, &outputs},
+         project.path, o.json, false, o.report, &page, &outputs},
         streams);
 }
 

@@ -293,12 +293,9 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
         prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, project.path);
     Json page;
     BuildReport report = build(o, project, metadata, prior, kind, outputs, page, streams);
-    const auto page_text = [&](const BuildReport &stored, const std::vector<std::string> &warnings) {
-        return fit_page(std::move(page), stored, warnings);
-    };
-    int code = finish_fit(
-        report, key, o.store,
-        {method_name(o.fit.method), project.path, o.json, true, o.report, page_text, &outputs, &prior}, streams);
+    int code =
+        finish_fit(report, key, o.store,
+                   {method_name(o.fit.method), project.path, o.json, true, o.report, &page, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     for (const std::string &file : {o.exposures_out, o.pto_out})
         if (!report.fit.usable && !report.fit.evens && !file.empty() && !o.store.force)

@@ -58,39 +58,14 @@ Json images_json(const FitPageInput &input) {
     return json;
 }
 
-Json verdict_json(const BuildReport &report, const std::vector<std::string> &warnings) {
-    Json details = Json::array();
-    const std::string &verdict = report.verdict.text;
-    const bool is_repeated = std::any_of(warnings.begin(), warnings.end(), [&](const std::string &warning) {
-        return warning.find(verdict) != std::string::npos;
-    });
-    if (!verdict.empty() && !is_repeated) details.push_back(verdict);
-    for (const std::string &warning : warnings) details.push_back(warning);
-    const bool is_good = report.fit.usable && details.empty();
-    const char *headline = is_good             ? "Usable: a profile that later pictures can rely on."
-                           : report.fit.usable ? "Usable, with a warning."
-                           : report.fit.evens
-                               ? "These pictures match after correction, but this is not a profile to store."
-                               : "Not usable: do not correct pictures with this result.";
-    const bool corrects = report.fit.usable || report.fit.evens;
-    return {{"level", is_good ? "good" : corrects ? "warn" : "bad"}, {"headline", headline}, {"details", details}};
-}
-
 Json facts_json(const BuildReport &report) {
     const lensprof_fit_result &fit = report.fit;
-    const auto joined = std::count_if(report.exposures.begin(), report.exposures.end(),
-                                      [](const lensprof_exposure &e) { return !std::isnan(e.ev); });
     Json facts = Json::array();
     const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
-    add("images joined", format("%d of %zu", static_cast<int>(joined), report.names.size() + report.left_out.size()));
+    add("images joined",
+        format("%zu of %zu", joined_images(report.exposures), report.names.size() + report.left_out.size()));
     add("pairs", std::to_string(fit.pairs));
-    if (report.has_falloff && report.settings.empty()) {
-        double sigma = 0.0;
-        const double corner =
-            lensprof_profile_corner_falloff(profile_of(fit).get(), fit.vignettings == 3 ? 1 : 0, &sigma);
-        add("corner illuminance", sigma > 0.0 ? format("%.2f ± %.2f (%+.2f EV)", corner, sigma, std::log2(corner))
-                                              : format("%.2f (%+.2f EV)", corner, std::log2(corner)));
-    }
+    if (report.has_falloff && report.settings.empty()) add("corner illuminance", corner_text(*profile_of(fit)));
     if (fit.before_rms > 0.0)
         add("pairs differ by, levels RMS", format("%.1f before, %.1f after", fit.before_rms, fit.heldout_rms));
     if (report.variance.pairs)
@@ -148,19 +123,14 @@ void add_views(const FitPageInput &input, Progress &progress, Json &page) {
 Json fit_page_data(const FitPageInput &input, Progress &progress) {
     const BuildReport &report = input.report;
     const std::string title = std::filesystem::path(input.project.path).filename().string();
-    Json page;
-    page["kind"] = "fit";
-    page["title"] = title.empty() ? input.project.path : title;
-    page["subtitle"] = input.subtitle;
-    page["program"] = std::string("lensprof ") + lensprof_version();
-    page["command"] = input.command;
+    Json page = new_page("fit", title.empty() ? input.project.path : title, input.subtitle, input.command);
     page["falloffs"] = falloffs_json(report);
-    page["falloff_points"] =
-        report.has_falloff ? falloff_points(input.input, input.best, input.project) : Json::array();
+    const std::vector<PairEnds> ends = ends_of_pairs(input.input, input.best, input.project);
+    page["falloff_points"] = report.has_falloff ? falloff_points(ends, input.best) : Json::array();
     page["responses"] = responses_json(report);
     page["typical"] = typical_band(report.camera_kind.kind);
     page["images"] = images_json(input);
-    page["residuals"] = residual_figures(input.input, input.best, input.project);
+    page["residuals"] = residual_figures(ends, input.best, input.project);
     page["left_out"] = Json::array();
     for (const auto &[name, reason] : report.left_out) page["left_out"].push_back({{"name", name}, {"reason", reason}});
     for (size_t i = 0; i < report.names.size(); i++)
@@ -172,10 +142,10 @@ Json fit_page_data(const FitPageInput &input, Progress &progress) {
 }
 
 std::string fit_page(Json page, const BuildReport &report, const std::vector<std::string> &warnings) {
-    page["verdict"] = verdict_json(report, warnings);
+    page["verdict"] = page_verdict(report.fit.usable, report.fit.evens, report.verdict.text, warnings);
     page["facts"] = facts_json(report);
     page["result"] = build_json(report);
-    return page_of(page["title"].get<std::string>() + " – lensprof", page);
+    return page_of(page);
 }
 
 }  // namespace lensprof

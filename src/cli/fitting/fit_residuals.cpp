@@ -15,22 +15,10 @@ constexpr double darkest = 2.0 / levels, brightest = 250.0 / levels;
 constexpr int radius_bins = 20, grey_bins = 17, joint_bins = 48, frame_columns = 12;
 constexpr size_t least_in_bin = 5;
 
-// What one end of a pair received, in green or grey.
-struct End {
-    double value, r, light;  // light: relative to the scene's at the reference's exposure and the centre
-    double attenuation;      // M times the exposure factor
-    double across, down;     // place in the frame, 0..1
-    uint32_t image;
-};
-
-struct Ends {
-    End end[2];
-};
-
 uint32_t channel_of(const Fitted &fitted, uint32_t image) { return fitted.falloff_curves_of(image) == 3 ? 1 : 0; }
 
-End end_of(const Fitted &fitted, const Project &project, const lensprof_pair &pair, int side) {
-    End end{};
+PairEnd end_of(const Fitted &fitted, const Project &project, const lensprof_pair &pair, int side) {
+    PairEnd end{};
     end.image = pair.image[side];
     end.value = pair.value[side][1];
     const lensprof_vignetting &falloff = fitted.falloff_of(end.image)[channel_of(fitted, end.image)];
@@ -45,23 +33,10 @@ End end_of(const Fitted &fitted, const Project &project, const lensprof_pair &pa
     return end;
 }
 
-bool is_exposed(const End &end) { return end.value > darkest && end.value < brightest && end.light > 0.0; }
-
-// The pairs between images that joined, within the grey range.
-std::vector<Ends> ends_of(const FitInput &input, const Fitted &best, const Project &project) {
-    std::vector<Ends> all;
-    const std::vector<lensprof_pair> pairs =
-        input.observations.empty() ? input.pairs : pairs_of_tracks(input.observations);
-    for (const lensprof_pair &pair : pairs) {
-        if (std::isnan(best.exposures[pair.image[0]].ev) || std::isnan(best.exposures[pair.image[1]].ev)) continue;
-        const Ends ends{{end_of(best, project, pair, 0), end_of(best, project, pair, 1)}};
-        if (is_exposed(ends.end[0]) && is_exposed(ends.end[1])) all.push_back(ends);
-    }
-    return all;
-}
+bool is_exposed(const PairEnd &end) { return end.value > darkest && end.value < brightest && end.light > 0.0; }
 
 // Levels by which an end is brighter than the other end predicts.
-double residual_of(const Fitted &fitted, const End &end, const End &other) {
+double residual_of(const Fitted &fitted, const PairEnd &end, const PairEnd &other) {
     const double predicted =
         lensprof_response_eval(&fitted.response_of(end.image), other.light * end.attenuation, nullptr);
     return levels * (end.value - predicted);
@@ -108,19 +83,31 @@ private:
 };
 
 // The value that an end has at the mean exposure, without falloff.
-double corrected(const Fitted &fitted, const lensprof_exposure &mean, const End &end) {
+double corrected(const Fitted &fitted, const lensprof_exposure &mean, const PairEnd &end) {
     return lensprof_response_eval(&fitted.response_of(fitted.reference), end.light * lensprof_exposure_factor(&mean, 1),
                                   nullptr);
 }
 
 }  // namespace
 
-Json falloff_points(const FitInput &input, const Fitted &best, const Project &project) {
+std::vector<PairEnds> ends_of_pairs(const FitInput &input, const Fitted &best, const Project &project) {
+    std::vector<PairEnds> all;
+    const std::vector<lensprof_pair> pairs =
+        input.observations.empty() ? input.pairs : pairs_of_tracks(input.observations);
+    for (const lensprof_pair &pair : pairs) {
+        if (std::isnan(best.exposures[pair.image[0]].ev) || std::isnan(best.exposures[pair.image[1]].ev)) continue;
+        const PairEnds ends{{end_of(best, project, pair, 0), end_of(best, project, pair, 1)}};
+        if (is_exposed(ends.end[0]) && is_exposed(ends.end[1])) all.push_back(ends);
+    }
+    return all;
+}
+
+Json falloff_points(const std::vector<PairEnds> &all, const Fitted &best) {
     constexpr double least_difference = 0.1;  // of radii: else a pair shows nothing of the falloff
     std::vector<std::vector<double>> bins(radius_bins);
-    for (const Ends &ends : ends_of(input, best, project)) {
+    for (const PairEnds &ends : all) {
         const bool second_is_far = ends.end[1].r > ends.end[0].r;
-        const End &far = ends.end[second_is_far], &near = ends.end[!second_is_far];
+        const PairEnd &far = ends.end[second_is_far], &near = ends.end[!second_is_far];
         const bool is_own = best.falloff_of(far.image) == best.falloff_of(best.reference);
         if (!is_own || far.r - near.r < least_difference) continue;
         const double exposure = lensprof_exposure_factor(&best.exposures[far.image], 1);
@@ -140,8 +127,7 @@ Json falloff_points(const FitInput &input, const Fitted &best, const Project &pr
     return json;
 }
 
-Json residual_figures(const FitInput &input, const Fitted &best, const Project &project) {
-    const std::vector<Ends> all = ends_of(input, best, project);
+Json residual_figures(const std::vector<PairEnds> &all, const Fitted &best, const Project &project) {
     if (all.empty()) return {};
     const lensprof_exposure mean = mean_exposure(best.exposures);
     const lensprof_camera &camera = project.images[best.reference].camera;
@@ -149,11 +135,11 @@ Json residual_figures(const FitInput &input, const Fitted &best, const Project &
     const int rows = std::clamp(static_cast<int>(std::lround(frame_columns * aspect)), 2, 4 * frame_columns);
     std::vector<std::vector<double>> by_radius(radius_bins), by_grey(grey_bins), by_place(size_t(rows) * frame_columns);
     JointHistogram before, after;
-    for (const Ends &ends : all) {
+    for (const PairEnds &ends : all) {
         before.add(ends.end[0].value, ends.end[1].value);
         after.add(corrected(best, mean, ends.end[0]), corrected(best, mean, ends.end[1]));
         for (int side = 0; side < 2; side++) {
-            const End &end = ends.end[side];
+            const PairEnd &end = ends.end[side];
             const double residual = residual_of(best, end, ends.end[1 - side]);
             by_radius[bin_of(end.r, radius_bins)].push_back(residual);
             by_grey[bin_of(end.value, grey_bins)].push_back(residual);

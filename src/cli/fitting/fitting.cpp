@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
@@ -155,8 +156,10 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
     return {kind, KindFrom::pictures};
 }
 
-size_t joined_images(const Fitted &fitted) {
-    return static_cast<size_t>(std::count_if(fitted.exposures.begin(), fitted.exposures.end(),
+size_t joined_images(const Fitted &fitted) { return joined_images(fitted.exposures); }
+
+size_t joined_images(const std::vector<lensprof_exposure> &exposures) {
+    return static_cast<size_t>(std::count_if(exposures.begin(), exposures.end(),
                                              [](const lensprof_exposure &e) { return !std::isnan(e.ev); }));
 }
 
@@ -387,8 +390,8 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     std::ostringstream said;  // after the result, but known before the outputs are complete
     Streams later{streams.out, said, streams.words, streams.warnings};
     const bool is_good = name_doubts(report, store, finish, later);
-    if (finish.outputs && !finish.page.empty())
-        finish.outputs->add(finish.page, finish.page_text(report, later.warnings));
+    if (!finish.report.empty())
+        finish.outputs->add(finish.report, fit_page(std::move(*finish.page), report, later.warnings));
     if (finish.outputs) finish.outputs->commit();
     if (finish.json)
         print_json(build_json(report), streams.out);

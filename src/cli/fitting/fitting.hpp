@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,6 +93,7 @@ struct Fitted {
 
 // The number of images with an exposure in the result.
 size_t joined_images(const Fitted &fitted);
+size_t joined_images(const std::vector<lensprof_exposure> &exposures);
 
 // Fits and shows `progress`. `item` is the name of the input in a Failure. `quality` may be NULL.
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
@@ -107,10 +107,10 @@ struct Finish {
     std::string method;  // for the provenance
     std::string source;  // the inputs
     bool json = false;
-    bool evens_pictures = false;  // a result that corrects the pictures counts as success if nothing is to be
-                                  // stored
-    std::string page;             // .html file of the report; empty: none
-    std::function<std::string(const BuildReport &, const std::vector<std::string> &warnings)> page_text = {};
+    bool evens_pictures = false;            // a result that corrects the pictures counts as success if nothing is to be
+                                            // stored
+    std::string report;                     // .html file that is written of the result; empty: none,
+    Json *page = nullptr;                   // and what fit_page_data made for it
     OutputFiles *outputs = nullptr;         // committed after the profile is stored; or NULL
     const EarlierProfile *prior = nullptr;  // the prior of the fit; or NULL
 };

@@ -1,6 +1,4 @@
 // The report of `flat` as a web page (cli/page): falloff, its grid and the quality of the pictures.
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/flat.hpp"
@@ -15,10 +13,7 @@ namespace {
 Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
     Json facts = Json::array();
     const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
-    double sigma = 0.0;
-    const double corner = lensprof_profile_corner_falloff(&profile, report.fit.vignettings == 3 ? 1 : 0, &sigma);
-    add("corner illuminance", sigma > 0.0 ? format("%.4f ± %.4f (%+.2f EV)", corner, sigma, std::log2(corner))
-                                          : format("%.3f (%+.2f EV)", corner, std::log2(corner)));
+    add("corner illuminance", corner_text(profile));
     add("pictures", std::to_string(report.names.size()));
     add("shots", std::to_string(report.fit.shots));
     add("residual of a cell", format("%.2f %% (noise %.2f %%)", 100.0 * report.fit.residual, 100.0 * report.fit.noise));
@@ -32,30 +27,15 @@ Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
 std::string flat_page(const FlatReport &report, const std::string &title, const std::string &command,
                       const std::vector<std::string> &warnings) {
     const auto profile = profile_of(report.fit, report.response, report.names.size());
-    Json details = Json::array();
-    if (!report.verdict.text.empty()) details.push_back(report.verdict.text);
-    for (const std::string &warning : warnings) details.push_back(warning);
-    const bool usable = report.fit.usable;
-    Json page;
-    page["kind"] = "profile";
-    page["title"] = title;
-    page["subtitle"] = "Falloff from pictures of a white card";
-    page["program"] = std::string("lensprof ") + lensprof_version();
-    page["command"] = command;
-    page["verdict"] = {{"level", !usable           ? "bad"
-                                 : details.empty() ? "good"
-                                                   : "warn"},
-                       {"headline", !usable           ? "Not usable: do not correct pictures with this result."
-                                    : details.empty() ? "Usable: a profile that later pictures can rely on."
-                                                      : "Usable, with a warning."},
-                       {"details", details}};
+    Json page = new_page("profile", title, "Falloff from pictures of a white card", command);
+    page["verdict"] = page_verdict(report.fit.usable, false, report.verdict.text, warnings);
     page["facts"] = flat_facts(report, *profile);
     page["falloffs"] = Json::array(), page["falloff_points"] = Json::array(), page["responses"] = Json::array();
     add_falloff_curves(*profile, "", page["falloffs"]);
     add_response_curves(*profile, "response used", page["responses"]);
     page["images"] = Json::array();
     page["result"] = flat_json(report);
-    return page_of(title + " – lensprof", page);
+    return page_of(page);
 }
 
 }  // namespace lensprof

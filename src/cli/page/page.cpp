@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include <lensprof/base.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/pictures/jpeg_bytes.hpp"
@@ -12,6 +13,8 @@
 
 namespace lensprof {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // The template with a text instead of each mark; marks within a text are text.
 std::string filled(const std::string &page, const std::vector<std::pair<std::string, std::string>> &texts) {
@@ -34,8 +37,8 @@ std::string html_text(const std::string &text) {
 }
 
 // No text inside can end the script element: < stands in strings alone, where \u003c is the same.
-std::string script_json(const nlohmann::ordered_json &data) {
-    const std::string text = data.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+std::string script_json(const Json &data) {
+    const std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
     std::string escaped;
     escaped.reserve(text.size());
     for (const char c : text) escaped += c == '<' ? "\\u003c" : std::string(1, c);
@@ -58,13 +61,41 @@ std::string base64(const std::vector<uint8_t> &bytes) {
 
 }  // namespace
 
-std::string page_of(const std::string &title, const nlohmann::ordered_json &data) {
-    using Json = nlohmann::ordered_json;
+Json new_page(const std::string &kind, const std::string &title, const std::string &subtitle,
+              const std::string &command) {
+    return {{"kind", kind},
+            {"title", title},
+            {"subtitle", subtitle},
+            {"program", std::string("lensprof ") + lensprof_version()},
+            {"command", command}};
+}
+
+Json page_verdict(bool usable, bool evens, const std::string &text, const std::vector<std::string> &warnings) {
+    Json details = Json::array();
+    const bool is_repeated = std::any_of(warnings.begin(), warnings.end(), [&](const std::string &warning) {
+        return warning.find(text) != std::string::npos;
+    });
+    if (!text.empty() && !is_repeated) details.push_back(text);
+    for (const std::string &warning : warnings) details.push_back(warning);
+    const bool is_good = usable && details.empty();
+    const char *headline = is_good  ? "Usable: a profile that later pictures can rely on."
+                           : usable ? "Usable, with a warning."
+                           : evens  ? "These pictures match after correction, but this is not a profile to store."
+                                    : "Not usable: do not correct pictures with this result.";
+    return {{"level", is_good           ? "good"
+                      : usable || evens ? "warn"
+                                        : "bad"},
+            {"headline", headline},
+            {"details", details}};
+}
+
+std::string page_of(const Json &page) {
+    const std::string title = page["title"].get<std::string>() + " – lensprof";
     const std::string name = Json::parse(Json(title).dump(-1, ' ', false, Json::error_handler_t::replace));  // UTF-8
     return filled(page_html, {{"@TITLE@", html_text(name)},
                               {"@STYLE@", page_style},
                               {"@SCRIPT@", page_script},
-                              {"@DATA@", script_json(data)}});
+                              {"@DATA@", script_json(page)}});
 }
 
 std::string data_url(const Picture &picture, int quality) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -11,8 +12,17 @@ namespace lensprof {
 
 extern const char *const page_html, *const page_style, *const page_script;  // page.html, style.css, chart.js, report.js
 
-// The bytes of the page; `data` is what report.js reads.
-std::string page_of(const std::string &title, const nlohmann::ordered_json &data);
+// The frame of every page: kind ("fit", "profile", "database"), title, subtitle, program, and the command that made it.
+nlohmann::ordered_json new_page(const std::string &kind, const std::string &title, const std::string &subtitle,
+                                const std::string &command);
+
+// The verdict of a result: the text of its verdict, unless a warning repeats it, and the warnings. A result that is not
+// usable may still correct its own pictures (`evens`).
+nlohmann::ordered_json page_verdict(bool usable, bool evens, const std::string &text,
+                                    const std::vector<std::string> &warnings);
+
+// The bytes of the page; `page` is what report.js reads.
+std::string page_of(const nlohmann::ordered_json &page);
 
 // A JPEG of an 8 bit grey or RGB picture, as a data URL.
 std::string data_url(const Picture &picture, int quality);

@@ -19,8 +19,6 @@ constexpr double infinity_m = 1000.0;  // JSON has no infinity
 
 Json known(double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(std::isinf(value) ? infinity_m : value); }
 
-std::string program_name() { return std::string("lensprof ") + lensprof_version(); }
-
 std::string camera_of(const lensprof_profile_key &key) { return camera_name(key.camera_maker, key.camera_model); }
 
 bool shows_falloff(const lensprof_profile &profile) {
@@ -50,30 +48,19 @@ const char *response_kind(const lensprof_profile &profile) {
     }
 }
 
-std::string number(double value, const char *pattern) {
-    return value == LENSPROF_UNKNOWN ? std::string("not known") : format(pattern, value);
-}
-
 Json profile_facts(const lensprof_profile &p) {
     const lensprof_provenance &from = p.provenance;
     Json facts = Json::array();
     const auto add = [&](const char *name, const std::string &value) {
         if (!value.empty()) facts.push_back({name, value});
     };
-    if (shows_falloff(p)) {
-        double sigma = 0.0;
-        const double corner = lensprof_profile_corner_falloff(&p, p.vignettings == 3 ? 1 : 0, &sigma);
-        add("corner illuminance", sigma > 0.0
-                                      ? format(sigma < 0.01 ? "%.4f ± %.4f (%+.2f EV)" : "%.2f ± %.2f (%+.2f EV)",
-                                               corner, sigma, std::log2(corner))
-                                      : format("%.2f (%+.2f EV)", corner, std::log2(corner)));
-    }
+    if (shows_falloff(p)) add("corner illuminance", corner_text(p));
     add("response", response_kind(p));
     add("processing", processing_name(p.key.processing));
     add("method", from.method);
     if (from.images) add("pictures", std::to_string(from.images));
     if (from.pairs) add("pairs", std::to_string(from.pairs));
-    if (from.heldout_rms != LENSPROF_UNKNOWN) add("held-out residual", number(from.heldout_rms, "%.2f levels"));
+    if (from.heldout_rms != LENSPROF_UNKNOWN) add("held-out residual", format("%.2f levels", from.heldout_rms));
     add("source", from.source);
     return facts;
 }
@@ -82,12 +69,8 @@ Json profile_facts(const lensprof_profile &p) {
 
 std::string profile_page(const StoredProfile &stored, const std::string &command) {
     const lensprof_profile &p = *stored.profile;
-    Json page;
-    page["kind"] = "profile";
-    page["title"] = describe_key(p.key);
-    page["subtitle"] = stored.id ? format("Profile %lld", static_cast<long long>(stored.id)) : std::string("Profile");
-    page["program"] = program_name();
-    page["command"] = command;
+    const std::string subtitle = stored.id ? format("Profile %lld", static_cast<long long>(stored.id)) : "Profile";
+    Json page = new_page("profile", describe_key(p.key), subtitle, command);
     const bool in_doubt = *p.provenance.doubt || p.provenance.forced;
     page["verdict"] = {{"level", in_doubt ? "warn" : "good"},
                        {"headline", in_doubt    ? "This profile is in doubt."
@@ -103,7 +86,7 @@ std::string profile_page(const StoredProfile &stored, const std::string &command
     page["typical"] = p.response[0].kind == LENSPROF_RESPONSE_LINEAR ? Json() : typical_band(LENSPROF_CAMERA_CAMERA);
     page["images"] = Json::array();
     page["result"] = profile_json(stored.id, p);
-    return page_of(page["title"].get<std::string>() + " – lensprof", page);
+    return page_of(page);
 }
 
 std::string database_page(const std::vector<StoredProfile> &profiles, const std::string &name,
@@ -118,11 +101,7 @@ std::string database_page(const std::vector<StoredProfile> &profiles, const std:
         if (lens.is_null()) lens = {{"camera", camera_of(key)}, {"lens", key.lens}, {"settings", Json::array()}};
         lens["settings"].push_back(setting_json(stored));
     }
-    Json page;
-    page["kind"] = "database";
-    page["title"] = name;
-    page["program"] = program_name();
-    page["command"] = command;
+    Json page = new_page("database", name, "", command);
     page["profiles"] = profiles.size();
     page["lenses"] = Json::array(), page["cameras"] = Json::array();
     for (auto &[key, lens] : lenses) page["lenses"].push_back(std::move(lens));
@@ -133,7 +112,7 @@ std::string database_page(const std::vector<StoredProfile> &profiles, const std:
             responses += (responses.empty() ? "" : ", ") + kind + format(" (%zu)", number), count += number;
         page["cameras"].push_back({{"name", camera}, {"profiles", count}, {"response", responses}});
     }
-    return page_of(name + " – lensprof", page);
+    return page_of(page);
 }
 
 }  // namespace lensprof

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/report/chart.hpp"
 
@@ -67,6 +68,15 @@ void add_response_curves(const lensprof_profile &profile, const std::string &lab
         first += modes;
         curves.push_back(curve);
     }
+}
+
+std::string corner_text(const lensprof_profile &profile) {
+    double sigma = 0.0;
+    const double corner = lensprof_profile_corner_falloff(&profile, profile.vignettings == 3 ? 1 : 0, &sigma);
+    const double ev = std::log2(corner);
+    if (!(sigma > 0.0)) return format("%.2f (%+.2f EV)", corner, ev);
+    const int digits = sigma < 0.01 ? 4 : 2;
+    return format("%.*f ± %.*f (%+.2f EV)", digits, corner, digits, sigma, ev);
 }
 
 Json typical_band(uint32_t kind) {
