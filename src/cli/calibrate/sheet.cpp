@@ -37,17 +37,8 @@ Small small_of(const std::string &file, uint16_t orientation) {
     if (!why_not([&] { picture = read_picture(file, read); }).empty()) return {};
     Thumbnail thumbnail(picture.width, picture.height);
     thumbnail.add(picture.view());
-    Small small;
-    const bool is_turned = orientation >= 5 && orientation <= 8;
-    small.width = is_turned ? thumbnail.height : thumbnail.width;
-    small.height = is_turned ? thumbnail.width : thumbnail.height;
-    small.rgb.resize(size_t(3) * small.width * small.height);
-    for (uint32_t y = 0; y < small.height; y++)
-        for (uint32_t x = 0; x < small.width; x++) {
-            const auto [u, v] = stored_place(orientation, thumbnail.width, thumbnail.height, x, y);
-            std::copy_n(&thumbnail.rgb[(size_t(v) * thumbnail.width + u) * 3], 3,
-                        &small.rgb[(size_t(y) * small.width + x) * 3]);
-        }
+    Small small{thumbnail.width, thumbnail.height, std::move(thumbnail.rgb)};
+    turn_upright(orientation, small.width, small.height, small.rgb);
     return small;
 }
 

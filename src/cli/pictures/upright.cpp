@@ -1,6 +1,7 @@
 #include "cli/pictures/upright.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace lensprof {
 namespace {
@@ -21,8 +22,7 @@ uint8_t box_mean(const Picture &picture, uint32_t w, uint32_t h, uint32_t x, uin
     return static_cast<uint8_t>((sum + count / 2) / count);
 }
 
-}  // namespace
-
+// EXIF's orientation: where the pixel (x, y) of the upright picture is in the stored one of w x h.
 std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uint32_t h, uint32_t x, uint32_t y) {
     switch (orientation) {
     case 2: return {w - 1 - x, y};
@@ -36,24 +36,33 @@ std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uin
     }
 }
 
+}  // namespace
+
+void turn_upright(uint16_t orientation, uint32_t &width, uint32_t &height, std::vector<uint8_t> &rgb) {
+    if (orientation < 2 || orientation > 8) return;
+    const std::vector<uint8_t> stored = rgb;
+    const uint32_t w = width, h = height;
+    if (orientation >= 5) std::swap(width, height);
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            const auto [u, v] = stored_place(orientation, w, h, x, y);
+            std::copy_n(&stored[(size_t(v) * w + u) * 3], 3, &rgb[(size_t(y) * width + x) * 3]);
+        }
+}
+
 Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side) {
     const uint32_t longer = std::max(stored.width, stored.height);
     const auto reduced = [=](uint32_t length) {
         return longer <= side ? length : std::max(1u, static_cast<uint32_t>(uint64_t(length) * side / longer));
     };
-    const uint32_t width = reduced(stored.width), height = reduced(stored.height);
-    const bool is_turned = orientation >= 5 && orientation <= 8;
     Picture copy;
-    copy.width = is_turned ? height : width;
-    copy.height = is_turned ? width : height;
-    copy.row_bytes = size_t(3) * copy.width;
-    copy.pixels.resize(copy.row_bytes * copy.height);
+    copy.width = reduced(stored.width), copy.height = reduced(stored.height);
+    copy.pixels.reserve(size_t(3) * copy.width * copy.height);
     for (uint32_t y = 0; y < copy.height; y++)
-        for (uint32_t x = 0; x < copy.width; x++) {
-            const auto [u, v] = stored_place(orientation, width, height, x, y);
-            for (uint32_t c = 0; c < 3; c++)
-                copy.pixels[y * copy.row_bytes + size_t(3) * x + c] = box_mean(stored, width, height, u, v, c);
-        }
+        for (uint32_t x = 0; x < copy.width; x++)
+            for (uint32_t c = 0; c < 3; c++) copy.pixels.push_back(box_mean(stored, copy.width, copy.height, x, y, c));
+    turn_upright(orientation, copy.width, copy.height, copy.pixels);
+    copy.row_bytes = size_t(3) * copy.width;
     return copy;
 }
 

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
+#include <vector>
 
 #include "cli/pictures/picture.hpp"
 
 namespace lensprof {
 
-// EXIF's orientation: where the pixel (x, y) of the upright picture is in the stored one of w x h.
-std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uint32_t h, uint32_t x, uint32_t y);
+// Turns 8 bit RGB pixels without gaps as EXIF's orientation states.
+void turn_upright(uint16_t orientation, uint32_t &width, uint32_t &height, std::vector<uint8_t> &rgb);
 
 // 8 bit RGB, upright, the longer side at most `side` pixels: means over boxes of the stored 8 bit picture.
 Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side);
