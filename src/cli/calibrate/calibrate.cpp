@@ -43,7 +43,6 @@ void declare(Command &command, CalibrateOptions &o) {
     declare_json(command, o.json);
     declare_progress(command, o.progress);
     command.footer(
-        "Example: lensprof calibrate holiday -o holiday/calibrated\n"
         "Finds all panoramas in the folder, fits them, stores their profiles if usable, and corrects them.\n"
         "Other pictures are corrected with a profile of the databases for their camera, lens and setting, if\n"
         "there is one. The output folder receives a corrected copy of each picture under its own name; per\n"
@@ -52,6 +51,7 @@ void declare(Command &command, CalibrateOptions &o) {
         "reasons. A second run does only what is missing or has changed, also after an interrupt. Originals\n"
         "are never modified. Exit code 0: something was corrected, and the rest is listed; 4: nothing could\n"
         "be corrected; 3: no picture could be read.");
+    command.example("lensprof calibrate holiday -o holiday/calibrated");
 }
 
 // Checks for files in the way of outputs before anything is computed.

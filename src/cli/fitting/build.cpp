@@ -141,9 +141,7 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
     for (const std::string &output :
          {o.points_out, o.exposures_out, o.gain_chart, o.pto_out, o.project_out, o.preview, o.report}) {
         if (output.empty()) continue;
-        for (const std::string &other : taken)
-            if (is_same_file(output, other))
-                throw Failure(ExitCode::usage, output + ": would be overwritten; give the output another name");
+        check_not_taken(output, "output", taken);
         check_is_no_photograph(output, output == o.preview || output == o.gain_chart);
         if (output == o.exposures_out) check_is_no_other_file(output);
         check_output_file(output);

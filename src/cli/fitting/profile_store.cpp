@@ -164,9 +164,7 @@ void check_report(const std::string &report, const std::vector<std::string> &inp
     check_page_name(report);
     std::vector<std::string> taken = inputs;
     if (!o.no_store) taken.push_back(store_path(o.db));
-    for (const std::string &other : taken)
-        if (is_same_file(report, other))
-            throw Failure(ExitCode::usage, report + ": would be overwritten; give the report another name");
+    check_not_taken(report, "report", taken);
     check_output_file(report);
 }
 

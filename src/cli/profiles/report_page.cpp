@@ -41,7 +41,8 @@ void declare(Command &command, Options &o) {
     declare_listed_databases(command, o.dbs);
     command.footer(
         "The page is one file that needs no network. It holds the pictures before and after, the charts, and the\n"
-        "numbers as JSON. Example: lensprof report photos -o report.html");
+        "numbers as JSON.");
+    command.example("lensprof report photos -o report.html");
 }
 
 // Whether a file is a database of lensprof, intact or damaged: by SQLite's name and the application id, at bytes 68 to
@@ -52,13 +53,21 @@ bool is_profile_database(const std::string &path) {
     return head.size() == 72 && head.compare(0, 15, "SQLite format 3") == 0 && head.compare(68, 4, "LPRF") == 0;
 }
 
-// Whether a file is one that another program keeps profiles in, by its content.
-bool is_profile_file(const std::string &path) {
-    if (!is_regular_file(path)) return false;
+enum class Kind {
+    database,
+    profiles,  // a file that another program keeps profiles in,
+    part,      // or a response or falloff without a key
+    to_fit     // pictures, a project, a reconstruction; or nothing that anybody can read
+};
+
+Kind kind_of(const std::string &path) {
+    if (is_profile_database(path)) return Kind::database;
+    if (!is_regular_file(path) || is_reconstruction(path)) return Kind::to_fit;
     try {
-        return format_to_read(path, "").holds == LENSPROF_HOLDS_PROFILES;
+        if (format_to_read(path, "").holds == LENSPROF_HOLDS_PROFILES) return Kind::profiles;
+        return is_picture_name(path) ? Kind::to_fit : Kind::part;
     } catch (const Failure &) {
-        return false;
+        return Kind::to_fit;
     }
 }
 
@@ -107,37 +116,10 @@ std::vector<StoredProfile> all_profiles(const Databases &databases, Streams &str
     return profiles;
 }
 
-// Failure (usage) for a file of a response or a falloff without the name of a camera.
-void check_is_no_part_of_profile(const std::string &path) {
-    if (!is_regular_file(path) || is_profile_database(path) || is_reconstruction(path)) return;
-    const ForeignRule *rule = nullptr;
-    try {
-        rule = &format_to_read(path, "");
-    } catch (const Failure &) {
-        return;  // a picture or a project
-    }
-    if (rule->holds != LENSPROF_HOLDS_PROFILES && !is_picture_name(path))
-        throw Failure(ExitCode::usage, path + ": holds a response or a falloff, but no profile; import it with "
-                                              "`lensprof profile import` and report the database");
-}
-
-// The page of profiles, and how many it has.
-std::string page_of_profiles(const Options &o, const std::vector<std::string> &files, size_t &count, Streams &streams) {
-    const bool is_of_file = files.size() == 1 && !is_profile_database(files[0]) && is_profile_file(files[0]);
-    std::vector<StoredProfile> profiles;
-    std::string name = files.empty() ? std::string() : files[0];
-    if (is_of_file) {
-        profiles = profiles_of_file(files[0], streams);
-    } else {
-        const Databases databases(databases_of(files));
-        const std::vector<int64_t> ids = o.id ? std::vector<int64_t>{o.id} : std::vector<int64_t>{};
-        profiles =
-            o.id || !o.filter.is_empty() ? o.filter.profiles(databases, ids, false) : all_profiles(databases, streams);
-        name = databases.names();
-    }
-    count = profiles.size();
-    const std::string command = command_text(streams.words);
-    return count == 1 ? profile_page(profiles[0], command) : database_page(profiles, name, command);
+// The profiles that are asked for.
+std::vector<StoredProfile> profiles_of(const Options &o, const Databases &databases, Streams &streams) {
+    if (!o.id && o.filter.is_empty()) return all_profiles(databases, streams);
+    return o.filter.profiles(databases, o.id ? std::vector<int64_t>{o.id} : std::vector<int64_t>{}, false);
 }
 
 // A fit's page is what `build` writes of it.
@@ -155,34 +137,51 @@ int report_fit(const Options &o, Streams &streams) {
     return code;
 }
 
-int run_report(const Options &o, Streams &streams) {
-    check_page_name(o.output);
-    const bool asks_profiles = o.id || !o.filter.is_empty() || !o.dbs.empty();
-    const auto is_of_profiles = [](const std::string &input) {
-        return is_profile_database(input) || (!is_reconstruction(input) && is_profile_file(input));
-    };
-    if (o.inputs.size() == 1) check_is_no_part_of_profile(o.inputs[0]);
-    const bool has_profiles = std::any_of(o.inputs.begin(), o.inputs.end(), is_of_profiles);
-    if (!o.inputs.empty() && !has_profiles && !asks_profiles) return report_fit(o, streams);
+// Writes the page of profiles.
+int write_page(const Options &o, const std::vector<StoredProfile> &profiles, const std::string &name,
+               Streams &streams) {
+    const std::string command = command_text(streams.words);
+    const std::string page =
+        profiles.size() == 1 ? profile_page(profiles[0], command) : database_page(profiles, name, command);
+    write_file(o.output, page.data(), page.size());
+    streams.out << "wrote " << o.output << ": " << counted(profiles.size(), "profile") << "\n";
+    return 0;
+}
+
+// Failure (usage) for inputs that do not go together with each other or the options.
+void check_inputs(const Options &o, const std::vector<Kind> &kinds, bool asks_profiles) {
+    if (kinds.size() == 1 && kinds[0] == Kind::part)
+        throw Failure(ExitCode::usage, o.inputs[0] + ": holds a response or a falloff, but no profile; import it with "
+                                                     "`lensprof profile import` and report the database");
     if (!o.inputs.empty() && !o.dbs.empty()) throw Failure(ExitCode::usage, "report: give files or --db, not both");
     if (!o.images.empty())
         throw Failure(ExitCode::usage, "--images: applies to a reconstruction, not to profiles; leave it out");
-    for (const std::string &input : o.inputs)
-        if (!is_profile_database(input) && (o.inputs.size() > 1 || asks_profiles || !is_profile_file(input)))
-            throw Failure(
-                ExitCode::usage,
-                input
-                    + ": is not a profile database; give one kind of files: pictures, databases, or one file of profiles without --profile and names");
-    std::vector<std::string> files = o.inputs.empty() ? o.dbs : o.inputs;
-    for (const std::string &file : databases_of(files))
-        if (is_same_file(o.output, file))
-            throw Failure(ExitCode::usage, o.output + ": would be overwritten; give the report another name");
+    const bool is_one_file = kinds.size() == 1 && kinds[0] == Kind::profiles && !asks_profiles;
+    for (size_t i = 0; i < kinds.size() && !is_one_file; i++)
+        if (kinds[i] != Kind::database)
+            throw Failure(ExitCode::usage,
+                          o.inputs[i]
+                              + ": is not a profile database; give one kind of files: pictures, databases, or one file "
+                                "of profiles without --profile and names");
+}
+
+int run_report(const Options &o, Streams &streams) {
+    check_page_name(o.output);
+    const bool asks_profiles = o.id || !o.filter.is_empty() || !o.dbs.empty();
+    std::vector<Kind> kinds;
+    for (const std::string &input : o.inputs) kinds.push_back(kind_of(input));
+    const bool is_fit = !kinds.empty() && !asks_profiles && std::all_of(kinds.begin(), kinds.end(), [](Kind kind) {
+        return kind != Kind::database && kind != Kind::profiles;
+    });
+    if (is_fit && !(kinds.size() == 1 && kinds[0] == Kind::part)) return report_fit(o, streams);
+    check_inputs(o, kinds, asks_profiles);
+    const bool is_of_file = kinds.size() == 1 && kinds[0] == Kind::profiles;
+    const std::vector<std::string> files = is_of_file ? o.inputs : databases_of(o.inputs.empty() ? o.dbs : o.inputs);
+    check_not_taken(o.output, "report", files);
     check_output_file(o.output);
-    size_t count = 0;
-    const std::string page = page_of_profiles(o, files, count, streams);
-    write_file(o.output, page.data(), page.size());
-    streams.out << "wrote " << o.output << ": " << counted(count, "profile") << "\n";
-    return 0;
+    if (is_of_file) return write_page(o, profiles_of_file(files[0], streams), files[0], streams);
+    const Databases databases(files);
+    return write_page(o, profiles_of(o, databases, streams), databases.names(), streams);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "cli/program/description.hpp"
+#include "cli/program/format.hpp"
 
 namespace lensprof {
 namespace {
@@ -26,20 +27,7 @@ std::string words_of(const CommandDescription &command) {
 
 bool is_path(const OptionDescription &option) { return option.type == "FILE" || option.type == "FOLDER"; }
 
-std::string joined(const std::vector<std::string> &words) {
-    std::string text;
-    for (const std::string &word : words) text += (text.empty() ? "" : " ") + word;
-    return text;
-}
-
 std::string first_line(const std::string &text) { return text.substr(0, text.find('\n')); }
-
-// In single quotes of a shell.
-std::string quoted(const std::string &text) {
-    std::string escaped;
-    for (const char c : text) escaped += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return "'" + escaped + "'";
-}
 
 // A description in a list of zsh, where colons and brackets have a meaning.
 std::string zsh_text(const std::string &text) {
@@ -71,7 +59,8 @@ bool takes_files(const CommandDescription &command) {
 std::string bash_cases(const CommandDescription &program) {
     std::string lines;
     for (const CommandDescription *command : all_of(program))
-        lines += "    " + quoted(words_of(*command)) + ") words=" + quoted(joined(following_words(program, *command)))
+        lines += "    " + shell_quoted(words_of(*command))
+                 + ") words=" + shell_quoted(joined(following_words(program, *command), " "))
                  + (takes_files(*command) ? "; files=1" : "; files=") + " ;;\n";
     return lines;
 }
@@ -82,9 +71,9 @@ std::string bash_values(const CommandDescription &program) {
         for (const OptionDescription &option : command->options)
             for (const std::string &name : option.names) {
                 if (option.is_positional || option.type.empty()) continue;
-                lines += "    " + quoted(words_of(*command) + " " + name) + ") "
+                lines += "    " + shell_quoted(words_of(*command) + " " + name) + ") "
                          + (is_path(option) ? std::string("files=1")
-                                            : "values=" + quoted(joined(option.choices)) + "; files=")
+                                            : "values=" + shell_quoted(joined(option.choices, " ")) + "; files=")
                          + "; takes=1 ;;\n";
             }
     return lines;
@@ -130,15 +119,15 @@ std::string zsh_completion(const CommandDescription &program) {
         "    case \"$command $word\" in\n";
     for (const CommandDescription *command : all_of(program))
         for (const CommandDescription &verb : command->commands)
-            text += "      " + quoted(words_of(*command) + " " + verb.name()) + ") command=" + quoted(words_of(verb))
-                    + " ;;\n";
+            text += "      " + shell_quoted(words_of(*command) + " " + verb.name())
+                    + ") command=" + shell_quoted(words_of(verb)) + " ;;\n";
     text += "    esac\n  done\n  case \"$command\" in\n";
     for (const CommandDescription *command : all_of(program)) {
-        text += "    " + quoted(words_of(*command)) + ")\n";
+        text += "    " + shell_quoted(words_of(*command)) + ")\n";
         if (!command->commands.empty()) {
             text += "      entries=(";
             for (const CommandDescription &verb : command->commands)
-                text += "\n        " + quoted(verb.name() + ":" + zsh_text(first_line(verb.brief)));
+                text += "\n        " + shell_quoted(verb.name() + ":" + zsh_text(first_line(verb.brief)));
             text += ")\n      _describe command entries ;;\n";
             continue;
         }
@@ -152,8 +141,8 @@ std::string zsh_completion(const CommandDescription &program) {
                 if (!option.type.empty())
                     entry += is_path(option)          ? ":file:_files"
                              : option.choices.empty() ? ":value:"
-                                                      : ":value:(" + joined(option.choices) + ")";
-                text += " \\\n        " + quoted(entry);
+                                                      : ":value:(" + joined(option.choices, " ") + ")";
+                text += " \\\n        " + shell_quoted(entry);
             }
         }
         text += " \\\n        '*:file:_files' ;;\n";
@@ -177,16 +166,16 @@ std::string fish_completion(const CommandDescription &program) {
             condition = seen;
         }
         for (const CommandDescription &verb : command->commands)
-            text += "complete -c lensprof -f -n " + quoted(condition) + " -a " + quoted(verb.name()) + " -d "
-                    + quoted(first_line(verb.brief)) + "\n";
+            text += "complete -c lensprof -f -n " + shell_quoted(condition) + " -a " + shell_quoted(verb.name())
+                    + " -d " + shell_quoted(first_line(verb.brief)) + "\n";
         for (const OptionDescription &option : command->options) {
             if (option.is_positional) continue;
-            text += "complete -c lensprof -n " + quoted(condition);
+            text += "complete -c lensprof -n " + shell_quoted(condition);
             for (const std::string &name : option.names)
                 text += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
             if (!option.type.empty()) text += is_path(option) ? " -r -F" : " -x";
-            if (!option.choices.empty()) text += " -a " + quoted(joined(option.choices));
-            text += " -d " + quoted(first_line(option.about)) + "\n";
+            if (!option.choices.empty()) text += " -a " + shell_quoted(joined(option.choices, " "));
+            text += " -d " + shell_quoted(first_line(option.about)) + "\n";
         }
     }
     return text;

@@ -28,4 +28,16 @@ std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::
     return text;
 }
 
+std::string joined(const std::vector<std::string> &words, const std::string &separator) {
+    std::string text;
+    for (size_t i = 0; i < words.size(); i++) text += (i ? separator : "") + words[i];
+    return text;
+}
+
+std::string shell_quoted(const std::string &text) {
+    std::string escaped;
+    for (const char c : text) escaped += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return "'" + escaped + "'";
+}
+
 }  // namespace lensprof

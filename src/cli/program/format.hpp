@@ -17,4 +17,10 @@ std::string counted(size_t count, const std::string &thing, const std::string &t
 // Names by index, "img1.jpg, img2.jpg and 7 more".
 std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names);
 
+// All words, with `separator` between them.
+std::string joined(const std::vector<std::string> &words, const std::string &separator);
+
+// In single quotes of a shell.
+std::string shell_quoted(const std::string &text);
+
 }  // namespace lensprof

@@ -1,5 +1,6 @@
 #include "cli/program/message.hpp"
 
+#include "cli/program/format.hpp"
 #include "cli/program/utf8.hpp"
 
 namespace lensprof {
@@ -17,14 +18,8 @@ std::string command_text(const std::vector<std::string> &words) {
     constexpr const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./,:=+@%";
     std::string text = "lensprof";
     for (const std::string &word : words) {
-        text += ' ';
-        if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
-            text += word;
-            continue;
-        }
-        text += '\'';
-        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        text += '\'';
+        const bool is_plain = !word.empty() && word.find_first_not_of(plain) == std::string::npos;
+        text += " " + (is_plain ? word : shell_quoted(word));
     }
     return text;
 }

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/program/error.hpp"
+#include "cli/program/format.hpp"
 #include "cli/program/nearest.hpp"
 
 namespace lensprof {
@@ -49,12 +50,6 @@ std::vector<std::string> names_of_options(const CLI::App &app) {
         for (const std::string &name : option->get_snames()) names.push_back("-" + name);
     }
     return names;
-}
-
-std::string joined(const std::vector<std::string> &words) {
-    std::string text;
-    for (const std::string &word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
 }
 
 // The text with line breaks so that each line has at most `columns` characters, unless one word is longer.
@@ -410,7 +405,8 @@ namespace {
 
 size_t index_of(const std::string &word, const std::vector<std::string> &words) {
     const auto found = std::find(words.begin(), words.end(), word);
-    if (found == words.end()) throw std::invalid_argument(word + ": use " + joined(words) + did_you_mean(word, words));
+    if (found == words.end())
+        throw std::invalid_argument(word + ": use " + joined(words, ", ") + did_you_mean(word, words));
     return static_cast<size_t>(found - words.begin());
 }
 
@@ -484,7 +480,8 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
     }
     const auto action = actions_->of.find(&command);
     if (action == actions_->of.end())
-        throw Failure(ExitCode::usage, path_of(command) + ": needs a verb: " + joined(names_of_commands(command)));
+        throw Failure(ExitCode::usage,
+                      path_of(command) + ": needs a verb: " + joined(names_of_commands(command), ", "));
     return action->second(streams);
 }
 

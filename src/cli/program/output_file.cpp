@@ -127,6 +127,12 @@ void check_folder(const std::string &folder, const std::string &item, ExitCode n
                                       + "; check its permissions, or give another folder");
 }
 
+void check_not_taken(const std::string &path, const std::string &what, const std::vector<std::string> &taken) {
+    for (const std::string &other : taken)
+        if (is_same_file(path, other))
+            throw Failure(ExitCode::usage, path + ": would be overwritten; give the " + what + " another name");
+}
+
 void check_output_file(const std::string &path) { const OutputFile attempt(path); }
 
 void check_output_folder(const std::string &folder) { check_folder(folder, folder, ExitCode::usage, ExitCode::failed); }

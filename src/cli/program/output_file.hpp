@@ -78,6 +78,10 @@ int open_nameless(const std::string &beside);
 // name, else `no_writing`. For checks before long computations.
 void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing);
 
+// Failure (usage) if a file is one of `taken`: inputs, the database, other outputs. `what` names it: "output",
+// "report".
+void check_not_taken(const std::string &path, const std::string &what, const std::vector<std::string> &taken);
+
 // Throws the Failure that writing this file would cause, before the work is done.
 void check_output_file(const std::string &path);
 
