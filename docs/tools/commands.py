@@ -13,6 +13,8 @@ import subprocess
 import sys
 import textwrap
 
+from generated import write_or_check
+
 COLUMNS = 112
 
 HEAD = """# Commands
@@ -65,15 +67,7 @@ def page(program):
 def main():
     if len(sys.argv) not in (3, 4) or sys.argv[3:] not in ([], ["--check"]):
         sys.exit(__doc__)
-    target, made = pathlib.Path(sys.argv[1]) / "docs/reference/commands.md", page(sys.argv[2])
-    if "--check" in sys.argv:
-        if target.is_file() and target.read_text(encoding="utf-8") == made:
-            print("docs/reference/commands.md is up to date")
-            return 0
-        print("docs/reference/commands.md is out of date: run `make docs-update` and commit it")
-        return 1
-    target.write_text(made, encoding="utf-8")
-    return 0
+    return write_or_check(pathlib.Path(sys.argv[1]), "docs/reference/commands.md", page(sys.argv[2]), "--check" in sys.argv)
 
 
 if __name__ == "__main__":

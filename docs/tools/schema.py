@@ -13,6 +13,8 @@ import re
 import sqlite3
 import sys
 
+from generated import write_or_check
+
 HEAD = """# Database schema
 
 <!-- Made by docs/tools/schema.py from profiles/schema/*.sql; `make docs-update` makes it again. -->
@@ -95,15 +97,7 @@ def main():
         print("skipped: SQLite is older than 3.37")
         return 77
     root = pathlib.Path(sys.argv[1])
-    target, made = root / "docs/reference/schema.md", page(root)
-    if "--check" in sys.argv:
-        if target.is_file() and target.read_text(encoding="utf-8") == made:
-            print("docs/reference/schema.md is up to date")
-            return 0
-        print("docs/reference/schema.md is out of date: run `make docs-update` and commit it")
-        return 1
-    target.write_text(made, encoding="utf-8")
-    return 0
+    return write_or_check(root, "docs/reference/schema.md", page(root), "--check" in sys.argv)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ import re
 import sys
 import tempfile
 
+import text_rules
+
 # What is checked, as globs below the project.
 PROSE = ("*.md", "bindings/**/*.md", "docs/**/*.md", "examples/**/*.md", "src/**/*.md")
 SOURCES = (
@@ -36,10 +38,6 @@ LONGEST_LINE = 120  # columns of Markdown; rows of tables and lines with one lin
 # Idioms that a phrase of the table must not match.
 ALLOWED = re.compile(r"\b(?:there (?:is|are) no\b|(?:is|are) no (?:longer|more)\b|hard to say|that is to say)", re.IGNORECASE)
 
-C_TEXT = re.compile(
-    r"""(?P<comment>//[^\n]*|/\*.*?\*/) | '(?:[^'\\\n]|\\.)+' | (?P<text>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)""",
-    re.VERBOSE | re.DOTALL,
-)
 PYTHON_TEXT = re.compile(
     r'''(?P<doc>"{3}.*?"{3}) | (?P<text>f?"(?:[^"\\\n]|\\.)*") | '(?:[^'\\\n]|\\.)*' | (?P<comment>\#[^\n]*)''',
     re.VERBOSE | re.DOTALL,
@@ -69,17 +67,15 @@ def prose_of(markdown):
     return re.sub(r"\]\([^)\s]*\)", lambda match: "]" + " " * (len(match[0]) - 1), text)
 
 
-def texts_of(source, pattern):
-    """(line, text) of every comment and string literal; neighbours of literals are joined."""
-    if pattern is C_TEXT:
-        source = re.sub(r"^[ \t]*#[ \t]*include[^\n]*", "", source, flags=re.MULTILINE)
-    for match in pattern.finditer(source):
-        found = match.groupdict()
-        line = source.count("\n", 0, match.start()) + 1
-        if found.get("text") and pattern is C_TEXT:
-            yield line, "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', found["text"]))
-        elif any(found.values()):
-            yield line, re.sub(r"\n[ \t]*(?://|\*|#)?[ \t]*", "\n", match[0])
+def texts_of(name, source):
+    """(line, text) of every comment and string literal."""
+    if name.endswith(".py"):
+        found = ((source.count("\n", 0, match.start()) + 1, match.lastgroup, match[0]) for match in PYTHON_TEXT.finditer(source))
+    else:
+        found = text_rules.texts_of(source)
+    for line, kind, text in found:
+        if kind:
+            yield line, re.sub(r"\n[ \t]*(?://|\*|#)?[ \t]*", "\n", text)
 
 
 def check_words(name, line, text, rules):
@@ -130,7 +126,7 @@ def check(root, prose=PROSE, sources=SOURCES):
         if name == "README.md":
             violations += check_sentences(name, text)
     for name, source in files_of(root, sources):
-        for line, text in texts_of(source, PYTHON_TEXT if name.endswith(".py") else C_TEXT):
+        for line, text in texts_of(name, source):
             violations += check_words(name, line, text, rules)
     return violations
 

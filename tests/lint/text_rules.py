@@ -18,7 +18,7 @@ LAYERS = ("core", "falloff", "fit", "formats", "store")
 SOURCES = {".c", ".h", ".cpp", ".hpp"}
 # A comment, a character, or a run of string literals, which the compiler joins.
 TOKEN = re.compile(
-    r"""//[^\n]* | /\*.*?\*/ | '(?:[^'\\\n]|\\.)+' | (?P<text>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)""",
+    r"""(?P<comment>//[^\n]*|/\*.*?\*/) | '(?:[^'\\\n]|\\.)+' | (?P<text>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)""",
     re.VERBOSE | re.DOTALL,
 )
 OPTION = re.compile(r"(?<![\w-])--[a-z][\w-]*")
@@ -31,13 +31,20 @@ def commands_of(root):
     return sorted(set(re.findall(r"\bvoid declare_([a-z]+)\(Command &program\)", text)))
 
 
-def literals_of(text):
-    """(line, text) of every run of string literals; includes are none."""
+def texts_of(text):
+    """(line, kind, text) of every comment and every run of string literals, joined; the names of includes are neither."""
     text = re.sub(r"^[ \t]*#[ \t]*include[^\n]*", "", text, flags=re.MULTILINE)
     for match in TOKEN.finditer(text):
-        if match["text"]:
-            joined = "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', match["text"]))
-            yield text.count("\n", 0, match.start()) + 1, joined
+        line = text.count("\n", 0, match.start()) + 1
+        if match["comment"]:
+            yield line, "comment", match["comment"]
+        elif match["text"]:
+            yield line, "text", "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', match["text"]))
+
+
+def literals_of(text):
+    """(line, text) of every run of string literals."""
+    return ((line, literal) for line, kind, literal in texts_of(text) if kind == "text")
 
 
 def check(root):
