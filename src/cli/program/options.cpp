@@ -4,13 +4,13 @@
 #include <cerrno>
 #include <cstdlib>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
 #include "cli/program/error.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/help_text.hpp"
 #include "cli/program/nearest.hpp"
 
 namespace lensprof {
@@ -51,56 +51,6 @@ std::vector<std::string> names_of_options(const CLI::App &app) {
     }
     return names;
 }
-
-// The text with line breaks so that each line has at most `columns` characters, unless one word is longer.
-std::string wrapped(const std::string &text, size_t columns) {
-    std::string lines;
-    size_t column = 0;
-    std::istringstream paragraphs(text);
-    for (std::string paragraph; std::getline(paragraphs, paragraph);) {
-        if (!lines.empty()) lines += '\n', column = 0;
-        std::istringstream words(paragraph);
-        for (std::string word; words >> word; column += word.size()) {
-            if (column > 0 && column + 1 + word.size() > columns)
-                lines += '\n', column = 0;
-            else if (column > 0)
-                lines += ' ', column++;
-            lines += word;
-        }
-    }
-    return lines;
-}
-
-constexpr size_t help_columns = 100;
-
-// Wraps descriptions. A list of commands shows only the first line of each description.
-class HelpText : public CLI::Formatter {
-public:
-    HelpText() { label("SUBCOMMAND", "VERB"); }
-    std::string make_option_opts(const CLI::Option *option) const override {
-        if (option->get_items_expected_max() == 0) return "";
-        const bool is_positional = option->get_positional();
-        return (is_positional || option->get_type_name().empty() ? "" : " " + option->get_type_name())
-               + (option->get_items_expected_max() > 1 ? " ..." : "");
-    }
-    std::string make_option_desc(const CLI::Option *option) const override {
-        return wrapped(CLI::Formatter::make_option_desc(option), help_columns - get_column_width());
-    }
-    std::string make_description(const CLI::App *app) const override {
-        const std::string about = CLI::Formatter::make_description(app);
-        return about.empty() ? about : wrapped(about, help_columns) + "\n";
-    }
-    std::string make_usage(const CLI::App *app, std::string name) const override {
-        if (app->get_parent()) return CLI::Formatter::make_usage(app, name);
-        return "\nusage: lensprof COMMAND [OPTIONS]\n\n";
-    }
-    std::string make_subcommand(const CLI::App *command) const override {
-        const std::string about = command->get_description();
-        std::ostringstream line;
-        CLI::detail::format_help(line, command->get_name(), about.substr(0, about.find('\n')), get_column_width());
-        return line.str();
-    }
-};
 
 // Suggests the nearest word, else where to look.
 std::string advice(const std::string &word, const std::vector<std::string> &words, const std::string &otherwise) {
@@ -446,7 +396,7 @@ void Command::example(const std::string &command_line) {
 
 Program::Program(const std::string &name, const std::string &about)
     : app_(std::make_unique<CLI::App>(about, name)), actions_(std::make_unique<Actions>()) {
-    app_->formatter(std::make_shared<HelpText>());
+    app_->formatter(help_formatter());
     app_->set_help_flag("-h,--help", "print this help");
 }
 
