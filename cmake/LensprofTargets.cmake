@@ -52,6 +52,13 @@ function(lensprof_precompile target)
   endif()
 endfunction()
 
+# lensprof_reuse_precompiled(target from): the precompiled headers of `from`, a target with the same compiler options.
+function(lensprof_reuse_precompiled target from)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} REUSE_FROM ${from})
+  endif()
+endfunction()
+
 # lensprof_layer(name [ONLY] SOURCES... LINK...): an object library lensprof_<name> with hidden symbols, of all sources in its
 # folder (with ONLY of none but those named) and the generated SOURCES. Includes name private headers from src on.
 function(lensprof_layer name)

@@ -1,0 +1,1 @@
+// Source of the target of the precompiled headers of these tests.
