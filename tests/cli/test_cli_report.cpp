@@ -1,16 +1,11 @@
-// Reports as web pages: `lensprof report` and `build --report`.
-#include "cli_runs.hpp"
+// Reports as web pages: `lensprof report` and the option `--report`.
+#include "calibrate_runs.hpp"
 
 #include <lensprof/lensprof.h>
 
-using namespace cli_runs;
+using namespace calibrate_runs;
 
 namespace {
-
-std::string text_of(const std::string &path) {
-    const Bytes bytes = load(path);
-    return {bytes.begin(), bytes.end()};
-}
 
 // The JSON in a page.
 Json data_of(const std::string &path) {
@@ -234,11 +229,48 @@ void test_refusals(void **) {
     assert_false(fs::exists(out));
 }
 
+// A folder: its panoramas with their charts, all pictures, and the reasons; the same page if all is done already.
+void test_folder(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "4", "--seed", "21"});
+    simulate("single", {"--images", "2", "--seed", "23"});
+    fs::copy_file(work("single/img000.png"), work("row/other.png"));
+    save_text(work("row/bad.png"), text_of(work("row/img002.png")).substr(0, 5000));
+    const Words calibrate = {"calibrate", work("row"), "-o", work("out"), "--db", work("p.db")};
+    const Words report = {"--report", work("folder.html")};
+    must_exit(done, calibrate + report);
+    const Json page = data_of(work("folder.html"));
+    assert_true(page["kind"] == "folder" && page["verdict"]["level"] == "warn");
+    assert_true(page["verdict"]["headline"] == "5 of 6 pictures are corrected.");
+    assert_int_equal(page["views"].size(), 6);  // a mosaic and five pictures
+    for (const Json &view : page["views"]) {
+        assert_jpeg(view["before"]);
+        assert_true(view["before"] != view["after"]);
+    }
+    assert_int_equal(page["panoramas"].size(), 1);
+    const Json &fit = page["panoramas"][0]["page"];
+    assert_true(fit["verdict"]["level"] == "good" && fit["images"].size() == 4 && fit["falloffs"].size() >= 1);
+    assert_true(page["looked_up"][0]["name"] == "other.png");
+    assert_true(contains(page["looked_up"][0]["correction"], "profile"));
+    assert_true(contains(page["left_out"][0]["reason"], "bad.png"));
+    assert_true(page["result"] == Json::parse(text_of(work("out/calibrate.json"))));
+
+    const std::string first = text_of(work("folder.html"));
+    must_exit(done, calibrate + report);
+    assert_true(text_of(work("folder.html")) == first);
+    fs::remove_all(work("out"));
+    assert_refused(usage, calibrate + Words{"--report", work("row/img000.png")}, {"img000.png", ".html"});
+    save_text(work("mine.html"), "mine");
+    assert_refused(usage, calibrate + Words{"--report", work("mine.html")}, {"mine.html", "not a report"});
+    assert_false(fs::exists(work("out")));
+}
+
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_fit),    CLI_TEST(test_residuals), CLI_TEST(test_names),
-                                CLI_TEST(test_titles), CLI_TEST(test_stored),    CLI_TEST(test_database),
-                                CLI_TEST(test_flat),   CLI_TEST(test_bracket),   CLI_TEST(test_refusals)};
+    const CMUnitTest tests[] = {CLI_TEST(test_fit),     CLI_TEST(test_residuals), CLI_TEST(test_names),
+                                CLI_TEST(test_titles),  CLI_TEST(test_stored),    CLI_TEST(test_database),
+                                CLI_TEST(test_flat),    CLI_TEST(test_bracket),   CLI_TEST(test_folder),
+                                CLI_TEST(test_refusals)};
     return cmocka_run_group_tests_name("report", tests, make_scene, remove_folder);
 }

@@ -162,6 +162,12 @@ def main():
         assert found["all"] > found["matching"] > 0, found
         assert "24-70" in found["shown"] and found["curves"] >= 2, found
 
+        doctor = subprocess.run([lensprof, "doctor"], stdout=subprocess.PIPE, check=True).stdout
+        if re.search(rb"OpenCV +yes", doctor):
+            run("calibrate", "pictures", "-o", "out", "--db", "own.db", "--report", "folder.html")
+            found = check_page(browser, folder / "folder.html", 8, (PHONE, DESKTOP))
+            assert found["views"] == 5 and "img000.png" in found["second"], found
+
         run("report", "--db", "lenses.db", "--profile", "1", "-o", "one.html")
         check_page(browser, folder / "one.html", 2, (DARK,))
     print("all pages work")

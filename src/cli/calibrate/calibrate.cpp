@@ -5,11 +5,13 @@
 #include <sstream>
 
 #include "cli/calibrate/corrections.hpp"
+#include "cli/calibrate/folder_page.hpp"
 #include "cli/calibrate/inputs.hpp"
 #include "cli/calibrate/ledger.hpp"
 #include "cli/calibrate/panoramas.hpp"
 #include "cli/calibrate/sheet.hpp"
 #include "cli/calibrate/summary.hpp"
+#include "cli/page/page.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/message.hpp"
@@ -39,6 +41,8 @@ void declare(Command &command, CalibrateOptions &o) {
                  "treat the pictures of a panorama as from one camera and lens, regardless "
                  "of their EXIF");
     command.flag("--overwrite", o.overwrite, "replace files in the output folder that calibrate did not write");
+    command.file("--report", o.report,
+                 "write a web page with the pictures before and after, charts and reasons: an .html file");
     command.count("--threads", o.threads, 0, 1024, "number of threads that correct pictures; default 0 = all cores");
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -88,8 +92,18 @@ void check_database(const CalibrateOptions &o) {
     if (o.store.db.empty() || is_folder(o.output) || one_name(folder) != one_name(o.output)) check_store(o.store);
 }
 
+// Failure for a report that cannot be written, before anything is computed.
+void check_report(const CalibrateOptions &o) {
+    if (o.report.empty()) return;
+    check_page_name(o.report);
+    check_not_taken(o.report, "report", {store_path(o.store.db)});
+    const std::string folder = std::filesystem::path(absolute_path(o.report)).parent_path().string();
+    if (is_folder(o.output) || one_name(folder) != one_name(o.output)) check_output_file(o.report);
+}
+
 int run(const CalibrateOptions &o, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    check_report(o);
     check_output_folder(o.output);
     check_database(o);
     FolderLock lock(o.output);
@@ -112,6 +126,10 @@ int run(const CalibrateOptions &o, Streams &streams) {
     progress.clear();
     Json json = summary_json(o, inputs, panoramas, pictures);
     write_summary(o, json, ledger);
+    if (!o.report.empty()) {
+        const std::string page = folder_page(inputs, panoramas, pictures, json, command_text(streams.words), progress);
+        write_file(o.report, page.data(), page.size());
+    }
     if (o.json) {
         json["now"] = {
             {"registered", panoramas.is_registered}, {"fitted", panoramas.fitted}, {"corrected", pictures.written}};

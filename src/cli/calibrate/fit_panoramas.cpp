@@ -5,6 +5,7 @@
 #include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/panoramas.hpp"
 #include "cli/correct/project_model.hpp"
+#include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/photographs.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/fitting/project_fit.hpp"
@@ -26,6 +27,9 @@ Json warnings_in(const std::string &lines) {
         if (line.compare(0, start.size(), start) == 0) warnings.push_back(line.substr(start.size()));
     return warnings;
 }
+
+// File names need not be UTF-8: invalid bytes are replaced.
+Json valid_json(const Json &json) { return Json::parse(json.dump(-1, ' ', false, Json::error_handler_t::replace)); }
 
 Project project_of(const Panorama &panorama) {
     Project project;
@@ -65,6 +69,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     ProjectFit done(progress);
     done.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
     fit_project(options, project, metadata, prior, done, streams);
+    Json page = fit_page_data({done.report, done.input, done.best, done.input.images, project, metadata, "", "", false},
+                              progress);
     OutputFiles outputs;
     outputs.add(panorama.project, done.best.corrects() ? result_text(done, project, panorama.project)
                                                        : project_text_at(project, panorama.project));
@@ -78,6 +84,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     panorama.summary["database"] = result["profile"].is_null() ? Json() : Json(store_path(options.store.db));
     panorama.summary["warnings"] = warnings_in(err.str());
     panorama.summary["result"] = result;
+    add_fit_verdict(page, done.report, streams.warnings);
+    panorama.page = valid_json(page);
 }
 
 // A failed panorama does not stop the others. If a picture could not be read, the next run tries again; if the pictures
@@ -100,14 +108,13 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
     ledger.finish(panorama.project);
     Json files = Json::array();
     for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(one_name(picture->file)));
-    std::ostringstream valid;  // file names need not be UTF-8
-    print_json(panorama.summary, valid);
-    panorama.summary = Json::parse(valid.str());
+    panorama.summary = valid_json(panorama.summary);
     ledger.notes["results"][ascii_path(panorama.name)] = {
         {"key", is_final ? panorama.key : std::string()},
         {"files", files},
         {"source", ascii_path(panorama.source)},
         {"summary", panorama.summary},
+        {"page", panorama.page},
         {"project", ascii_path(read_text(panorama.project, largest_text))}};
     ledger.save();
 }
@@ -138,8 +145,10 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
     const std::string name = ascii_path(panorama.name);
     if (!notes.contains("results") || !notes["results"].contains(name)) return false;
     const Json &known = notes["results"][name];
-    if (known.value("key", "") != panorama.key || !is_stored(o, known["summary"])) return false;
+    if (known.value("key", "") != panorama.key || !known.contains("page") || !is_stored(o, known["summary"]))
+        return false;
     panorama.summary = known["summary"];
+    panorama.page = known["page"];
     panorama.summary["project"] = panorama.project;  // the folder may be spelled differently
     if (ledger.is_current(panorama.project, panorama.key)) return true;
     const std::string text = path_of_ascii(known["project"].get<std::string>());

@@ -15,7 +15,7 @@ namespace lensprof {
 
 struct CalibrateOptions {
     std::vector<std::string> inputs;
-    std::string output;
+    std::string output, report;
     StoreOptions store;  // only databases and no_store are used
     bool one_lens = false, overwrite = false, json = false, progress = false;
     uint32_t threads = 0;
@@ -32,6 +32,7 @@ struct Panorama {
     std::string source;    // the source stored in the provenance
     std::string key;       // hash of its pictures and the options
     Json summary;          // docs/json.md; `result` is null if the fit failed
+    Json page;             // its part of a report, without pictures (fit_page_data); null if the fit failed
     bool evens() const;
 };
 

@@ -1,17 +1,19 @@
-// Contact sheets with picture names.
+// Small copies of the pictures, and contact sheets of them.
 #pragma once
 
 #include "cli/calibrate/corrections.hpp"
 
 namespace lensprof {
 
-// Writes the sheets of these pictures: calibrate_sheet.jpg and, if one page is not enough, calibrate_sheet2.jpg and so
-// on. Each picture is shown before and, below, after correction, upright according to EXIF, with name and exposure. A
-// sheet is kept if the ledger lists it with the same copies.
+// A small copy of an input picture or of its corrected copy, upright; empty if the file cannot be read, because it may
+// have been edited since.
+Picture small_copy(const std::string &file, const InputPicture &picture, uint32_t side);
+
+// calibrate_sheet.jpg and, if one page is not enough, calibrate_sheet2.jpg and so on.
 std::vector<std::string> sheet_names(const CalibrateOptions &o, size_t pictures);
 
-// Every picture before and below it after, the right way up by EXIF's orientation, with its name and exposure. A sheet
-// that the ledger has of the same copies is left as it is.
+// Writes the sheets, with name and exposure of each picture. A sheet that the ledger lists with the same copies is
+// kept.
 void write_sheets(const CalibrateOptions &o, const CorrectedPictures &pictures, Ledger &ledger, Progress &progress);
 
 }  // namespace lensprof

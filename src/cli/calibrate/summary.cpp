@@ -32,23 +32,6 @@ std::string stored_text(const Json &result) {
     return count ? (count > 1 ? "profiles " : "profile ") + ids + " stored" : "";
 }
 
-// "  img000 (5 pictures): profile 3 stored, corners at 0.62 (-0.69 EV); reason".
-std::string line_of(const Panorama &panorama) {
-    const Json &summary = panorama.summary, &result = summary["result"];
-    std::string text = "  " + panorama.name + " (" + counted(panorama.pictures.size(), "picture") + "): ";
-    if (!result.is_object()) return text + "not fitted: " + summary["not_stored"].get<std::string>();
-    const std::string reason = result["reason"].get<std::string>();
-    if (!panorama.evens()) return text + "not usable: " + reason;
-    const std::string stored = stored_text(result);
-    text += stored.empty() ? "corrected, no profile stored" : stored;
-    const double corner = corner_of(result);
-    if (corner > 0.0)
-        text += format(", relative illuminance in the corners %.2f (%+.2f EV)", corner, std::log2(corner));
-    if (stored.empty() && !summary["not_stored"].is_null())
-        return text + ": " + summary["not_stored"].get<std::string>();
-    return reason.empty() ? text : text + "; " + reason;
-}
-
 std::string shortened(const std::string &line) {
     constexpr size_t longest = 200;
     return line.size() <= longest ? line : line.substr(0, utf8_cut(line, longest)) + "...";
@@ -68,11 +51,27 @@ void print_panoramas(const Panoramas &panoramas, std::ostream &out) {
     if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << evened << " corrected";
     out << "\n";
     const size_t count = panoramas.list.size(), shown = count <= most_panoramas ? count : most_panoramas - 1;
-    for (size_t n = 0; n < shown; n++) out << shortened(one_line(line_of(panoramas.list[n]))) << "\n";
+    for (size_t n = 0; n < shown; n++) out << shortened(one_line("  " + panorama_line(panoramas.list[n]))) << "\n";
     if (shown < count) out << "  and " << count - shown << " more\n";
 }
 
 }  // namespace
+
+std::string panorama_line(const Panorama &panorama) {
+    const Json &summary = panorama.summary, &result = summary["result"];
+    std::string text = panorama.name + " (" + counted(panorama.pictures.size(), "picture") + "): ";
+    if (!result.is_object()) return text + "not fitted: " + summary["not_stored"].get<std::string>();
+    const std::string reason = result["reason"].get<std::string>();
+    if (!panorama.evens()) return text + "not usable: " + reason;
+    const std::string stored = stored_text(result);
+    text += stored.empty() ? "corrected, no profile stored" : stored;
+    const double corner = corner_of(result);
+    if (corner > 0.0)
+        text += format(", relative illuminance in the corners %.2f (%+.2f EV)", corner, std::log2(corner));
+    if (stored.empty() && !summary["not_stored"].is_null())
+        return text + ": " + summary["not_stored"].get<std::string>();
+    return reason.empty() ? text : text + "; " + reason;
+}
 
 Json summary_json(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
                   const CorrectedPictures &pictures) {

@@ -464,7 +464,13 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
     if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);
     make_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    ContactSheet sheet;
+    if (!o.sheet.empty() && work.jobs.size() > ContactSheet::most_pictures)
+        throw Failure(
+            ExitCode::usage,
+            o.sheet
+                + format(": a contact sheet holds at most %zu pictures, but %zu are given; correct them in parts",
+                         ContactSheet::most_pictures, work.jobs.size()));
+    ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());
     say_notes(work.jobs, streams);
     Corrected written = o.merge ? merge(o, source, work, progress)
                                 : write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);

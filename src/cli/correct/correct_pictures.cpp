@@ -11,6 +11,7 @@
 #include "cli/pictures/icc.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/pictures/raw_kind.hpp"
+#include "cli/pictures/thumbnail.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/interrupt.hpp"
@@ -37,7 +38,8 @@ struct Finished {
 // One picture in progress.
 class PictureCorrection {
 public:
-    PictureCorrection(const Correction &job, const CorrectionKind &kind, bool thumbnails);
+    // `thumbnail_side`: the longer side of the thumbnails, in pixels; 0 = none.
+    PictureCorrection(const Correction &job, const CorrectionKind &kind, uint32_t thumbnail_side);
 
     // Corrects the whole picture and reports the pixels of every strip to `done`; encodes on a separate thread if
     // `split`.
@@ -59,21 +61,20 @@ private:
     uint32_t strip_rows_, next_row_ = 0;
 };
 
-PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind &kind, bool thumbnails)
+PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind &kind, uint32_t thumbnail_side)
     : job_(job),
       reader_(job.source),
       options_(options_of(reader_.header(), job, kind)),
       plan_(options_, job.source),
       result_(header_of_result(reader_.header(), options_.target_sample)),
       writer_(std::make_unique<PictureWriter>(job.target, result_, write_options(job, kind))),
-      thumbnails_(thumbnails),
+      thumbnails_(thumbnail_side > 0),
       strip_rows_(kind.strip_rows) {
     const Picture &source = reader_.header();
     if (strip_rows_ == 0)
         strip_rows_ = static_cast<uint32_t>(std::max<size_t>(strip_bytes / std::max<size_t>(source.row_bytes, 1), 1));
     if (!thumbnails_) return;
-    before = Thumbnail(source.width, source.height);
-    after = Thumbnail(source.width, source.height);
+    before = after = Thumbnail(source.width, source.height, thumbnail_side);
 }
 
 bool PictureCorrection::make(Strip &strip) {
@@ -131,7 +132,6 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     uint64_t pixels = 0;
     for (const Correction &job : jobs) pixels += job.pixels;
     Throughput throughput(progress, "correcting", count, pixels);
-    if (sheet) sheet->reserve(count);
     std::vector<Finished> finished(count);
     auto work = [&](uint32_t i) {
         make_folder(std::filesystem::path(absolute_path(jobs[i].target)).parent_path().string());
@@ -139,9 +139,12 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
             finished[i] = copy_dng(jobs[i]);
             return;
         }
-        PictureCorrection picture(jobs[i], kind, sheet != nullptr);
+        PictureCorrection picture(jobs[i], kind, sheet ? sheet->side() : 0);
         finished[i] = picture.run(threads / 2 >= count, throughput);
-        if (sheet) sheet->put(i, std::move(picture.before), std::move(picture.after));
+        if (!sheet) return;
+        const uint16_t orientation = read_metadata(jobs[i].source).orientation;
+        sheet->put(i, {picture.before.upright(orientation), picture.after.upright(orientation),
+                       std::filesystem::path(jobs[i].source).filename().string(), correction_note(jobs[i])});
     };
     Corrected corrected;
     auto finish = [&](uint32_t i) {

@@ -9,6 +9,7 @@
 
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
+#include "cli/program/format.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/paths.hpp"
 
@@ -62,6 +63,12 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
         throw Failure(ExitCode::usage, job.target + ": exists and was made from another picture (" + mark->source
                                            + "); give another folder with -o, or use --overwrite");
     }
+}
+
+std::string correction_note(const Correction &job) {
+    if (job.profile_id) return format("falloff by profile %lld", static_cast<long long>(job.profile_id));
+    if (job.lookup) return "falloff predicted by a lookup";
+    return job.copies_dng ? "" : format("%+.2f EV", job.own.ev - job.wanted.ev);
 }
 
 void warn_of_written(const Correction &job, bool with_metadata, Progress &progress) {

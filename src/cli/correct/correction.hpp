@@ -53,6 +53,9 @@ struct Corrected {
     double seconds = 0, megapixels = 0;
 };
 
+// How the picture is corrected, in a few words: "falloff by profile 3", "+0.31 EV".
+std::string correction_note(const Correction &job);
+
 // Warns of losses in the written target: the EXIF orientation in OpenEXR, which cannot store it, and metadata.
 void warn_of_written(const Correction &job, bool with_metadata, Progress &progress);
 

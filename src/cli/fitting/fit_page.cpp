@@ -9,7 +9,7 @@
 #include "cli/fitting/fit_residuals.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/page/page.hpp"
-#include "cli/pictures/upright.hpp"
+#include "cli/pictures/thumbnail.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/report/curves_json.hpp"
@@ -78,42 +78,30 @@ Json facts_json(const BuildReport &report) {
     return facts;
 }
 
-// The longer side of pictures in a report of so many. 2000 textured pictures take 13 MB.
-uint32_t side_of(size_t pictures) {
-    return pictures <= 24 ? 720 : pictures <= 60 ? 480 : pictures <= 160 ? 280 : pictures <= 600 ? 150 : 96;
-}
-
-constexpr size_t most_pictures = 2000;
-constexpr int quality = 78;
-
 void add_views(const FitPageInput &input, Progress &progress, Json &page) {
     const Fitted &fitted = input.best;
     std::vector<uint32_t> images = images_with_exposure(fitted);
     const size_t all = images.size();
     if (!fitted.corrects()) page["views_note"] = "The result is not usable, so that no picture is corrected.";
     if (!fitted.corrects() || images.empty() || !is_regular_file(input.project.files[images[0]])) return;
-    if (all > most_pictures) {
+    if (all > most_views) {
         std::vector<uint32_t> some;
-        for (size_t n = 0; n < most_pictures; n++) some.push_back(images[n * all / most_pictures]);
+        for (size_t n = 0; n < most_views; n++) some.push_back(images[n * all / most_views]);
         images = some;
-        page["views_note"] = format("%zu of %zu pictures, evenly spaced.", most_pictures, all);
+        page["views_note"] = views_note(most_views, all);
     }
-    const uint32_t side = side_of(images.size());
+    const uint32_t side = view_side(images.size());
     const bool has_mosaic = !input.project.is_reconstruction && images.size() <= 200;
-    const auto copies =
-        corrected_copies(input.project, fitted, images, has_mosaic ? std::max(side, 500u) : side, progress);
+    auto copies = corrected_copies(input.project, fitted, images, has_mosaic ? std::max(side, 500u) : side, progress);
     Json views = Json::array();
-    const auto add = [&](const std::string &name, const Picture &before, const Picture &after) {
-        views.push_back({{"name", name}, {"before", data_url(before, quality)}, {"after", data_url(after, quality)}});
-    };
     if (has_mosaic) {
         const Mosaic mosaic = mosaic_of(copies);
-        add("all pictures, unblended", mosaic.before, mosaic.after);
+        views.push_back(view_json("all pictures, unblended", mosaic.before, mosaic.after));
     }
-    for (const CorrectedCopy &copy : copies) {
+    for (CorrectedCopy &copy : copies) {
         const uint16_t orientation = copy.image < input.metadata.size() ? input.metadata[copy.image].orientation : 1;
-        add(input.project.names[copy.image], upright_copy(copy.before, orientation, side),
-            upright_copy(copy.after, orientation, side));
+        views.push_back(view_json(input.project.names[copy.image], upright_copy(copy.before, orientation, side),
+                                  upright_copy(copy.after, orientation, side)));
     }
     page["views"] = std::move(views);
 }
@@ -141,9 +129,13 @@ Json fit_page_data(const FitPageInput &input, Progress &progress) {
     return page;
 }
 
-std::string fit_page(Json page, const BuildReport &report, const std::vector<std::string> &warnings) {
+void add_fit_verdict(Json &page, const BuildReport &report, const std::vector<std::string> &warnings) {
     page["verdict"] = page_verdict(report.fit.usable, report.fit.evens, report.verdict.text, warnings);
     page["facts"] = facts_json(report);
+}
+
+std::string fit_page(Json page, const BuildReport &report, const std::vector<std::string> &warnings) {
+    add_fit_verdict(page, report, warnings);
     page["result"] = build_json(report);
     return page_of(page);
 }

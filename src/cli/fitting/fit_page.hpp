@@ -26,7 +26,10 @@ struct FitPageInput {
 // the result corrects them. Deterministic.
 nlohmann::ordered_json fit_page_data(const FitPageInput &input, Progress &progress);
 
-// The bytes of the page, once the profile is stored and all warnings are known.
+// Adds the verdict and the facts, once the profile is stored and all warnings are known.
+void add_fit_verdict(nlohmann::ordered_json &data, const BuildReport &report, const std::vector<std::string> &warnings);
+
+// The bytes of the page: `data` with its verdict and the result as JSON.
 std::string fit_page(nlohmann::ordered_json data, const BuildReport &report, const std::vector<std::string> &warnings);
 
 }  // namespace lensprof

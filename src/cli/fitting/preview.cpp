@@ -213,4 +213,15 @@ void write_preview(const std::string &path, const Project &project, const Fitted
     write_picture(path, out);
 }
 
+Mosaic read_preview(const std::string &path) {
+    const Picture both = read_picture(path, {});
+    Picture half = both;
+    half.height = half.frame_height = (std::max(both.height, gap + 2) - gap) / 2;
+    half.pixels.resize(half.row_bytes * half.height);
+    Mosaic mosaic{half, half};
+    const auto second = both.pixels.begin() + static_cast<std::ptrdiff_t>((half.height + gap) * half.row_bytes);
+    std::copy_n(second, half.pixels.size(), mosaic.after.pixels.begin());
+    return mosaic;
+}
+
 }  // namespace lensprof

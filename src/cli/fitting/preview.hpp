@@ -37,4 +37,7 @@ void check_preview(const std::string &path);
 // equirectangular.
 void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress);
 
+// The mosaics in a picture of write_preview.
+Mosaic read_preview(const std::string &path);
+
 }  // namespace lensprof

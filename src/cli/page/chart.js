@@ -71,16 +71,21 @@ function placeLabels(labels, y, top, bottom) {
 // lines: [{points: [[x, y]], colour, label, dash}], dots: [{points: [[x, y, error, name]], colour, hollow, label}]}
 function drawChart(chart) {
   const lines = chart.lines || [], dots = chart.dots || [], bands = chart.bands || [];
-  const labels = labelsOf(lines), longest = Math.max(0, ...labels.map((label) => label.text.length));
-  const width = 640, height = chart.height || 360;
+  const narrow = window.innerWidth < 600;  // a phone: fewer units, so that the text is as large as elsewhere
+  const width = narrow ? 400 : 640, height = (chart.height || 360) * (narrow ? 0.85 : 1), ticks = narrow ? 4 : 6;
+  const character = 7.6, most = narrow ? 15 : 30;
+  const labels = labelsOf(lines).map((label) => label.text.length <= most ? label :
+    { ...label, text: label.text.slice(0, most - 1) + '…' });
+  const longest = Math.max(0, ...labels.map((label) => label.text.length));
   const named = chart.x.names && chart.x.names.length <= 20;
-  const edge = { left: 62, right: 18 + Math.min(230, 7.6 * longest), top: 14, bottom: named ? 120 : 48 };
+  const edge = { left: 62, right: 18 + character * longest, top: 14, bottom: named ? 120 : 48 };
   const x = (value) => edge.left + (value - chart.x.low) / (chart.x.high - chart.x.low) * (width - edge.left - edge.right);
   const y = (value) => height - edge.bottom -
     (value - chart.y.low) / (chart.y.high - chart.y.low) * (height - edge.top - edge.bottom);
   const svg = svgElement('svg', { class: 'chart', viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': chart.title });
   const add = (name, attributes, text) => svg.appendChild(svgElement(name, attributes, text));
-  const xTicks = chart.x.ticks || niceTicks(chart.x.low, chart.x.high, 6), yTicks = niceTicks(chart.y.low, chart.y.high, 6);
+  const xTicks = chart.x.ticks || niceTicks(chart.x.low, chart.x.high, ticks),
+    yTicks = niceTicks(chart.y.low, chart.y.high, 6);
 
   for (const tick of yTicks) {
     add('line', { class: 'grid', x1: edge.left, x2: width - edge.right, y1: y(tick), y2: y(tick) });

@@ -98,8 +98,20 @@ std::string page_of(const Json &page) {
                               {"@DATA@", script_json(page)}});
 }
 
-std::string data_url(const Picture &picture, int quality) {
-    return "data:image/jpeg;base64," + base64(jpeg_bytes(picture, quality));
+Json view_json(const std::string &name, const Picture &before, const Picture &after) {
+    constexpr int quality = 78;
+    const auto url = [](const Picture &picture) {
+        return "data:image/jpeg;base64," + base64(jpeg_bytes(picture, quality));
+    };
+    return {{"name", name}, {"before", url(before)}, {"after", url(after)}};
+}
+
+uint32_t view_side(size_t pictures) {
+    return pictures <= 24 ? 720 : pictures <= 60 ? 480 : pictures <= 160 ? 280 : pictures <= 600 ? 150 : 96;
+}
+
+std::string views_note(size_t shown, size_t pictures) {
+    return std::to_string(shown) + " of " + std::to_string(pictures) + " pictures, evenly spaced.";
 }
 
 void check_page_name(const std::string &path) {

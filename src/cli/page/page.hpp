@@ -12,7 +12,8 @@ namespace lensprof {
 
 extern const char *const page_html, *const page_style, *const page_script;  // page.html, style.css, chart.js, report.js
 
-// The frame of every page: kind ("fit", "profile", "database"), title, subtitle, program, and the command that made it.
+// The frame of every page: kind ("fit", "folder", "profile", "database"), title, subtitle, program, and the command
+// that made it.
 nlohmann::ordered_json new_page(const std::string &kind, const std::string &title, const std::string &subtitle,
                                 const std::string &command);
 
@@ -24,8 +25,16 @@ nlohmann::ordered_json page_verdict(bool usable, bool evens, const std::string &
 // The bytes of the page; `page` is what report.js reads.
 std::string page_of(const nlohmann::ordered_json &page);
 
-// A JPEG of an 8 bit grey or RGB picture, as a data URL.
-std::string data_url(const Picture &picture, int quality);
+// A picture before and after correction, both 8 bit grey or RGB.
+nlohmann::ordered_json view_json(const std::string &name, const Picture &before, const Picture &after);
+
+// The longer side in pixels of each view on a page of so many pictures; a page has at most `most_views`. 2000 textured
+// pictures take 13 MB.
+uint32_t view_side(size_t pictures);
+constexpr size_t most_views = 2000;
+
+// What a page states if it shows only some of the pictures.
+std::string views_note(size_t shown, size_t pictures);
 
 // Failure (usage) unless the name ends in .html or .htm, and if it is of an existing file that is not a report.
 void check_page_name(const std::string &path);

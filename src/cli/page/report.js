@@ -1,4 +1,4 @@
-// The page of a fit, of a profile or of a database, from the JSON in the page.
+// The page of a fit, a folder, a profile or a database, from the JSON in the page.
 
 const data = JSON.parse(document.getElementById('data').textContent);
 const page = document.getElementById('report');
@@ -157,7 +157,16 @@ function jointHistogram(histogram, title) {
     cells[(bins - 1 - row) * bins + column] = { share: 0.15 + 0.85 * Math.log(1 + count) / Math.log(1 + most),
       text: `${count} pairs` };
   const svg = drawCells(cells, bins, title, () => 'accent');
-  svg.append(svgElement('path', { d: `M0 ${bins * 20}L${bins * 20} 0`, style: 'stroke:var(--quiet);stroke-width:2' }));
+  const side = bins * 20, left = 52, below = 34;
+  svg.append(svgElement('path', { d: `M0 ${side}L${side} 0`, style: 'stroke:var(--quiet);stroke-width:2' }),
+    svgElement('rect', { width: side, height: side, fill: 'none', style: 'stroke:var(--line);stroke-width:2' }));
+  for (const level of [0, 64, 128, 192, 255]) {
+    const at = level / 255 * side;
+    svg.append(svgElement('text', { class: 'tick', x: -8, y: side - at + 8, 'text-anchor': 'end', 'font-size': 22 }, level),
+      svgElement('text', { class: 'tick', x: at, y: side + 26, 'text-anchor': 'middle', 'font-size': 22 }, level));
+  }
+  svg.setAttribute('viewBox', `${-left} -12 ${side + left + 24} ${side + 12 + below}`);
+  svg.style.border = '0';
   return element('figure', { style: 'margin:0' }, svg, element('figcaption', { class: 'quiet' }, title));
 }
 
@@ -194,10 +203,13 @@ function residuals(report) {
       drawCells(coverage, r.frame.columns, 'Samples over the frame', () => 'accent', r.frame.aspect)))];
 }
 
+function leftOut(report) {
+  if (!report.left_out || !report.left_out.length) return null;
+  return section('Left out', table(['picture', 'reason'], report.left_out.map((out) => [out.name, out.reason])));
+}
+
 function closing(report) {
-  const parts = [];
-  if (report.left_out && report.left_out.length)
-    parts.push(section('Left out', table(['picture', 'reason'], report.left_out.map((out) => [out.name, out.reason]))));
+  const parts = [leftOut(report)];
   if (report.command)
     parts.push(section('Repeat', element('p', { class: 'quiet' }, `${report.program}. Run this command in the folder where the report was made.`),
       element('pre', {}, report.command)));
@@ -221,12 +233,41 @@ function heading(title, subtitle) {
   return element('header', {}, element('h1', {}, title), element('p', { class: 'quiet' }, subtitle));
 }
 
+function appendPresent(parent, parts) {
+  parent.append(...parts.filter((part) => part));
+}
+
+function charts(report) {
+  return [sideBySide(illuminance(report), responses(report)), exposures(report), ...residuals(report)];
+}
+
 function fitPage(report) {
-  page.append(heading(report.title, report.subtitle), verdict(report));
-  const parts = [pictures(report.views, report.views_note), sideBySide(illuminance(report), responses(report)),
-    exposures(report),
-    ...residuals(report), ...closing(report)];
-  page.append(...parts.filter((part) => part));
+  appendPresent(page, [heading(report.title, report.subtitle), verdict(report), pictures(report.views, report.views_note),
+    ...charts(report), ...closing(report)]);
+}
+
+// One line for each panorama, which opens its verdict and charts; they are drawn then.
+function panoramas(report) {
+  if (!report.panoramas.length) return null;
+  const list = report.panoramas.map((panorama) => {
+    if (!panorama.page) return element('p', {}, panorama.line);
+    const details = element('details', {}, element('summary', {}, panorama.line));
+    details.addEventListener('toggle', () => {
+      if (details.open && details.childElementCount === 1)
+        appendPresent(details, [verdict(panorama.page), ...charts(panorama.page), leftOut(panorama.page)]);
+    });
+    return details;
+  });
+  if (list[0].tagName === 'DETAILS') list[0].open = true;
+  return section('Panoramas', ...list);
+}
+
+// A folder of pictures: its panoramas, and the pictures corrected with profiles of a database.
+function folderPage(report) {
+  const lookedUp = report.looked_up.length ? section('Corrected with profiles of a database',
+    table(['picture', 'correction'], report.looked_up.map((picture) => [picture.name, picture.correction]))) : null;
+  appendPresent(page, [heading(report.title, report.subtitle), verdict(report), pictures(report.views, report.views_note),
+    panoramas(report), lookedUp, ...closing(report)]);
 }
 
 function cameras(report) {
@@ -324,9 +365,10 @@ function databasePage(report) {
 
 function profilePage(report) {
   page.append(heading(report.title, report.subtitle), verdict(report));
-  page.append(...[sideBySide(illuminance(report), responses(report)), ...closing(report)].filter((part) => part));
+  appendPresent(page, [sideBySide(illuminance(report), responses(report)), ...closing(report)]);
 }
 
 if (data.kind === 'database') databasePage(data);
 else if (data.kind === 'profile') profilePage(data);
+else if (data.kind === 'folder') folderPage(data);
 else fitPage(data);

@@ -2,97 +2,148 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include <cairo.h>
+
+#include "cli/program/utf8.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kThumbnailSide = 320, kGap = 8, kPerRow = 6;
-constexpr uint8_t kBackground = 40;
+constexpr uint32_t gap = 12, line = 22, header = line + 2 * gap, label = 2 * line;  // px
+constexpr uint32_t sheet_width = 1920, narrowest_cell = 160, largest_side = 960;    // px
+constexpr double text_size = 16;                                                    // px
+constexpr uint8_t background = 40;
+constexpr const char *legend = "above: as taken; below: corrected";
 
-double full_scale(uint8_t) { return 255.0; }
-double full_scale(uint16_t) { return 65535.0; }
-double full_scale(float) { return 1.0; }
+uint32_t columns_of(size_t pictures) {
+    constexpr std::pair<size_t, uint32_t> columns[] = {{1, 1}, {4, 2}, {9, 3}, {20, 4}, {60, 5}, {400, 8}};
+    for (const auto &[most, count] : columns)
+        if (pictures <= most) return count;
+    return std::max(12u, static_cast<uint32_t>(std::ceil(std::sqrt(1.7 * static_cast<double>(pictures)))));
+}
 
-// Adds the samples of a row to the sums of the boxes, `step` wide, that they are in.
-template <class Sample>
-void add_row(const Sample *row, uint32_t layout, uint32_t picture_width, uint32_t step, std::vector<double> &sums) {
-    uint32_t samples = lensprof_layout_samples(layout), next = lensprof_layout_channels(layout) == 1 ? 0 : 1;
-    for (size_t x = 0; x < sums.size() / 3; x++) {
-        double *sum = &sums[x * 3];
-        const Sample *end = row + std::min(picture_width, static_cast<uint32_t>(x + 1) * step) * size_t(samples);
-        for (const Sample *p = row + x * step * samples; p < end; p += samples)
-            for (uint32_t c = 0; c < 3; c++) sum[c] += p[c * next] / full_scale(Sample());
+using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
+
+double width_of(cairo_t *cr, const std::string &text) {
+    cairo_text_extents_t extents;
+    cairo_text_extents(cr, text.c_str(), &extents);
+    return extents.x_advance;
+}
+
+// Valid UTF-8 for cairo: invalid bytes become question marks.
+std::string valid_line(const std::string &text) {
+    std::string valid = one_line(text);
+    for (size_t i = 0; i < valid.size();) {
+        const size_t length = utf8_length(valid, i);
+        if (!length) valid[i] = '?';
+        i += std::max<size_t>(length, 1);
     }
+    return valid;
+}
+
+// Text at most `widest` pixels wide: the middle of a longer one is omitted.
+void draw_text(cairo_t *cr, double x, double y, double widest, const std::string &text) {
+    const std::string valid = valid_line(text);
+    std::string shown = valid;
+    for (size_t kept = valid.size(); kept > 4 && width_of(cr, shown) > widest; kept--) {
+        size_t end = valid.size() - kept / 2;
+        while (end < valid.size() && !utf8_length(valid, end)) end++;
+        shown = valid.substr(0, utf8_cut(valid, kept / 2)) + "..." + valid.substr(end);
+    }
+    cairo_move_to(cr, x, y);
+    cairo_show_text(cr, shown.c_str());
+}
+
+// Copies the pixels of cairo, which are blue, green, red and an unused byte, in native order.
+void copy_pixels(cairo_surface_t *surface, Picture &band) {
+    const uint8_t *data = cairo_image_surface_get_data(surface);
+    const auto stride = static_cast<size_t>(cairo_image_surface_get_stride(surface));
+    for (int y = 0; y < cairo_image_surface_get_height(surface); y++)
+        for (uint32_t x = 0; x < band.width; x++) {
+            const uint32_t pixel = reinterpret_cast<const uint32_t *>(data + y * stride)[x];
+            uint8_t *to = &band.pixels[y * band.row_bytes + size_t(x) * 3];
+            to[0] = uint8_t(pixel >> 16), to[1] = uint8_t(pixel >> 8), to[2] = uint8_t(pixel);
+        }
+}
+
+// The texts that draw(cr) draws, in the upper `height` rows of a band.
+template <class Draw>
+void draw_texts(Picture &band, uint32_t height, const Draw &draw) {
+    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, int(band.width), int(height)),
+                          cairo_surface_destroy);
+    const Context context(cairo_create(surface.get()), cairo_destroy);
+    cairo_t *cr = context.get();
+    cairo_set_source_rgb(cr, background / 255.0, background / 255.0, background / 255.0);
+    cairo_paint(cr);
+    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr, text_size);
+    cairo_set_source_rgb(cr, 0.95, 0.95, 0.95);
+    draw(cr);
+    cairo_surface_flush(surface.get());
+    if (cairo_status(cr) != CAIRO_STATUS_SUCCESS) throw std::bad_alloc();
+    copy_pixels(surface.get(), band);
+}
+
+// Rows of the sheet, empty.
+Picture empty_band(uint32_t width, uint32_t height) {
+    Picture band;
+    band.width = band.frame_width = width, band.height = band.frame_height = height;
+    band.row_bytes = size_t(3) * width;
+    band.pixels.assign(band.row_bytes * height, background);
+    return band;
+}
+
+void paste(const Picture &from, uint32_t left, uint32_t top, Picture &band) {
+    for (uint32_t y = 0; y < from.height; y++)
+        std::copy_n(&from.pixels[y * from.row_bytes], size_t(from.width) * 3,
+                    &band.pixels[(top + y) * band.row_bytes + size_t(left) * 3]);
 }
 
 }  // namespace
 
-Thumbnail::Thumbnail(uint32_t picture_width, uint32_t picture_height)
-    : picture_width_(picture_width),
-      picture_height_(picture_height),
-      step_(std::max(1u, (std::max(picture_width, picture_height) + kThumbnailSide - 1) / kThumbnailSide)) {
-    width = std::max(1u, picture_width / step_);
-    height = std::max(1u, picture_height / step_);
-    rgb.resize(static_cast<size_t>(width) * height * 3);
-    sums_.assign(static_cast<size_t>(width) * 3, 0.0);
-}
-
-void Thumbnail::add(const lensprof_image &rows) {
-    for (uint32_t y = 0; y < rows.height && row_ < height * step_; y++) {
-        const auto *row = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes;
-        if (rows.sample == LENSPROF_SAMPLE_U8)
-            add_row(row, rows.layout, picture_width_, step_, sums_);
-        else if (rows.sample == LENSPROF_SAMPLE_U16)
-            add_row(reinterpret_cast<const uint16_t *>(row), rows.layout, picture_width_, step_, sums_);
-        else
-            add_row(reinterpret_cast<const float *>(row), rows.layout, picture_width_, step_, sums_);
-        row_++;
-        if (row_ % step_ == 0 || row_ == picture_height_) end_boxes();
-    }
-}
-
-void Thumbnail::end_boxes() {
-    uint32_t y = (row_ - 1) / step_, high = row_ - y * step_;
-    for (uint32_t x = 0; x < width; x++)
-        for (uint32_t c = 0; c < 3; c++) {
-            uint32_t count = high * (std::min(picture_width_, (x + 1) * step_) - x * step_);
-            double mean = std::clamp(sums_[x * size_t(3) + c] / count, 0.0, 1.0);
-            rgb[(static_cast<size_t>(y) * width + x) * 3 + c] = static_cast<uint8_t>(std::lround(mean * 255.0));
-        }
-    std::fill(sums_.begin(), sums_.end(), 0.0);
-}
-
-void ContactSheet::reserve(size_t pictures) {
-    before_.resize(pictures);
-    after_.resize(pictures);
-}
-
-void ContactSheet::put(size_t picture, Thumbnail before, Thumbnail after) {
-    before_[picture] = std::move(before);
-    after_[picture] = std::move(after);
-}
+ContactSheet::ContactSheet(size_t pictures)
+    : columns_(columns_of(pictures)),
+      side_(std::min(largest_side, std::max(sheet_width / columns_, narrowest_cell) - gap)),
+      cells_(pictures) {}
 
 void ContactSheet::write(const std::string &path) const {
-    uint32_t cell_w = 1, cell_h = 1;
-    for (const auto *row : {&before_, &after_})
-        for (const auto &t : *row) cell_w = std::max(cell_w, t.width), cell_h = std::max(cell_h, t.height);
-    auto count = static_cast<uint32_t>(before_.size());
-    uint32_t columns = std::max(1u, std::min(count, kPerRow)), bands = std::max(1u, (count + columns - 1) / columns);
-    Picture sheet;
-    sheet.width = sheet.frame_width = columns * (cell_w + kGap) + kGap;
-    sheet.height = sheet.frame_height = bands * (2 * cell_h + 3 * kGap) + kGap;
-    sheet.row_bytes = static_cast<size_t>(sheet.width) * 3;
-    sheet.pixels.assign(sheet.row_bytes * sheet.height, kBackground);
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t row = 0; row < 2; row++) {
-            const Thumbnail &t = row == 0 ? before_[i] : after_[i];
-            uint32_t x0 = kGap + (i % columns) * (cell_w + kGap);
-            uint32_t y0 = kGap + (i / columns) * (2 * cell_h + 3 * kGap) + row * (cell_h + kGap);
-            for (uint32_t y = 0; y < t.height; y++)
-                std::copy_n(&t.rgb[static_cast<size_t>(y) * t.width * 3], t.width * 3,
-                            &sheet.pixels[(y0 + y) * sheet.row_bytes + static_cast<size_t>(x0) * 3]);
+    uint32_t wide = narrowest_cell, high = 1;
+    for (const Cell &cell : cells_)
+        for (const Picture *picture : {&cell.before, &cell.after})
+            wide = std::max(wide, picture->width), high = std::max(high, picture->height);
+    const auto count = static_cast<uint32_t>(cells_.size());
+    const uint32_t columns = std::max(1u, std::min(columns_, count)), bands = (count + columns - 1) / columns;
+    const uint32_t width = gap + columns * (wide + gap), height = label + 2 * (high + gap) + gap;
+    Picture whole;  // without pixels
+    whole.width = whole.frame_width = width, whole.height = whole.frame_height = header + bands * height;
+    whole.row_bytes = size_t(3) * width;
+    PictureWriter writer(path, whole);
+    Picture top = empty_band(width, header);
+    draw_texts(top, header, [&](cairo_t *cr) { draw_text(cr, gap, gap + text_size, width - 2.0 * gap, legend); });
+    writer.write(top.view());
+    for (uint32_t first = 0; first < count; first += columns) {
+        Picture band = empty_band(width, height);
+        const uint32_t cells = std::min(columns, count - first);
+        draw_texts(band, label, [&](cairo_t *cr) {
+            for (uint32_t i = 0; i < cells; i++) {
+                const double left = gap + i * (wide + gap);
+                draw_text(cr, left, text_size, wide, cells_[first + i].name);
+                draw_text(cr, left, line + text_size, wide, cells_[first + i].note);
+            }
+        });
+        for (uint32_t i = 0; i < cells; i++) {
+            paste(cells_[first + i].before, gap + i * (wide + gap), label, band);
+            paste(cells_[first + i].after, gap + i * (wide + gap), label + high + gap, band);
         }
-    write_picture(path, sheet);
+        writer.write(band.view());
+    }
+    writer.finish();
+    writer.commit();
 }
 
 }  // namespace lensprof

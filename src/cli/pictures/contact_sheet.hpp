@@ -1,4 +1,4 @@
-// An overview picture: each picture before and, below it, after correction.
+// An overview picture: each picture before and, below it, after correction, with its name.
 #pragma once
 
 #include <cstdint>
@@ -9,38 +9,29 @@
 
 namespace lensprof {
 
-// A small copy (box means, 8 bit RGB), built from a picture's rows.
-class Thumbnail {
-public:
-    Thumbnail() = default;
-    Thumbnail(uint32_t picture_width, uint32_t picture_height);
-
-    // Adds the picture's next rows.
-    void add(const lensprof_image &rows);
-
-    uint32_t width = 0, height = 0;
-    std::vector<uint8_t> rgb;
-
-private:
-    void end_boxes();
-
-    uint32_t picture_width_ = 0, picture_height_ = 0, step_ = 1, row_ = 0;
-    std::vector<double> sums_;  // sums of the boxes of the current row_
-};
-
 class ContactSheet {
 public:
-    // Sets the number of pictures; call before adding any.
-    void reserve(size_t pictures);
+    // Few pictures get large cells: a sheet of up to 400 pictures is at most 1950 pixels wide.
+    explicit ContactSheet(size_t pictures);
+    static constexpr size_t most_pictures = 20000;
 
-    // Threads: different threads may add different pictures.
-    void put(size_t picture, Thumbnail before, Thumbnail after);
+    // The longer side of the small pictures that put() takes, in pixels.
+    uint32_t side() const { return side_; }
 
-    // The sheet as PNG.
+    struct Cell {
+        Picture before, after;   // 8 bit RGB without gaps; empty pictures leave their place empty
+        std::string name, note;  // two lines above them; the middle of a line wider than the cell is omitted
+    };
+
+    // Threads: different threads may put different pictures.
+    void put(size_t picture, Cell cell) { cells_[picture] = std::move(cell); }
+
+    // Writes the sheet as its name states.
     void write(const std::string &path) const;
 
 private:
-    std::vector<Thumbnail> before_, after_;
+    uint32_t columns_, side_;
+    std::vector<Cell> cells_;
 };
 
 }  // namespace lensprof

@@ -1,0 +1,103 @@
+#include "cli/calibrate/folder_page.hpp"
+
+#include <algorithm>
+
+#include "cli/calibrate/attempt.hpp"
+#include "cli/calibrate/sheet.hpp"
+#include "cli/calibrate/summary.hpp"
+#include "cli/fitting/preview.hpp"
+#include "cli/page/page.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/parallel.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+Json verdict_json(const Inputs &inputs, const CorrectedPictures &pictures, const Json &summary) {
+    const size_t corrected = pictures.list.size(), left_out = summary["left_out"].size();
+    const std::string all =
+        corrected == 1 ? "The picture is corrected." : format("All %zu pictures are corrected.", corrected);
+    return {{"level", !corrected ? "bad"
+                      : left_out ? "warn"
+                                 : "good"},
+            {"headline", !corrected ? "No picture is corrected."
+                         : left_out ? format("%zu of %zu pictures are corrected.", corrected, inputs.found)
+                                    : all},
+            {"details", Json::array()}};
+}
+
+Json facts_json(const Inputs &inputs, const Panoramas &panoramas, const CorrectedPictures &pictures,
+                const Json &summary) {
+    Json facts = Json::array();
+    const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
+    const auto by_profile = std::count_if(pictures.list.begin(), pictures.list.end(),
+                                          [](const CorrectedPicture &picture) { return picture.panorama.empty(); });
+    add("pictures found", std::to_string(inputs.found));
+    add("panoramas", std::to_string(panoramas.list.size()));
+    add("corrected as part of a panorama", std::to_string(pictures.list.size() - static_cast<size_t>(by_profile)));
+    add("corrected with a profile of a database", std::to_string(by_profile));
+    add("left out", std::to_string(summary["left_out"].size()));
+    return facts;
+}
+
+// The mosaics, then the pictures.
+void add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Progress &progress, Json &page) {
+    Json views = Json::array();
+    for (const Panorama &panorama : panoramas.list) {
+        if (!panorama.evens() || views.size() == most_views) continue;
+        why_not([&] {
+            const Mosaic mosaic = read_preview(panorama.preview);
+            views.push_back(view_json(panorama.name + ", unblended", mosaic.before, mosaic.after));
+        });
+    }
+    const size_t all = pictures.list.size(), shown = std::min(all, most_views - views.size());
+    if (shown < all) page["views_note"] = views_note(shown, all);
+    const uint32_t side = view_side(shown);
+    std::vector<Json> copies(shown);
+    for_each_parallel(static_cast<uint32_t>(shown), "report", progress, [&](uint32_t n) {
+        const InputPicture &picture = *pictures.list[n * all / shown].picture;
+        const Picture before = small_copy(picture.file, picture, side),
+                      after = small_copy(picture.target, picture, side);
+        if (before.width && after.width) copies[n] = view_json(picture.name, before, after);
+    });
+    for (Json &copy : copies)
+        if (!copy.is_null()) views.push_back(std::move(copy));
+    page["views"] = std::move(views);
+}
+
+Json panoramas_json(const Panoramas &panoramas) {
+    Json list = Json::array();
+    for (const Panorama &panorama : panoramas.list) {
+        list.push_back({{"line", panorama_line(panorama)}, {"page", panorama.page}});
+    }
+    return list;
+}
+
+// How the pictures outside panoramas are corrected.
+Json looked_up_json(const CorrectedPictures &pictures) {
+    Json list = Json::array();
+    for (const CorrectedPicture &picture : pictures.list)
+        if (picture.panorama.empty())
+            list.push_back({{"name", picture.picture->name}, {"correction", correction_note(picture.job)}});
+    return list;
+}
+
+}  // namespace
+
+std::string folder_page(const Inputs &inputs, const Panoramas &panoramas, const CorrectedPictures &pictures,
+                        const Json &summary, const std::string &command, Progress &progress) {
+    Json page = new_page("folder", inputs.label, "Calibration of a folder of pictures", command);
+    page["verdict"] = verdict_json(inputs, pictures, summary);
+    page["facts"] = facts_json(inputs, panoramas, pictures, summary);
+    add_views(panoramas, pictures, progress, page);
+    page["panoramas"] = panoramas_json(panoramas);
+    page["looked_up"] = looked_up_json(pictures);
+    page["left_out"] = Json::array();
+    for (const Json &left_out : summary["left_out"])
+        page["left_out"].push_back({{"name", left_out["file"]}, {"reason", left_out["reason"]}});
+    page["result"] = summary;
+    return page_of(page);
+}
+
+}  // namespace lensprof
