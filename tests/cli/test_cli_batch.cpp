@@ -86,8 +86,9 @@ std::map<std::string, Bytes> correct_by(const Words &files, bool linear, uint32_
         lensprof_exposure_init(&job.wanted);
         jobs.push_back(job);
     }
-    std::ostringstream said;
-    Progress progress(said, ShowProgress::never);
+    std::ostringstream output, said;
+    Streams streams{output, said};
+    Progress progress(streams);
     CorrectionKind kind;
     kind.linear = linear;
     kind.threads = threads;

@@ -187,7 +187,7 @@ void test_refused_options(void **) {
     assert_refused(usage, bracket(files, {"--db", work("p.db"), "--no-store"}), {"--db", "--no-store"});
     assert_refused(usage, bracket(files, {"--db", work("p.db")}), {files[0], "give --camera"});
     assert_refused(store_failed, bracket(files, {"--db", work("none/p.db"), "--camera", "X"}), {work("none")});
-    assert_refused(usage, {"bracket"}, {"FILES"});
+    assert_refused(usage, {"bracket"}, {"FILE"});
 }
 
 void test_refused_pictures(void **) {

@@ -228,7 +228,7 @@ void test_refused(void **) {
         Words words, named;
     };
     const Case cases[] = {
-        {usage, {}, {"FILES"}},
+        {usage, {}, {"FILE"}},
         {usage, {path}, {"--linear", "--gamma", "--profile"}},
         {usage, {path, "--linear", "--gamma", "2"}, {"one of"}},
         {usage, {path, "--gamma", "11", "--no-store"}, {"--gamma"}},

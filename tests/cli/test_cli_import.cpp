@@ -127,7 +127,7 @@ void test_import_refuses(void **) {
     assert_refused(unreadable, import_words() + Words{good, work("cut.xml")}, {work("cut.xml")});
     assert_refused(unreadable, import_words() + Words{work("none.xml")}, {work("none.xml")});
     assert_refused(unreadable, import_words() + Words{work("")}, {"is a folder"});
-    assert_refused(usage, {"profile", "import"}, {"FILES"});
+    assert_refused(usage, {"profile", "import"}, {"FILE"});
     assert_refused(store_failed, {"profile", "import", good, "--db", work("none/l.db")},
                    {"does not exist", "create it first"});
     assert_refused(store_failed, {"profile", "merge", work("l.db"), "--db", work("none/l.db")}, {"does not exist"});

@@ -26,7 +26,7 @@ void assert_refused_in_bounds(const Words &words, const std::string &named) {
 Words build(const std::string &pto, const Words &more = {}) { return Words{"build", pto, "--no-store"} + quick + more; }
 
 void test_apply_to_nothing(void **) {
-    assert_refused(usage, {"apply", "--profile", "1", "-o", work("out"), ""}, {"FILES"});
+    assert_refused(usage, {"apply", "--profile", "1", "-o", work("out"), ""}, {"FILE"});
 }
 
 void test_folder_with_a_link_to_itself(void **) {

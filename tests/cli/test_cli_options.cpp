@@ -111,7 +111,7 @@ void test_options_are_no_values(void **) {
         {{"profile", "check", "--db", "a", "--db", "b"}, "--db: given more than once; give it once"},
         {{"query", "--json=maybe"}, "--json: takes no value, but maybe was given; give --json alone"},
         {{"simulate"}, "--output: missing; give --output FOLDER"},
-        {{"build"}, "INPUT: missing; give INPUT"},
+        {{"build"}, "FILE: missing; give FILE"},
         {{"apply", "-x.png"}, "-x.png: no such option; see `lensprof apply --help`, or put -- before names"},
         {{"apply", "-y"}, "-y: no such option; did you mean -h? Otherwise put -- before names that start with -\n"},
         {{"apply", "--jsn"}, "--jsn: no such option; did you mean --json?\n"},
@@ -188,6 +188,28 @@ void test_help_fits_100_columns(void **) {
     }
 }
 
+// Results are the same; messages are omitted, or include the time of each step.
+void test_quiet_and_verbose(void **) {
+    const Words build = Words{"build", scene("pano.pto"), "--no-store", "--gamma-from", "exif"} + quick;
+    const Outcome normal = run_words(build), silent = run_words(build + Words{"-q"}),
+                  verbose = run_words(build + Words{"--verbose"});
+    assert_int_equal(normal.code, done);
+    assert_true(contains(normal.err, "warning: ") && !contains(normal.err, "sampling"));
+    assert_string_equal(silent.err.c_str(), "");
+    for (const Outcome *outcome : {&silent, &verbose})  // the table; the time differs
+        assert_string_equal(outcome->out.substr(0, 400).c_str(), normal.out.substr(0, 400).c_str());
+    for (const char *part : {"warning: ", "lensprof: sampling: ", "lensprof: fitting: ", " MB of memory"})
+        assert_true(contains(verbose.err, part));
+    assert_false(contains(normal.err + verbose.err, "\x1b"));  // not a terminal
+    assert_refused(usage, build + Words{"-q", "-v"}, {"--quiet and --verbose exclude each other"});
+    assert_refused(unreadable, {"build", work("none.pto"), "--quiet"}, {"none.pto"});  // an error is printed
+    assert_string_equal(run_words({"simulate", "-o", work("s"), "--images", "2", "--size", "64x48", "-q"}).err.c_str(),
+                        "");
+    const std::string progress =
+        run_words({"simulate", "-o", work("s"), "--images", "2", "--size", "64x48", "--progress"}).err;
+    assert_true(contains(progress, "rendering 100 %, 2 of 2"));
+}
+
 void test_version(void **) {
     const std::string version = must_exit(done, {"version"});
     for (const Words &words : {Words{"--version"}, Words{"--version", "query"}, Words{"--version", "--bogus"}})
@@ -202,7 +224,7 @@ void test_empty_values_that_are_needed(void **) {
         const char *said;
     } cases[] = {
         {{"apply", "-o", ""}, "--output: empty folder name; give one, or omit the option\n"},
-        {{"build", ""}, "INPUT: empty file name; give one\n"},
+        {{"build", ""}, "FILE: empty file name; give one\n"},
         {{"build", "--db", ""}, "--db: empty file name; give one, or omit the option\n"},
         {{"query", "--camera="}, "--camera: empty value; give one, or omit the option\n"},
     };
@@ -408,6 +430,7 @@ int main() {
         CLI_TEST(test_a_short_option_with_an_equals_sign),
         CLI_TEST(test_two_dashes_end_options),
         CLI_TEST(test_help_fits_100_columns),
+        CLI_TEST(test_quiet_and_verbose),
         CLI_TEST(test_version),
         CLI_TEST(test_empty_values_that_are_needed),
         CLI_TEST(test_long_and_odd_words),

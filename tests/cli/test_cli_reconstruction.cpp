@@ -101,7 +101,7 @@ void test_is_deterministic(void **) {
 void test_blocks(void **) {
     std::ostringstream out, err;
     Streams streams{out, err};
-    Progress progress(err, ShowProgress::when_terminal);
+    Progress progress(streams);
     const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, {}, 0, 1}, streams);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Man pages and shell completions, checked by the programs that read them.
+"""Man pages and shell completions, checked by the programs that read them, and colour on a terminal.
 
 usage: test_shell.py LENSPROF
 
@@ -7,7 +7,9 @@ mandoc checks the pages; bash completes as if a user pressed tab; zsh and fish c
 is reported as skipped.
 """
 
+import os
 import pathlib
+import pty
 import re
 import shutil
 import subprocess
@@ -79,6 +81,33 @@ def check_syntax(lensprof, folder):
             output_of(shell, "-n", script)
 
 
+def on_terminal(environment, *words):
+    """What a command prints on a terminal."""
+    leader, follower = pty.openpty()
+    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=follower, env={**os.environ, "TERM": "xterm", **environment}):
+        pass
+    os.close(follower)
+    text = b""
+    try:
+        while part := os.read(leader, 4096):
+            text += part
+    except OSError:  # Linux: the other end is closed
+        pass
+    os.close(leader)
+    return text
+
+
+def check_colour(lensprof, folder):
+    """Warnings have a colour on a terminal, and on no other."""
+    output_of(lensprof, "simulate", "-o", folder / "row", "--images", "4", "--size", "320x240")
+    build = [lensprof, "build", folder / "row" / "pano.pto", "--no-store", "--gamma-from", "exif"]
+    assert b"\033[1;33mwarning:\033[0m " in on_terminal({"NO_COLOR": ""}, *build)
+    for plain in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
+        assert b" warning: " in on_terminal(plain, *build)
+    piped = subprocess.run(build, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False).stderr
+    assert b" warning: " in piped and b"\033" not in piped, piped
+
+
 def main():
     lensprof = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as place:
@@ -86,6 +115,7 @@ def main():
         check_pages(lensprof, folder)
         check_bash(lensprof, folder)
         check_syntax(lensprof, folder)
+        check_colour(lensprof, folder)
     refused = subprocess.run([lensprof, "completion", "tcsh"], stderr=subprocess.PIPE, text=True, check=False)
     assert refused.returncode == 2 and "bash, zsh, fish" in refused.stderr, refused
     print("man pages and completions are right")

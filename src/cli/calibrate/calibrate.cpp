@@ -24,8 +24,8 @@ namespace lensprof {
 namespace {
 
 void declare(Command &command, CalibrateOptions &o) {
-    command.files("INPUT", o.inputs, "pictures and folders of pictures (with subfolders)");
-    command.require("INPUT");
+    command.files("FILE", o.inputs, "pictures and folders of pictures (with subfolders)");
+    command.require("FILE");
     command.folder("-o,--output", o.output, "output folder");
     command.require("--output");
     command.words(
@@ -102,7 +102,7 @@ void check_report(const CalibrateOptions &o) {
 }
 
 int run(const CalibrateOptions &o, Streams &streams) {
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     check_report(o);
     check_output_folder(o.output);
     check_database(o);

@@ -50,7 +50,7 @@ struct Options {
 };
 
 void declare(Command &command, Options &o) {
-    command.files("FRAMES", o.files, "pictures of one camera, in order; with --project default all of its pictures");
+    command.files("FILE", o.files, "pictures of one camera, in order; with --project default all of its pictures");
     command.choice("--to", o.to, targets,
                    "frame whose exposure and white balance all frames get: first, last, brightest, or mean (default: "
                    "geometric mean of all)");
@@ -236,7 +236,7 @@ int align(const Options &o, Streams &streams) {
     std::vector<Correction> jobs = make_jobs(o, project, frames);
     check_pictures(project, o.max_side);
     if (o.merge.empty()) check_output_folder(o.folder());
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     std::vector<double> white_shares;  // number of the project's pictures
     Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
     Verdict verdict = verdict_of(fitted.result);

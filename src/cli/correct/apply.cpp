@@ -101,9 +101,10 @@ void declare(Command &command, Options &o) {
     command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float");
     command.choice("--linear-output", o.linear_end, {{"tif", ".tif"}, {"exr", ".exr"}},
                    "file format of --linear: tif (default) or exr (OpenEXR without metadata)");
-    command.text("--shard", o.shard,
-                 "correct only a part of the pictures, to distribute the work: 2/5 is the second of five parts; "
-                 "outputs do not depend on it; default all");
+    command.word(
+        "--shard", "INDEX/COUNT", [&o](const std::string &word) { o.shard = word; },
+        "correct only a part of the pictures, to distribute the work: 2/5 is the second of five parts; "
+        "outputs do not depend on it; default all");
     command.flag(
         "--merge", o.merge,
         "merge into each picture the irradiance of all overlapping pictures of the project, also where it is clipped "
@@ -130,7 +131,7 @@ void declare(Command &command, Options &o) {
     declare_writing(command, o.kind);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
-    command.files("FILES", o.files,
+    command.files("FILE", o.files,
                   "pictures and folders of pictures (with subfolders); with --pto or --model default all of the "
                   "project");
     command.footer(
@@ -463,7 +464,7 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
         encode_alike(source, work.jobs, streams);
     if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);
     make_folder(o.output);
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     if (!o.sheet.empty() && work.jobs.size() > ContactSheet::most_pictures)
         throw Failure(
             ExitCode::usage,

@@ -33,8 +33,8 @@ struct Options {
 };
 
 void declare(Command &command, Options &o) {
-    command.files("FILES", o.files, "pictures of one scene from a stationary camera");
-    command.require("FILES");
+    command.files("FILE", o.files, "pictures of one scene from a stationary camera");
+    command.require("FILE");
     command.numbers("--ev", o.ev, {-64.0, 64.0},
                     "exposures of the pictures, EV, larger = brighter, separated by commas; default from EXIF, else "
                     "unknown");
@@ -212,7 +212,7 @@ FitInput fit_input(const Options &o, const Project &project, const std::vector<P
 
 BuildReport fit_bracket(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
                         const std::vector<double> &ev, const CameraKind &kind, Json &page, Streams &streams) {
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     BuildReport report;
     report.names = project.names;
     report.has_falloff = false;

@@ -41,17 +41,18 @@ constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | balance_flags;
 
 void declare_points(Command &command, Options &o) {
     command.files(
-        "INPUT", o.inputs,
+        "FILE", o.inputs,
         "overlapping pictures and folders of them; or one Hugin project, whose v lines choose what is estimated; or "
         "one reconstruction (COLMAP database.db or model folder, tracks.csv of OpenSfM and OpenDroneMap, Bundler "
         ".out, AliceVision .sfm, OpenMVG sfm_data.json, or a folder with one of them)");
-    command.require("INPUT");
+    command.require("FILE");
     command.folder("--images", o.images, "folder of the reconstruction's pictures; default next to the reconstruction");
     command.file("--image-list", o.image_list,
                  "use only the images of the reconstruction that this file lists, one name per line; default all");
-    command.text("--shard", o.shard,
-                 "use only a part of the reconstruction's images, to distribute the work: 2/5 is the second of five "
-                 "parts; give each part its own --db and join them with `profile merge`; default all");
+    command.word(
+        "--shard", "INDEX/COUNT", [&o](const std::string &word) { o.shard = word; },
+        "use only a part of the reconstruction's images, to distribute the work: 2/5 is the second of five "
+        "parts; give each part its own --db and join them with `profile merge`; default all");
     command.flag("--track-colors", o.track_colours,
                  "use the colours in tracks.csv instead of reading the pictures; default if there are no pictures");
     command.file("--project-out", o.project_out,
@@ -159,7 +160,7 @@ CameraKind usual_kind(const lensprof_profile_key &key) {
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
                   const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Json &page,
                   Streams &streams) {
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     ProjectFit done(progress);
     done.report.camera_kind = kind;
     fit_project(o, project, metadata, prior, done, streams);
@@ -244,7 +245,7 @@ Project open_project(const Options &o, Streams &streams) {
     if (!o.points.empty())
         throw Failure(ExitCode::usage,
                       "--points: needs the project that its pairs belong to; give the project instead of pictures");
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     const Photographs list = find_photographs(o.inputs, streams);
     check_photographs(o, list);
     return project_of_pictures(list, o.one_lens, progress, streams);

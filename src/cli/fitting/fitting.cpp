@@ -388,7 +388,7 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     stop_if_interrupted();
     if (!store.no_store) store_result(report, key, store, finish);
     std::ostringstream said;  // after the result, but known before the outputs are complete
-    Streams later{streams.out, said, streams.words, streams.warnings};
+    Streams later = streams.with(streams.out, said);
     const bool is_good = name_doubts(report, store, finish, later);
     if (!finish.report.empty())
         finish.outputs->add(finish.report, fit_page(std::move(*finish.page), report, later.warnings));

@@ -48,8 +48,8 @@ void declare_card(Command &command, FlatCommand &o) {
 }
 
 void declare(Command &command, FlatCommand &o) {
-    command.files("FILES", o.files, "pictures of the card, all of one camera, lens and setting");
-    command.require("FILES");
+    command.files("FILE", o.files, "pictures of the card, all of one camera, lens and setting");
+    command.require("FILE");
     command.flag(
         "--linear", o.linear,
         "the pictures are linear (developed from raw files without a tone curve); not needed for float TIFF or a "
@@ -159,7 +159,7 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
 }
 
 FlatReport measure_or_say_why_not(const FlatCommand &o, FlatInput &input, Streams &streams) {
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     try {
         return measure(o, input, progress, streams);
     } catch (const Failure &failure) {

@@ -89,7 +89,7 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
                                          std::vector<UnlistedFolder> *unlisted) {
     std::vector<NamedPicture> pictures;
     for (const std::string &name : names) {
-        if (name.empty()) throw Failure(ExitCode::usage, "FILES: empty name; give a picture or a folder");
+        if (name.empty()) throw Failure(ExitCode::usage, "FILE: empty name; give a picture or a folder");
         if (!is_folder(name)) {
             pictures.push_back({name, "", false});
             continue;

@@ -64,7 +64,8 @@ Project open_pictures(const std::vector<std::string> &words, const std::string &
         for (std::string line; std::getline(lines, line);)
             if (line.rfind("lensprof: note: ", 0) != 0) streams.err << line << "\n";
     };
-    Streams own{streams.out, err};
+    Streams own = streams.with(streams.out, err);
+    own.colour = false;  // the words identify notes
     try {
         Project project = project_of_words(words, images, progress, own);
         pass_on();
@@ -193,7 +194,7 @@ TrialReport measure(const Project &project, const std::vector<StoredProfile> &pr
 void declare_against(Command &command, AgainstOptions &o) {
     command.texts("ID", o.words, "profiles to compare with --against, and further pictures");
     command.words(
-        "--against", "PICTURES", [&o](const std::string &word) { o.pictures.push_back(word); },
+        "--against", "FILE", [&o](const std::string &word) { o.pictures.push_back(word); },
         "compare the profiles on these overlapping pictures (folders or files, such as *.jpg), Hugin project or "
         "reconstruction, and report which fits best");
     command.folder("--images", o.images, "folder of the reconstruction's pictures; default next to the reconstruction");
@@ -205,7 +206,7 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     std::vector<std::string> pictures;
     sort_words(o, ids, pictures);
     const std::vector<StoredProfile> profiles = read_profiles(db, ids);
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     const Project project = open_pictures(pictures, o.images, progress, streams);
     if (project.images.size() < 2)
         throw Failure(ExitCode::not_usable, project.path + ": has only one image; give at least two that overlap",

@@ -109,9 +109,8 @@ void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<
     if (!is_mean) return;
     for (const StoredProfile &one : chosen)
         if (one.profile->vignettings == 3)
-            streams.err << "profile " << one.id << ": its falloff differs per channel; " << rule.name
-                        << " stores the "
-                           "mean\n";
+            note(streams, "profile " + std::to_string(one.id) + ": its falloff differs per channel; " + rule.name
+                              + " stores the mean");
 }
 
 // Formats that need a crop factor use that of the command line if the profile does not have one.

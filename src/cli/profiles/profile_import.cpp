@@ -15,6 +15,7 @@
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/paths.hpp"
+#include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 
@@ -27,7 +28,7 @@ struct Options {
     KeyFilter key;  // for information that files do not contain
     ForeignOptions foreign;
     std::string db, format;
-    bool json = false;
+    bool json = false, progress = false;
 };
 
 // A file and how it is read.
@@ -130,8 +131,10 @@ lensprof_status take_camera(void *user, const lensprof_camera_model *camera) {
 
 // Every profile of every file, and the cameras.
 void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts,
-               lensprof_import_visitor visit) {
+               lensprof_import_visitor visit, const std::string &what, Progress &progress) {
+    uint32_t done = 0;
     for (const Input &input : inputs) {
+        progress.update_items(what, done++, static_cast<uint32_t>(inputs.size()));
         if (input.rule->holds != LENSPROF_HOLDS_PROFILES) continue;
         import.file = input.file;
         try {
@@ -151,13 +154,13 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_
 }
 
 // A failure closes the store, and rolls back.
-void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts) {
+void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts, Progress &progress) {
     const std::string db = store_path(import.db);
     Store store = open_store(import.db, LENSPROF_STORE_CREATE);
     import.store = store.get();
     import.cameras = 0;
     check(lensprof_store_begin(store.get(), &import.error), db, &import.error);
-    visit_all(import, inputs, of_parts, take);
+    visit_all(import, inputs, of_parts, take, "storing", progress);
     check(lensprof_store_commit(store.get(), &import.error), db, &import.error);
 }
 
@@ -190,14 +193,16 @@ int run(const Options &o, Streams &streams) {
                       "options");
     Import import;
     import.db = o.db;
-    visit_all(import, inputs, of_parts.get(), ignore);  // before a database is created
+    Progress progress(streams, o.progress);
+    visit_all(import, inputs, of_parts.get(), ignore, "reading", progress);  // before a database is created
     const bool is_new = !path_exists(store_path(o.db));
     try {
-        store_all(import, inputs, of_parts.get());
+        store_all(import, inputs, of_parts.get(), progress);
     } catch (const Failure &) {
         if (is_new) remove_empty_store(store_path(o.db));
         throw;
     }
+    progress.clear();
     if (o.json)
         print_json(Json{{"schema", 1},
                         {"stored", import.stored},
@@ -219,14 +224,15 @@ void declare_profile_import(Command &profile) {
                     "Stores the profiles of other programs' files. If one file cannot be imported, nothing is stored.\n"
                     "The format is identified from the content, else from the name.");
     auto o = std::make_shared<Options>();
-    command.files("FILES", o->files,
+    command.files("FILE", o->files,
                   "profile files; or, for one profile, a file with a response, a file with a falloff, or both");
-    command.require("FILES");
+    command.require("FILE");
     command.choice("--format", o->format, format_choices(false),
                    "format of all files; default identified from content or name");
     declare_foreign(command, o->foreign, false);
     declare_db(command, o->db, ", created if missing");
     declare_json(command, o->json);
+    declare_progress(command, o->progress);
     command.group("Camera, lens and setting, for files that do not name them");
     o->key.add_options(command);
     command.footer(about_foreign(false));

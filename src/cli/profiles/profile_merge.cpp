@@ -79,8 +79,8 @@ void declare_profile_merge(Command &profile) {
         "Adds the profiles of other lensprof databases that are not yet stored, with their provenance. If one "
         "file cannot be merged, nothing is added.");
     auto o = std::make_shared<Options>();
-    command.files("OTHER.db", o->files, "databases to read; they are not changed");
-    command.require("OTHER.db");
+    command.files("FILE", o->files, "databases to read; they are not changed");
+    command.require("FILE");
     declare_db(command, o->db, ", created if missing");
     declare_json(command, o->json);
     command.example("lensprof profile merge other.db --db lenses.db");

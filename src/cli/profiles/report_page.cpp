@@ -129,7 +129,7 @@ int report_fit(const Options &o, Streams &streams) {
     words.push_back("--");
     words.insert(words.end(), o.inputs.begin(), o.inputs.end());
     std::ostringstream table;  // what build prints is in the report
-    Streams quiet{table, streams.err};
+    Streams quiet = streams.with(table, streams.err);
     bool is_written = false;
     const CommitWatch watch([&](const std::string &path, const std::string &) { is_written |= path == o.output; });
     const int code = run(words, quiet);

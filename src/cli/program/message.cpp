@@ -1,18 +1,42 @@
 #include "cli/program/message.hpp"
 
+#include <cstdlib>
+#include <cstring>
+
+#include <unistd.h>
+
 #include "cli/program/format.hpp"
 #include "cli/program/utf8.hpp"
 
 namespace lensprof {
+namespace {
+
+// `code`: of ECMA-48, select graphic rendition.
+std::string mark(bool colour, const char *code, const std::string &text) {
+    return (colour ? std::string("\033[") + code + "m" + text + "\033[0m" : text) + " ";
+}
+
+}  // namespace
+
+bool shows_colour() {
+    const char *off = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) && !(off && *off) && terminal && std::strcmp(terminal, "dumb") != 0;
+}
+
+std::string warning_mark(bool colour) { return mark(colour, "1;33", "warning:"); }
 
 void tell(Streams &streams, const std::string &text) { streams.err << "lensprof: " << one_line(text) << "\n"; }
 
 void warn(Streams &streams, const std::string &text) {
-    tell(streams, "warning: " + text);
+    if (streams.verbosity != Verbosity::quiet)
+        streams.err << "lensprof: " << warning_mark(streams.colour) << one_line(text) << "\n";
     streams.warnings.push_back(one_line(text));
 }
 
-void note(Streams &streams, const std::string &text) { tell(streams, "note: " + text); }
+void note(Streams &streams, const std::string &text) {
+    if (streams.verbosity != Verbosity::quiet)
+        streams.err << "lensprof: " << mark(streams.colour, "36", "note:") << one_line(text) << "\n";
+}
 
 std::string command_text(const std::vector<std::string> &words) {
     constexpr const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./,:=+@%";

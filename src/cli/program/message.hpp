@@ -7,11 +7,18 @@
 
 namespace lensprof {
 
-// Prints one line that starts with "lensprof: ", "lensprof: warning: " or "lensprof: note: ". File names and EXIF may
-// contain anything: control characters are escaped.
+// Prints one line that starts with "lensprof: ", "lensprof: warning: " or "lensprof: note: "; --quiet omits warnings
+// and notes. File names and EXIF may contain anything: control characters are escaped. "warning:" and "note:" have a
+// colour on a terminal, unless NO_COLOR is set (https://no-color.org).
 void tell(Streams &streams, const std::string &text);
 void warn(Streams &streams, const std::string &text);
 void note(Streams &streams, const std::string &text);
+
+// Whether standard error is a terminal that shows colours.
+bool shows_colour();
+
+// "warning: "
+std::string warning_mark(bool colour);
 
 // A command line for a shell: "lensprof" and the words, those in quotes that need them.
 std::string command_text(const std::vector<std::string> &words);

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <map>
 #include <stdexcept>
+
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 
 #include "cli/program/error.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/help_text.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/nearest.hpp"
 
 namespace lensprof {
@@ -228,7 +232,13 @@ Command Command::add(const char *name, const std::string &brief, const std::stri
     return {*app_->add_subcommand(name, brief + (about.empty() ? "" : "\n" + about))->group("Commands"), *program_};
 }
 
-void Command::run(std::function<int(Streams &)> action) { program_->actions_->of[app_] = std::move(action); }
+void Command::run(std::function<int(Streams &)> action) {
+    program_->actions_->of[app_] = std::move(action);
+    if (app_ == program_->app_.get()) return;
+    group("Messages");
+    flag("-q,--quiet", program_->quiet_, "print errors and results only: no progress, notes or warnings");
+    flag("-v,--verbose", program_->verbose_, "also print the time of each step and the memory used");
+}
 
 CLI::Option *Command::add_option(const char *names, const std::string &type, const Read &read,
                                  const std::string &about) {
@@ -414,6 +424,17 @@ std::string Program::help(const std::vector<std::string> &words) const {
     return help_of(*app);
 }
 
+namespace {
+
+// The largest resident set of this process.
+double peak_megabytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1e-3 * static_cast<double>(usage.ru_maxrss);  // given in kB
+}
+
+}  // namespace
+
 int Program::run(const std::vector<std::string> &words, Streams &streams) {
     const SortedWords sorted(*app_, words);
     const CLI::App &command = sorted.command();
@@ -432,7 +453,14 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
     if (action == actions_->of.end())
         throw Failure(ExitCode::usage,
                       path_of(command) + ": needs a verb: " + joined(names_of_commands(command), ", "));
-    return action->second(streams);
+    if (quiet_ && verbose_)
+        throw Failure(ExitCode::usage, "--quiet and --verbose exclude each other; give one of them");
+    if (quiet_ || verbose_) streams.verbosity = quiet_ ? Verbosity::quiet : Verbosity::verbose;
+    const auto begin = std::chrono::steady_clock::now();
+    const int code = action->second(streams);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    if (verbose_) tell(streams, format("%.2f s, %.0f MB of memory", taken.count(), peak_megabytes()));
+    return code;
 }
 
 void declare_db(Command &command, std::string &path, const std::string &more) {

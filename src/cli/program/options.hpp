@@ -27,7 +27,7 @@ using Choices = std::vector<std::pair<const char *, Value>>;
 
 class Program;
 
-// A command, or a verb of one (`profile list`). Options are named "--seed" or "-o,--output", positionals "FILES". By
+// A command, or a verb of one (`profile list`). Options are named "--seed" or "-o,--output", positionals "FILE". By
 // default a value may be given once and must not be empty, as an unset shell variable would be. The variables must live
 // until the program ends: declare_... functions keep theirs in the action.
 class Command {
@@ -37,7 +37,8 @@ public:
     // `brief` is shown in the list of commands; `about` follows it in the command's own help.
     Command add(const char *name, const std::string &brief, const std::string &about = "");
 
-    // Sets the action; it throws Failure. A command without an action needs one of its verbs.
+    // Sets the action, which throws Failure, and declares --quiet and --verbose; call it last. A command without an
+    // action needs one of its verbs.
     void run(std::function<int(Streams &)> action);
 
     void flag(const char *names, bool &value, const std::string &about);
@@ -123,6 +124,7 @@ private:
     struct Actions;
     std::unique_ptr<CLI::App> app_;
     std::unique_ptr<Actions> actions_;
+    bool quiet_ = false, verbose_ = false;  // of the chosen command
 };
 
 // Declares --db FILE, a profile database; `more` is added to its description.

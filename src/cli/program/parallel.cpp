@@ -60,7 +60,7 @@ void for_each_parallel(uint32_t count, const std::string &what, Progress &progre
         count, thread_count(0),
         [&](uint32_t i) {
             work(i);
-            progress.update(what, static_cast<double>(++done) / count);
+            progress.update_items(what, ++done, count);
         },
         [](uint32_t) {});
 }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/program/format.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/utf8.hpp"
 
 namespace lensprof {
@@ -27,10 +28,12 @@ double TimeLeft::seconds(const std::string &what, double fraction, double now) {
         what_ = what;
         begin_ = now, first_ = fraction;
     }
-    last_ = fraction;
+    last_ = fraction, now_ = now;
     const double taken = now - begin_, done = fraction - first_;
     return taken < soonest || done < least ? 0.0 : taken * std::max(1.0 - fraction, 0.0) / done;
 }
+
+double TimeLeft::rate() const { return now_ > begin_ ? std::max(last_ - first_, 0.0) / (now_ - begin_) : 0.0; }
 
 std::string describe_time_left(double seconds) {
     if (seconds < 5.0) return {};
@@ -40,22 +43,40 @@ std::string describe_time_left(double seconds) {
     return format(", %.0f h %.0f min left", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
 }
 
-Progress::Progress(std::ostream &err, ShowProgress show)
-    : err_(err),
-      shown_(show == ShowProgress::always
-             || (show == ShowProgress::when_terminal && &err == &std::cerr && isatty(STDERR_FILENO))) {}
+Progress::Progress(Streams &streams, bool always)
+    : err_(streams.err),
+      verbosity_(streams.verbosity),
+      colour_(streams.colour),
+      shown_(verbosity_ != Verbosity::quiet && (always || (&err_ == &std::cerr && isatty(STDERR_FILENO)))) {}
 
 Progress::~Progress() { clear(); }
 
 void Progress::update(const std::string &what, double fraction, const std::string &detail) {
-    if (!shown_) return;
+    draw(what, fraction, [&] { return detail; });
+}
+
+void Progress::update_items(const std::string &what, uint32_t done, uint32_t count) {
+    draw(what, static_cast<double>(done) / std::max(count, 1u), [&] {
+        const double rate = left_.rate() * count;
+        return format(", %u of %u", done, count) + (rate > 0.0 ? format(", %.*f/s", rate < 10.0 ? 1 : 0, rate) : "");
+    });
+}
+
+void Progress::draw(const std::string &what, double fraction, const std::function<std::string()> &detail) {
+    if (!shown_ && verbosity_ != Verbosity::verbose) return;
     std::lock_guard<std::mutex> lock(mutex_);
-    int percent = std::clamp(static_cast<int>(100.0 * fraction), 0, 100);
     auto now = std::chrono::steady_clock::now();
+    if (what != step_) {
+        end_step();
+        step_ = what;
+        step_begin_ = now;
+    }
+    if (!shown_) return;
+    int percent = std::clamp(static_cast<int>(100.0 * fraction), 0, 100);
     const double left = left_.seconds(what, fraction, std::chrono::duration<double>(now.time_since_epoch()).count());
     const bool same = percent == percent_ && what == what_;
     if (same && now - drawn_ < between_details) return;
-    const std::string text = what + format(" %d %%", percent) + detail + describe_time_left(left);
+    const std::string text = what + format(" %d %%", percent) + detail() + describe_time_left(left);
     if (same && text == text_) return;
     percent_ = percent;
     what_ = what;
@@ -66,12 +87,21 @@ void Progress::update(const std::string &what, double fraction, const std::strin
 
 void Progress::clear() {
     std::lock_guard<std::mutex> lock(mutex_);
+    end_step();
     clear_line();
 }
 
 void Progress::clear_line() {
     if (percent_ >= 0) err_ << "\r\033[K" << std::flush;
     percent_ = -1;
+}
+
+void Progress::end_step() {
+    if (verbosity_ == Verbosity::verbose && !step_.empty()) {
+        clear_line();
+        err_ << "lensprof: " << step_ << format(": %.2f s", seconds_since(step_begin_)) << std::endl;
+    }
+    step_.clear();
 }
 
 void Progress::say(const std::string &line) {
@@ -82,9 +112,10 @@ void Progress::say(const std::string &line) {
 }
 
 void Progress::warn(const std::string &line) {
+    if (verbosity_ == Verbosity::quiet) return;
     std::lock_guard<std::mutex> lock(mutex_);
     clear_line();
-    err_ << "lensprof: warning: " << one_line(line) << std::endl;
+    err_ << "lensprof: " << warning_mark(colour_) << one_line(line) << std::endl;
 }
 
 Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)

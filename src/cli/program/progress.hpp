@@ -3,17 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <ostream>
 #include <string>
 
-namespace lensprof {
+#include "cli/program/run.hpp"
 
-enum class ShowProgress {
-    when_terminal,
-    always,
-    never
-};
+namespace lensprof {
 
 // Estimates the remaining time of a task from the share done since it started.
 class TimeLeft {
@@ -22,9 +19,12 @@ public:
     // beginning, and if nothing is done yet.
     double seconds(const std::string &what, double fraction, double now);
 
+    // The share done per second since the start of the task; 0 if unknown.
+    double rate() const;
+
 private:
     std::string what_;
-    double begin_ = 0.0, first_ = 0.0, last_ = 0.0;
+    double begin_ = 0.0, first_ = 0.0, last_ = 0.0, now_ = 0.0;
 };
 
 // ", 40 s left", ", 3 min left", ", 2 h 5 min left"; empty if it is short.
@@ -33,29 +33,38 @@ std::string describe_time_left(double seconds);
 // Threads: all methods may be called by any thread.
 class Progress {
 public:
-    // Writes to `err` if `show` allows it; the terminal test applies to standard error.
-    Progress(std::ostream &err, ShowProgress show);
+    // Shows progress on `streams.err` if it is a terminal or `always`, and not with --quiet. With --verbose, prints a
+    // line with the time of each step.
+    explicit Progress(Streams &streams, bool always = false);
     ~Progress();
 
     // `detail` follows the percentage, and the remaining time follows `detail`; if only these change, the line is
     // redrawn a few times per second.
     void update(const std::string &what, double fraction, const std::string &detail = std::string());
-    void clear();
+
+    // The same for items of equal size, with their number and rate: ", 12 of 40, 3.1/s".
+    void update_items(const std::string &what, uint32_t done, uint32_t count);
+
+    void clear();  // ends the step
 
     // Prints a permanent line if progress is shown.
     void say(const std::string &line);
 
-    // Prints a permanent line always.
+    // Prints a permanent line, except with --quiet.
     void warn(const std::string &line);
 
 private:
+    void draw(const std::string &what, double fraction, const std::function<std::string()> &detail);
     void clear_line();
+    void end_step();
 
     std::ostream &err_;
-    bool shown_;
+    const Verbosity verbosity_;
+    const bool colour_, shown_;
     int percent_ = -1;
-    std::string what_, text_;
+    std::string what_, text_, step_;
     TimeLeft left_;
+    std::chrono::steady_clock::time_point step_begin_;
     std::chrono::steady_clock::time_point drawn_;
     std::mutex mutex_;
 };

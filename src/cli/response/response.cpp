@@ -31,8 +31,8 @@ struct Options {
 };
 
 void declare(Command &command, Options &o) {
-    command.files("FILES", o.files, "raw files of one camera, with the JPEG that the camera embedded in each");
-    command.require("FILES");
+    command.files("FILE", o.files, "raw files of one camera, with the JPEG that the camera embedded in each");
+    command.require("FILE");
     command.words(
         "--jpeg", "FILE", [&o](const std::string &word) { o.jpegs.push_back(word); },
         "camera JPEG of the same shot; give one per raw file, in the same order; default the embedded JPEG");
@@ -157,7 +157,7 @@ void read_files(const Options &o, Progress &progress, std::vector<std::vector<Pl
 }
 
 void measure(const Options &o, const lensprof_response &prior, ResponseReport &report, Streams &streams) {
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     auto clock = std::chrono::steady_clock::now();
     std::vector<std::vector<Place>> places;
     read_files(o, progress, places, report, streams);

@@ -150,7 +150,7 @@ int run(const SimulateOptions &o, Streams &streams) {
     make_folder(o.output);
     std::filesystem::path folder(o.output);
 
-    Progress progress(streams.err, ShowProgress::when_terminal);
+    Progress progress(streams, o.progress);
     if (!o.no_images) write_pictures(o, truth, scene, progress);
     const std::string pto = (folder / "pano.pto").string(), truth_file = (folder / "truth.json").string();
     if (!o.moving) {  // a project cannot store the position of a moving camera

@@ -123,6 +123,7 @@ void declare_simulate_options(Command &command, SimulateOptions &o) {
     command.count("--test-points", o.test_points, 0, 1000000,
                   "also write test_points.txt with this many noise-free pairs, for evaluation; default 0");
     command.flag("--no-images", o.no_images, "do not write pictures");
+    declare_progress(command, o.progress);
 }
 
 void check_simulate_options(const SimulateOptions &o) {

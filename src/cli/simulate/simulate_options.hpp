@@ -32,7 +32,7 @@ struct SimulateOptions {
     std::optional<double> ev,
         wb;                       // ranges of exposures, EV, and of white balance factors about 1; defaults below
     std::optional<double> gloss;  // default 1
-    bool no_images = false, exif = false, exif_manual = false;
+    bool no_images = false, exif = false, exif_manual = false, progress = false;
 };
 
 constexpr double kRandomEv = 1.0, kRandomWb = 0.15;         // camera that turns
