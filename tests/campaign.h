@@ -1,11 +1,11 @@
-/* Campaigns: tests of hundreds of runs. `make soak` runs all of them, `make test` only a slice
+/* Campaigns: tests of hundreds of runs. `make soak` runs all of them; `make test` runs a fraction
  * (tests/CMakeLists.txt). */
 #ifndef LENSPROF_TESTS_CAMPAIGN_H
 #define LENSPROF_TESTS_CAMPAIGN_H
 
 #include <stdlib.h>
 
-/* All runs, or LENSPROF_PERCENT (environment) percent of them; at least one. */
+/* All runs, or LENSPROF_PERCENT (environment) percent of them, at least one. */
 static inline int campaign_runs(int all) {
     const char *percent = getenv("LENSPROF_PERCENT");
     const long share = percent ? strtol(percent, NULL, 10) : 100;

@@ -1,5 +1,5 @@
-/* Linked into every test program: the environment's LENSPROF_TEST, a name with * and ?, selects the tests that run;
- * LENSPROF_SKIP those that do not. */
+/* Linked into every test program. The environment variable LENSPROF_TEST, a name with * and ?, selects the tests to
+ * run; LENSPROF_SKIP selects the tests to leave out. */
 #include "support.h"
 
 __attribute__((constructor)) static void select_tests(void) {

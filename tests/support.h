@@ -32,7 +32,7 @@ static inline void lp_assert_close(double a, double b, double tolerance, const c
 
 #define assert_ok(call) assert_int_equal((call), LENSPROF_OK)
 
-/* A small generator with a fixed sequence: uniform in [0,1). */
+/* A small generator with a fixed sequence, uniform in [0,1). */
 static inline double lp_random(uint64_t *state) {
     *state = *state * 6364136223846793005ull + 1442695040888963407ull;
     uint64_t x = *state ^ (*state >> 29);
@@ -41,7 +41,7 @@ static inline double lp_random(uint64_t *state) {
     return (double)(x >> 11) * (1.0 / 9007199254740992.0);
 }
 
-/* Standard normal, from the same generator. */
+/* A standard normal number from the same generator. */
 static inline double lp_normal(uint64_t *state) {
     double u = lp_random(state), v = lp_random(state);
     return sqrt(-2.0 * log(1.0 - u)) * cos(6.283185307179586 * v);

@@ -1,4 +1,4 @@
-// Simulated pictures of an even light: the core's own model, a light with a gradient, noise and defects.
+// Simulated pictures of an evenly lit card: the core's own model, a light with a gradient, noise and defects.
 #pragma once
 
 #include <cmath>
@@ -14,10 +14,10 @@ extern "C" {
 
 #include <lensprof/flat.h>
 
-// What a picture shows beside falloff and light: a factor of its light at a pixel and channel.
+// A disturbance in addition to falloff and light: a factor of the light at a pixel and channel.
 using Defect = std::function<double(double x, double y, uint32_t channel)>;
 
-// Normal numbers, drawn once.
+// Standard normal numbers, drawn once.
 inline const std::vector<double> &normal_numbers() {
     static const std::vector<double> numbers = [] {
         std::vector<double> drawn(1 << 16);
@@ -33,11 +33,11 @@ struct FlatPictures {
     uint32_t sample = LENSPROF_SAMPLE_U16;
     lensprof_vignetting vignetting[3];
     lensprof_response response;
-    double gradient[2] = {0.0, 0.0};  // of the light's logarithm, scene right and down, a half diagonal
+    double gradient[2] = {0.0, 0.0};  // of the light's logarithm per half diagonal, to the right and down in the scene
     double level = 0.5;               // light at the centre at 0 EV
-    double noise = 0.004;             // of a grey value
+    double noise = 0.004;             // standard deviation, in grey values
     uint64_t seed = 1;
-    Defect defect;  // or empty
+    Defect defect;  // may be empty
     std::vector<std::unique_ptr<std::vector<uint8_t>>> data;
     std::vector<lensprof_flat_image> images;
 
@@ -72,7 +72,7 @@ struct FlatPictures {
         }
     }
 
-    // Takes a picture; `shot` as lensprof_flat_image.
+    // Takes a picture; `shot` as in lensprof_flat_image.
     lensprof_flat_image &shoot(uint32_t shot, double ev = 0.0, double turn_deg = 0.0) {
         const uint32_t bytes = lensprof_sample_type_bytes(sample);
         data.push_back(std::make_unique<std::vector<uint8_t>>(static_cast<size_t>(width) * height * channels * bytes));
@@ -109,7 +109,7 @@ struct FlatPictures {
         return o;
     }
 
-    // The fit, which must run.
+    // The fit, which must succeed.
     std::unique_ptr<lensprof_flat_result> fit(const lensprof_flat_options &o,
                                               lensprof_flat_image_quality *quality = nullptr) const {
         auto result = std::make_unique<lensprof_flat_result>();
@@ -124,7 +124,7 @@ struct FlatPictures {
     }
 };
 
-// Largest difference of two falloffs over the frame.
+// Largest difference between two falloffs over the frame.
 inline double falloff_error(const lensprof_vignetting &a, const lensprof_vignetting &b, uint32_t width,
                             uint32_t height) {
     double worst = 0.0;
@@ -137,7 +137,7 @@ inline double falloff_error(const lensprof_vignetting &a, const lensprof_vignett
     return worst;
 }
 
-// The same of a result, the worst channel.
+// The same for a result: its worst channel.
 inline double error_of(const lensprof_flat_result &r, const FlatPictures &p) {
     double worst = 0.0;
     for (int c = 0; c < 3; c++)

@@ -1,4 +1,4 @@
-// A well-formed problem of the overlap fit, and a table of mutations that make it malformed or degenerate.
+// A well-formed problem for the overlap fit, and a table of mutations that make it malformed or degenerate.
 #pragma once
 
 #include "malformed_options.hpp"
@@ -9,7 +9,7 @@ namespace malformed {
 struct Mutation {
     const char *name;
     void (*apply)(Case &c);
-    uint32_t weight;  // how often
+    uint32_t weight;  // relative frequency
 };
 
 #define ROW(name, weight) \
@@ -90,7 +90,7 @@ inline void mutate(Case &c) {
         uint32_t draw = c.below(total);
         const Mutation *m = kMutations;
         while (draw >= m->weight) draw -= m++->weight;
-        if (c.s.pairs.empty() || c.s.fit_images.size() < 2) return;  // the others change what is no more
+        if (c.s.pairs.empty() || c.s.fit_images.size() < 2) return;  // the other mutations need pairs and images
         c.what += std::string(c.what.empty() ? "" : " + ") + m->name;
         m->apply(c);
     }

@@ -1,4 +1,4 @@
-// A call of a fit that mutations change, and the numbers that they put into it.
+// A call of a fit that mutations change, and the numbers that they insert.
 #pragma once
 
 #include <limits>
@@ -13,7 +13,7 @@ const double kNone = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::
 struct Case {
     uint64_t random;
     Simulation s;
-    lensprof_response given;  // where options.response points to, if anywhere
+    lensprof_response given;  // target of options.response, if it is set
     lensprof_fit_options options;
     std::vector<lensprof_exposure> exposures;
     std::vector<lensprof_fit_image_quality> quality;
@@ -21,7 +21,7 @@ struct Case {
     lensprof_error error;
     bool null_options = false, null_images = false, null_pairs = false, null_exposures = false, null_result = false,
          null_error = false;
-    int calls_left = -1;  // of progress before it cancels
+    int calls_left = -1;  // calls of progress before it cancels
     std::string what;     // names of the mutations
 
     explicit Case(uint32_t number);
@@ -58,7 +58,7 @@ inline int count_down(double, void *user) {
 
 inline lensprof_status Case::run() {
     if (calls_left >= 0) options.progress = count_down, options.progress_user = &calls_left;
-    exposures.resize(s.fit_images.size());  // exactly as many as are promised: a sanitizer sees one more
+    exposures.resize(s.fit_images.size());  // exactly as many as announced: a sanitizer detects any more
     if (!exposures.empty())
         std::memset(static_cast<void *>(exposures.data()), 0xFF, exposures.size() * sizeof exposures[0]);
     quality.assign(s.fit_images.size(), lensprof_fit_image_quality{});
@@ -73,7 +73,7 @@ inline lensprof_status Case::run() {
                                 null_result ? nullptr : &result, null_error ? nullptr : &error);
 }
 
-// Numbers at and beyond every edge.
+// Numbers at and beyond every limit.
 inline double odd_number(Case &c) {
     static const double numbers[] = {kNone,     kInfinite, -kInfinite, 1e300, -1e300, 1e-320, -0.0, 0.0,  1.0,   -1.0,
                                      1.0000001, -1e-9,     2.0,        1e9,   -1e9,   255.0,  1e6,  64.0, -64.0, 1e-6};

@@ -1,4 +1,4 @@
-// Mutations of options, what they point to, and the call itself.
+// Mutations of options, of the data they point to, and of the call itself.
 #pragma once
 
 #include "malformed_case.hpp"
@@ -67,7 +67,7 @@ inline void any_choices(Case &c) {
     c.options.camera_kind = c.below(6);
 }
 
-// Known exposures: the true ones, all alike, or anything.
+// Known exposures: the true ones, all equal, or random.
 inline void known_exposures(Case &c) {
     uint32_t kind = c.below(3);
     for (size_t i = 0; i < c.s.fit_images.size(); i++) {

@@ -9,7 +9,7 @@ inline void set_value(lensprof_pair &pair, double value) {
     for (auto &side : pair.value) side[0] = side[1] = side[2] = value;
 }
 
-// Pairs that are valid and tell little or nothing.
+// Pairs that are valid but carry little or no information.
 
 inline void one_pair_repeated(Case &c) {
     for (auto &pair : c.s.pairs) pair = c.s.pairs[0];
@@ -75,7 +75,7 @@ inline void duplicates(Case &c) {
     for (size_t p = half; p < c.s.pairs.size(); p++) c.s.pairs[p] = c.s.pairs[p - half];
 }
 
-// Which images are tied to which.
+// Which images are connected.
 
 inline void images_without_pairs(Case &c) {
     for (auto &pair : c.s.pairs) pair.image[0] = 0, pair.image[1] = 1;

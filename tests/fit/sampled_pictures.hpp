@@ -1,10 +1,10 @@
-// Pictures of a smooth panorama, to be sampled.
+// Pictures of a smooth panorama for sampling tests.
 #pragma once
 
 #include "simulated.hpp"
 
-// A smooth panorama as a function of direction, grey value 0..1 (the encoded value itself: the tests need no camera).
-// Some tests need more than slow waves.
+// A smooth panorama as a function of direction, grey value 0..1 (already encoded: the tests need no camera). `detail`
+// adds texture for tests that need it.
 inline double detail = 0.0;
 
 inline double scene(double longitude, double latitude, int c) {

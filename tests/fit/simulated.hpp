@@ -1,4 +1,4 @@
-// Simulated pairs with a known camera: the independent truth of the fit's tests.
+// Simulated pairs with a known camera: the independent ground truth of the fit's tests.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,17 @@ struct Simulation {
     uint32_t width = 800, height = 600, images = 6, channels = 3;
     lensprof_response response;
     lensprof_vignetting vignetting{{-0.30, 0.05, -0.15}, {0.02, -0.015}};
-    std::vector<lensprof_vignetting> chromatic;  // one falloff curve a channel; empty = `vignetting` for all
+    std::vector<lensprof_vignetting> chromatic;  // one falloff curve per channel; empty: `vignetting` for all
     std::vector<lensprof_vignetting>
-        of_setting;  // of each lens setting, which images have in turn; empty = one for all
+        of_setting;  // falloff per lens setting; images use the settings in turn; empty: one for all
     std::vector<lensprof_response>
-        of_camera;          // of each camera, which images are of in turn, each with one setting; empty = one for all
-    double local_ev = 0.0;  // largest local tone error, EV: waves over the frame that start elsewhere in each image
-    double frame_ev = 0.0;  // the same at the same place of every image, EV
-    double tilt_ev = 0.0;   // from the left edge of every frame to the right, EV: no lens does it, and it adds up
-    uint32_t reach = 1;     // images of a pair are up to this many apart
-    double shift = 0.0;     // from one frame to the next, widths: neighbours in one are so in the other; 0 = anywhere
-    std::vector<lensprof_exposure> exposures;  // drawn, unless given before make()
+        of_camera;          // response per camera; images use the cameras in turn; empty: `response` for all
+    double local_ev = 0.0;  // largest local tone error, EV: waves over the frame, with another phase in each image
+    double frame_ev = 0.0;  // the same, but with one pattern for all images, EV
+    double tilt_ev = 0.0;   // EV from the left edge of every frame to the right: accumulates over images
+    uint32_t reach = 1;     // a pair's images are at most this many apart
+    double shift = 0.0;     // from frame to frame, in widths: neighbouring pixels stay neighbours; 0 = random
+    std::vector<lensprof_exposure> exposures;  // drawn in make() unless given
     std::vector<lensprof_fit_image> fit_images;
     std::vector<lensprof_pair> pairs;
 
@@ -100,7 +100,7 @@ struct Simulation {
         return chromatic.empty() ? vignetting : chromatic[channel];
     }
 
-    // Two waves over the width and one over the height: what local tone mapping does to light, or a lens not radial.
+    // Two waves over the width and one over the height, like local tone mapping or a falloff that is not radial.
     double local_factor(uint32_t image, const double xy[2]) const {
         constexpr double kTurn = 6.283185307179586;
         double phase = 2.4 * image, x = 2.0 * kTurn * xy[0] / width, y = kTurn * xy[1] / height;
@@ -108,7 +108,7 @@ struct Simulation {
                          + frame_ev * std::sin(x) * std::cos(y) + tilt_ev * (xy[0] / width - 0.5));
     }
 
-    // Exponent that pictures leave open: slope of recovered on true exposures.
+    // The exponent that pictures leave open: the slope of recovered against true exposures.
     double gamma(const std::vector<lensprof_exposure> &found) const {
         double mean = 0, true_mean = 0, cross = 0, square = 0;
         for (size_t i = 0; i < found.size(); i++)
@@ -169,7 +169,7 @@ inline bool is_monotone(const lensprof_response &response) {
     return true;
 }
 
-// A fit with all that it tells.
+// A fit with all its results.
 struct FitRun {
     std::vector<lensprof_exposure> exposures;
     std::vector<lensprof_fit_image_quality> quality;

@@ -1,4 +1,4 @@
-// Fits of simulations at several lens settings or by several cameras, with all that they tell of each.
+// Fits of simulations with several lens settings or cameras, with the results of each.
 #pragma once
 
 #include "simulated_tracks.hpp"
@@ -7,7 +7,7 @@ struct Run : FitRun {
     std::vector<lensprof_fit_setting> settings;
     std::vector<lensprof_fit_camera> cameras;
 
-    // With room for so many of both.
+    // Room for `count` settings and cameras.
     explicit Run(const Simulation &s, size_t count = 2) : settings(count), cameras(count) {
         exposures.resize(s.images);
         quality.resize(s.images);
@@ -29,7 +29,7 @@ struct Run : FitRun {
     }
 };
 
-// Over the frame, with the exponent gamma taken out.
+// Over the frame, after removing the exponent gamma.
 inline double falloff_error(const lensprof_vignetting &found, const lensprof_vignetting &truth, double gamma) {
     double worst = 0.0;
     for (int k = 0; k <= 20; k++) {

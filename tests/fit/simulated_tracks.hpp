@@ -1,16 +1,16 @@
-// Simulated tracks with a known camera: scene points seen in several images, saturated where they are too bright.
+// Simulated tracks with a known camera: scene points seen in several images, saturated if too bright.
 #pragma once
 
 #include "simulated.hpp"
 
 struct TrackSimulation : Simulation {
-    uint32_t shortest = 2, longest = 6;  // observations of a point
-    double brightest = 1.0;              // radiance; with 1 hardly anything is saturated at 0 EV
+    uint32_t shortest = 2, longest = 6;  // observations per point
+    double brightest = 1.0;              // radiance; with 1 almost nothing is saturated at 0 EV
     std::vector<lensprof_observation> observations;
 
-    // `points` scene points at random places of random images, uniform log radiance, normal noise, 8 bit rounding as in
-    // Simulation; `outliers` of the observations show something else. Points with fewer than two measured observations
-    // are drawn again.
+    // `points` scene points at random places of random images, with uniform log radiance, normal noise and 8 bit
+    // rounding as in Simulation. A share `outliers` of the observations shows something else. Points with fewer than
+    // two measured observations are drawn again.
     void make_tracks(uint32_t points, double noise_levels, double outliers, double ev_range, uint64_t seed) {
         make(0, noise_levels, 0.0, ev_range, seed);
         uint64_t random = seed + 1000;
@@ -28,7 +28,7 @@ struct TrackSimulation : Simulation {
         return std::max({o.value[0], o.value[1], o.value[2]}) > 250.0 / 255.0;
     }
 
-    // The same without saturated observations, and without the points that then have one observation.
+    // The same without saturated observations, and without points that then have a single observation.
     std::vector<lensprof_observation> unsaturated() const {
         std::vector<lensprof_observation> kept, track;
         for (size_t i = 0; i < observations.size(); i++) {

@@ -1,11 +1,11 @@
-// Pictures of several cameras in one fit: a response for each, joined by what they share.
+// Pictures of several cameras in one fit: a response per camera, and what joins the cameras.
 #include "simulated_run.hpp"
 
 namespace {
 
 const lensprof_vignetting kWide{{-0.45, 0.12, -0.10}, {0.01, -0.01}}, kTele{{-0.15, 0.03, -0.05}, {-0.01, 0.01}};
 
-// Images in turn of two cameras, which differ in response, falloff, sensitivity and white balance.
+// Images alternate between two cameras, which differ in response, falloff, sensitivity and white balance.
 template <class Simulated>
 Simulated alternating(uint64_t seed = 42) {
     Simulated s;
@@ -30,8 +30,8 @@ Simulated alternating(uint64_t seed = 42) {
     return s;
 }
 
-// Grey values of light as the reference sees it, from 3 % of its white on, in an image, as found and in truth: by all
-// that was found of both cameras together, whatever exponent and whatever light at white they have in common. 0..1.
+// Difference (0..1) between found and true grey values in an image for light from 3 % to white as the reference sees
+// it. Uses the results of both cameras together, so that a common exponent and a common scale cancel.
 double grey_error(const Simulation &s, const Run &run, uint32_t image) {
     const uint32_t camera = s.fit_images[image].camera;
     double worst = 0.0;
@@ -41,14 +41,14 @@ double grey_error(const Simulation &s, const Run &run, uint32_t image) {
             const double found = lensprof_response_invert(&run.cameras[0].response, seen, nullptr)
                                  * lensprof_exposure_factor(&run.exposures[image], c);
             const double truth = light * lensprof_exposure_factor(&s.exposures[image], c);
-            if (truth > 0.9) continue;  // near white, which is not seen
+            if (truth > 0.9) continue;  // too close to white, which pairs do not cover
             worst = std::max(worst, std::abs(lensprof_response_eval(&run.cameras[camera].response, found, nullptr)
                                              - lensprof_response_eval(&s.of_camera[camera], truth, nullptr)));
         }
     return worst;
 }
 
-// Exposures of a camera's images relative to its first one: errors with the exponent `gamma` taken out, EV.
+// Exposures of a camera's images relative to its first image: errors after removing the exponent `gamma`, EV.
 double exposure_error(const Simulation &s, const Run &run, uint32_t camera, double gamma) {
     double worst = 0.0;
     for (uint32_t i = camera; i < s.images; i += 2)
@@ -57,7 +57,7 @@ double exposure_error(const Simulation &s, const Run &run, uint32_t camera, doub
     return worst;
 }
 
-// The exponent that recovered exposures of a camera's images have beside the true ones.
+// The exponent between recovered and true exposures of a camera's images.
 double gamma_of(const Simulation &s, const Run &run, uint32_t camera) {
     std::vector<double> found, truth;
     double found_mean = 0.0, true_mean = 0.0, cross = 0.0, square = 0.0;
@@ -73,7 +73,7 @@ double gamma_of(const Simulation &s, const Run &run, uint32_t camera) {
     return cross / square;
 }
 
-// Everything of both cameras by one exponent, for what they share says that it is the same.
+// Both cameras agree on one exponent, because their overlaps fix it.
 void check_found(const Simulation &s, const Run &run) {
     const double gamma = gamma_of(s, run, 0);
     assert_int_equal(run.result.usable, 1);
@@ -100,7 +100,7 @@ void test_each_response_is_found(void **) {
     Run run(s);
     assert_ok(run.fit(s, default_fit()));
     check_found(s, run);
-    // With one response for both, those of one camera contradict those of the other.
+    // With one response for both, the cameras contradict each other.
     Simulation one = s;
     for (auto &image : one.fit_images) image.camera = 0;
     const FitRun together = run_fit(one);
@@ -126,7 +126,7 @@ void test_each_response_is_found_in_grey(void **) {
     check_found(s, run);
 }
 
-// A camera whose exposures are known says the exponent of the other, whose are not.
+// Known exposures of one camera determine the exponent of the other.
 void test_knowledge_of_one_serves_the_other(void **) {
     auto s = alternating<Simulation>();
     Run without(s);
@@ -142,8 +142,9 @@ void test_knowledge_of_one_serves_the_other(void **) {
     assert_true(without.cameras[1].gamma_sigma > 2.0 * run.cameras[1].gamma_sigma);
 }
 
-// Errors in their stated standard errors, where the exposures of one camera are known: of the other camera's exponent,
-// of its exposures relative to each other, whose common offset cancels, and relative to the reference.
+// Errors are consistent with their standard errors if the exposures of one camera are known. Checked are the other
+// camera's exponent, and its exposures relative to each other, in which the common offset cancels, and relative to the
+// reference.
 void test_stated_errors_hold(void **) {
     double within = 0.0, between = 0.0, of_gamma = 0.0, worst = 0.0;
     int inner = 0, outer = 0, runs = 0;
@@ -165,14 +166,13 @@ void test_stated_errors_hold(void **) {
     }
     const double within_rms = std::sqrt(within / inner), between_rms = std::sqrt(between / outer),
                  gamma_rms = std::sqrt(of_gamma / runs);
-    print_message(
-        "rms in stated standard errors: within a camera %.2f, to the reference %.2f (at most %.3f EV), gamma %.2f\n",
-        within_rms, between_rms, worst, gamma_rms);
+    print_message("RMS in standard errors: within a camera %.2f, to the reference %.2f (at most %.3f EV), gamma %.2f\n",
+                  within_rms, between_rms, worst, gamma_rms);
     assert_true(within_rms < 1.6 && between_rms < 1.6 && gamma_rms < 1.6);
 }
 
-// Cameras whose exponent pictures leave open to the same prior do not know it better together. Where nothing is to
-// settle it, nothing does.
+// If both cameras get their exponent from the same prior, combining them does not reduce its error; without any
+// knowledge the exponent stays undetermined.
 void test_priors_err_together(void **) {
     const auto s = alternating<Simulation>();
     Run run(s);
@@ -190,7 +190,7 @@ void test_priors_err_together(void **) {
         assert_true(camera.gamma_sigma == LENSPROF_UNKNOWN);
     }
     assert_int_equal(open.cameras[1].joined, 1);
-    // One that is known settles the other, whichever the reference is of.
+    // Knowledge of one camera determines the other, whichever camera the reference belongs to.
     auto held = s;
     for (size_t i = 1; i < s.images; i += 2) held.fit_images[i].exposure = s.exposures[i], held.fit_images[i].free = 0;
     Run known(held);
@@ -199,7 +199,7 @@ void test_priors_err_together(void **) {
     assert_close(gamma_of(held, known, 0), 1.0, 0.03);
 }
 
-// Which numbers cameras have makes no difference, nor whether anybody asks for what was found of them.
+// The numbering of cameras makes no difference, nor does leaving out the per-camera results.
 void test_numbers_are_names(void **) {
     const auto s = alternating<Simulation>();
     Simulation renamed = s;
@@ -214,7 +214,7 @@ void test_numbers_are_names(void **) {
     assert_int_equal(other.cameras[5].images, 0);
 }
 
-// Where the response is held, all cameras have that one, and what differs is the lens.
+// A response that is held applies to all cameras; only their lenses differ.
 void test_held_response_is_of_all(void **) {
     auto s = alternating<Simulation>();
     s.of_camera = {s.of_camera[0], s.of_camera[0]};
@@ -227,7 +227,7 @@ void test_held_response_is_of_all(void **) {
     assert_ok(run.fit(s, options));
     assert_int_equal(run.result.usable, 1);
     assert_true(s.exposure_error(run.exposures, 1.0) < 0.02);
-    assert_int_equal(run.cameras[0].images, 0);  // nothing of a camera's own was fitted
+    assert_int_equal(run.cameras[0].images, 0);  // nothing was fitted per camera
     assert_int_equal(run.settings[1].images, 5);
 }
 
@@ -239,7 +239,8 @@ Simulation within_cameras() {
     return s;
 }
 
-// Nothing joins the cameras: the reference's stands, the other's exposures are not known, and its profile is one.
+// If nothing joins the cameras, the reference's camera is the result; the other camera's exposures are unknown, and its
+// profile is complete by itself.
 void test_cameras_apart(void **) {
     const Simulation s = within_cameras();
     Run run(s);
@@ -255,10 +256,10 @@ void test_cameras_apart(void **) {
     }
 }
 
-// A camera of fewer than half of the images that agree is no result.
+// A camera with fewer than half of the images in agreement is not usable.
 void test_most_must_agree(void **) {
     Simulation s = within_cameras();
-    for (size_t i = 0; i < 3; i += 2) {  // cut off two images of the reference's camera
+    for (size_t i = 0; i < 3; i += 2) {  // disconnect two images of the reference's camera
         const auto is_cut = [&](const lensprof_pair &p) { return p.image[0] == i + 6 || p.image[1] == i + 6; };
         s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(), is_cut), s.pairs.end());
     }
@@ -272,7 +273,7 @@ void test_most_must_agree(void **) {
     assert_int_equal(run.settings[1].usable, 0);
 }
 
-// Pairs between the cameras that show something else join nothing.
+// Pairs between the cameras that show something else do not join them.
 void test_contradictions_join_nothing(void **) {
     Simulation s = alternating<Simulation>();
     uint64_t random = 3;
@@ -286,7 +287,7 @@ void test_contradictions_join_nothing(void **) {
     assert_int_equal(run.result.left_out, 5);
 }
 
-// One picture says nothing of its camera's response; it is left out, and is no reason to leave the others.
+// A single picture does not determine its camera's response; it is left out, and the others stay.
 void test_single_picture_is_left_out(void **) {
     Simulation s = alternating<Simulation>();
     for (size_t i = 0; i < s.images; i++) s.fit_images[i].camera = s.fit_images[i].setting = 0;
@@ -301,7 +302,7 @@ void test_single_picture_is_left_out(void **) {
     assert_int_equal(run.cameras[1].images, 0);
     assert_int_equal(run.settings[1].images, 0);
     assert_true(std::isnan(run.exposures[4].ev));
-    // Held as the reference, it gives way to another.
+    // If it was the reference, another image replaces it.
     lensprof_fit_options options = default_fit();
     options.reference = 4;
     assert_ok(run.fit(s, options));
@@ -310,14 +311,14 @@ void test_single_picture_is_left_out(void **) {
     assert_true(std::isnan(run.exposures[4].ev));
 }
 
-// Images of a camera that only another camera's join to the others of theirs: their exposures are found all the same,
-// also those of images that only such join.
+// Images joined to their camera's other images only through another camera still get exposures, and so do images
+// connected only through such images.
 void test_groups_of_a_camera(void **) {
     Simulation s = alternating<Simulation>();
     const auto is_own = [](const lensprof_pair &p, uint32_t i, uint32_t j) {
         return (p.image[0] == i && p.image[1] == j) || (p.image[0] == j && p.image[1] == i);
     };
-    const auto is_cut = [&](const lensprof_pair &p) {  // 1 3 | 5 7 9, and 1 has pairs with 0 and 2 alone
+    const auto is_cut = [&](const lensprof_pair &p) {  // groups 1 3 | 5 7 9; image 1 has pairs with 0 and 2 only
         return (p.image[0] % 2 && p.image[1] % 2 && p.image[0] < 5 && p.image[1] >= 5) || is_own(p, 1, 4)
                || is_own(p, 1, 3);
     };
@@ -337,7 +338,7 @@ void test_groups_of_a_camera(void **) {
                          0.03);
     }
     assert_true(run.quality[1].ev_sigma > 0.0 && run.quality[1].ev_sigma < 0.5);
-    // As the reference, such an image is one.
+    // Such an image can be the reference.
     lensprof_fit_options options = default_fit();
     options.reference = 1;
     assert_ok(run.fit(s, options));
@@ -345,7 +346,7 @@ void test_groups_of_a_camera(void **) {
     assert_int_equal(run.result.left_out, 0);
 }
 
-// The reference's camera moves with the others: exposures are relative to its image all the same.
+// The reference's camera moves with the others: exposures stay relative to its image.
 void test_any_reference(void **) {
     const auto s = alternating<Simulation>();
     Run first(s), other(s);
@@ -360,7 +361,7 @@ void test_any_reference(void **) {
         assert_close(other.exposures[i].ev - other.exposures[0].ev, first.exposures[i].ev, 0.01);
 }
 
-// What exposures of images start from, which that of a reference keeps, makes no difference to what is found.
+// The initial exposures of images, which a reference keeps, do not change the result.
 void test_exposures_of_references(void **) {
     auto s = alternating<Simulation>();
     Run plain(s), shifted(s);
@@ -370,19 +371,19 @@ void test_exposures_of_references(void **) {
         s.fit_images[i].exposure.white_balance[0] = i % 2 ? 0.7 : 1.2;
     }
     assert_ok(shifted.fit(s, default_fit()));
-    assert_true(std::abs(shifted.cameras[1].log_gamma - shifted.cameras[0].log_gamma) > 0.1);  // they move
+    assert_true(std::abs(shifted.cameras[1].log_gamma - shifted.cameras[0].log_gamma) > 0.1);  // they moved
     assert_true(shifted.exposures[0].ev == 1.5);
     for (size_t i = 0; i < s.images; i++) {
         assert_close(shifted.exposures[i].ev - 1.5, plain.exposures[i].ev, 0.01);
         assert_close(shifted.exposures[i].white_balance[0] / 1.2, plain.exposures[i].white_balance[0], 0.01);
     }
-    for (uint32_t i = 0; i < s.images; i++) {  // as the grey values are, relative to the reference
+    for (uint32_t i = 0; i < s.images; i++) {  // matches the grey values, relative to the reference
         shifted.exposures[i].ev -= 1.5, shifted.exposures[i].white_balance[0] /= 1.2;
         assert_true(grey_error(s, shifted, i) < 0.012);
     }
 }
 
-// Unknowns that are shared across cameras are shared within each.
+// Unknowns linked across cameras are shared only within each camera.
 void test_links_end_at_cameras(void **) {
     auto s = alternating<Simulation>();
     s.exposures[3].ev = s.exposures[2].ev, s.exposures[5].ev = s.exposures[2].ev;
@@ -408,7 +409,7 @@ void test_threads_change_nothing(void **) {
     assert_memory_equal(one.cameras.data(), four.cameras.data(), 2 * sizeof one.cameras[0]);
 }
 
-// Progress of both cameras is one.
+// Progress covers both cameras.
 void test_progress_rises(void **) {
     const auto s = alternating<Simulation>();
     struct Told {
@@ -469,7 +470,7 @@ void test_bad_input(void **) {
     run.cameras[1].struct_size = 0;
     assert_int_equal(run.fit(s, default_fit(), &error), LENSPROF_ERROR_STRUCT_SIZE);
     auto mixed = s;
-    mixed.fit_images[3].setting = 0;  // of camera 1
+    mixed.fit_images[3].setting = 0;  // belongs to camera 1
     assert_int_equal(run_fit(s).result.usable, 1);
     Run other(s);
     assert_int_equal(other.fit(mixed, default_fit(), &error), LENSPROF_ERROR_ARGUMENT);

@@ -1,4 +1,4 @@
-// The constrained step: feasible on the whole grid, and the best there is.
+// The constrained step: feasible on the whole grid, and optimal.
 #include "simulated.hpp"
 
 #include <Eigen/Dense>
@@ -25,7 +25,7 @@ std::vector<double> power_curve(double exponent) {
 }
 
 // The unconstrained projection of a straight line on 5 modes falls near black; the constrained one does not, and stays
-// near the floor of 0.12 levels without constraint.
+// close to the unconstrained distance of 0.12 levels.
 void test_linear_curve_needs_the_constraint(void **) {
     auto line = power_curve(1.0);
     std::vector<double> free(5, 0.0);
@@ -34,7 +34,7 @@ void test_linear_curve_needs_the_constraint(void **) {
     assert_false(is_rising(free.data(), 5));
     auto emor = project_curve(line.data(), 5);
     assert_true(is_rising(emor.data(), 5));
-    assert_close(rms_distance(emor, line), 0.2643, 0.0005);  // the optimum, found by an independent solver too
+    assert_close(rms_distance(emor, line), 0.2643, 0.0005);  // the optimum, confirmed by an independent solver
     assert_true(rms_distance(emor, line) >= rms_distance(free, line));
 }
 
@@ -53,8 +53,8 @@ void test_projections_are_strictly_monotone(void **) {
     }
 }
 
-// No feasible point near the solution is better: random feasible points and their mixtures with the solution (the
-// region is convex) never have a lower cost.
+// No feasible point near the solution is better: random feasible points, and their mixtures with the solution (the
+// region is convex), never have a lower cost.
 void test_step_is_optimal(void **) {
     uint64_t random = 11;
     for (int trial = 0; trial < 20; trial++) {

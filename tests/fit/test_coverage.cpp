@@ -1,5 +1,5 @@
-// Whether stated standard errors are true: how often the truth lies within one, over many simulated sequences.
-// A normal error does so in 68.3 % of all cases.
+// Whether stated standard errors are true: how often the truth lies within one standard error, over many simulated
+// sequences. For a normal error the share is 68.3 %.
 #include "campaign.h"
 #include "simulated.hpp"
 
@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kAllRuns = 600;  // the binomial error of the falloff's share is then 2 %
 const int kRuns = campaign_runs(kAllRuns),
-          kLongRuns = campaign_runs(kAllRuns / 2);                                // long: gamma open, modes to choose
+          kLongRuns = campaign_runs(kAllRuns / 2);                                // slow
 const double kAllowed = 0.05 * std::sqrt(static_cast<double>(kAllRuns) / kRuns);  // of the share
 
-// How often |error| <= sigma, and the root mean square of error / sigma.
+// How often |error| <= sigma, and the RMS of error / sigma.
 struct Share {
     const char *what;
     double within = 0.0, count = 0.0, square = 0.0;
@@ -35,7 +35,7 @@ struct Share {
     }
 };
 
-// A monotone response of five modes with the database's spread, so that the model of the fit holds.
+// A monotone response of five modes with the database's spread, so that the model of the fit applies.
 lensprof_response draw_response(uint64_t &random) {
     lensprof_response response;
     for (;;) {
@@ -76,7 +76,7 @@ double variance(const lensprof_fit_result &r, const std::vector<double> &by) {
     return sum;
 }
 
-// The same of falloff alone: M in the corner (r = 1) by k1, k2, k3; or one coordinate of the centre.
+// The same for the falloff alone: M in the corner (r = 1) by k1, k2, k3; or one coordinate of the centre.
 double corner_variance(const lensprof_fit_result &r) {
     std::vector<double> by(r.covariance_size, 0.0);
     for (uint32_t i = r.response.modes; i < r.response.modes + 3; i++) by[i] = 1.0;
@@ -90,7 +90,7 @@ double center_sigma(const lensprof_fit_result &r, uint32_t axis) {
 
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
-// f(x) by the coefficients is linear: the modes' values at x, as far as they are in use.
+// f(x) is linear in the coefficients, with the values at x of the modes in use as factors.
 double response_variance(const lensprof_fit_result &r, double x) {
     std::vector<double> by(r.covariance_size, 0.0);
     for (uint32_t l = 0; l < r.response.modes; l++) by[l] = lp_curve_eval(lensprof_emor_table(l + 1), x, nullptr);
@@ -141,7 +141,7 @@ void test_known_response(void **) {
     shares.assert_true_to_size();
 }
 
-// Response free, gamma known by one exposure that is held: all errors are those of the data.
+// Response free, gamma known from one held exposure: all errors come from the data.
 void test_gamma_known_by_an_exposure(void **) {
     Shares shares;
     for (int run = 0; run < kRuns; run++) {
@@ -157,8 +157,8 @@ void test_gamma_known_by_an_exposure(void **) {
     shares.assert_true_to_size();
 }
 
-// Response free, gamma from the prior: exposures and falloff brought to the true gamma, against what is left of their
-// variance without that of gamma.
+// Response free, gamma from the prior: exposures and falloff, brought to the true gamma, are compared with their
+// variance without the contribution of gamma.
 void test_gamma_from_the_prior(void **) {
     Share ev{"exposure, gamma apart"}, falloff{"falloff in the corner, gamma apart"};
     for (int run = 0; run < kLongRuns; run++) {

@@ -1,4 +1,4 @@
-// The method `debevec` against simulated truth.
+// The method `debevec` compared with simulated truth.
 #include "simulated.hpp"
 
 namespace {
@@ -10,7 +10,7 @@ lensprof_fit_options by_debevec() {
     return options;
 }
 
-// A bracket of five pictures 1 EV apart by a camera that stands still.
+// A bracket of five pictures 1 EV apart by a stationary camera.
 Simulation bracket(const lensprof_response &response, double noise, uint32_t count = 20000) {
     Simulation s;
     s.response = response;
@@ -20,14 +20,14 @@ Simulation bracket(const lensprof_response &response, double noise, uint32_t cou
     for (uint32_t i = 0; i < s.images; i++) s.exposures.push_back({2.0 - i, {1.0, 1.0, 1.0}});
     s.make(count, noise, 0.0, 0.0, 42);
     for (uint32_t i = 0; i < s.images; i++) {
-        s.fit_images[i].known_ev = s.exposures[i].ev + 7.0;  // up to a common offset
+        s.fit_images[i].known_ev = s.exposures[i].ev + 7.0;  // the common offset is arbitrary
         s.fit_images[i].known_ev_sigma = 0.05;
     }
     return s;
 }
 
-// Root mean square difference from the truth over the grey values 5..250, levels, at the best scale, and the largest
-// from 20 up: below, where noise is a good part of the value, least squares for a logarithm are biased (6 levels,
+// RMS difference from the truth over the grey values 5..250, in levels, at the best scale, and the largest difference
+// from 20 up. Below 20, noise is a large part of the value, and least squares on a logarithm are biased (6 levels for
 // gamma 2.2).
 struct Error {
     double rms, largest;
@@ -53,8 +53,8 @@ void test_recovers_responses(void **) {
             Simulation s = bracket(response, noise);
             FitRun run = run_fit(s, by_debevec());
             Error error = response_error(run.result.response, response);
-            print_message("noise %.0f: response off by %.2f levels rms, %.2f at most; held-out %.2f\n", noise,
-                          error.rms, error.largest, run.result.heldout_rms);
+            print_message("noise %.0f: response error %.2f levels RMS, %.2f at most; held-out %.2f\n", noise, error.rms,
+                          error.largest, run.result.heldout_rms);
             assert_int_equal(run.result.usable, 1);
             assert_true(is_monotone(run.result.response));
             assert_ok(lensprof_response_validate(&run.result.response));
@@ -65,7 +65,7 @@ void test_recovers_responses(void **) {
         }
 }
 
-// Exposures are those known, relative to the reference, whose own stays as given.
+// Exposures equal the known ones relative to the reference, whose own exposure stays as given.
 void test_exposures_are_the_known_ones(void **) {
     Simulation s = bracket(srgb_response(), 1.0, 4000);
     lensprof_fit_options options = by_debevec();
@@ -78,7 +78,7 @@ void test_exposures_are_the_known_ones(void **) {
     for (const auto &q : run.quality) assert_close(q.known_ev_residual, 0.0, 1e-9);
 }
 
-// A falloff and white balances that are held have their part in the equations.
+// Held falloff and white balances enter the equations.
 void test_held_falloff_and_white_balance(void **) {
     Simulation s = bracket(srgb_response(), 1.0, 1);
     s.vignetting = {{-0.3, 0.05, -0.15}, {0.0, 0.0}};
@@ -98,7 +98,7 @@ void test_held_falloff_and_white_balance(void **) {
     assert_memory_equal(&run.result.vignetting[0], &s.vignetting, sizeof s.vignetting);
 }
 
-// Smoothness is the only prior: with little data more of it is better, and none is not a crash.
+// Smoothness is the only prior: with little data, more of it is better; without any, the call still returns.
 void test_smoothness(void **) {
     Simulation s = bracket(srgb_response(), 2.0, 300);
     lensprof_fit_options options = by_debevec();
@@ -153,7 +153,7 @@ void test_exposures_that_cannot_be(void **) {
     assert_true(is_monotone(run.result.response));
 }
 
-// Refuses the call, with nothing written, and says `word`.
+// Checks that the call is refused with `word` in the text, and that nothing is written.
 void assert_refused(const Simulation &s, const lensprof_fit_options &options, lensprof_status expected,
                     const char *word) {
     std::vector<lensprof_exposure> exposures(s.images);
@@ -167,7 +167,7 @@ void assert_refused(const Simulation &s, const lensprof_fit_options &options, le
                      expected);
     assert_memory_equal(exposures.data(), before.data(), exposures.size() * sizeof exposures[0]);
     assert_int_equal(result.pairs, 0);
-    if (!std::strstr(error.text, word)) print_error("'%s' does not say '%s'\n", error.text, word);
+    if (!std::strstr(error.text, word)) print_error("'%s' does not contain '%s'\n", error.text, word);
     assert_non_null(std::strstr(error.text, word));
 }
 

@@ -1,4 +1,5 @@
-// Every derivative of the fit against central differences, and the elimination of the images against a full solve.
+// Every derivative of the fit compared with central differences, and the elimination of the images compared with a full
+// solve.
 #include "simulated.hpp"
 
 #include <Eigen/Core>
@@ -18,7 +19,7 @@ struct Setting {
     Problem problem;
     Estimate estimate;
 
-    // With two lens settings, images 1 and 3 are of the second.
+    // With two lens settings, images 1 and 3 use the second.
     explicit Setting(uint32_t channels, uint32_t count = 60, int settings = 1) {
         simulation.response = srgb_response();
         simulation.channels = channels;
@@ -55,8 +56,8 @@ std::vector<double> residuals(const Problem &problem, const Estimate &estimate) 
     return values;
 }
 
-// The response is piecewise linear: where a step crosses a kink a central difference is no derivative. With 1024 pieces
-// and steps of 1e-7 that is rare; the few are counted.
+// The response is piecewise linear: if a step crosses a kink, the central difference is not a derivative. With 1024
+// pieces and steps of 1e-7 that is rare; such cases are counted.
 void compare(const std::vector<double> &analytic, const std::vector<double> &low, const std::vector<double> &high,
              double h, const char *what) {
     size_t kinks = 0;
@@ -170,7 +171,7 @@ void test_residual_by_exposure_and_value(void **) {
         }
 }
 
-// What the solver minimises, by itself.
+// The objective of the solver, computed independently.
 double objective(const Problem &problem, const Prior &prior, const Loss &loss, const NoiseWeights &weights,
                  const Estimate &estimate) {
     double sum = prior_cost(prior, problem, free_columns(problem, estimate.modes), estimate);
@@ -180,7 +181,7 @@ double objective(const Problem &problem, const Prior &prior, const Loss &loss, c
     return sum;
 }
 
-// A prior with everything in it: response, falloff, a held gamma and known exposures.
+// A prior with all its parts: response, falloff, a held gamma and known exposures.
 Prior full_prior(double weight, const Problem &problem) {
     Prior prior = make_prior(weight, problem.vignettings, problem.settings);
     for (int l = 0; l < 6; l++) prior.pin[l] = 0.3 - 0.1 * l;
@@ -191,8 +192,8 @@ Prior full_prior(double weight, const Problem &problem) {
     return prior;
 }
 
-// The gradient that the reduced system stands for: differences of the objective along every shared unknown, the images'
-// unknowns held; and along a joint step, for each loss.
+// The gradient of the reduced system compared with differences of the objective for each loss: along every shared
+// unknown with the images' unknowns held, and along a joint step.
 void test_objective_gradient(void **) {
     for (uint32_t kind : {LENSPROF_LOSS_ROBUST, LENSPROF_LOSS_HUBER, LENSPROF_LOSS_SQUARED})
         for (uint32_t channels : {1u, 3u}) {
@@ -229,7 +230,7 @@ void test_objective_gradient(void **) {
         }
 }
 
-// Schur elimination equals the solution of the full system, here formed densely from numeric Jacobians.
+// Schur elimination equals the solution of the full system, formed densely from numeric Jacobians.
 void test_elimination_equals_full_solve(void **) {
     Setting s(3, 200);
     Loss loss;
@@ -291,7 +292,7 @@ void test_elimination_equals_full_solve(void **) {
     assert_close(image_step[1][1], step[shared + s.problem.ev_unknown[1]], 1e-4);
     assert_close(image_step[3][1], image_step[2][1], 0.0);  // linked
     assert_close(image_step[2][0], image_step[2][1], 0.0);  // red of image 2 is fixed: it moves with the exposure alone
-    assert_close(image_step[0][0], 0.0, 0.0);               // the reference stays
+    assert_close(image_step[0][0], 0.0, 0.0);               // the reference is unchanged
 
     // Variances: the diagonal of the full inverse.
     Eigen::MatrixXd inverse = inverse_of_symmetric(hessian),

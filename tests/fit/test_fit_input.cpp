@@ -1,4 +1,4 @@
-// Bad input at the C boundary: a status, untouched outputs, never a crash or a number that is none.
+// Bad input at the C boundary: a status and untouched outputs; never a crash or a NaN.
 #include "simulated.hpp"
 
 namespace {
@@ -41,7 +41,7 @@ struct Call {
         assert_int_equal(call.run(), status); \
     } while (0)
 
-// A wrong option is named with its range, and none beside it.
+// An invalid option is named with its range, and no other option is.
 void test_a_wrong_option_is_named(void **) {
     const struct {
         void (*spoil)(lensprof_fit_options &);
@@ -62,7 +62,7 @@ void test_a_wrong_option_is_named(void **) {
     }
 }
 
-// What is wrong with an image or a pair is told by its number, beside the text.
+// The error gives the index of an invalid image or pair separately from the text.
 void test_a_wrong_item_is_named(void **) {
     Call call;
     call.s.pairs[7].value[1][2] = 1.01;
@@ -137,7 +137,7 @@ void test_refuses(void **) {
             LENSPROF_ERROR_NO_UNKNOWNS);
 }
 
-// Pairs that tell nothing: one pair repeated, one grey value, black and white alone.
+// Pairs without information: one pair repeated, one grey value, only black and white.
 void test_data_without_information_are_not_usable(void **) {
     for (int kind = 0; kind < 4; kind++)
         for (double prior : {0.0, 1.0}) {
@@ -169,7 +169,7 @@ void test_progress_cancels(void **) {
     assert_int_equal(asked, 4);
 }
 
-// Problems with valid numbers but no sense: constant values, saturated values, one pair, every value random.
+// Valid numbers without meaning: constant values, saturated values, one pair, all values random.
 void test_degenerate_problems_stay_finite(void **) {
     uint64_t random = 17;
     for (int trial = 0; trial < 150; trial++) {

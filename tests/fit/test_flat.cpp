@@ -1,4 +1,4 @@
-// The flat field fit against simulated pictures of a known lens.
+// The flat field fit compared with simulated pictures of a known lens.
 #include "flat_pictures.hpp"
 
 #include "fit/flat/fit.hpp"
@@ -48,7 +48,7 @@ static void a_plain_card_gives_the_falloff(void **) {
         assert_int_equal(r->gain_grid.columns, 0);
         assert_close(error_of(*r, p), 0.0, 0.002);
         assert_true(r->corner_sigma > 5e-5 && r->corner_sigma < 5e-4);
-        assert_reason(*r, FLAT_CENTER_BY_PRIOR, "prior");  // one shot cannot tell light from centre, and says so
+        assert_reason(*r, FLAT_CENTER_BY_PRIOR, "prior");  // light and centre not separated
         assert_int_equal(r->separated, 0);
     }
 }
@@ -65,7 +65,7 @@ static void a_grey_picture_has_one_curve(void **) {
 
 static void turned_shots_tell_the_light_from_the_centre(void **) {
     FlatPictures p;
-    for (auto &v : p.vignetting) v = {{-0.4, 0.0, 0.0}, {0.04, -0.03}};  // r^2 alone: a plane is as good as a centre
+    for (auto &v : p.vignetting) v = {{-0.4, 0.0, 0.0}, {0.04, -0.03}};  // r^2 alone: a plane looks like a shift
     p.gradient[0] = 0.10, p.gradient[1] = -0.06;
     p.shoot(0, 0.0, 0.0);
     lensprof_flat_options o = p.options();
@@ -96,7 +96,7 @@ static void exposures_of_one_shot_are_merged(void **) {
     FlatPictures p;
     assert_ok(lensprof_response_set_gamma(&p.response, 2.2));
     p.sample = LENSPROF_SAMPLE_U8;
-    p.level = 1.6;  // white in the longest exposure, and nowhere well exposed in one alone
+    p.level = 1.6;  // white in the longest exposure, and nowhere well exposed in a single one
     for (auto &v : p.vignetting) v.k[0] = -0.8;
     for (int ev = -4; ev <= 0; ev++) p.shoot(0, ev);
     lensprof_flat_image_quality quality[5];
@@ -124,7 +124,7 @@ static void wrong_exposures_are_noticed(void **) {
     assert_reason(*r, FLAT_EXPOSURE_WRONG, "0.50 EV");
     assert_int_equal(r->reason_item.kind, LENSPROF_ITEM_IMAGE);
     assert_close(r->reason_value[0], 0.5, 0.02);
-    assert_close(quality[0].ev_residual - quality[1].ev_residual, 1.0, 0.02);  // each against the other
+    assert_close(quality[0].ev_residual - quality[1].ev_residual, 1.0, 0.02);  // each image compared with the other
 }
 
 static void a_card_that_does_not_reach_the_corners_is_said(void **) {
@@ -208,7 +208,7 @@ static void what_is_wrong_is_said(void **) {
         assert_int_equal(r->reason_code, bad.code);
     }
     FlatPictures none;
-    none.defect = [](double x, double y, uint32_t) {  // no even region anywhere
+    none.defect = [](double x, double y, uint32_t) {  // no even region at all
         return std::fmod(std::floor(x / 9) * 0.37 + std::floor(y / 7) * 0.61, 1.0);
     };
     none.shoot(0);
@@ -219,7 +219,7 @@ static void what_is_wrong_is_said(void **) {
     assert_int_equal(lensprof_fit_flat(&o, none.images.data(), 1, r.get(), nullptr), LENSPROF_ERROR_NO_SAMPLES);
 }
 
-// A response from (0, 0) over two points to (1, 1).
+// A response from (0, 0) through two points to (1, 1).
 static lensprof_response bent(double x0, double y0, double x1, double y1) {
     std::vector<double> table;
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
@@ -234,7 +234,7 @@ static lensprof_response bent(double x0, double y0, double x1, double y1) {
     return response;
 }
 
-// All grey values of the card are those of nearly the same light, or hardly differ for any light.
+// All grey values of the card correspond to nearly the same light, or barely change with the light.
 static void a_response_without_gradation_is_refused(void **) {
     const struct {
         lensprof_response response;
@@ -281,7 +281,7 @@ static void reduced_views_and_layouts_are_the_same_picture(void **) {
     p.set_center(0.02, 0.0);
     p.shoot(0);
     auto full = p.fit(p.options());
-    auto small = p.images[0];  // every second pixel: a view whose pixels stand for squares of 2 x 2
+    auto small = p.images[0];  // every second pixel: a view whose pixels represent squares of 2 x 2
     std::vector<uint16_t> pixels(300 * 225 * 3), flipped(300 * 225 * 4);
     const auto *from = reinterpret_cast<const uint16_t *>(p.data[0]->data());
     for (uint32_t y = 0; y < 225; y++)

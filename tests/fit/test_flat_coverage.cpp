@@ -1,15 +1,15 @@
-// Whether the flat field fit's stated errors are true: hundreds of simulated cards.
+// Whether the stated errors of the flat field fit are true: hundreds of simulated cards.
 #include "campaign.h"
 #include "flat_pictures.hpp"
 
 constexpr int all_runs = 400;
 static const int runs = campaign_runs(all_runs);
-static const double wider = std::sqrt(static_cast<double>(all_runs) / runs);  // limits of fewer runs
+static const double wider = std::sqrt(static_cast<double>(all_runs) / runs);  // limits for fewer runs
 
-// Shares of runs whose error is below the stated one: k1, k2, k3, centre x, y, and M at r = 1.
+// Share of runs with an error below the stated one: k1, k2, k3, centre x, y, and M at r = 1.
 struct Coverage {
     double inside[6] = {};
-    double scatter = 0.0, stated = 0.0;  // of M at r = 1, root mean squares
+    double scatter = 0.0, stated = 0.0;  // of M at r = 1, RMS
 
     void add(const lensprof_flat_result &r, const lensprof_vignetting &truth) {
         const uint32_t n = r.covariance_size;
@@ -36,11 +36,11 @@ static Coverage simulate(uint32_t shots, double texture, uint32_t channels) {
         p.seed = static_cast<uint64_t>(run) + 1;
         p.sample = LENSPROF_SAMPLE_U8;
         p.noise = 0.012;
-        p.set_center(0.02 * lp_normal(&random), 0.02 * lp_normal(&random));  // as the prior has it
+        p.set_center(0.02 * lp_normal(&random), 0.02 * lp_normal(&random));  // drawn from the prior
         p.gradient[0] = 0.05, p.gradient[1] = 0.03;
         std::vector<double> waves(24 * 24);
         for (double &w : waves) w = texture * lp_normal(&random);
-        p.defect = [=](double x, double y, uint32_t) {  // texture of some cells' size, on the card
+        p.defect = [=](double x, double y, uint32_t) {  // texture on the card, several cells in size
             return 1.0 + waves[static_cast<size_t>(y / 8) * 24 + static_cast<size_t>(x / 9)];
         };
         for (uint32_t s = 0; s < shots; s++) p.shoot(s, 0.0, 90.0 * s);
@@ -55,7 +55,7 @@ static Coverage simulate(uint32_t shots, double texture, uint32_t channels) {
 }
 
 static void check(const char *what, const Coverage &c) {
-    print_message("%s: k1 %.2f k2 %.2f k3 %.2f centre %.2f %.2f corner %.2f; corner off by %.5f, stated %.5f\n", what,
+    print_message("%s: k1 %.2f k2 %.2f k3 %.2f centre %.2f %.2f corner %.2f; corner error %.5f, stated %.5f\n", what,
                   c.inside[0] / runs, c.inside[1] / runs, c.inside[2] / runs, c.inside[3] / runs, c.inside[4] / runs,
                   c.inside[5] / runs, std::sqrt(c.scatter / runs), std::sqrt(c.stated / runs));
     for (double inside : c.inside) assert_close(inside / runs, 0.68, 0.08 * wider);

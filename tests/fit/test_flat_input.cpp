@@ -1,4 +1,4 @@
-// The flat field fit and what it refuses.
+// Invalid input of the flat field fit.
 #include "flat_pictures.hpp"
 
 struct Input {
@@ -20,7 +20,7 @@ struct Input {
                                  result.get(), &error);
     }
 
-    // Refused with a sentence, and the result left as it was.
+    // Checks that the call is refused with a sentence and the result is unchanged.
     void refused(lensprof_status status) {
         auto before = std::make_unique<lensprof_flat_result>(*result);
         lensprof_status got = run();

@@ -1,7 +1,7 @@
 // The flat field fit on several shots: dozens of simulated pictures.
 #include "flat_pictures.hpp"
 
-// A strong falloff, off centre, far from what the priors expect.
+// A strong falloff, off centre, far from the priors' mean.
 static void the_start_does_not_matter(void **) {
     for (double k1 : {0.0, -0.3, -0.7, -1.2}) {
         FlatPictures p;
@@ -28,7 +28,7 @@ static void a_card_at_several_places_needs_no_even_light_over_the_frame(void **)
             bool card = x >= x0 && x < x0 + 200.0 && y >= y0 && y < y0 + 150.0;
             return card ? 1.0 : 0.15 + 0.1 * std::sin(0.05 * x + 0.02 * y);
         };
-        p.shoot(place, place == 4 ? -0.5 : 0.0);  // exposures may differ when they are known
+        p.shoot(place, place == 4 ? -0.5 : 0.0);  // exposures may differ if they are known
     }
     lensprof_flat_options o = p.options();
     o.several = o.find_card = 1;
@@ -45,7 +45,7 @@ static void a_card_at_several_places_needs_no_even_light_over_the_frame(void **)
     }
 }
 
-// The shape of a phone's colour shading: more in one corner, and not alike in the channels.
+// Like the colour shading of a phone: stronger in one corner, and different per channel.
 static double shading(double x, double y, uint32_t channel) {
     double u = x / 300 - 1, v = y / 225 - 1;
     return 1 - 0.03 * u * u * u * v - 0.02 * v * v * v + (channel == 0 ? 0.025 * u * v * v : 0.0);
@@ -63,7 +63,7 @@ static void what_is_not_radial_goes_into_a_grid(void **) {
     assert_int_equal(r->gain_grid.columns, 24);
     assert_int_equal(r->gain_grid.rows, 18);
     assert_ok(lensprof_gain_grid_validate(&r->gain_grid));
-    double worst = 0.0, worst_without = 0.0;  // of all channels, relative to the frame's middle
+    double worst = 0.0, worst_without = 0.0;  // over all channels, relative to the middle of the frame
     for (uint32_t i = 0; i < 300; i++)
         for (uint32_t c = 0; c < 3; c++) {
             double x = i % 20 * 599 / 19.0, y = i / 20 * 449 / 14.0;

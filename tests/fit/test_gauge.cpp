@@ -1,4 +1,4 @@
-// The exponent gamma that pictures leave open: what settles it, against simulated truth.
+// The exponent gamma that pictures leave open: what determines it, compared with simulated truth.
 #include "simulated.hpp"
 
 #include "fit/prior/gauge.hpp"
@@ -9,7 +9,7 @@ using namespace lensprof;
 
 namespace {
 
-// The member of a curve's family: f(x^(1/gamma)).
+// A member of a curve's family: f(x^(1/gamma)).
 lensprof_response raised(const lensprof_response &f, double gamma) {
     return table_response([&](double x) { return lensprof_response_eval(&f, std::pow(x, 1.0 / gamma), nullptr); });
 }
@@ -30,7 +30,7 @@ void test_position_counts_the_exponent(void **) {
     for (const Named &camera : cameras())
         for (double gamma : {0.7, 0.9, 1.1, 1.5}) {
             lensprof_response member = raised(camera.response, gamma);
-            // Interpolation between 1024 samples is coarse where a steep curve reaches the gauge's grey value early.
+            // Interpolation between 1024 samples is coarse if a steep curve reaches the gauge's grey value early.
             assert_close(gamma_position(member.table) - gamma_position(camera.response.table), std::log(gamma), 0.01);
         }
 }
@@ -44,8 +44,8 @@ lensprof_response typical(uint32_t kind, double *sigma = nullptr) {
     return response;
 }
 
-// What is usual of a shape cannot depend on where in its family a curve was found. (Of curves that 1024 samples follow
-// down to dark greys at all of these exponents.)
+// The prior on the shape must not depend on which member of its family was found. (For curves that 1024 samples
+// represent down to dark greys at all of these exponents.)
 void test_the_shape_is_of_the_family(void **) {
     for (uint32_t kind : kKinds)
         for (const lensprof_response &response : {linear_response(), film_response()}) {
@@ -55,7 +55,7 @@ void test_the_shape_is_of_the_family(void **) {
         }
 }
 
-// Against differences of curves that have one coefficient changed.
+// Compared with differences of curves with one coefficient changed.
 void test_the_slope_of_the_position(void **) {
     for (uint32_t kind : kKinds) {
         lensprof_response r = typical(kind), up, down;
@@ -73,7 +73,7 @@ void test_the_slope_of_the_position(void **) {
     }
 }
 
-// The prior stands where the typical response does, with the error that this states.
+// The prior has the position of the typical response, and its stated error.
 void test_the_prior_is_that_of_the_typical_response(void **) {
     for (uint32_t kind : kKinds) {
         double sigma;
@@ -88,8 +88,8 @@ void test_the_prior_is_that_of_the_typical_response(void **) {
     }
 }
 
-// Curves that programs make are within two of the errors stated, also where a camera's name stands in the EXIF: their
-// shape is none of a camera's, which widens the error.
+// Curves that programs use are within two of the stated errors, even if EXIF names a camera: their shape is unlike a
+// camera's, which widens the error.
 void test_plain_curves_are_within_what_is_stated(void **) {
     std::vector<Named> plain = {{"srgb", srgb_response()}, {"linear", linear_response()}};
     for (double gamma : {1.8, 2.0, 2.2, 2.4, 2.6}) plain.push_back({"gamma", gamma_response(gamma)});
@@ -143,7 +143,7 @@ std::vector<double> residuals(const Problem &problem, const Estimate &estimate) 
     return values;
 }
 
-// Only members that 12 modes hold: sRGB at gamma 1.25 is none (0.38 levels rms, 2 at the worst), having a steep toe.
+// Only members that 12 modes can represent: sRGB at gamma 1.25 is too steep near black (0.38 levels RMS, 2 at most).
 void test_the_exponent_does_not_show_in_the_pictures(void **) {
     for (const lensprof_response &response : {mean_response(), linear_response()})
         for (double gamma : {0.8, 0.9, 1.1, 1.25}) {
@@ -179,7 +179,7 @@ void test_parameters_held_do_not_move(void **) {
 void test_direction_is_the_derivative(void **) {
     Setting s(mean_response());
     Eigen::VectorXd direction = Gauge::direction(s.problem, s.estimate), here = shared_vector(s.estimate);
-    const double h = 0.03;  // another step than that of the code under test
+    const double h = 0.03;  // a step different from the tested code's
     Eigen::VectorXd up = shared_vector(with_exponent(s.problem, s.estimate, h));
     Eigen::VectorXd down = shared_vector(with_exponent(s.problem, s.estimate, -h));
     for (Eigen::Index i = 0; i < here.size(); i++)
@@ -221,12 +221,12 @@ void test_what_closes_the_gauge(void **) {
     assert_from(run_fit(s, options), LENSPROF_GAMMA_KNOWN, 0.0);
     options = default_fit();
     options.free &= ~LENSPROF_FREE_K1;
-    assert_from(run_fit(s, options), LENSPROF_GAMMA_PRIOR, prior.result.gamma_sigma);  // k1 = 0 is 0 in all the family
+    assert_from(run_fit(s, options), LENSPROF_GAMMA_PRIOR, prior.result.gamma_sigma);  // k1 = 0 in the whole family
     options.vignetting = s.vignetting;
     assert_from(run_fit(s, options), LENSPROF_GAMMA_KNOWN, 0.0);
     Simulation fixed = s;
     fixed.fit_images[3].free &= ~LENSPROF_FREE_EV;
-    assert_from(run_fit(fixed), LENSPROF_GAMMA_PRIOR, prior.result.gamma_sigma);  // as the reference's
+    assert_from(run_fit(fixed), LENSPROF_GAMMA_PRIOR, prior.result.gamma_sigma);  // held like the reference's
     fixed.fit_images[3].exposure.ev = s.exposures[3].ev;
     assert_from(run_fit(fixed), LENSPROF_GAMMA_KNOWN, 0.0);
 }
@@ -238,8 +238,8 @@ void test_without_a_prior_nothing_settles_gamma(void **) {
     assert_int_equal(run_fit(s, options).result.gamma_from, LENSPROF_GAMMA_NONE);
 }
 
-// A bracket of two stops whose exposures are known to a tenth: what says more about gamma than the prior does. (Of
-// brackets of 0.7 EV they say no more than to 15 %, and the modes' own preference shows.)
+// A bracket of two stops with exposures known to a tenth, which determines gamma better than the prior does. (For
+// brackets of 0.7 EV they determine it to 15 % only, and the modes' own preference shows.)
 Simulation bracket(const lensprof_response &response, uint32_t images, uint64_t seed) {
     const double ev[6] = {0.0, 1.0, -1.0, 0.5, -0.5, 0.8};
     Simulation s;
@@ -254,7 +254,7 @@ Simulation bracket(const lensprof_response &response, uint32_t images, uint64_t 
     return s;
 }
 
-// For cameras near to and far from the prior, as absolute values show.
+// For cameras near and far from the prior: the result has absolute values.
 void test_known_exposures_settle_gamma(void **) {
     for (const Named &camera : cameras())
         for (uint64_t seed = 1; seed <= 4; seed++) {
@@ -274,15 +274,15 @@ double log_gamma_between(const FitRun &a, const FitRun &b) {
     return gamma_position(a.result.response.table) - gamma_position(b.result.response.table);
 }
 
-// With the number of modes given: to choose it is a step, which any pull may take, and other modes prefer another
-// gamma.
+// With a given number of modes: their automatic selection is discrete, a small pull can change it, and other modes
+// prefer another gamma.
 lensprof_fit_options twelve_modes() {
     lensprof_fit_options options = default_fit();
     options.modes = 12;
     return options;
 }
 
-// Rounded exposures of a sequence at equal settings, whose true exposures differ a little.
+// Rounded exposures of a sequence at equal settings; the true exposures differ slightly.
 void test_equal_known_exposures_pull_nothing(void **) {
     for (uint64_t seed = 1; seed <= 8; seed++) {
         Simulation s;
@@ -300,7 +300,7 @@ void test_equal_known_exposures_pull_nothing(void **) {
     }
 }
 
-// One image's known exposure is 1 EV off: its residual tells, and it counts for little among twelve.
+// One image's known exposure is 1 EV off: its residual shows it, and among twelve it has little weight.
 void test_one_wrong_known_exposure(void **) {
     for (uint64_t seed = 1; seed <= 3; seed++)
         for (double wrong : {-1.0, 1.0}) {
@@ -317,7 +317,7 @@ void test_one_wrong_known_exposure(void **) {
         }
 }
 
-// Known exposures that scatter by ten times what is stated are taken for what they are: they do not bend the fit.
+// Known exposures that scatter ten times more than stated are recognised: they do not bend the fit.
 void test_known_exposures_that_scatter(void **) {
     for (uint64_t seed = 1; seed <= 6; seed++) {
         Simulation s = bracket(srgb_response(), 8, seed);
@@ -342,14 +342,14 @@ void test_what_is_asked_for_settles_gamma(void **) {
     assert_from(prior, LENSPROF_GAMMA_PRIOR, GammaPrior(LENSPROF_CAMERA_ANY).sigma());
     assert_int_equal(exposures.result.gamma_from, LENSPROF_GAMMA_EXPOSURES);
     assert_close(s.gamma(exposures.exposures), 1.0, 0.005);
-    assert_true(std::abs(s.gamma(prior.exposures) - 1.0) > 0.1);  // a linear camera is none that the prior knows
+    assert_true(std::abs(s.gamma(prior.exposures) - 1.0) > 0.1);  // the prior does not expect a linear camera
     for (auto &image : s.fit_images) image.known_ev_sigma = 0.0;
     assert_close(log_gamma_between(prior, run_fit(s, options)), 0.0, 0.02);
     options.gamma_from = LENSPROF_GAMMA_EXPOSURES;
-    assert_int_equal(run_fit(s, options).result.gamma_from, LENSPROF_GAMMA_PRIOR);  // nothing else is there
+    assert_int_equal(run_fit(s, options).result.gamma_from, LENSPROF_GAMMA_PRIOR);  // there is no other knowledge
 }
 
-// Gamma moves as far as the priors of the kinds are apart.
+// Gamma moves by the distance between the priors of the kinds.
 void test_kinds_of_camera_differ(void **) {
     Simulation s = simulate(typical(LENSPROF_CAMERA_CAMERA));
     lensprof_fit_options options = twelve_modes();
@@ -364,7 +364,7 @@ void test_kinds_of_camera_differ(void **) {
     }
 }
 
-// A response that programs make, of pictures that name a camera: said, and the error stated holds.
+// A response that programs use, in pictures that name a camera: a reason reports it, and the stated error holds.
 void test_an_unusual_response_is_said(void **) {
     for (const Named &curve : {Named{"srgb", srgb_response()}, Named{"gamma 2.4", gamma_response(2.4)}}) {
         Simulation s = simulate(curve.response);
@@ -399,7 +399,7 @@ void test_linear_cameras_hold_the_response(void **) {
                      LENSPROF_ERROR_ARGUMENT);
 }
 
-// Exposures known far better than any camera sets them: no harm to the solver's numbers.
+// Exposures known much better than a camera can set them cause no numerical problem.
 void test_tight_known_exposures(void **) {
     for (double sigma : {0.1, 0.02, 0.003, 0.001}) {
         Simulation s = simulate(srgb_response());
@@ -413,7 +413,7 @@ void test_tight_known_exposures(void **) {
     }
 }
 
-// One known exposure has nothing to be compared with.
+// A single known exposure cannot be compared with anything.
 void test_one_known_exposure_says_nothing(void **) {
     Simulation s = simulate(srgb_response());
     FitRun without = run_fit(s);
@@ -424,7 +424,7 @@ void test_one_known_exposure_says_nothing(void **) {
     for (const auto &q : with.quality) assert_close(q.known_ev_residual, 0.0, 0.0);
 }
 
-// Weak knowledge that agrees with the prior adds to it.
+// Weak knowledge that agrees with the prior reduces its error.
 void test_weak_exposures_do_not_weaken_the_prior(void **) {
     Simulation s = simulate(srgb_response());
     double prior = run_fit(s).result.gamma_sigma;
@@ -434,7 +434,7 @@ void test_weak_exposures_do_not_weaken_the_prior(void **) {
     assert_true(both <= 1.1 * prior);
 }
 
-// A reference far from 0 EV, and green that is held apart from it.
+// A reference far from 0 EV, and a held green white balance that differs from it.
 void test_where_the_reference_stands_does_not_matter(void **) {
     Simulation s = simulate(srgb_response());
     FitRun near = run_fit(s);

@@ -1,4 +1,4 @@
-// Joint histograms and the transfer functions through them (Kim & Pollefeys 2004, section 2.2).
+// Joint histograms and transfer functions found in them (Kim & Pollefeys 2004, section 2.2).
 #include "simulated.hpp"
 
 #include "fit/methods/transfer_function/joint_histogram.hpp"
@@ -13,7 +13,7 @@ JointHistogram random_histogram(int bins, uint64_t &random) {
     return h;
 }
 
-// The best of all paths, by trying every one.
+// The best path, found by trying all of them.
 double best_by_force(const JointHistogram &h, bool above, int b1, int from) {
     if (b1 == h.bins) return from == h.bins - 1 ? 0.0 : -1e300;
     double best = -1e300;
@@ -55,12 +55,12 @@ void test_keeps_its_constraints_on_anything(void **) {
         std::vector<LevelPair> pairs;
         for (int i = 0; i < 3000; i++) pairs.push_back({255.0 * lp_random(&random), 255.0 * lp_random(&random)});
         assert_keeps_constraints(most_likely_path(log_likelihood(joint_histogram(pairs, bins), 1.5)), bins);
-        pairs.clear();  // nothing at all
+        pairs.clear();  // no pairs
         assert_keeps_constraints(most_likely_path(log_likelihood(joint_histogram(pairs, bins), 1.5)), bins);
     }
 }
 
-// A known transfer function under noise and as many outliers as inliers; both directions are each other's inverse.
+// A known transfer function with noise and as many outliers as inliers; both directions are inverses of each other.
 void test_finds_a_transfer_function_among_outliers(void **) {
     auto transfer = [](double b) { return 255.0 * std::pow(b / 255.0, 0.7); };
     uint64_t random = 9;
@@ -78,7 +78,7 @@ void test_finds_a_transfer_function_among_outliers(void **) {
     }
 }
 
-// Counts go to the nearest bin; the Gaussian keeps their sum, and is the product of two in one dimension.
+// Counts go to the nearest bin. The Gaussian preserves their sum and is the product of two one-dimensional ones.
 void test_smoothing(void **) {
     std::vector<LevelPair> pairs{{100.2, 50.4}, {99.6, 49.6}};
     JointHistogram h = joint_histogram(pairs, 256);
@@ -91,7 +91,7 @@ void test_smoothing(void **) {
     assert_close(at(101, 51) * at(100, 50), at(101, 50) * at(100, 51), 1e-12);
     assert_close(at(101, 50) / at(100, 50), std::exp(-0.5 / 2.25), 1e-9);
     assert_close(at(120, 50), 0.0, 1e-15);
-    assert_close(smooth.at(200, 200), std::log(floor), 1e-12);  // P0, beyond the Gaussian's reach
+    assert_close(smooth.at(200, 200), std::log(floor), 1e-12);  // P0, beyond the reach of the Gaussian
 }
 
 void test_coarse_bins_reach_both_ends(void **) {

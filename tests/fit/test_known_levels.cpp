@@ -1,4 +1,4 @@
-// Long strips of pictures at one manual exposure: what is known of it keeps them level, though some of it be wrong.
+// Long strips of pictures at one manual exposure: known exposures keep the strip level, even if some are wrong.
 #include "simulated.hpp"
 
 #include "fit/prior/known_levels.hpp"
@@ -9,8 +9,8 @@ namespace {
 
 constexpr uint32_t kImages = 28;
 
-// A strip whose neighbours share 30 %, taken with one exposure but for its scatter, EV; its falloff is not radial by
-// one percent, which the pictures of a strip take for a drift of the exposures.
+// A strip whose neighbours share 30 %, taken with one exposure that scatters by `scatter` EV. Its falloff deviates from
+// radial by one percent, which the fit of a strip takes for a drift of the exposures.
 Simulation strip(double scatter, uint64_t seed, double tilt = 0.015) {
     Simulation s;
     s.response = srgb_response();
@@ -25,7 +25,7 @@ Simulation strip(double scatter, uint64_t seed, double tilt = 0.015) {
     return s;
 }
 
-// Of the differences between found and true exposures, over images [first, last).
+// Range of found minus true exposures over images [first, last).
 double spread(const Simulation &s, const std::vector<lensprof_exposure> &found, uint32_t first, uint32_t last) {
     double low = INFINITY, high = -INFINITY;
     for (uint32_t i = first; i < last; i++) {
@@ -46,7 +46,7 @@ void test_one_manual_exposure_keeps_a_strip_level(void **) {
     }
 }
 
-// Shutter and aperture scatter as stated: the pictures show by how much.
+// Shutter and aperture scatter as stated; the pictures show by how much.
 void test_the_scatter_is_found(void **) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
         Simulation s = strip(0.03, seed);
@@ -57,7 +57,7 @@ void test_the_scatter_is_found(void **) {
     }
 }
 
-// Three of 28 are wrong by half a stop: the others are found as without these three.
+// Three of 28 are wrong by half a stop: the others come out as without these three.
 void test_a_few_that_are_wrong_are_left_out(void **) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
         Simulation s = strip(0.0, seed);
@@ -75,7 +75,7 @@ void test_a_few_that_are_wrong_are_left_out(void **) {
     }
 }
 
-// The aperture ring was moved at the 11th picture, which EXIF does not know: both parts stay level.
+// The aperture ring was moved at the 11th picture, which EXIF does not record: both parts stay level.
 void test_a_step_parts_the_strip(void **) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
         Simulation s = strip(0.0, seed);
@@ -90,8 +90,8 @@ void test_a_step_parts_the_strip(void **) {
     }
 }
 
-// Differences in standard errors of both: neighbours scatter by 5, and chance has its share of 2 less. A drift has
-// none.
+// Differences between neighbours, in standard errors of both: 5 of them is a scatter of 5, a drift is not scatter. What
+// may be chance is subtracted.
 void test_the_scatter_of_neighbours(void **) {
     Simulation s = strip(0.0, 1);
     Problem problem = make_problem(default_fit(), s.fit_images.data(), s.images, s.pairs.data(), [&] {
@@ -108,7 +108,7 @@ void test_the_scatter_of_neighbours(void **) {
     uint64_t random = 5;
     for (double &value : off) value = 5.0 * 0.03 * lp_normal(&random);
     assert_close(neighbours.scatter(off, sigma), 5.0, 1.5);
-    // One that is away alone, and all from the 20th on.
+    // One outlier, and an offset of all images from the 20th on.
     for (uint32_t i = 0; i < kImages; i++) off[i] = i == 7 ? -1.0 : i >= 20 ? 0.5 : 0.0;
     const std::vector<int> three = neighbours.levels(off, sigma, 1.0);
     assert_int_equal(*std::max_element(three.begin(), three.end()), 2);

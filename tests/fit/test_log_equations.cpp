@@ -1,5 +1,5 @@
-// The basis of log inverse responses, and the linear equations of response and exposures (Kim & Pollefeys 2004, eq. 8
-// to 13), against a dense reference.
+// The basis of log inverse responses, and the linear equations for response and exposures (Kim & Pollefeys 2004, eq. 8
+// to 13), compared with a dense reference.
 #include "simulated.hpp"
 
 #include <Eigen/Dense>
@@ -29,7 +29,7 @@ void test_three_modes_explain_the_database(void **) {
     for (int n = 1; n < kLogModes; n++) assert_true(kLogEmorSigma[n] < kLogEmorSigma[n - 1]);
 }
 
-// g of a response and the response of g are each other's inverse, at every level.
+// g of a response and the response of g are inverses at every level.
 void test_response_and_log_inverse(void **) {
     for (const lensprof_response &response : {srgb_response(), film_response(), linear_response()}) {
         lensprof_response back = response_of(log_inverse(response));
@@ -44,7 +44,7 @@ void test_response_and_log_inverse(void **) {
     assert_close(at_level(row, 0.3, &slope), 2.0, 1e-12);
 }
 
-// A falling g is asked for; what comes rises, and is no worse than other curves that do.
+// For a falling g as the target, the result rises and is as good as other rising curves.
 void test_coefficients_keep_g_rising(void **) {
     constexpr int kModes = 6;
     Eigen::MatrixXd S = Eigen::MatrixXd::Identity(kModes, kModes);
@@ -85,7 +85,7 @@ struct Setup {
     Estimate estimate;
     LogModel model;
 
-    // Points of true transfer functions, of three images that are all neighbours.
+    // Points of true transfer functions between three images, all of them neighbours.
     explicit Setup(double noise) {
         s.response = srgb_response();
         s.images = 3;
@@ -116,7 +116,7 @@ struct Setup {
     }
 };
 
-// Equations 10 to 13 as one dense system: the same coefficients and exposures.
+// Equations 10 to 13 as one dense system give the same coefficients and exposures.
 void test_equations_are_those_of_a_dense_system(void **) {
     Setup setup(0.5);
     constexpr int kModes = 4;
@@ -129,7 +129,7 @@ void test_equations_are_those_of_a_dense_system(void **) {
     Estimate estimate = setup.estimate;
     assert_true(equations.solve(1.0, false, model, estimate));
 
-    // Unknowns: c, then a of the images 1 and 2 by channel. The mask is the one of the paper's variant.
+    // Unknowns: c, then a for images 1 and 2 per channel. The mask is that of the paper's variant.
     size_t rows = 0;
     for (const auto &curve : setup.curves) rows += curve.points.size();
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows) + kModes, kModes + 6);
@@ -158,7 +158,7 @@ void test_equations_are_those_of_a_dense_system(void **) {
                          x[kModes + 3 * (static_cast<int>(i) - 1) + c], 1e-4);
 }
 
-// With the response held, exposures alone are left: exact where the points are.
+// With the response held, only exposures remain; they are exact if the points are.
 void test_exposures_under_a_known_response(void **) {
     Setup setup(0.0);
     setup.model.is_free = false;
@@ -173,7 +173,7 @@ void test_exposures_under_a_known_response(void **) {
             assert_close(estimate.log_exposure[i][static_cast<size_t>(c)], setup.true_log(i, c), 2e-3);
 }
 
-// Held, the scale of the exposures stays: the change is across them.
+// If held, the scale of the exposures stays; only its orthogonal complement changes.
 void test_scale_of_the_exposures_is_held(void **) {
     Setup setup(0.5);
     setup.model.modes = 5;

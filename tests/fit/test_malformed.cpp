@@ -1,8 +1,8 @@
-// Thousands of malformed and degenerate problems at the C boundary of the fit: no crash, no hang, no number that is
-// none in a result, nothing touched where an error is returned.
+// Thousands of malformed and degenerate problems at the C boundary of the fit: no crash, no hang, no NaN in a result,
+// and no output touched if an error is returned.
 //
-// A case is a well-formed problem, changed by one to three rows of the table of mutations. Its random numbers follow
-// from its number alone: `test_malformed N` runs case N by itself and tells what it is and what came of it.
+// A case is a well-formed problem changed by one to three rows of the table of mutations. Its random numbers depend on
+// its number alone: `test_malformed N` runs case N by itself and prints the mutations and the outcome.
 #include <csignal>
 #include <ctime>
 
@@ -16,8 +16,8 @@ using namespace malformed;
 namespace {
 
 const uint32_t kCases = static_cast<uint32_t>(campaign_runs(10000));
-constexpr double kSlowest = 20.0;  // seconds of one call, under sanitizers and beside other load; 0.5 is usual
-constexpr unsigned kHang = 540;    // seconds of the whole test
+constexpr double kSlowest = 20.0;  // seconds per call, under sanitizers and other load; 0.5 is typical
+constexpr unsigned kHang = 540;    // seconds for the whole test
 
 std::string text_of(const lensprof_exposure &e) {
     char text[128];
@@ -26,7 +26,7 @@ std::string text_of(const lensprof_exposure &e) {
     return text;
 }
 
-// What is wrong with a result that was returned with OK; empty when nothing is.
+// What is wrong with a result that was returned with OK; empty if nothing is.
 std::string fault_of_result(const Case &c) {
     const auto &r = c.result;
     if (r.usable > 1 || r.converged > 1) return "usable or converged is neither 0 nor 1";
@@ -69,7 +69,7 @@ std::string fault_of_result(const Case &c) {
     return {};
 }
 
-// The exposure of the reference, and of images that are fixed and not linked, must be returned as they were given.
+// The exposure of the reference, and of images that are fixed and not linked, must be returned unchanged.
 std::string fault_of_gauge(const Case &c) {
     for (uint32_t i = 0; i < c.exposures.size(); i++) {
         const auto &image = c.s.fit_images[i];
@@ -97,14 +97,14 @@ double seconds_now() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Runs one case; what is wrong, or empty.
+// Runs one case; returns what is wrong, or an empty text.
 std::string fault_of_case(uint32_t number, lensprof_status &status, Case &c, double &seconds) {
     g_case = number;
     mutate(c);
     lensprof_fit_result before;
     c.error.text[0] = 0;
     double began = seconds_now();
-    status = c.run();  // fills the outputs with what a result cannot be
+    status = c.run();  // fills the outputs with impossible values
     seconds = seconds_now() - began;
     if (seconds > kSlowest) return "takes too long";
     if (status != LENSPROF_OK) {
@@ -139,10 +139,10 @@ void test_malformed_problems(void **) {
         if (!fault.empty() && ++faults <= 40) print_error("case %u (%s): %s\n", number, c.what.c_str(), fault.c_str());
     }
     alarm(0);
-    print_message("%u of %u problems were fitted, in %.1f s; slowest %.2f s; %u faults\n", fitted, kCases, total,
-                  slowest, faults);
+    print_message("fitted %u of %u problems in %.1f s; slowest %.2f s; %u faults\n", fitted, kCases, total, slowest,
+                  faults);
     assert_int_equal(faults, 0);
-    assert_in_range(fitted, kCases / 3, kCases - kCases / 10);  // both kinds of end are met often
+    assert_in_range(fitted, kCases / 3, kCases - kCases / 10);  // both outcomes are frequent
 }
 
 // Same input, same bytes, whatever the input.

@@ -1,4 +1,4 @@
-// The overlap fit against simulated truth.
+// The overlap fit compared with simulated truth.
 #include "simulated.hpp"
 
 namespace {
@@ -39,7 +39,7 @@ Simulation simulate(const lensprof_response &response, uint32_t pairs, double no
     return s;
 }
 
-// Noise of 2 levels; images of a pair are up to `reach` apart.
+// Noise of 2 levels; a pair's images are up to `reach` apart.
 Simulation mosaic(uint32_t images, uint32_t reach, uint32_t pairs, double outliers, uint64_t seed) {
     Simulation s;
     s.response = srgb_response();
@@ -49,7 +49,7 @@ Simulation mosaic(uint32_t images, uint32_t reach, uint32_t pairs, double outlie
     return s;
 }
 
-// True transfer residual without noise: what a user of corrected pictures sees.
+// Transfer residual of the noise-free truth: the mismatch a user sees in corrected pictures.
 double clean_rms(const Simulation &s, const Run &run) {
     Simulation clean = s;
     clean.exposures.clear(), clean.fit_images.clear(), clean.pairs.clear();
@@ -68,7 +68,7 @@ void test_recovers_an_srgb_camera(void **) {
     assert_string_equal(run.result.reason, "");
     assert_int_equal(run.result.reason_code, LENSPROF_REASON_NONE);
     assert_int_equal(run.result.reason_values, 0);
-    // Unknown exposures and response: the exponent rests on the prior, whose own spread over measured curves is 0.15.
+    // Unknown exposures and response: the exponent depends on the prior, whose spread over measured curves is 0.15.
     assert_close(std::log(run.gamma), 0.0, 0.35);
     assert_true(s.exposure_error(run.exposures, run.gamma) < 0.01);
     assert_true(s.falloff_error(run.result.vignetting[0], run.gamma) < 0.01);
@@ -80,7 +80,7 @@ void test_recovers_an_srgb_camera(void **) {
     assert_true(clean_rms(s, run) < 0.4);
 }
 
-// A linear sensor, where the mean of the model is a poor start.
+// A linear sensor, for which the mean of the model is a poor start.
 void test_recovers_a_linear_camera(void **) {
     lensprof_response linear;
     lensprof_response_set_linear(&linear);
@@ -99,8 +99,8 @@ void test_survives_outliers(void **) {
     }
 }
 
-// A mosaic with hardly more than one pair an edge, where no edge can tell by itself which of its pairs are wrong. Of
-// 120 such mosaics, an image of five or six is drawn to a wrong pair; which ones hangs on details of the fit.
+// A mosaic with little more than one pair per edge: no edge can identify its wrong pairs by itself. A wrong pair
+// distorts an image in five or six of 120 such mosaics; in which of them depends on details of the fit.
 void test_few_pairs_on_many_images(void **) {
     int wrong = 0;
     for (uint64_t seed = 1; seed <= 24; seed++) {
@@ -113,8 +113,8 @@ void test_few_pairs_on_many_images(void **) {
     assert_in_range(wrong, 0, 1);
 }
 
-// Most pairs of the last image are with the first, which the project has in the wrong place there: they do not agree
-// with each other.
+// Most pairs of the last image are with the first image, for which the project has the wrong place: these pairs do not
+// agree with each other.
 void test_a_large_edge_in_the_wrong_place(void **) {
     for (uint64_t seed = 1; seed <= 8; seed++) {
         Simulation s = mosaic(4, 3, 1500, 0.0, seed);
@@ -158,7 +158,7 @@ void test_grey_pictures(void **) {
     for (const auto &e : run.exposures) assert_close(e.white_balance[0], 1.0, 0.0);
 }
 
-// Fixed parameters stay to the bit; with the response known there is no exponent left open.
+// Fixed parameters keep every bit; with a known response no exponent is left open.
 void test_known_response_gives_absolute_values(void **) {
     Simulation s = simulate(srgb_response(), 2000, 1.0, 0.1);
     lensprof_fit_options options = default_options();
@@ -181,7 +181,7 @@ void test_fixed_and_linked_parameters(void **) {
     s.fit_images[2].exposure.ev = s.exposures[2].ev;
     s.fit_images[4].free = 0;
     s.fit_images[4].exposure = s.exposures[4];
-    s.fit_images[0].free = 0;  // far outside what a free exposure may become, and kept all the same
+    s.fit_images[0].free = 0;  // far outside the range of free exposures, but kept
     s.fit_images[0].exposure.ev = 30.0;
     s.pairs.erase(
         std::remove_if(s.pairs.begin(), s.pairs.end(), [](const lensprof_pair &p) { return p.image[0] == 0; }),
@@ -205,7 +205,7 @@ void test_number_of_modes(void **) {
         options.modes = modes;
         assert_int_equal(fit(s, options).result.response.modes, modes);
     }
-    // What noise hides needs fewer modes than what can be seen.
+    // Modes that noise hides are not needed; more modes are needed if the noise is low.
     options.modes = LENSPROF_MODES_AUTO;
     lensprof_response mean, far;
     assert_ok(lensprof_response_set_emor(&mean, nullptr, 0));
@@ -216,7 +216,7 @@ void test_number_of_modes(void **) {
     assert_true(many > few);
 }
 
-// Chunks of pairs go to threads as they come; what they give is put together in order.
+// Chunks of pairs go to threads in any order; their results are combined in a fixed order.
 void test_same_input_same_bytes(void **) {
     Simulation s = simulate(srgb_response(), 6000, 2.0, 0.2);
     lensprof_fit_options options = default_options();
@@ -251,8 +251,8 @@ void test_too_few_pairs_are_not_usable(void **) {
     assert_close(run.result.heldout_rms, LENSPROF_UNKNOWN, 0.0);
 }
 
-// The scatter of the estimate over simulations agrees with its stated covariance (a known response, so that the
-// linearisation holds well).
+// The scatter of the estimate over simulations agrees with its stated covariance (for a known response, so that the
+// linearisation is accurate).
 void test_covariance_is_of_the_right_size(void **) {
     double square = 0.0, stated = 0.0;
     const int runs = 40;

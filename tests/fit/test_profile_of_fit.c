@@ -1,4 +1,4 @@
-/* Results of fits as profiles: what is taken from where, what stays the caller's, and what is refused. */
+/* Results of fits as profiles: which members come from the result, which stay the caller's, and what is refused. */
 #include "support.h"
 
 #include <lensprof/lensprof.h>
@@ -10,7 +10,7 @@ static lensprof_flat_options card;
 static lensprof_flat_result flat;
 static lensprof_error error;
 
-/* A caller's profile, with what another fit has left in it. */
+/* A caller's profile that still holds another fit's data. */
 static int prepare(void **state) {
     (void)state;
     lensprof_profile_init(&profile);
@@ -58,7 +58,7 @@ static void test_fit(void **state) {
     assert_int_equal(profile.vignettings, 3);
     assert_memory_equal(profile.vignetting, result.vignetting, sizeof result.vignetting);
     assert_int_equal(profile.covariance_size, 2);
-    assert_memory_equal(profile.covariance, result.covariance, sizeof profile.covariance); /* nothing of before */
+    assert_memory_equal(profile.covariance, result.covariance, sizeof profile.covariance); /* nothing of earlier fits */
     assert_int_equal(profile.grid.columns, 0);
     assert_string_equal(profile.provenance.method, "transfer");
     assert_int_equal(profile.provenance.images, 6);
@@ -81,7 +81,7 @@ static void test_methods_and_verdict(void **state) {
     assert_int_equal(profile.provenance.not_usable, 1);
 }
 
-/* The pictures behind a prior that is in the result count, others do not. */
+/* The pictures of a prior count if the prior is part of the result, and not otherwise. */
 static void test_prior(void **state) {
     static lensprof_profile prior;
     prepare(state);
@@ -95,7 +95,7 @@ static void test_prior(void **state) {
     result.profile_prior = LENSPROF_PROFILE_PRIOR_USED;
     assert_ok(lensprof_profile_from_fit(&profile, &result, &options, 6, &error));
     assert_int_equal(profile.provenance.images, 16);
-    assert_int_equal(profile.provenance.pairs, UINT32_MAX);           /* not run over */
+    assert_int_equal(profile.provenance.pairs, UINT32_MAX);           /* saturates instead of overflowing */
     result.profile_prior = LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED; /* its falloff is in the result */
     assert_ok(lensprof_profile_from_fit(&profile, &result, &options, 6, &error));
     assert_int_equal(profile.provenance.images, 16);
@@ -108,7 +108,7 @@ static void test_error_of_gamma(void **state) {
     assert_close(profile.provenance.gamma_sigma, 0.075, 0.0);
     result.gamma_sigma = LENSPROF_UNKNOWN;
     assert_ok(lensprof_profile_from_fit(&profile, &result, &options, 6, &error));
-    assert_close(profile.provenance.gamma_sigma, 0.0, 0.0); /* not known */
+    assert_close(profile.provenance.gamma_sigma, 0.0, 0.0); /* unknown */
 }
 
 static void test_flat(void **state) {

@@ -1,4 +1,4 @@
-// What a result says of itself: coverage, every image's quality, local residuals, and the verdict in words.
+// What a result reports about itself: coverage, quality per image, local residuals, and the verdict in words.
 #include "simulated.hpp"
 
 #include <numeric>
@@ -26,7 +26,7 @@ bool says(const FitRun &run, lensprof_reason code, const char *words) {
     return found;
 }
 
-// Whether the reason is about this image, and says where its text names it.
+// Whether the reason is about this image, with the range in its text that names it.
 bool names(const FitRun &run, uint32_t image) {
     const lensprof_item &item = run.result.reason_item;
     const std::string words = std::string(run.result.reason).substr(item.text_begin, item.text_bytes);
@@ -59,12 +59,12 @@ void test_the_corners_must_be_covered(void **) {
     assert_true(s.pairs.size() > 1000);
     FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
-    // its radius or, where the centre is a little off, its error
+    // its radius, or its error if the centre is slightly off
     assert_true(says(run,
                      run.result.reason_code == LENSPROF_REASON_SMALL_RADIUS ? LENSPROF_REASON_SMALL_RADIUS
                                                                             : LENSPROF_REASON_CORNER_UNCERTAIN,
                      "falloff in the corners"));
-    // With the centre known the radius is that of the truth.
+    // With a known centre, the radius equals the true one.
     lensprof_fit_options options = default_fit();
     options.free &= ~LENSPROF_FREE_CENTER;
     std::copy(s.vignetting.center, s.vignetting.center + 2, options.vignetting.center);
@@ -73,13 +73,13 @@ void test_the_corners_must_be_covered(void **) {
     assert_true(says(run, LENSPROF_REASON_SMALL_RADIUS, "reach only to 0.5 of the half diagonal"));
     for (const auto &q : run.quality) assert_true(q.radius > 0.45 && q.radius <= 0.5);
     for (int bin = 5; bin < LENSPROF_COVERAGE_BINS; bin++) assert_int_equal(run.result.radius_ends[bin], 0);
-    // Without an unknown falloff that is no lack.
+    // If the falloff is not unknown, that is not a problem.
     options.free = LENSPROF_FREE_RESPONSE;
     options.vignetting = s.vignetting;
     assert_int_equal(run_fit(s, options).result.usable, 1);
 }
 
-// Negatives: the light of the corners, which is less, comes out as more.
+// Negatives: the corners get less light, which comes out as more.
 void test_a_falloff_that_rises_is_not_usable(void **) {
     Simulation s = simulate(2000, 1.0, 0.0);
     assert_int_equal(run_fit(s).result.usable, 1);
@@ -92,7 +92,8 @@ void test_a_falloff_that_rises_is_not_usable(void **) {
     assert_true(run.result.reason_value[0] > 1.1 && run.result.reason_value[1] < 0.1);
 }
 
-// Two pictures whose white balances differ, which are held: the falloff's centre takes the difference on, to its limit.
+// Two pictures with different white balances, which are held: the falloff's centre absorbs the difference up to its
+// limit.
 void test_a_centre_on_its_limit_is_not_usable(void **) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
         Simulation s;
@@ -111,7 +112,7 @@ void test_a_centre_on_its_limit_is_not_usable(void **) {
     }
 }
 
-// Grey values that no lens makes.
+// Grey values that no lens produces.
 void test_a_falloff_to_nothing_is_not_usable(void **) {
     Simulation s;
     s.response = srgb_response();
@@ -124,7 +125,7 @@ void test_a_falloff_to_nothing_is_not_usable(void **) {
     assert_true(run.result.reason_value[0] < 0.05);
 }
 
-// Six pictures, of which the third is warmer; the balances are held, or free, or equal.
+// Six pictures, the third of them warmer; white balances held, free, or equal.
 void test_balances_that_are_held_are_told(void **) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
         Simulation s;
@@ -167,7 +168,7 @@ void test_the_greys_must_be_covered(void **) {
         assert_true(0.50 <= q.grey_low && q.grey_low < q.grey_high && q.grey_high <= 0.545);
 }
 
-// Ends are counted where the truth has them.
+// Ends are counted in the bins of the truth.
 void test_coverage_counts_every_end(void **) {
     for (uint32_t channels : {1u, 3u}) {
         Simulation s;
@@ -195,7 +196,7 @@ void test_coverage_counts_every_end(void **) {
     }
 }
 
-// One image that is not where the project says: its values belong to other places.
+// One image is not where the project has it: its values belong to other places.
 void test_a_misplaced_image_is_left_out(void **) {
     Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
     std::vector<double *> values;
@@ -222,7 +223,7 @@ void test_a_misplaced_image_is_left_out(void **) {
     }
 }
 
-// Where the reference itself is the odd one, the first of the others takes its place.
+// If the reference itself is misplaced, the first of the other images replaces it.
 void test_a_misplaced_reference_is_replaced(void **) {
     Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
     for (auto &p : s.pairs)
@@ -237,7 +238,7 @@ void test_a_misplaced_reference_is_replaced(void **) {
     assert_true(run.quality[2].ev_sigma > 0.0);
 }
 
-// Links that contradict the others go, their images stay.
+// Links that contradict the others are left out; their images stay.
 void test_a_broken_link_is_left_out_alone(void **) {
     Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
     size_t of_link = 0;
@@ -255,13 +256,13 @@ void test_a_broken_link_is_left_out_alone(void **) {
     assert_int_equal(run.result.evens, 0);  // that seam stays
 }
 
-// Drops all pairs of the last image but so many.
+// Drops all but `count` pairs of the last image.
 void keep_of_last(Simulation &s, uint32_t count) {
     uint32_t kept = 0, last = s.images - 1;
     drop(s, [&](const lensprof_pair &p) { return (p.image[0] == last || p.image[1] == last) && kept++ >= count; });
 }
 
-// The last image keeps seven pairs, of which five show something else: two agree on an exposure by chance.
+// The last image keeps seven pairs, five of which show something else; two agree on an exposure by chance.
 void test_an_exposure_must_rest_on_pairs(void **) {
     Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
     const uint32_t last = s.images - 1;
@@ -276,13 +277,13 @@ void test_an_exposure_must_rest_on_pairs(void **) {
     assert_true(run.quality[last].inliers < 3);
     assert_int_equal(run.quality[last].joined, 0);
     assert_true(says(run, LENSPROF_REASON_IMAGES_LEFT_OUT, "image 7") && names(run, 7));
-    // An exposure that is given need not show.
+    // A given exposure needs no support from pairs.
     s.fit_images[last].free = 0;
     s.fit_images[last].exposure = s.exposures[last];
     assert_int_not_equal(run_fit(s).result.reason_code, LENSPROF_REASON_FEW_BEHIND_EXPOSURE);
 }
 
-// Exposures far apart hang on gamma; that is no reason to call them uncertain, in grey pictures neither.
+// Exposures far apart depend on gamma; that alone does not make them uncertain, not even in grey pictures.
 void test_gamma_is_no_doubt_of_an_exposure(void **) {
     for (uint32_t channels : {1u, 3u}) {
         Simulation s;
@@ -298,7 +299,7 @@ void test_gamma_is_no_doubt_of_an_exposure(void **) {
     }
 }
 
-// A link says what two pairs could not.
+// A link provides what two pairs could not.
 void test_linked_images_share_their_pairs(void **) {
     Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
     const uint32_t last = s.images - 1;
@@ -308,7 +309,7 @@ void test_linked_images_share_their_pairs(void **) {
     assert_int_not_equal(run_fit(s).result.reason_code, LENSPROF_REASON_FEW_BEHIND_EXPOSURE);
 }
 
-// Overlaps as of a panorama: neighbours in one frame are so in the other.
+// Overlaps as in a panorama: neighbouring pixels in one frame are neighbours in the other.
 FitRun panorama(double local_ev, double frame_ev, double outliers = 0.0, uint64_t seed = 42) {
     Simulation s;
     s.response = srgb_response();
@@ -318,7 +319,8 @@ FitRun panorama(double local_ev, double frame_ev, double outliers = 0.0, uint64_
     return run_fit(s);
 }
 
-// Each picture was brightened and darkened by its surroundings: the more, the more of the residual follows that.
+// Each picture was brightened and darkened according to its surroundings; the stronger the effect, the larger the local
+// part of the residual.
 void test_local_processing_is_refused(void **) {
     double last = 0.0;
     for (double local_ev : {0.02, 0.05, 0.2, 0.5}) {
@@ -333,7 +335,8 @@ void test_local_processing_is_refused(void **) {
     assert_true(last <= 1.0);
 }
 
-// One pattern in all pictures: no radial falloff, yet a camera's, so the result stands and the words say so.
+// One pattern in all pictures is not a radial falloff, but it belongs to the camera: the result is usable, and a reason
+// reports it.
 void test_a_falloff_that_is_not_radial_is_told(void **) {
     FitRun run = panorama(0.0, 0.1);
     print_message("frame 0.1 EV: frame share %.2f, image share %.2f\n", run.result.frame_share, run.result.image_share);

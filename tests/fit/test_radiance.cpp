@@ -1,4 +1,4 @@
-// The radiance method against simulated truth, and the gamma family of its answers.
+// The radiance method compared with simulated truth, and the gamma family of its solutions.
 #include "simulated_tracks.hpp"
 
 #include "fit/problem/tracks.hpp"
@@ -23,7 +23,7 @@ lensprof_fit_options known_response(const TrackSimulation &s) {
     return options;
 }
 
-// Section 4.1: with the response known, exposures and falloff have no exponent to share.
+// Section 4.1: with a known response, exposures and falloff share no free exponent.
 void test_known_response(void **) {
     for (uint32_t longest : {2u, 3u, 6u}) {
         TrackSimulation s = simulate(film_response(), longest, 1000, 1.0, 0.0);
@@ -37,7 +37,7 @@ void test_known_response(void **) {
     }
 }
 
-// Section 4.2: with the response unknown, up to the exponent.
+// Section 4.2: with an unknown response, up to the exponent.
 void test_unknown_response(void **) {
     for (const lensprof_response &response : {srgb_response(), film_response(), gamma_response(1.8)})
         for (uint32_t channels : {1u, 3u}) {
@@ -58,7 +58,7 @@ void test_unknown_response(void **) {
         }
 }
 
-// The metrics: robust ones survive, squares do where nothing is wrong.
+// The losses: robust ones tolerate outliers, squares work without outliers.
 void test_losses(void **) {
     for (double outliers : {0.0, 0.05}) {
         TrackSimulation s = simulate(srgb_response(), 4, 1200, 1.5, outliers);
@@ -73,7 +73,7 @@ void test_losses(void **) {
     }
 }
 
-// A long track is not lost for one wrong observation.
+// A wrong observation does not invalidate a long track.
 void test_wrong_observations(void **) {
     for (double outliers : {0.15, 0.3}) {
         TrackSimulation s = simulate(srgb_response(), 6, 900, 1.5, outliers);
@@ -85,8 +85,8 @@ void test_wrong_observations(void **) {
     }
 }
 
-// Saturated samples say that there was at least so much light. Without them those that noise pushed over the edge are
-// missing, which biases the rest, and images that are mostly saturated lose what ties them.
+// Saturated samples give a lower bound for the light. Without them, samples that noise pushed to white are missing,
+// which biases the others, and mostly saturated images lose their connections.
 void test_saturated_samples_help(void **) {
     for (double ev_range : {0.5, 1.5}) {
         double with = 0.0, without = 0.0;
@@ -108,7 +108,7 @@ void test_saturated_samples_help(void **) {
     }
 }
 
-// Stated standard errors are what exposures and falloff scatter by.
+// Exposures and falloff scatter by their stated standard errors.
 void test_standard_errors(void **) {
     constexpr int kRuns = 60;
     double ev2 = 0.0, balance2 = 0.0, k2 = 0.0, center2 = 0.0;
@@ -142,7 +142,7 @@ void test_standard_errors(void **) {
     }
 }
 
-// A picture corrected by a model: falloff out and exposure evened to the geometric mean (eq. 15, 16).
+// A picture corrected by a model: falloff removed and exposure set to the geometric mean (eq. 15, 16).
 std::vector<double> corrected(const lensprof_response &response, const lensprof_vignetting &vignetting,
                               const std::vector<lensprof_exposure> &exposures, size_t image, uint32_t side,
                               const std::vector<float> &pixels) {
@@ -182,8 +182,8 @@ std::vector<float> random_picture(uint32_t side, uint64_t seed) {
     return pixels;
 }
 
-// Equations 4 to 7 make another member of the family; equations 8 to 10: both correct pictures alike, to within the
-// rounding of an 8 bit picture. M = 1 + k r^2, whose square and cube are falloffs of the model, too.
+// Equations 4 to 7 give another member of the family. Equations 8 to 10: both correct pictures equally, within the
+// rounding of an 8 bit picture. M = 1 + k r^2; its square and cube are also falloffs of the model.
 void test_gamma_family_corrects_alike(void **) {
     constexpr uint32_t side = 96;
     for (double gamma : {2.0, 3.0}) {
@@ -213,8 +213,8 @@ void test_gamma_family_corrects_alike(void **) {
     }
 }
 
-// Fits that are told exposures of other exponents end at other members of the family, and it does not matter which one
-// corrects.
+// Fits with known exposures at other exponents end at other members of the family, and all of them correct pictures
+// equally.
 void test_two_fits_of_the_family_correct_alike(void **) {
     constexpr uint32_t side = 96;
     TrackSimulation s = simulate(srgb_response(), 5, 2000, 0.5, 0.0);
@@ -252,7 +252,7 @@ void assert_same(const FitRun &a, const FitRun &b) {
     assert_memory_equal(a.quality.data(), b.quality.data(), a.quality.size() * sizeof a.quality[0]);
 }
 
-// A bad image in the middle of the tracks is left out, and what they still have in common joins the others.
+// A bad image in the middle of the tracks is left out; the rest of the tracks still joins the other images.
 void test_a_bad_image_within_tracks(void **) {
     TrackSimulation s = simulate(srgb_response(), 3, 1500, 1.0, 0.0);
     uint64_t random = 3;
@@ -265,7 +265,7 @@ void test_a_bad_image_within_tracks(void **) {
     assert_int_equal(run.result.evens, 1);
 }
 
-// Same input, same bytes: on any number of threads, and in any order of the observations.
+// Same input, same bytes: for any number of threads and any order of the observations.
 void test_is_deterministic(void **) {
     TrackSimulation s = simulate(srgb_response(), 6, 900, 1.5, 0.1);
     lensprof_fit_options options = radiance_fit();
@@ -280,13 +280,13 @@ void test_is_deterministic(void **) {
     assert_same(run, run_radiance(s, shuffled, options));
 }
 
-// Pairs with a common end are one track, unless a point would then be twice in an image.
+// Pairs with a common end form one track, unless an image would then have the point twice.
 void test_pairs_become_tracks(void **) {
     auto pair = [](uint32_t i, double x, uint32_t j, double y) {
         return lensprof_pair{{i, j}, {{x, 1}, {y, 1}}, {{0.1 * (i + 1), 0.5, 0.5}, {0.1 * (j + 1), 0.5, 0.5}}};
     };
     const lensprof_pair pairs[] = {pair(0, 10, 1, 20), pair(1, 20, 2, 30), pair(3, 40, 2, 30),   // one track of four
-                                   pair(0, 10, 1, 20),                                           // said twice
+                                   pair(0, 10, 1, 20),                                           // a duplicate
                                    pair(0, 11, 2, 30),                                           // image 0 has it at 10
                                    pair(0, 50, 1, 60), pair(2, 70, 3, 80), pair(1, 60, 2, 70)};  // joined by the last
     auto observations = observations_of(pairs, 8, 3);

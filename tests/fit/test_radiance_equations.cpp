@@ -1,4 +1,4 @@
-// The radiance method's model: radiances found exactly, derivatives, elimination, whom it trusts.
+// The radiance method's model: exact radiances, derivatives, elimination, trust in observations.
 #include "simulated_tracks.hpp"
 
 #include <Eigen/Core>
@@ -12,8 +12,8 @@ using namespace lensprof;
 
 namespace {
 
-// Tracks of 2 to 4 on four images, some saturated, and an estimate a few levels away from the truth: f is piecewise
-// linear, and where residuals are large radiances come to lie on its kinks, where nothing has a derivative.
+// Tracks of 2 to 4 observations on four images, some saturated, and an estimate a few levels away from the truth. f is
+// piecewise linear; if residuals are large, radiances end on its kinks, which have no derivative.
 struct Setting {
     TrackSimulation simulation;
     lensprof_fit_options options = radiance_fit();
@@ -54,7 +54,7 @@ struct Setting {
         loss.kind = kind;
     }
 
-    // The estimate moved by h along unknown u: the free shared ones, then those of the images.
+    // The estimate moved by h along unknown u: the free shared unknowns come first, then those of the images.
     Estimate moved(const std::vector<int> &columns, int u, double h) const {
         Estimate e = estimate;
         int shared = static_cast<int>(columns.size());
@@ -72,7 +72,7 @@ struct Setting {
     }
 };
 
-// Every radiance is at the minimum of its track's sum of squares: no other nearby is better, and the slope is 0.
+// Every radiance minimises its track's sum of squares: no other radiance nearby is better, and the slope is 0.
 void test_radiances_are_at_their_minimum(void **) {
     for (uint32_t kind : {LENSPROF_LOSS_SQUARED, LENSPROF_LOSS_HUBER}) {
         Setting s(3, 200, kind);
@@ -102,7 +102,7 @@ void test_radiances_are_at_their_minimum(void **) {
     }
 }
 
-// A prior with everything in it.
+// A prior with all its parts.
 Prior full_prior(const Problem &problem) {
     Prior prior = prior_of(make_prior(1.0, problem.vignettings, problem.settings, true), 6);
     for (int l = 0; l < 6; l++) prior.pin[l] = 0.3 - 0.1 * l;
@@ -113,13 +113,13 @@ Prior full_prior(const Problem &problem) {
     return prior;
 }
 
-// What is minimised, by itself: the radiances found anew at every estimate.
+// The objective, computed independently: the radiances are found again for every estimate.
 double objective(const Setting &s, const Prior &prior, const Trust &trust, const Estimate &estimate) {
     return radiance_cost(s.problem, estimate, s.loss, trust)
            + prior_cost(prior, s.problem, free_columns(s.problem, estimate.modes), estimate);
 }
 
-// The gradient by the shared unknowns, the images held, is that of the objective in which the radiances follow.
+// The gradient by the shared unknowns, with the images held, is that of the objective with the radiances following.
 void test_gradient_of_the_reduced_objective(void **) {
     for (uint32_t kind : {LENSPROF_LOSS_ROBUST, LENSPROF_LOSS_HUBER, LENSPROF_LOSS_SQUARED})
         for (uint32_t channels : {1u, 3u}) {
@@ -142,8 +142,8 @@ void test_gradient_of_the_reduced_objective(void **) {
         }
 }
 
-// Along the step that the model proposes for all unknowns together, the objective falls at the rate that it promises:
-// this holds the images' part of the gradient.
+// Along the step that the model proposes for all unknowns together, the objective falls at the predicted rate; this
+// checks the images' part of the gradient.
 void test_descent_along_a_joint_step(void **) {
     for (uint32_t kind : {LENSPROF_LOSS_ROBUST, LENSPROF_LOSS_HUBER, LENSPROF_LOSS_SQUARED}) {
         Setting s(3, 300, kind);
@@ -168,7 +168,7 @@ void test_descent_along_a_joint_step(void **) {
     }
 }
 
-// The residuals of all tracks with radiances that are held where they are at the setting's estimate, times exp(shift).
+// The residuals of all tracks with radiances fixed at the setting's estimate, times exp(shift).
 class HeldRadiances {
 public:
     HeldRadiances(const Setting &s, const Trust &trust) : s_(s), trust_(trust), at_(s.problem.tracks.tracks.size()) {
@@ -218,7 +218,7 @@ private:
     std::vector<TrackFit> at_;
 };
 
-// What the prior adds to the full system.
+// The prior's contribution to the full system.
 void add_prior(const Setting &s, const Prior &prior, const std::vector<int> &columns, Eigen::MatrixXd &hessian,
                Eigen::VectorXd &gradient) {
     auto shared = static_cast<Eigen::Index>(columns.size());
@@ -240,8 +240,8 @@ void add_prior(const Setting &s, const Prior &prior, const std::vector<int> &col
     for (int q = 0; q < s.problem.image_unknowns; q++) hessian(shared + q, shared + q) += 2e-3;
 }
 
-// With the radiances as unknowns like all others, one dense system from numeric derivatives has the same solution and
-// the same inverse.
+// One dense system from numeric derivatives, with the radiances as ordinary unknowns, has the same solution and the
+// same inverse.
 void test_elimination_equals_full_solve(void **) {
     Setting s(3, 120, LENSPROF_LOSS_SQUARED);
     Prior prior = full_prior(s.problem);
@@ -258,13 +258,13 @@ void test_elimination_equals_full_solve(void **) {
     Eigen::MatrixXd hessian = scale * jacobian.transpose() * jacobian;
     Eigen::VectorXd gradient = -scale * jacobian.transpose() * held.residuals(s.estimate, 0.0);
     add_prior(s, prior, model.columns(), hessian, gradient);
-    for (Eigen::Index u = outer; u < hessian.rows(); u++) hessian(u, u) += 1e-9;  // radiances that nothing measures
+    for (Eigen::Index u = outer; u < hessian.rows(); u++) hessian(u, u) += 1e-9;  // radiances without a measurement
     Eigen::VectorXd step = solve_symmetric(hessian, gradient);
     for (Eigen::Index u = 0; u < shared; u++) assert_close(shared_step[u], step[u], 2e-3 * (0.01 + std::abs(step[u])));
     assert_close(image_step[1][1], step[shared + s.problem.ev_unknown[1]], 2e-4);
     assert_close(image_step[3][1], image_step[2][1], 0.0);  // linked
     assert_close(image_step[2][0], image_step[2][1], 0.0);  // red of image 2 is fixed
-    assert_close(image_step[0][0], 0.0, 0.0);               // the reference stays
+    assert_close(image_step[0][0], 0.0, 0.0);               // the reference is unchanged
 
     Eigen::MatrixXd inverse = inverse_of_symmetric(hessian);
     Eigen::MatrixXd shared_inverse = inverse_of_symmetric(model.reduced_hessian());
@@ -274,7 +274,7 @@ void test_elimination_equals_full_solve(void **) {
         assert_close(variance[q], inverse(shared + q, shared + q), 2e-3 * inverse(shared + q, shared + q));
 }
 
-// At the truth, the observations that do without trust are those that were replaced.
+// At the truth, exactly the replaced observations are distrusted.
 void test_distrusts_what_is_wrong(void **) {
     Setting s(3, 300, LENSPROF_LOSS_ROBUST);
     for (uint32_t i = 0; i < 4; i++)
@@ -294,7 +294,7 @@ void test_distrusts_what_is_wrong(void **) {
         truth[wrong] = 0;
         for (double &v : tracks.observations[wrong].value) v = v < 0.5 ? v + 0.4 : v - 0.4;
     }
-    assert_true(find_trust(s.problem, s.estimate, s.loss) == trust_all(s.problem));  // not before it is asked for
+    assert_true(find_trust(s.problem, s.estimate, s.loss) == trust_all(s.problem));  // not before find_trust is called
     s.loss.distrusts = true;
     Trust trust = find_trust(s.problem, s.estimate, s.loss);
     size_t wrong = 0, found = 0, false_alarms = 0;
@@ -302,11 +302,12 @@ void test_distrusts_what_is_wrong(void **) {
         wrong += !truth[i], found += !truth[i] && !trust[i];
         false_alarms += truth[i] && !trust[i];
     }
-    print_message("%zu of %zu wrong observations found, %zu right ones distrusted\n", found, wrong, false_alarms);
+    print_message("%zu of %zu wrong observations found, %zu correct ones distrusted\n", found, wrong, false_alarms);
     assert_true(wrong > 60 && found * 10 > wrong * 9 && false_alarms * 20 < wrong);
 }
 
-// The prior's covariance is that of measured curves: positive definite, and its first block is what few modes see.
+// The prior's covariance is that of measured curves: positive definite, and its first block is the covariance for few
+// modes.
 void test_prior_covariance(void **) {
     Prior prior = make_prior(1.0, 1, 1, true);
     Estimate estimate;
@@ -321,7 +322,7 @@ void test_prior_covariance(void **) {
         }
         assert_true(is_positive_definite(precision));
     }
-    assert_true(prior_of(make_prior(1.0, 1, 1), 5).precision == make_prior(1.0, 1, 1).precision);  // transfer's stays
+    assert_true(prior_of(make_prior(1.0, 1, 1), 5).precision == make_prior(1.0, 1, 1).precision);  // unchanged
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Bad tracks at the C boundary: a status, untouched outputs, a text that names the item; degenerate ones stay finite.
+// Bad tracks at the C boundary: a status, untouched outputs, a text that names the item; degenerate tracks stay finite.
 #include "simulated_tracks.hpp"
 
 #include <string>
@@ -66,8 +66,8 @@ void test_refuses(void **) {
     REFUSED(call.tracks[7].value[0] = -0.01, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.tracks[7].xy[0] = INFINITY, LENSPROF_ERROR_NOT_FINITE);
     REFUSED(call.tracks[7].xy[1] = 602.0, LENSPROF_ERROR_ARGUMENT);
-    REFUSED(call.tracks[0].point = 0xFFFFFFFFu, LENSPROF_ERROR_ARGUMENT);           // a track of one
-    REFUSED(call.tracks[0].image = call.tracks[1].image, LENSPROF_ERROR_ARGUMENT);  // one image twice
+    REFUSED(call.tracks[0].point = 0xFFFFFFFFu, LENSPROF_ERROR_ARGUMENT);           // a track with one observation
+    REFUSED(call.tracks[0].image = call.tracks[1].image, LENSPROF_ERROR_ARGUMENT);  // the same image twice
     REFUSED(call.tracks.push_back(call.tracks[0]), LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.tracks.clear(), LENSPROF_ERROR_NO_SAMPLES);
     REFUSED(
@@ -143,7 +143,7 @@ bool is_finite(const Call &call) {
     return std::isfinite(sum);
 }
 
-// What tells little or contradicts itself gives a result that is not usable, and says why; never a number that is none.
+// Tracks with little or contradictory information give an unusable result with a reason, never a NaN.
 void test_degenerate_tracks_stay_finite(void **) {
     for (int kind = 0; kind < 9; kind++)
         for (uint32_t loss : {LENSPROF_LOSS_ROBUST, LENSPROF_LOSS_HUBER, LENSPROF_LOSS_SQUARED}) {
@@ -153,21 +153,21 @@ void test_degenerate_tracks_stay_finite(void **) {
             auto &tracks = call.tracks;
             for (auto &o : tracks) {
                 if (kind == 0)
-                    for (double &v : o.value) v = 0.5;  // all alike
+                    for (double &v : o.value) v = 0.5;  // all equal
                 if (kind == 1)
-                    for (double &v : o.value) v = lp_random(&random);  // noise
+                    for (double &v : o.value) v = lp_random(&random);  // random
                 if (kind == 2)
-                    for (double &v : o.value) v = lp_random(&random) < 0.5 ? 0.0 : 1.0;  // black and white
+                    for (double &v : o.value) v = lp_random(&random) < 0.5 ? 0.0 : 1.0;  // black or white
                 if (kind == 3)
                     for (double &v : o.value) v = 3.0 / 255.0;  // nearly black
                 if (kind == 4)
-                    for (double &v : o.value) v = o.image % 2 ? 1.0 : v;  // every second is white
+                    for (double &v : o.value) v = o.image % 2 ? 1.0 : v;  // every second observation is white
                 if (kind == 5)
                     for (double &v : o.value) v = o.image ? 0.003 : 0.97;  // steps of 8 EV and more
-                if (kind == 6) o.xy[0] = 400.0, o.xy[1] = 300.0;           // one place
+                if (kind == 6) o.xy[0] = 400.0, o.xy[1] = 300.0;           // all at one place
             }
             if (kind == 7) tracks.resize(3);  // one track
-            if (kind == 8)                    // images that nothing joins
+            if (kind == 8)                    // unconnected images
                 for (auto &o : tracks) o.point = 2 * o.point + o.image / 3;
             if (kind == 8) {
                 std::vector<lensprof_observation> kept;
@@ -178,7 +178,7 @@ void test_degenerate_tracks_stay_finite(void **) {
                 }
                 tracks = kept;
             }
-            if (kind == 2) {  // two measured ones: else there is nothing to fit
+            if (kind == 2) {  // two measured ones: otherwise there is nothing to fit
                 for (size_t i = 0; i < 2; i++) std::fill_n(tracks[i].value, 3, 0.5);
             }
             assert_ok(call.run());

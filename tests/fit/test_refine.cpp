@@ -1,4 +1,4 @@
-// The refinement of a response that EMoR modes cannot follow: its linear equations, and what comes of it.
+// The refinement of a response that EMoR modes cannot represent: its linear equations and its results.
 #include "campaign.h"
 #include "simulated.hpp"
 
@@ -10,12 +10,12 @@ using namespace lensprof;
 
 namespace {
 
-// A tone curve that bends sharply near white: no few modes follow.
+// A tone curve with a sharp bend near white, which a few modes cannot represent.
 lensprof_response kinked_response() {
     return table_response([](double x) { return x < 0.5 ? 0.9 * std::pow(x / 0.5, 0.45) : 0.9 + 0.2 * (x - 0.5); });
 }
 
-// A static camera: pairs of equal places without falloff, exposures 1.5 EV apart, grey values up to white.
+// A stationary camera: pairs at equal places without falloff, exposures 1.5 EV apart, grey values up to white.
 Simulation still(const lensprof_response &response, uint32_t count, double noise_levels, uint64_t seed) {
     Simulation s;
     s.response = response;
@@ -44,8 +44,8 @@ void know_exposures(Simulation &s, double sigma = 0.05) {
     }
 }
 
-// Largest difference in prediction, levels of 255: what a grey value of the reference becomes 1.5 EV brighter. Scale
-// and gamma apart, that is the response.
+// Largest difference in prediction, levels of 255: the value that a grey value of the reference takes when 1.5 EV
+// brighter. Apart from scale and gamma, this is the response.
 double transfer_error(const Simulation &s, const FitRun &run) {
     double worst = 0.0, e = std::exp2(run.exposures[1].ev - run.exposures[0].ev);
     for (int level = 8; level <= 245; level++) {
@@ -66,15 +66,15 @@ void test_refines_what_modes_cannot_follow(void **) {
     assert_int_equal(refined.result.response.kind, LENSPROF_RESPONSE_TABLE);
     assert_true(is_monotone(refined.result.response));
     assert_true(refined.result.usable);
-    print_message("off by %.2f levels with modes, by %.2f refined\n", transfer_error(s, modes),
+    print_message("error: %.2f levels with modes, %.2f refined\n", transfer_error(s, modes),
                   transfer_error(s, refined));
-    // Held to gamma, auto takes 16 modes, which are off by 3.5 levels where 7 were by 4.1.
+    // With gamma held, `auto` takes 16 modes, which are off by 3.5 levels; 7 modes were off by 4.1.
     assert_true(transfer_error(s, refined) < 0.7 * transfer_error(s, modes));
     assert_true(transfer_error(s, refined) < 2.5);
     assert_true(refined.result.heldout_rms < modes.result.heldout_rms);
 }
 
-// Where modes follow, a refined response is not worse.
+// If modes represent the response, a refined one is not worse.
 void test_does_no_harm_where_modes_follow(void **) {
     lensprof_response response;
     const double emor[3] = {0.8, -0.3, 0.1};
@@ -87,7 +87,7 @@ void test_does_no_harm_where_modes_follow(void **) {
     assert_close(refined.result.heldout_rms, modes.result.heldout_rms, 0.02 * modes.result.heldout_rms);
 }
 
-// Known exposures settle gamma exactly: a table can follow to any.
+// Known exposures determine gamma exactly: a table can represent any gamma.
 void test_known_exposures_settle_gamma(void **) {
     for (const lensprof_response &response : {linear_response(), gamma_response(2.2), kinked_response()}) {
         Simulation s = still(response, 8000, 0.5, 13);
@@ -112,7 +112,7 @@ void test_any_number_of_threads_gives_the_same(void **) {
 }
 
 // At fixed weights the equations are linear: a prediction P of B by  G(P) + D(P) = G(B) + D(B) + ln t  moves with the
-// corrections and exposures as the rows say, dP = (D(B) - D(P) + d ln t) dP / d ln t.
+// corrections and exposures by dP = (D(B) - D(P) + d ln t) dP / d ln t.
 void test_prediction_by_corrections_and_exposures(void **) {
     Simulation s = still(srgb_response(), 300, 1.0, 15);
     std::vector<uint32_t> keep(s.pairs.size());
@@ -131,7 +131,7 @@ void test_prediction_by_corrections_and_exposures(void **) {
     Eigen::VectorXd by(kCorrections), changes(problem.image_unknowns);
     for (auto &one : by) one = lp_normal(&random);
     for (auto &one : changes) one = lp_normal(&random);
-    for (Eigen::Index k = 1; k < by.size(); k++) by[k] = 0.9 * by[k - 1] + 0.1 * by[k];  // as smooth as corrections are
+    for (Eigen::Index k = 1; k < by.size(); k++) by[k] = 0.9 * by[k - 1] + 0.1 * by[k];  // as smooth as the corrections
     std::vector<double> rate = prediction_rates(problem, first, by, changes);
     auto predictions = [&](double t) {
         Estimate moved = corrected(problem, first, t * by, t * changes);
@@ -157,7 +157,7 @@ void test_prediction_by_corrections_and_exposures(void **) {
     assert_true(std::sqrt(error) < 0.01 * std::sqrt(square));
 }
 
-// Stated standard errors of exposures against the scatter of many runs, gamma apart and with it.
+// Stated standard errors of exposures compared with the scatter of many runs, with and without gamma.
 void test_stated_errors(void **) {
     const int kRuns = campaign_runs(60);
     double square = 0.0, count = 0.0;
@@ -175,13 +175,13 @@ void test_stated_errors(void **) {
             count += 1.0;
         }
     }
-    print_message("errors of exposures: %.2f of those stated (RMS); %d of %d refined\n", std::sqrt(square / count),
-                  tables, kRuns);
+    print_message("exposure errors: %.2f standard errors (RMS); %d of %d refined\n", std::sqrt(square / count), tables,
+                  kRuns);
     assert_true(square / count < 1.4 * 1.4 && square / count > 0.6 * 0.6);
-    assert_true(tables >= 0.9 * kRuns);  // 59 of 60: modes follow the kink nearly as well where many are taken
+    assert_true(tables >= 0.9 * kRuns);  // 59 of 60: many modes represent the kink nearly as well
 }
 
-// A curve that is white long before its end rises all the same, and ends at 1: it is one that the library takes.
+// A curve that reaches white long before its end still rises and ends at 1, so that the library accepts it.
 void test_table_of_early_white(void **) {
     std::array<double, LENSPROF_RESPONSE_SAMPLES> curve;
     for (size_t j = 0; j < curve.size(); j++) curve[j] = std::min(1.0, 4.0 * double(j) / double(curve.size() - 1));
@@ -194,7 +194,7 @@ void test_table_of_early_white(void **) {
 
 }  // namespace
 
-// Quick tests, or with an argument the slow ones.
+// Quick tests, or the slow ones if there is an argument.
 int main(int argc, char **) {
     const struct CMUnitTest slow[] = {cmocka_unit_test(test_stated_errors)};
     if (argc > 1) return cmocka_run_group_tests(slow, nullptr, nullptr);

@@ -1,4 +1,4 @@
-// Sampling: pairs show the same scene point, are spread as promised, and keep away from what must not be used.
+// Sampling: pairs show the same scene point, are spread evenly, and avoid unsuitable places.
 #include "sampled_pictures.hpp"
 
 #include <algorithm>
@@ -44,9 +44,9 @@ void test_balanced_over_pairs_radius_and_grey(void **) {
                 9, static_cast<int>(10 * (pair.value[side][0] + pair.value[side][1] + pair.value[side][2]) / 3))]++;
         }
     }
-    assert_int_equal(per_edge.size(), 5);  // 50 degrees wide, 25 degrees apart: neighbours only
+    assert_int_equal(per_edge.size(), 5);  // 50 degrees wide, 25 degrees apart: only neighbours overlap
     for (const auto &edge : per_edge) assert_true(edge.second >= 100 && edge.second <= 400);
-    // Two directions 25 degrees apart: no pair has both ends near the centre, rings 0 and 1 hold little.
+    // Two directions 25 degrees apart: no pair has both ends near the centre, and rings 0 and 1 hold few.
     for (int ring = 3; ring < 10; ring++) assert_true(per_radius[ring] > 50);
     for (int grey = 4; grey < 6; grey++) assert_true(per_grey[grey] > 50 && per_grey[grey] < 1400);
 }
@@ -72,7 +72,7 @@ void test_masks_levels_and_alpha_are_kept_out(void **) {
     }
 }
 
-// Single wrong pixels hardly move a patch.
+// Single wrong pixels barely change a patch.
 void test_patches_shrug_off_hot_pixels(void **) {
     Pictures pictures(3, 320, 240, 20.0);
     uint64_t random = 5;
@@ -88,7 +88,7 @@ void test_patches_shrug_off_hot_pixels(void **) {
     assert_true(255 * std::sqrt(sum / (3 * pairs.size())) < 2.0);
 }
 
-// Pixels by which pairs are off from where the second picture really shows the place of the first: a share of them.
+// Distance in px of pairs from the true place in the second picture: the quantile `share`.
 double distance_of_pairs(const std::vector<lensprof_pair> &pairs, const lensprof_camera cameras[2], double share) {
     std::vector<double> distances;
     for (const auto &pair : pairs) {
@@ -102,7 +102,7 @@ double distance_of_pairs(const std::vector<lensprof_pair> &pairs, const lensprof
     return distances[static_cast<size_t>(share * static_cast<double>(distances.size() - 1))];
 }
 
-// The pictures were taken elsewhere than the project says, by up to 16 pixels: turned, tilted and rolled.
+// The pictures were taken in directions up to 16 pixels off from the project: yaw, pitch and roll.
 void test_a_project_that_is_off_is_registered(void **) {
     detail = 0.07;
     Pictures pictures(2, 320, 240, 20.0);
@@ -110,7 +110,7 @@ void test_a_project_that_is_off_is_registered(void **) {
     const lensprof_camera truth[2] = {pictures.images[0].camera, pictures.images[1].camera};
     std::vector<lensprof_pair> pairs;
     assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
-    assert_close(distance_of_pairs(pairs, truth, 1.0), 0.0, 1e-6);  // right as it is: nothing is moved
+    assert_close(distance_of_pairs(pairs, truth, 1.0), 0.0, 1e-6);  // already right: nothing is moved
     for (double yaw : {-2.5, 1.0})
         for (double roll : {0.0, 0.5}) {
             pictures.images[1].camera = truth[1];
@@ -122,10 +122,10 @@ void test_a_project_that_is_off_is_registered(void **) {
             assert_true(distance_of_pairs(pairs, truth, 0.95) < 1.5);
         }
     assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_PAPER, 500), pairs));
-    assert_true(distance_of_pairs(pairs, truth, 0.5) > 4.0);  // the paper trusts the project
+    assert_true(distance_of_pairs(pairs, truth, 0.5) > 4.0);  // the paper's variant trusts the project
 }
 
-// The angle of view of one image is up to a seventh too small in the project: no rotation puts that right.
+// The angle of view of one image is up to a seventh too small in the project; no rotation compensates for that.
 void test_a_wrong_angle_of_view_is_registered(void **) {
     detail = 0.07;
     Pictures pictures(2, 320, 240, 20.0);
@@ -140,7 +140,7 @@ void test_a_wrong_angle_of_view_is_registered(void **) {
     }
 }
 
-// Something stands before the scene in one picture.
+// Something covers the scene in one picture.
 void test_what_moved_is_left_out(void **) {
     detail = 0.07;
     Pictures pictures(2, 320, 240, 15.0);
@@ -164,7 +164,7 @@ void test_what_moved_is_left_out(void **) {
     assert_true(share_inside(LENSPROF_SAMPLING_BALANCED) < 0.01);
 }
 
-// Squares of random grey values in a part of a picture.
+// Fills a part of a picture with squares of random grey values.
 void fill_with_squares(std::vector<float> &data, uint32_t left, uint32_t top, uint32_t width, uint32_t height,
                        uint32_t seed = 1) {
     for (uint32_t v = 0; v < height; v++)
@@ -176,26 +176,26 @@ void fill_with_squares(std::vector<float> &data, uint32_t left, uint32_t top, ui
         }
 }
 
-// A thing with more texture than the scene has moved; the project is right, and stays so.
+// An object with more texture than the scene has moved; the project is right and stays unchanged.
 void test_a_moving_thing_does_not_move_the_project(void **) {
     detail = 0.04;
     Pictures pictures(2, 320, 240, 15.0);
     detail = 0.0;
     const lensprof_camera truth[2] = {pictures.images[0].camera, pictures.images[1].camera};
-    fill_with_squares(pictures.data[0], 200, 70, 96, 96);  // 15 degrees are 92 px
+    fill_with_squares(pictures.data[0], 200, 70, 96, 96);  // 15 degrees = 92 px
     fill_with_squares(pictures.data[1], 200 - 92 - 24, 70, 96, 96);
     std::vector<lensprof_pair> pairs;
     assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
     assert_true(distance_of_pairs(pairs, truth, 0.95) < 1.0);
 }
 
-// A smooth thing in front of other squares in either picture: the place itself shows no difference, what lies about it
-// does.
+// A smooth object in front of different squares in each picture: its own place shows no difference, its surroundings
+// do.
 void test_a_smooth_place_in_other_surroundings_is_left_out(void **) {
     detail = 0.07;
     Pictures pictures(2, 320, 240, 15.0);
     detail = 0.0;
-    const uint32_t left[2] = {136, 44}, top = 50, side = 140, border = 44;  // 15 degrees are 92 px
+    const uint32_t left[2] = {136, 44}, top = 50, side = 140, border = 44;  // 15 degrees = 92 px
     for (uint32_t i : {0u, 1u}) {
         fill_with_squares(pictures.data[i], left[i], top, side, side, 1 + 500000 * i);
         for (uint32_t v = top + border; v < top + side - border; v++)
@@ -211,7 +211,7 @@ void test_a_smooth_place_in_other_surroundings_is_left_out(void **) {
     }
 }
 
-// Noise leaves some pixels of a saturated place below white: their mean is not that of the light.
+// Noise keeps some pixels of a saturated place below white: their mean is not that of the light.
 void test_a_saturated_place_is_left_out(void **) {
     Pictures pictures(2, 320, 240, 15.0);
     uint64_t random = 3;
@@ -226,7 +226,7 @@ void test_a_saturated_place_is_left_out(void **) {
     assert_true(there < pairs.size() / 20);
 }
 
-// The third picture is none of the places that the project says.
+// The third picture shows none of the places that the project states.
 void test_a_picture_in_the_wrong_place_has_no_pairs(void **) {
     detail = 0.07;
     Pictures pictures(3, 320, 240, 15.0);
@@ -244,8 +244,8 @@ void test_a_picture_in_the_wrong_place_has_no_pairs(void **) {
     assert_int_equal(pairs.size(), 600);
 }
 
-// A camera that did not move: equal places, and grey values next to black and white, where pictures do not look alike.
-// What sampling says of three pictures in a row.
+// A stationary camera: equal places, and grey values next to black and white, where pictures do not look alike. Returns
+// the links that sampling reports for three pictures in a row.
 std::vector<lensprof_link> links_of(Pictures &pictures, lensprof_sample_options options, uint32_t room = 3) {
     std::vector<lensprof_link> links(room);
     uint32_t found = 0;
@@ -259,7 +259,7 @@ std::vector<lensprof_link> links_of(Pictures &pictures, lensprof_sample_options 
     return links;
 }
 
-// Texture that agrees verifies a link, texture that does not contradicts it, and waves as slow as a sky's say nothing.
+// Texture that agrees verifies a link, texture that disagrees contradicts it, and waves as slow as a sky's do neither.
 void test_links_say_what_texture_says(void **) {
     detail = 0.07;
     Pictures textured(3, 320, 240, 22.0), smooth(3, 320, 240, 22.0);
@@ -281,7 +281,7 @@ void test_links_say_what_texture_says(void **) {
     for (const lensprof_link &link : links_of(smooth, options)) assert_int_equal(link.state, LENSPROF_LINK_UNVERIFIED);
 }
 
-// A wall with few lines, off by 4 to 8 pixels: the lines together say where it is.
+// A wall with few lines, off by 4 to 8 pixels: all lines together determine the shift.
 void test_few_lines_register_together(void **) {
     Pictures pictures(2, 320, 240, 20.0);
     for (uint32_t i = 0; i < 2; i++) {
@@ -323,12 +323,12 @@ void test_bracket_takes_what_does_not_look_alike(void **) {
         }
 }
 
-// No pixel of a patch may be black or white, though its mean is neither.
+// No pixel of a patch may be black or white, even if its mean is neither.
 void test_every_pixel_of_a_patch(void **) {
     Pictures pictures(2, 160, 120, 0.0);
     for (auto &data : pictures.data)
         for (size_t p = 0; p < data.size() / 3; p += 7)
-            for (size_t c = 0; c < 3; c++) data[3 * p + c] = 1.0f;  // a white one in every patch
+            for (size_t c = 0; c < 3; c++) data[3 * p + c] = 1.0f;  // one white pixel in every patch
     std::vector<lensprof_pair> pairs;
     assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BRACKET, 400), pairs));
     assert_true(pairs.size() > 50);
@@ -369,7 +369,7 @@ void test_any_number_of_threads_gives_the_same_pairs(void **) {
     }
 }
 
-// What a progress function hears; it cancels at call number `last`.
+// The calls of a progress function, which cancels at call number `last`.
 struct Heard {
     std::vector<double> done;
     size_t last = SIZE_MAX;
@@ -404,7 +404,7 @@ void test_progress_cancels(void **) {
             Heard heard;
             heard.last = last;
             lensprof_sample_options options = options_of(sampling, 2000);
-            options.threads = last < 3 ? 2 : 1;  // how often it is asked depends on who does the work
+            options.threads = last < 3 ? 2 : 1;  // the number of calls depends on which thread does the work
             options.progress = hear;
             options.progress_user = &heard;
             std::vector<lensprof_pair> pairs(2000);
@@ -414,7 +414,7 @@ void test_progress_cancels(void **) {
             assert_int_equal(
                 lensprof_sample_overlap(&options, pictures.images.data(), 4, pairs.data(), 2000, &found, &error),
                 LENSPROF_ERROR_CANCELLED);
-            assert_int_equal(heard.done.size(), last);  // not asked again
+            assert_int_equal(heard.done.size(), last);  // no call after the cancellation
             assert_int_equal(found, 77);
             assert_memory_equal(&pairs[0], &untouched, sizeof untouched);
             assert_non_null(strstr(error.text, "cancelled"));
@@ -434,11 +434,11 @@ void test_sample_types_and_layouts_agree(void **) {
         }
         pictures.images[i].view = {
             bgra[i].data() + 119 * 160 * 4, -160 * 8, 160, 120, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_BGRA};
-        for (int v = 0; v < 60; v++)  // bottom up in memory
+        for (int v = 0; v < 60; v++)  // bottom-up rows
             for (int k = 0; k < 160 * 4; k++) std::swap(bgra[i][v * 640 + k], bgra[i][(119 - v) * 640 + k]);
     }
     assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_PAPER, 100), pairs));
-    // Rounding to 16 bit may change which of two points has the lower gradient: most pairs are the same ones.
+    // Rounding to 16 bit may change which of two points has the lower gradient; most pairs stay the same.
     size_t same = 0;
     for (const auto &pair : pairs)
         for (const auto &other : reference) {

@@ -24,7 +24,7 @@ lensprof_vignetting strong_falloff() {
     return vignetting;
 }
 
-// Of the same light everywhere is the same, and twice the light is 2^(1/2.2) times as much.
+// Equal light gives equal values, and twice the light gives 2^(1/2.2) times the value.
 void test_light_is_what_was_received(void **) {
     const lensprof_response response = curved_response();
     const lensprof_vignetting vignetting = strong_falloff();
@@ -42,7 +42,7 @@ void test_light_is_what_was_received(void **) {
                 if (least == 1.0) least = found;
                 assert_close(found, least, 1e-4);
             }
-    assert_close(least, 0.5, 1e-4);  // M(1): the corner's light stays what it was
+    assert_close(least, 0.5, 1e-4);  // M(1): the corner's light is unchanged
     for (const float lost : {0.0f, 0.003f, 0.985f, 1.0f}) {
         assert_true(is_lost_grey(lost));
         assert_true(light.of(lost, camera, 0, 0) == lost);
@@ -51,7 +51,7 @@ void test_light_is_what_was_received(void **) {
     assert_false(Light(nullptr, nullptr).is_known());
 }
 
-// Linear pictures, the second of a fortieth of the light: its texture is no twentieth of the first one's.
+// Linear pictures, the second with a fortieth of the light: its texture is less than a twentieth of the first's.
 struct FarApart : Pictures {
     FarApart() : Pictures(2, 320, 240, 15.0) {
         for (float &value : data[1]) value /= 40;

@@ -1,4 +1,4 @@
-// Correspondences at matches: of pictures by a camera that moved, which no cameras of a project explain.
+// Correspondences at matches, for pictures of a moving camera, which no cameras of a project describe.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -27,7 +27,7 @@ struct Moved : Pictures {
                + 0.12 * std::sin(9 * at) * std::cos(8 * down);
     }
 
-    // Every 8 px where both images see it.
+    // Every 8 px within both images.
     std::vector<lensprof_match> matches(bool with_map, double off = 0.0) const {
         std::vector<lensprof_match> list;
         for (uint32_t i = 0; i + 1 < images.size(); i++)
@@ -57,7 +57,7 @@ struct Moved : Pictures {
     }
 };
 
-// The index of each pair's match: of the same images, and at most as far away as quiet places are looked for.
+// The index of each pair's match: same images, and within the search distance for quiet places.
 void test_matches_of_pairs(void **) {
     const Moved pictures(3);
     const auto matches = pictures.matches(true);
@@ -84,7 +84,7 @@ void test_pairs_show_one_scene_point(void **) {
         for (const auto &pair : pairs) {
             first.insert(pair.image[0]);
             assert_int_equal(pair.image[1], pair.image[0] + 1);
-            double at[2];  // of the scene
+            double at[2];  // in the scene
             for (int side = 0; side < 2; side++) {
                 const double *xy = pair.xy[side];
                 at[side] = xy[0] + Moved::shift(pair.image[side], xy[1]);
@@ -97,7 +97,7 @@ void test_pairs_show_one_scene_point(void **) {
     }
 }
 
-// With a map of the surroundings pairs come from places near the matches that are quieter than these.
+// With a map of the surroundings, pairs come from quieter places near the matches.
 void test_the_quietest_place_near_a_match(void **) {
     const Moved pictures(2);
     double step[2] = {};
@@ -112,7 +112,7 @@ void test_the_quietest_place_near_a_match(void **) {
     assert_true(step[1] < 0.8 * step[0]);
 }
 
-// Matches that are wrong give no pairs where their surroundings tell, and their link is contradicted.
+// Wrong matches give no pairs if their surroundings disagree, and their link is contradicted.
 void test_wrong_matches_are_found(void **) {
     const Moved pictures(2);
     lensprof_sample_options options = options_of(LENSPROF_SAMPLING_BALANCED, 600);
@@ -140,7 +140,7 @@ void test_the_same_on_any_number_of_threads(void **) {
     assert_memory_equal(one.data(), four.data(), one.size() * sizeof one[0]);
 }
 
-// The cameras need not be valid: only their width and height count.
+// The cameras need not be valid; only their width and height are used.
 void test_no_camera_is_needed(void **) {
     Moved pictures(2);
     for (auto &image : pictures.images) image.camera.hfov_deg = 0.0;

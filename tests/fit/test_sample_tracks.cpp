@@ -1,4 +1,4 @@
-// Sampling of tracks: every observation of a point shows it, points are spread evenly, what is saturated is kept.
+// Sampling of tracks: every observation of a point shows it, points are spread evenly, saturated observations are kept.
 #include "sampled_pictures.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ Tracks tracks_of(const std::vector<lensprof_observation> &observations) {
     return tracks;
 }
 
-// Longitude and latitude of an observation by a camera.
+// Longitude and latitude of an observation, according to a camera.
 void direction_of(const lensprof_camera &camera, const lensprof_observation &o, double direction[2]) {
     assert_true(lensprof_camera_unproject(&camera, o.xy[0], o.xy[1], direction));
 }
@@ -47,7 +47,7 @@ void test_observations_show_one_point(void **) {
     }
 }
 
-// Equal areas of what two pictures and more see hold equally many points.
+// Equal areas that two or more pictures see hold equally many points.
 void test_points_are_spread_evenly(void **) {
     Pictures pictures(5, 320, 240, 12.0);
     std::vector<lensprof_observation> observations;
@@ -70,7 +70,7 @@ void test_points_are_spread_evenly(void **) {
         }
 }
 
-// A bright window: saturated in all channels, in one, and in part of a patch.
+// A bright window: saturated in all channels, in one channel, and in part of a patch.
 void test_saturated_patches_are_kept(void **) {
     Pictures pictures(3, 320, 240, 12.0);
     auto &data = pictures.data[1];
@@ -99,7 +99,7 @@ void test_saturated_patches_are_kept(void **) {
     }
 }
 
-// Something stands before the scene in one picture: its observations are missing, the others' are there.
+// Something covers the scene in one picture: its observations are missing, the others are present.
 void test_what_moved_is_left_out(void **) {
     detail = 0.07;
     Pictures pictures(3, 320, 240, 12.0);
@@ -119,7 +119,7 @@ void test_what_moved_is_left_out(void **) {
     assert_true(share_inside(LENSPROF_SAMPLING_BALANCED) < 0.02);
 }
 
-// The second picture was taken elsewhere than the project says.
+// The second picture was taken in another direction than the project states.
 void test_a_project_that_is_off_is_registered(void **) {
     detail = 0.07;
     Pictures pictures(2, 320, 240, 15.0);

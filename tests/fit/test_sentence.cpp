@@ -1,4 +1,4 @@
-// The sentences of verdicts: made of a code, an item and numbers.
+// The sentences of verdicts, composed of a code, an item and numbers.
 extern "C" {
 #include "support.h"
 }
@@ -46,7 +46,7 @@ bool is_whole(const Sentence &sentence) {
            && sentence.text.size() <= 255 && (sentence.item.text_bytes == 0 || named(sentence) == "image 4294967295");
 }
 
-// Each fits its place in the results and differs from all others.
+// Each sentence fits its buffer in the results and differs from all others.
 void test_every_code_has_a_sentence(void **) {
     std::set<std::string> seen;
     for (lensprof_reason code : codes()) {

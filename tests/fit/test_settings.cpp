@@ -1,11 +1,11 @@
-// Pictures at several lens settings in one fit: a falloff for each, one response for all.
+// Pictures with several lens settings in one fit: a falloff per setting, one response for all.
 #include "simulated_run.hpp"
 
 namespace {
 
 const lensprof_vignetting kOpen{{-0.55, 0.15, -0.12}, {0.02, -0.015}}, kStopped{{-0.12, 0.02, -0.03}, {-0.01, 0.005}};
 
-// Images in turn wide open and stopped down.
+// Images alternate between wide open and stopped down.
 template <class Simulated>
 Simulated alternating(uint64_t seed = 42) {
     Simulated s;
@@ -32,7 +32,7 @@ void check_found(const Simulation &s, const Run &run) {
         for (uint32_t count : setting.radius_ends) ends += count;
         assert_true(ends > run.result.pairs / 2 && ends < 2 * run.result.pairs);
     }
-    // The reference, image 0, is of setting 0.
+    // The reference, image 0, has setting 0.
     assert_memory_equal(run.result.vignetting, run.settings[0].vignetting, sizeof run.result.vignetting);
     assert_memory_equal(run.result.covariance, run.settings[0].covariance, sizeof run.result.covariance);
     assert_true(memcmp(run.settings[0].covariance, run.settings[1].covariance, sizeof run.result.covariance) != 0);
@@ -43,13 +43,13 @@ void test_each_falloff_is_found(void **) {
     Run run(s);
     assert_ok(run.fit(s, default_fit()));
     check_found(s, run);
-    // One falloff for both leaves what this one does not.
+    // One falloff for both settings leaves larger residuals.
     Simulation one = s;
     for (auto &image : one.fit_images) image.setting = 0;
     const FitRun together = run_fit(one);
     assert_true(together.result.heldout_median > 1.5 * run.result.heldout_median);
-    print_message("held-out residual: %.2f levels by setting, %.2f by one falloff\n", run.result.heldout_median,
-                  together.result.heldout_median);
+    print_message("held-out residual: %.2f levels with a falloff per setting, %.2f with one falloff\n",
+                  run.result.heldout_median, together.result.heldout_median);
 }
 
 void test_each_falloff_is_found_by_radiance(void **) {
@@ -59,7 +59,7 @@ void test_each_falloff_is_found_by_radiance(void **) {
     check_found(s, run);
 }
 
-// Errors of the corner in their stated standard errors, gamma apart, over simulations.
+// Errors of the corner are consistent with their standard errors, apart from gamma, over simulations.
 void test_stated_errors_hold(void **) {
     double square = 0.0;
     int count = 0;
@@ -85,11 +85,11 @@ void test_stated_errors_hold(void **) {
         }
     }
     const double rms = std::sqrt(square / count);
-    print_message("corner: rms %.2f stated standard errors (%d)\n", rms, count);
+    print_message("corner: RMS %.2f standard errors (%d)\n", rms, count);
     assert_true(rms > 0.6 && rms < 1.5);
 }
 
-// Which numbers settings have makes no difference, nor that there are others which no image has.
+// The numbering of settings makes no difference, nor do settings without images.
 void test_numbers_are_names(void **) {
     const auto s = alternating<Simulation>();
     Simulation renamed = s;
@@ -104,7 +104,7 @@ void test_numbers_are_names(void **) {
     assert_int_equal(other.settings[5].usable, 0);
 }
 
-// Images that are all of one setting, whatever its number, and a caller who wants to know of none.
+// All images have one setting, whatever its number, and the caller does not ask for settings.
 void test_one_setting_is_as_ever(void **) {
     Simulation s;
     s.response = srgb_response();
@@ -129,7 +129,7 @@ void test_one_setting_is_as_ever(void **) {
     assert_memory_equal(without.result.vignetting, with.settings[0].vignetting, sizeof without.result.vignetting);
 }
 
-// A setting without pairs near the corner is not a profile; the others are.
+// A setting without pairs near the corner does not give a profile; the others do.
 void test_verdicts_of_their_own(void **) {
     auto s = alternating<Simulation>();
     const auto is_far = [&](const lensprof_pair &pair) {

@@ -1,4 +1,5 @@
-// A stored profile as the prior: two-picture sequences improve one after the other, a wrong profile is overruled.
+// A stored profile as the prior: sequences of two pictures improve the profile step by step; a wrong profile is
+// overruled.
 #include <memory>
 
 #include "simulated.hpp"
@@ -17,7 +18,7 @@ Simulation sequence(uint64_t seed, uint32_t pairs = 2000) {
     s.vignetting = {{-0.45, 0.12, -0.12}, {0.015, -0.01}};
     s.shift = 0.5;
     s.make(pairs, 2.0, 0.03, 1.5, seed);
-    for (uint32_t i = 0; i < s.images; i++) {  // as EXIF says, to a tenth
+    for (uint32_t i = 0; i < s.images; i++) {  // from EXIF, to a tenth
         uint64_t random = seed + 77 + i;
         s.fit_images[i].known_ev = s.exposures[i].ev + 0.1 * lp_normal(&random);
         s.fit_images[i].known_ev_sigma = 0.1;
@@ -43,7 +44,7 @@ lensprof_status fit(const Simulation &s, const lensprof_profile *profile, Found 
                                 error);
 }
 
-// What the command stores.
+// The profile that the command would store.
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &r) {
     auto profile = std::make_unique<lensprof_profile>();
     lensprof_profile_init(profile.get());
@@ -56,7 +57,7 @@ std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &r) {
 }
 
 struct Errors {
-    double falloff = 0.0, response = 0.0, gamma = 0.0;  // largest of M and f; ln gamma in its stated standard error
+    double falloff = 0.0, response = 0.0, gamma = 0.0;  // of M and f; ln gamma in standard errors
 
     void add(const Errors &e) {
         falloff += e.falloff * e.falloff, response += e.response * e.response, gamma += e.gamma * e.gamma;
@@ -108,11 +109,11 @@ void test_sequences_improve(void **) {
     const Errors &last = after[kSequences - 1];
     assert_true(last.falloff < 0.75 * after[0].falloff && last.response < 0.75 * after[0].response);
     assert_true(last.falloff < 0.75 * alone.falloff && last.response < 0.75 * alone.response);
-    assert_true(last.gamma < 1.6);  // what is stated of gamma shrinks no faster than the error
+    assert_true(last.gamma < 1.6);  // the stated error of gamma shrinks no faster than the error
     assert_true(overruled <= 1);    // three standard errors
 }
 
-// Of another lens and another response, both stated as certain.
+// Of another lens and another response, both with small stated errors.
 void test_wrong_profile_is_overruled(void **) {
     for (const double exponent : {1.3, 1.0}) {
         Simulation other = sequence(5), s = sequence(99);
@@ -135,7 +136,7 @@ void test_wrong_profile_is_overruled(void **) {
     }
 }
 
-// A falloff without a response that goes with it, as from a database: 80 pairs alone leave it open.
+// A falloff without its response, as from a database: 80 pairs alone do not determine it.
 void test_falloff_alone(void **) {
     double with = 0.0, without = 0.0;
     for (uint64_t seed = 1; seed <= 10; seed++) {
@@ -156,7 +157,7 @@ void test_falloff_alone(void **) {
     assert_true(with < 0.6 * without);
 }
 
-// Knowledge of a response and of a falloff from different pictures, each well known.
+// Response and falloff measured on different pictures, both accurately.
 std::unique_ptr<lensprof_profile> composed(const lensprof_response &response, lensprof_vignetting falloff,
                                            double times) {
     auto stored = std::make_unique<lensprof_profile>();
@@ -170,8 +171,8 @@ std::unique_ptr<lensprof_profile> composed(const lensprof_response &response, le
     return stored;
 }
 
-// A refined response, as brackets store it: a table, with the error of its gamma and no covariance. The table without
-// that says nothing of how sure it is.
+// A refined response, as brackets store it: a table, with the error of its gamma and no covariance. Without that error,
+// the table does not state how accurate it is.
 void test_refined_response(void **) {
     Errors with, without;
     for (uint64_t seed = 1; seed <= 5; seed++) {
@@ -198,7 +199,7 @@ void test_refined_response(void **) {
     assert_true(with.response < 0.5 * without.response && with.falloff < 0.8 * without.falloff);
 }
 
-// One that is wrong is overruled as one with a covariance is.
+// A wrong refined response is overruled like one with a covariance.
 void test_wrong_refined_response_is_overruled(void **) {
     const Simulation s = sequence(4, 40000);
     auto stored = std::make_unique<lensprof_profile>();
@@ -218,7 +219,7 @@ void test_wrong_refined_response_is_overruled(void **) {
     assert_int_equal(found.result->gamma_from, LENSPROF_GAMMA_FALLOFF);
 }
 
-// The one that is wrong is left out, the other settles gamma.
+// The wrong one is left out, the other one determines gamma.
 void test_response_and_falloff_are_overruled_apart(void **) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
         const Simulation s = sequence(seed);

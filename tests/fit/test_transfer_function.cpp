@@ -1,4 +1,4 @@
-// The method `transfer-function` against simulated truth.
+// The method `transfer-function` compared with simulated truth.
 #include "campaign.h"
 #include "simulated.hpp"
 
@@ -34,7 +34,7 @@ FitRun checked_fit(const Simulation &s, const lensprof_fit_options &options) {
     return run;
 }
 
-// True transfer residual without noise: what a user of aligned pictures sees.
+// Transfer residual of the noise-free truth: the mismatch a user sees in aligned pictures.
 double clean_rms(const Simulation &s, const FitRun &run) {
     Simulation clean = s;
     clean.fit_images.clear(), clean.pairs.clear();
@@ -112,7 +112,7 @@ void test_a_known_exposure_is_the_gauge(void **) {
                      lensprof_response_eval(&s.response, x, nullptr), 0.01);
 }
 
-// Exposures that are known softly settle gamma as for the other methods.
+// Exposures known with an error determine gamma as in the other methods.
 void test_exif_exposures_settle_gamma(void **) {
     Simulation s = simulate(linear_response(), true, 1.0, 0.0);
     for (uint32_t i = 0; i < s.images; i++) {
@@ -148,7 +148,7 @@ void test_grey_pictures(void **) {
     for (const auto &e : run.exposures) assert_close(e.white_balance[0], 1.0, 0.0);
 }
 
-// Transfer functions of pictures that are exposed alike are the identity: they show no response, and that is said.
+// Transfer functions of equally exposed pictures are the identity: they show no response, and the reason states it.
 void test_equal_exposures_are_refused(void **) {
     Simulation s = simulate(srgb_response(), false, 1.0, 0.0, 0.0);
     for (auto &e : s.exposures) e.white_balance[0] = e.white_balance[2] = 1.0;
@@ -159,7 +159,7 @@ void test_equal_exposures_are_refused(void **) {
     assert_reason(run.result, EXPOSURES_ALIKE, "differ by only 0.0");
 }
 
-// Few pairs on many edges, where hardly a bin holds more than one.
+// Few pairs on many edges: almost no bin holds more than one.
 void test_few_pairs(void **) {
     Simulation s;
     s.response = srgb_response();
@@ -208,8 +208,8 @@ void test_result_does_not_depend_on_threads(void **) {
     assert_memory_equal(one.quality.data(), five.quality.data(), one.quality.size() * sizeof one.quality[0]);
 }
 
-// Stated standard errors are those by which results scatter. The response is held, and with it gamma: what is left is
-// the data's. 60 runs of 5 exposures: the mean square of error / sigma is 1 within a third.
+// Results scatter by the stated standard errors. The response is held, and gamma with it; only the data's error
+// remains. 60 runs of 5 exposures: the mean square of error / sigma is 1 within a third.
 void test_stated_errors_are_the_scatter(void **) {
     double square = 0.0, corner_square = 0.0, count = 0.0;
     const int kRuns = campaign_runs(60);

@@ -1,4 +1,4 @@
-// Responses that the pictures do not show.
+// Responses that the pictures do not determine.
 #include "simulated.hpp"
 
 #include <cstring>
@@ -7,7 +7,7 @@
 
 namespace {
 
-// Pictures of one exposure, of a camera that has corrected its falloff.
+// Pictures of one exposure from a camera that corrects its falloff.
 Simulation even(double noise, uint64_t seed = 42) {
     Simulation s;
     s.response = srgb_response();
@@ -49,7 +49,7 @@ void test_equal_light_shows_no_response(void **) {
             }
 }
 
-// Its profile can be stored, with a doubt, so that it is not what later pictures are fitted with.
+// Its profile can be stored, but is marked doubtful, so that later fits do not use it.
 void test_the_profile_says_that_it_is_not_shown(void **) {
     for (uint64_t seed = 1; seed < 6; seed++) {
         Simulation s;
@@ -68,7 +68,7 @@ void test_the_profile_says_that_it_is_not_shown(void **) {
     }
 }
 
-// Exposures of a fifth of an EV do.
+// Exposure differences of a fifth of an EV are enough.
 void test_little_light_shows_one(void **) {
     Simulation s;
     s.response = srgb_response();
@@ -80,7 +80,7 @@ void test_little_light_shows_one(void **) {
     assert_true(run.result.light_spread_ev > 0.15 && run.result.light_spread_ev < 0.25);
 }
 
-// A profile of other pictures is what is known before.
+// A profile from other pictures provides the response.
 void test_the_profile_is_held_where_there_is_one(void **) {
     Simulation shown;
     shown.response = srgb_response();
@@ -102,7 +102,7 @@ void test_the_profile_is_held_where_there_is_one(void **) {
                      lensprof_response_eval(&first.result.response, x, nullptr), 0.02);
 }
 
-// The paper's variant has nothing to hold it at.
+// The paper's variant has no prior that could hold the response.
 void test_without_a_prior_nothing_is_held(void **) {
     lensprof_fit_options options = default_fit();
     options.prior_weight = 0.0;

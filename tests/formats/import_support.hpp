@@ -1,4 +1,4 @@
-// Entries of readers in tests.
+// Collects the entries that readers deliver.
 #pragma once
 
 extern "C" {
@@ -13,7 +13,7 @@ extern "C" {
 
 #include <lensprof/formats.h>
 
-// What a reader gave.
+// The results of a reader.
 struct Imported {
     lensprof_status status;
     std::string error;
@@ -31,7 +31,7 @@ inline lensprof_status keep_entry(void *user, const lensprof_import_entry *entry
 
 inline lensprof_status refuse_entry(void *, const lensprof_import_entry *) { return LENSPROF_ERROR_CANCELLED; }
 
-// Attenuation of a profile at a place of a frame.
+// Attenuation of a profile at a place in a frame.
 inline double attenuation_at(const lensprof_profile &profile, uint32_t width, uint32_t height, double x, double y,
                              uint32_t channel = 0) {
     const lensprof_vignetting &v = profile.vignetting[profile.vignettings == 3 ? channel : 0];

@@ -15,7 +15,7 @@ struct Falloff {
     lensprof_provenance provenance;
     lensprof_vignetting vignetting;
     uint32_t usable;
-    lensprof_status valid;  // what lensprof_profile_validate says
+    lensprof_status valid;  // result of lensprof_profile_validate
 };
 
 struct Database {
@@ -31,7 +31,7 @@ inline lensprof_status collect(void *user, const lensprof_import_entry *entry) {
     return LENSPROF_OK;
 }
 
-// In memory of its own size, so that the address sanitizer sees what is read beyond the end.
+// In memory of exactly its size, so that the address sanitizer detects reads beyond the end.
 inline Database read_lensfun(const std::string &text, const char *source = "test.xml") {
     Database database{};
     lensprof_error error;

@@ -1,4 +1,4 @@
-// Profiles that use all that a profile has, and reading and writing them in tests.
+// Profiles that use every member, and functions to read and write them in tests.
 #pragma once
 
 extern "C" {
@@ -22,7 +22,7 @@ inline Profile new_profile() {
 
 inline Profile copy_of(const lensprof_profile &profile) { return std::make_unique<lensprof_profile>(profile); }
 
-// Three curves of everything, a grid, a covariance, and numbers without a short decimal form.
+// Three curves of each kind, a grid, a covariance, and numbers without a short decimal form.
 inline Profile full_profile() {
     Profile p = new_profile();
     uint64_t random = 7;
@@ -67,7 +67,7 @@ inline lensprof_status keep_profile(void *user, const lensprof_import_entry *ent
     return LENSPROF_OK;
 }
 
-// In memory of its own size, so that the address sanitizer sees what is read beyond the end.
+// In memory of exactly its size, so that the address sanitizer detects reads beyond the end.
 inline std::vector<char> exact(const std::string &text) { return {text.begin(), text.end()}; }
 
 inline Read read_json(const std::string &text, const char *source = "a.json") {
@@ -80,7 +80,8 @@ inline Read read_json(const std::string &text, const char *source = "a.json") {
     return read;
 }
 
-// Asks `write(text, capacity, needed, error)` for the size, then for the text; "" and the error's text where it fails.
+// Asks `write(text, capacity, needed, error)` for the size, then for the text; on failure returns "" and the error's
+// text.
 using WriteText = std::function<lensprof_status(void *, size_t, size_t *, lensprof_error *)>;
 inline std::string written(const WriteText &write, lensprof_status *status = nullptr, std::string *why = nullptr) {
     size_t needed = 0;
@@ -103,7 +104,7 @@ inline std::string write_json(const std::vector<const lensprof_profile *> &profi
     });
 }
 
-// The text with its first `from` replaced.
+// The text with the first occurrence of `from` replaced.
 inline std::string with(std::string text, const std::string &from, const std::string &to) {
     const size_t at = text.find(from);
     assert_true(at != std::string::npos);

@@ -1,4 +1,4 @@
-/* Helpers of the project tests. */
+/* Helpers for the tests of Hugin projects. */
 #ifndef LENSPROF_TESTS_PTO_SUPPORT_H
 #define LENSPROF_TESTS_PTO_SUPPORT_H
 
@@ -6,7 +6,7 @@
 
 #include <lensprof/formats.h>
 
-/* A project that uses every construct. Line numbers matter to the tests that name them. */
+/* A project that uses every construct. Some tests depend on its line numbers. */
 #define SAMPLE_PTO                                                                                                   \
     "# hugin project file\n"                                                                                         \
     "#hugin_ptoversion 2\n"                                                                                          \
@@ -53,7 +53,7 @@ static inline lensprof_pto_image image_of(const lensprof_pto *pto, uint32_t inde
     return image;
 }
 
-/* The project as a string; free() it. */
+/* The project as a string; the caller frees it. */
 static inline char *write_pto(const lensprof_pto *pto) {
     size_t bytes = 0, again = 0;
     assert_ok(lensprof_pto_write(pto, NULL, 0, &bytes, NULL));

@@ -43,7 +43,7 @@ Profile lens() {
     return profile;
 }
 
-// M of a channel over that in the middle, at a share of the way from the middle to the first corner.
+// M of a channel relative to the middle, at a fraction `way` of the distance from the middle to the first corner.
 double shade(const lensprof_profile &profile, uint32_t channel, double way) {
     std::vector<float> values(201 * 151 * 3);
     assert_ok(lensprof_map_write(&profile, kWidth, kHeight, 201, 151, 3, 0, values.data(), nullptr));
@@ -51,7 +51,7 @@ double shade(const lensprof_profile &profile, uint32_t channel, double way) {
     return at(int(100 - 100 * way), int(75 - 75 * way)) / at(100, 75);
 }
 
-// 3 decimals: within a thousandth where the gain is 1. The outermost cells' middles are what the tables know.
+// 3 decimals: within a thousandth at a gain of 1. The tables end at the middles of the outermost cells.
 void test_round_trip(void **) {
     const Profile truth = lens();
     for (const uint32_t columns : {16u, 32u, 20u}) {
@@ -74,24 +74,24 @@ std::string table(double first, double others, size_t count = 192) {
     return text + "]";
 }
 
-// A green that is darker in the corner; red and blue by their ratios, in a tuning file.
+// A tuning file with a green channel that is darker in the corner, and red and blue by their ratios.
 std::string tuning_file() {
     const std::string text = write(*lens());
     return "{\"version\":2.0,\"target\":\"bcm2835\",\"algorithms\":[{\"rpi.dpc\":{}}," + text + "]}";
 }
 
-// Cr is what red's gain is multiplied by: where it is large, red is dark beside green.
+// Cr is a factor of red's gain: if it is large, red is dark compared with green.
 void test_sense(void **) {
     const std::string text = write(*lens());
     assert_int_equal(
         text.find(
             "{\"rpi.alsc\":{\n\"omega\":1.3,\"n_iter\":100,\"luminance_strength\":1.0,\n\"calibrations_Cr\":[{\"ct\":5000,\"table\":[\n1."),
         0);
-    assert_true(text.find("corner_strength") == std::string::npos);  // it would replace the table
+    assert_true(text.find("corner_strength") == std::string::npos);  // a corner_strength would replace the table
     const double red = std::stod(text.substr(text.find("table\":[") + 8)),
                  luminance = std::stod(text.substr(text.find("luminance_lut\":[") + 16));
     assert_close(luminance, 1 / shade(*lens(), 1, 0.94), 0.05);
-    assert_true(red > 1.02 && red < 1.2);  // red's falloff is the strongest
+    assert_true(red > 1.02 && red < 1.2);  // red has the strongest falloff
     const Found found = read(tuning_file());
     assert_string_equal(found.error.c_str(), "");
     assert_close(shade(*found.profile, 0, 0.9), shade(*lens(), 0, 0.9), 2e-3);
@@ -102,7 +102,7 @@ std::string with_two(double low, double high) {
            + table(low, 1) + "},{\"ct\":5000,\"table\":" + table(high, 1) + "}]}";
 }
 
-// Between two tables linearly, beyond them as the nearer; without one as default_ct says.
+// Linear between two tables, the nearest table beyond them, and default_ct without a temperature.
 void test_temperature(void **) {
     const auto corner = [&](double ct) {
         const Found found = read(with_two(1.2, 1.6), ct);
@@ -120,7 +120,7 @@ void test_temperature(void **) {
     assert_true(corner(3500) > middle && corner(3500) < low);
     const Found grey = read("{\"luminance_lut\":" + table(1, 1) + "}");
     assert_int_equal(grey.profile->vignettings, 1);
-    // The key has it, where the tables depend on it, and the writer takes it from there.
+    // The key has the temperature if the tables depend on it, and the writer takes it from there.
     assert_true(grey.profile->key.color_temperature_k == LENSPROF_UNKNOWN);
     const Found own = read(with_two(1.2, 1.6));
     assert_true(own.profile->key.color_temperature_k == 4000.0);

@@ -1,5 +1,4 @@
-// One call for all formats: which format a file is of, what import makes of it, what export writes, and what both
-// refuse.
+// One call for all formats: format detection, the results of import and export, and what both refuse.
 #include <fstream>
 #include <iterator>
 
@@ -14,7 +13,7 @@ std::string corpus(const std::string &file) {
     return bytes;
 }
 
-// A file of every format, and whether its content alone tells the format.
+// A file of every format, and whether its content alone identifies the format.
 struct Sample {
     uint32_t format;
     const char *file, *name;
@@ -51,7 +50,7 @@ lensprof_import_options import_options(uint32_t format = LENSPROF_FORMAT_AUTO, c
     return options;
 }
 
-// Entries with what the file holds.
+// Entries, and what the file holds for each.
 struct Found : Imported {
     std::vector<uint32_t> holds;
 };
@@ -163,7 +162,7 @@ void test_each_is_read(void **) {
     }
 }
 
-// The functions of the formats and import give the same.
+// The functions of the formats and lensprof_import give the same results.
 void test_same_as_by_hand(void **) {
     const std::string table = corpus("curves/rgb.csv"), vgn = corpus("maps/centers.vgn");
     auto responses = std::make_unique<lensprof_response[]>(3);
@@ -194,7 +193,7 @@ void test_wrong_content_under_a_right_name(void **) {
             if (!is_known && !(found.status == LENSPROF_OK && found.profiles.empty()))
                 fail_msg("%s with \"%s\": %s", name, content, lensprof_status_name(found.status));
         }
-    for (const Sample &sample : kSamples) {  // another format's bytes, by force
+    for (const Sample &sample : kSamples) {  // another format's bytes under a forced format
         const uint32_t other = sample.format == LENSPROF_FORMAT_PCALIB ? LENSPROF_FORMAT_JSON : LENSPROF_FORMAT_PCALIB;
         const auto options = import_options(other);
         assert_int_not_equal(import(corpus(sample.file), &options).status, LENSPROF_OK);
@@ -216,7 +215,7 @@ void test_empty_large_and_unknown(void **) {
     refused("hello", import_options(13), LENSPROF_ERROR_ARGUMENT, "unknown format");
     lensprof_error error{};
     Found found;
-    const char byte = '{';  // one byte is there: nothing of a file that is too large is looked at
+    const char byte = '{';  // only one byte is accessible: a file that is too large is not read
     assert_int_equal(lensprof_import(&byte, (size_t{64} << 20) + 1, nullptr, keep_holds, &found, &error),
                      LENSPROF_ERROR_SIZE);
     assert_non_null(strstr(error.text, "64 MiB"));
@@ -315,7 +314,7 @@ std::unique_ptr<lensprof_profile> lens(const char *name = "Acme 50mm") {
     return profile;
 }
 
-// What is written to a name is read from it again.
+// What is written under a name is read back under this name.
 void test_there_and_back(void **) {
     const auto p = lens();
     for (const char *name : {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.txt", "a.csv", "a.crf", "a.vgn"}) {
@@ -339,7 +338,7 @@ void test_there_and_back(void **) {
 
 void test_opcode_by_its_error(void **) {
     const auto smooth = lens(), steep = lens();
-    steep->vignetting[0] = {{-3.9, 6.5, -3.55}, {0, 0}};  // which the opcode's five coefficients do not hold
+    steep->vignetting[0] = {{-3.9, 6.5, -3.55}, {0, 0}};  // which the opcode's five coefficients cannot represent
     steep->grid.columns = steep->grid.rows = 2, steep->grid.channels = 1;
     for (int i = 0; i < 4; i++) steep->grid.attenuation[i] = 0.8f;
     const auto id_of = [](const std::string &list) { return static_cast<int>(list.at(7)); };  // of the first opcode
@@ -350,7 +349,7 @@ void test_opcode_by_its_error(void **) {
     assert_int_equal(id_of(exported({smooth.get()}, options)), 9);
 }
 
-// A file of more than is read is not written into a buffer that would hold it.
+// A file larger than the import limit is not written, even into a large enough buffer.
 void test_export_too_large(void **) {
     const auto p = lens();
     p->responses = 3;

@@ -33,7 +33,7 @@ double at(const Curves &curves, int channel, double x) {
 }
 
 void test_layouts(void **) {
-    // Of OpenCV, AliceVision, a spreadsheet, and what people paste.
+    // From OpenCV, AliceVision, a spreadsheet, and pasted text.
     for (const char *text :
          {"0.5, 1, 2\n1, 2, 4\n2, 4, 8\n4, 8, 16\n", "0.5;1;2\n1;2;4\n2;4;8\n4;8;16",
           "response,Red,Green,Blue,\n0,0.5,1,2,\n1,1,2,4,\n2,2,4,8,\n3,4,8,16,\n",
@@ -82,7 +82,7 @@ void test_pfstools(void **) {
     for (int c = 0; c < 3; c++) assert_close(at(*curves, c, (c + 1) / 4.0), 0.5, 1e-3);
 }
 
-// Written and read again: within a thirteenth of a level of 255.
+// Write, then read: within a thirteenth of a level of 255.
 void test_round_trip(void **) {
     const auto profile = new_profile();
     lensprof_response *responses = profile->response;
@@ -102,7 +102,7 @@ void test_round_trip(void **) {
                         worst = fmax(worst, fabs(lensprof_response_eval(&again->response[c], x, nullptr)
                                                  - lensprof_response_eval(&responses[c], x, nullptr)));
                     }
-                // A forward table is coarse where the response is steep.
+                // A forward table is coarse at steep parts of the response.
                 const bool coarse = curve == LENSPROF_CURVE_FORWARD && rows == 256;
                 assert_true(worst < (coarse ? (count == 3 ? 0.025 : 3e-3) : 3e-4));
             }

@@ -1,4 +1,4 @@
-// DNG opcode lists, read and written.
+// DNG opcode lists: reading and writing.
 #include <cstring>
 
 #include "import_support.hpp"
@@ -60,7 +60,7 @@ Bytes gain_map(const MapArea &a, uint32_t rows, uint32_t columns, uint32_t plane
     return opcode(9, 1, payload);
 }
 
-// In memory of its own size, so that the address sanitizer sees what is read beyond the end.
+// In memory of exactly its size, so that the address sanitizer detects reads beyond the end.
 Imported read(const Bytes &bytes, uint32_t layout = LENSPROF_LAYOUT_RGB, uint32_t width = 600, uint32_t height = 400) {
     Imported imported{};
     lensprof_error error;
@@ -87,7 +87,8 @@ Bytes write(const lensprof_profile &profile, uint32_t layout, uint32_t form, dou
     return bytes;
 }
 
-// The list of one FixVignetteRadial with gain 1 + r^2 / 2 about the middle, byte by byte: 0.5 is 3FE0 0000 0000 0000.
+// The list of a single FixVignetteRadial with gain 1 + r^2 / 2 about the middle, byte by byte: 0.5 is 3FE0 0000 0000
+// 0000.
 void test_golden_radial(void **) {
     Bytes golden = {0, 0, 0, 1, 0, 0, 0, 3, 1, 3, 0, 0, 0, 0, 0, 1, 0, 0, 0, 56};
     for (int number = 0; number < 7; number++) {
@@ -104,12 +105,12 @@ void test_golden_radial(void **) {
     assert_string_equal(p.provenance.doubt, "");
     assert_int_equal(p.key.processing, LENSPROF_PROCESSING_RAW);
     assert_true(p.vignettings == 1 && p.grid.columns == 0 && p.vignetting[0].center[0] == 0);
-    // 1 / (1 + r^2 / 2) is 2/3 in the corner and 0.8 at r^2 = 1/2; the polynomial comes within 0.2 %.
+    // 1 / (1 + r^2 / 2) is 2/3 in the corner and 0.8 at r^2 = 1/2; the polynomial is within 0.2 %.
     assert_close(lensprof_vignetting_eval(&p.vignetting[0], 1.0, nullptr), 2.0 / 3.0, 2e-3);
     assert_close(lensprof_vignetting_eval(&p.vignetting[0], 0.5, nullptr), 0.8, 2e-3);
 }
 
-// The centre of a falloff in pixels, and its farthest corner: (150, 300) of 600 x 400, so r = 1 at hypot(450, 300).
+// The centre of a falloff in pixels, and the farthest corner: (150, 300) of 600 x 400, so r = 1 at hypot(450, 300).
 void test_radial_about_another_centre(void **) {
     const Imported imported = read(list_of({radial({0.25, 0.0625, 0, 0, 0}, 0.25, 0.75)}));
     assert_ok(imported.status);
@@ -131,14 +132,14 @@ void test_opcodes_multiply(void **) {
     assert_string_equal(both.profiles[0]->provenance.doubt, "left out: WarpRectilinear, id 4711");
     const Imported product = read(list_of({radial({0.5, 0.06, 0, 0, 0})}));
     assert_true(largest_difference(*both.profiles[0], *product.profiles.at(0), 600, 400, 1) < 1e-12);
-    // The same by a map and by two centres, which the frame is sampled for.
+    // The same by two different centres, for which the frame is sampled.
     const Imported two = read(list_of({first, radial({0.2, 0, 0, 0, 0}, 0.5, 0.5000001)}));
     assert_ok(two.status);
     assert_true(largest_difference(*two.profiles.at(0), *product.profiles[0], 600, 400, 1) < 0.004);
 }
 
-// A map of 2 x 2 points whose origin and spacing put them at 1/4 and 3/4 of the frame: bilinear between, edges as
-// there.
+// A map of 2 x 2 points whose origin and spacing put them at 1/4 and 3/4 of the frame: bilinear in between, constant
+// beyond.
 void test_map_semantics(void **) {
     MapArea area;
     area.planes = 3, area.spacing = 0.5, area.origin = 0.25;
@@ -162,10 +163,11 @@ void test_map_semantics(void **) {
                 else
                     worst = std::max(worst, std::fabs(product / scale - 1.0));
             }
-    assert_true(worst < 0.006);  // of a map with kinks
+    assert_true(worst < 0.006);  // the map has kinks
 }
 
-// Three planes of one map; with fewer planes the last one counts for those above it. A smooth gain, the quarter of r^2.
+// Three planes of one map; if there are fewer planes, the last one also counts for those above it. A smooth gain, a
+// quarter of r^2.
 void test_map_planes(void **) {
     const auto smooth = [](uint32_t planes, const std::vector<double> &strengths) {
         std::vector<float> gains;
@@ -198,7 +200,7 @@ void test_map_planes(void **) {
     const lensprof_profile &p = *two.profiles.at(0);
     for (uint32_t c = 0; c < 3; c++)
         assert_close(attenuation_at(p, 600, 400, -0.5, -0.5, c), 1 / (1.3 + 0.1 * std::min(c, 1u)), 4e-3);
-    // A map for the green plane alone.
+    // A map for the green plane only.
     area.plane = 1, area.planes = 1;
     const Imported green = read(list_of({map(1, {0.4})}));
     for (uint32_t c = 0; c < 3; c++)
@@ -244,7 +246,7 @@ void test_round_trips(void **) {
     }
 }
 
-// Falloffs a channel: three planes of one map, or a map for each site of a mosaic's square, in every order of colours.
+// Falloffs per channel: three planes of one map, or a map per site of a mosaic's square, for every order of colours.
 void test_channels_round_trip(void **) {
     const auto profile = profile_of(-0.4, 0.1, -0.05, 0.03, 0.02);
     profile->vignettings = 3;
@@ -259,7 +261,7 @@ void test_channels_round_trip(void **) {
         assert_ok(back.status);
         assert_true(worst < 5e-3);
         assert_true(largest_difference(*back.profiles.at(0), *profile, 600, 400, 3) < 3e-3);
-        // Read for the other order of colours, red and blue change places.
+        // Read for the other order of colours, red and blue are swapped.
         if (layout != LENSPROF_LAYOUT_RGGB) continue;
         const Imported other = read(bytes, LENSPROF_LAYOUT_BGGR);
         assert_true(attenuation_at(*other.profiles.at(0), 600, 400, 0, 0, 0)
@@ -349,7 +351,7 @@ void test_read_refused(void **) {
 void test_maps_refused(void **) {
     const MapArea area;
     const std::vector<float> four = {1, 1, 1, 1};
-    const auto with = [&](size_t offset, uint32_t value) {  // a number of the payload
+    const auto with = [&](size_t offset, uint32_t value) {  // changes a number of the payload
         Bytes bytes = gain_map(area, 2, 2, 1, four), number;
         put(number, value, 4);
         std::copy(number.begin(), number.end(), bytes.begin() + 16 + static_cast<std::ptrdiff_t>(offset));
@@ -368,7 +370,7 @@ void test_maps_refused(void **) {
     assert_ok(with(40, 0x3FF80000).status);
 }
 
-// Every list that is cut anywhere is refused; every byte changed gives a result or a reason.
+// A list cut anywhere is refused; a list with any byte changed gives a result or a reason.
 void test_cuts_and_mutations(void **) {
     Bytes list = list_of({radial({0.5, 0.1, 0, 0, 0}), opcode(1, 0, Bytes(5)), radial({0.1, 0, 0, 0, 0})});
     for (size_t size = 0; size < list.size(); size++)

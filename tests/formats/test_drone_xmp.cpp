@@ -1,4 +1,4 @@
-// The polynomials of MicaSense's, Parrot's, DJI's and Sentera's cameras.
+// The vignetting polynomials of MicaSense, Parrot, DJI and Sentera cameras.
 #include <cstring>
 
 #include "import_support.hpp"
@@ -33,7 +33,7 @@ Imported read(const std::string &text, uint32_t width = 1280, uint32_t height = 
     return imported;
 }
 
-// Corrected by the polynomial as the maker's own software does it, against the profile, at some places.
+// Compares the profile at some places with a correction by the polynomial, computed as in the maker's own software.
 template <typename Attenuation>
 void assert_same(const lensprof_profile &profile, uint32_t width, uint32_t height, double tolerance,
                  Attenuation exact) {
@@ -50,7 +50,7 @@ double polynomial(const std::vector<double> &terms, double r) {
     return value;
 }
 
-// Corrected = picture / (1 + c0 r + ... + c5 r^6), r in pixels from the centre: of a RedEdge, 0.64 in the corner.
+// Corrected = picture / (1 + c0 r + ... + c5 r^6), r in pixels from the centre. From a RedEdge: 0.64 in the corner.
 const std::vector<double> kMicaSense = {-3.0e-5, -5.1e-7, 3.4e-10, -8.5e-13, 5.0e-16, -1.0e-19};
 
 void test_micasense(void **) {
@@ -71,7 +71,7 @@ void test_micasense(void **) {
                 [](double x, double y) { return polynomial(kMicaSense, std::hypot(x - 623.6301, y - 464.4527)); });
 }
 
-// Corrected = picture * (1 + k0 r + ... + k5 r^6): those of a P4 Multispectral, a gain of 2.0 in the corner.
+// Corrected = picture * (1 + k0 r + ... + k5 r^6). From a P4 Multispectral: a gain of 2.0 in the corner.
 const std::vector<double> kDji = {2.18235e-4, 1.20722e-6, -2.8676e-9, 5.1742e-12, -4.16853e-15, 1.36962e-18};
 
 void assert_dji(const Imported &imported, double x, double y) {
@@ -92,14 +92,14 @@ void test_dji(void **) {
         "drone-dji:CalibratedOpticalCenterX=\"805\" drone-dji:CalibratedOpticalCenterY=\"640.5\" ";
     assert_dji(read(packet(own + center, ""), 1600, 1300), 805, 640.5);
     assert_dji(read(packet(own, ""), 1600, 1300), 799.5, 649.5);
-    // The maker's other form of the same numbers is a gain as well; its own one counts first.
+    // The maker's other form of the same numbers is also a gain; its own form takes precedence.
     const std::string also = list("Camera:VignettingPolynomial", kDji) + list("Camera:VignettingCenter", {805, 640.5});
     assert_dji(read(packet("tiff:Make=\"DJI\" ", also), 1600, 1300), 805, 640.5);
     assert_dji(read(packet("drone-dji:Version=\"1.6\" ", also), 1600, 1300), 805, 640.5);
     assert_dji(read(packet(own + center, list("Camera:VignettingPolynomial", {9, 9, 9})), 1600, 1300), 805, 640.5);
     const Imported flagged = read(packet(own + "drone-dji:VignettingFlag=\"1\"", ""), 1600, 1300);
     assert_non_null(strstr(flagged.profiles.at(0)->provenance.doubt, "corrected this picture itself"));
-    // Elements, and under another prefix.
+    // As elements, and with another prefix.
     std::string text = packet("",
                               "<drone-dji:VignettingData>0.000218235,1.20722e-06,-2.8676e-09,5.1742e-12,-4.16853e-15,"
                               "1.36962e-18</drone-dji:VignettingData>");
@@ -108,8 +108,8 @@ void test_dji(void **) {
     assert_dji(read(text, 1600, 1300), 799.5, 649.5);
 }
 
-// Of Sentera the highest power comes first, as OpenDroneMap reads it, under both of its names. The maker is told by
-// tiff:Make, by any property of its namespace, or by the key that an import is given.
+// Sentera writes the highest power first, which OpenDroneMap also assumes, under both of its names. The maker is
+// identified by tiff:Make, by any property of its namespace, or by the key given to the import.
 void test_sentera(void **) {
     const std::vector<double> turned(kMicaSense.rbegin(), kMicaSense.rend());
     const std::string declared = "xmlns:Sentera=\"http://sentera.com/camera/1.0/\" ",
@@ -134,13 +134,13 @@ void test_sentera(void **) {
     assert_sentera(read(packet(make + declared, own)));
     assert_sentera(read(packet(declared, own)));
     assert_sentera(read(packet(declared, blanks)));
-    assert_sentera(read(packet(model, own)));  // a prefix that nothing declares
+    assert_sentera(read(packet(model, own)));  // an undeclared prefix
     assert_sentera(read(packet(declared + "Sentera:Session=\"2020-04-10\" ", camera)));
     assert_sentera(read(packet(make + declared, own + list("Camera:VignettingPolynomial", {9, 9, 9}))));
-    // Another maker's numbers stay as they are: turned round they are no falloff.
+    // Another maker's numbers are not reversed: reversed they would not be a falloff.
     assert_int_equal(read(packet("tiff:Make=\"MicaSense\" ", camera)).status, LENSPROF_ERROR_VIGNETTING);
 
-    // EXIF says it where the packet does not.
+    // EXIF identifies the maker if the packet does not.
     lensprof_profile_key key;
     lensprof_profile_key_init(&key);
     std::snprintf(key.camera_maker, sizeof key.camera_maker, "Sentera");
@@ -156,7 +156,7 @@ void test_sentera(void **) {
     assert_sentera(imported);
 }
 
-// Corrected = picture / sum c (x / width)^i (y / height)^j: a Sequoia's, whose numbers are in one item of a list.
+// Corrected = picture / sum c (x / width)^i (y / height)^j. From a Sequoia, which writes all numbers in one list item.
 const std::string k2d =
     "<Camera:VignettingPolynomial2DName><rdf:Seq><rdf:li>0,0,1,0,2,0,0,1,0,2,1,1</rdf:li>"
     "</rdf:Seq></Camera:VignettingPolynomial2DName><Camera:VignettingPolynomial2D><rdf:Seq>"
@@ -171,7 +171,7 @@ void test_2d(void **) {
     });
 }
 
-// In the frame's own units the polynomial is the same in frames of any size.
+// In units of the frame, the polynomial is the same for frames of any size.
 void test_huge_frames(void **) {
     const Imported small = read(packet("", k2d), 4000, 3000);
     const uint32_t sizes[][2] = {{40000000, 30000000}, {1u << 25, 3u << 23}, {UINT32_MAX, UINT32_MAX / 4 * 3}};
@@ -213,14 +213,14 @@ void test_refused(void **) {
     refused(packet("", list("Camera:VignettingPolynomial2D", {-1}) + list("Camera:VignettingPolynomial2DName", {0, 0})),
             LENSPROF_ERROR_VIGNETTING, "not above 0");
     refused(packet("", good), LENSPROF_ERROR_ARGUMENT, "a side is 0", 0);
-    // Of another namespace, it is another property.
+    // In another namespace, it is another property.
     std::string other = packet("", good);
     other.replace(other.find("http://pix4d.com/camera/1.0"), 27, "http://example.com/");
     refused(other, LENSPROF_ERROR_NOT_FOUND, "");
     const std::string all = packet("", good);
     for (size_t size = 0; size < all.rfind("</x:xmpmeta>"); size += 3)
         assert_int_equal(read(all.substr(0, size)).status, LENSPROF_ERROR_SYNTAX);
-    assert_ok(read(all + std::string(5, '\0')).status);  // as padded by writers of TIFF
+    assert_ok(read(all + std::string(5, '\0')).status);  // with padding, as TIFF writers add
     assert_int_equal(
         lensprof_drone_xmp_read(all.data(), all.size(), 1280, 960, nullptr, refuse_entry, nullptr, nullptr),
         LENSPROF_ERROR_CANCELLED);

@@ -1,4 +1,4 @@
-/* Every allocation of every call is made to fail once: MEMORY, outputs untouched, nothing leaked (under the address
+/* Every allocation of every call fails once: MEMORY, outputs untouched, nothing leaked (checked by the address
  * sanitizer). */
 #include "pto_support.h"
 
@@ -139,7 +139,7 @@ static lensprof_status read_curves(world *w) {
     return status;
 }
 
-/* Of all writers of tables. */
+/* All writers of tables. */
 static lensprof_status write_tables(world *w) {
     static char text[20000];
     const lensprof_frame_time frame = {"00001", 1.5, 2.5};
@@ -186,7 +186,7 @@ static lensprof_status read_drone_xmp(world *w) {
 
 static lensprof_status read_opcodes(world *w) {
     (void)w;
-    /* a FixVignetteRadial of gain 1 about (0, 0), and a GainMap of one point, gain 1.5 */
+    /* a FixVignetteRadial with gain 1 about (0, 0), and a GainMap of one point with gain 1.5 */
     static const uint8_t list[4 + 16 + 56 + 16 + 76 + 4] = {
         [3] = 2,   [7] = 3,   [19] = 56, [4 + 72 + 3] = 9, [4 + 72 + 15] = 80, [103] = 12,   [107] = 18,  [115] = 1,
         [119] = 1, [123] = 1, [127] = 1, [131] = 1,        [167] = 1,          [168] = 0x3F, [169] = 0xC0};
@@ -206,7 +206,8 @@ static lensprof_status write_opcodes(world *w) {
     return status;
 }
 
-/* A map, a polynomial of radical with a centre a channel, a tuning file: to a profile that stays as it was. */
+/* A map, a polynomial of radical with a centre per channel, a tuning file: the profile they are read into stays
+ * unchanged. */
 static lensprof_status read_falloffs(world *w) {
     static float values[16 * 12];
     static char radical[1000];
@@ -302,7 +303,7 @@ static void test_out_of_memory(void **state) {
     fail_each(w, write_tables, 10);
     fail_each(w, read_falloffs, 10);
     fail_each(w, write_falloffs, 10);
-    fail_each(w, read_points, 0); /* needs no memory at all */
+    fail_each(w, read_points, 0); /* allocates nothing */
     lensprof_pto_destroy(w->pto);
     free(w->profile);
     free(w);

@@ -1,5 +1,5 @@
-/* Hugin 2022 understands what is written and means the same by it: nona corrects pictures with a written project and
- * draws the same masks, vig_optimize solves from written points. Skipped without the package hugin-tools. */
+/* Hugin 2022 reads written files with the same meaning: nona corrects pictures with a written project and draws the
+ * same masks, vig_optimize solves from written points. Skipped without the package hugin-tools. */
 #include "pto_support.h"
 
 #include <lensprof/model.h>
@@ -95,7 +95,7 @@ static const double emor[5] = {0.7, -0.25, 0.08, 0.03, -0.02};
 static const lensprof_vignetting falloff = {{-0.45, 0.12, -0.04}, {0.06, -0.04}};
 static const lensprof_exposure taken[2] = {{0.25, {1, 1, 1}}, {-0.6, {1.15, 1, 0.85}}};
 
-/* Picture of an even wall by the model of model.h; returns the largest minus the smallest value. */
+/* Renders an evenly lit wall with the model of model.h; returns the largest minus the smallest value. */
 static int take_picture(const char *path, const lensprof_response *response, const lensprof_exposure *exposure) {
     uint8_t pixels[HEIGHT * WIDTH * 3];
     int low = 255, high = 0;
@@ -111,7 +111,7 @@ static int take_picture(const char *path, const lensprof_response *response, con
     return high - low;
 }
 
-/* Both pictures must come out as the wall that image 0 would have seen without falloff. */
+/* Both pictures must show the wall as image 0 would without falloff. */
 static void test_nona_corrects_with_a_written_project(void **state) {
     (void)state;
     need("nona");
@@ -154,7 +154,7 @@ static void test_nona_corrects_with_a_written_project(void **state) {
 
 /* ---- nona draws the same masks --------------------------------------------------------------------------------- */
 
-/* Remapped onto itself, a picture's alpha is its mask; pixels on the edge of a circle may differ. */
+/* If a picture is remapped onto itself, its alpha is its mask; pixels on the edge of a circle may differ. */
 static void compare_masks(const char *project, uint32_t images, int tolerance) {
     lensprof_pto *pto = read_pto(project);
     run_nona(project);
@@ -202,7 +202,7 @@ static void test_nona_draws_the_same_masks(void **state) {
 
 /* ---- vig_optimize solves from written points --------------------------------------------------------------------- */
 
-/* Pairs without noise by the model with EMoR's mean curve; exposures relative to picture 0. */
+/* Pairs without noise according to the model with EMoR's mean curve; exposures relative to picture 0. */
 static void make_pairs(lensprof_pair *pairs, int count, const lensprof_vignetting *vignetting) {
     lensprof_response *response = malloc(sizeof *response);
     uint64_t seed = 77;
@@ -264,7 +264,7 @@ static void test_vig_optimize_reads_written_points(void **state) {
                      lensprof_vignetting_eval(&centred, r2, NULL), 0.005);
     lensprof_pto_destroy(pto);
     free(solved);
-    char *points = read_file("hugin_points2.txt", &bytes); /* and what it writes can be read */
+    char *points = read_file("hugin_points2.txt", &bytes); /* its output can be read */
     assert_ok(lensprof_points_read(points, bytes, again, PAIRS, &found, NULL));
     assert_int_equal(found, PAIRS);
     for (int i = 0; i < PAIRS; i++) assert_close(again[i].xy[0][0], pairs[i].xy[0][0], 1e-2);

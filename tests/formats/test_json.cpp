@@ -1,4 +1,5 @@
-// Profiles as JSON: what is written reads back the same in every bit, and what is not a profile is refused by its path.
+// Profiles as JSON: written profiles read back the same in every bit, and invalid ones are refused with the path of the
+// fault.
 #include <algorithm>
 
 #include "profile_support.hpp"
@@ -34,14 +35,14 @@ void test_round_trip(void **) {
     assert_int_equal(read_json(write_json({})).profiles.size(), 0);
 }
 
-// Kinds come back as themselves, so that a curve can be evaluated by its formula.
+// Kinds are preserved, so that a curve can be evaluated by its formula.
 void test_kinds(void **) {
     const Profile full = full_profile();
     const Read read = read_json(write_json({full.get()}));
     assert_int_equal(read.profiles[0]->response[0].kind, LENSPROF_RESPONSE_EMOR);
     assert_int_equal(read.profiles[0]->response[1].kind, LENSPROF_RESPONSE_GAMMA);
     assert_int_equal(read.profiles[0]->response[2].kind, LENSPROF_RESPONSE_TABLE);
-    // Samples in single precision, as a blob holds them, are those that come back.
+    // Samples in single precision, as a blob holds them, read back unchanged.
     Profile rounded = new_profile();
     rounded->response[0] = full->response[0];
     for (double &value : rounded->response[0].table) value = static_cast<float>(value);
@@ -71,7 +72,7 @@ void test_defaults(void **) {
     assert_string_equal(unnamed.profiles[0]->provenance.source, "a?b");
 }
 
-// Before there were "prior_id" and "forced", the method ended in them.
+// Before "prior_id" and "forced" existed, the method ended with them.
 void test_old_methods(void **) {
     const struct {
         const char *before, *method;
@@ -98,7 +99,7 @@ void test_old_methods(void **) {
         assert_int_equal(p.prior_id, c.prior);
         assert_int_equal(p.forced, c.forced);
     }
-    // A file that has one of them has said it there.
+    // If a file has one of these members, the method is not parsed.
     const Read read = read_json(
         with(kShort, "\"more\":{", "\"provenance\":{\"method\":\"transfer+12 (forced)\",\"prior_id\":null},\"m\":{"));
     assert_string_equal(read.profiles[0]->provenance.method, "transfer+12 (forced)");
@@ -191,7 +192,7 @@ void test_calls(void **) {
     const lensprof_profile *const one = bad.get();
     assert_int_equal(lensprof_json_write(&one, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_VIGNETTING);
     assert_non_null(strstr(error.text, "profile 0: is invalid"));
-    // Texts of a database need not be UTF-8, JSON must be.
+    // Texts of a database need not be UTF-8, but JSON must be.
     Profile latin = new_profile();
     strcpy(latin->key.lens, "\xe9t\xe9");
     assert_string_equal(read_json(write_json({latin.get()})).profiles[0]->key.lens, "\xef\xbf\xbdt\xef\xbf\xbd");

@@ -1,11 +1,11 @@
-// Adobe lens profiles, read and written.
+// Adobe lens profiles: reading and writing.
 #include <cstring>
 
 #include "import_support.hpp"
 
 namespace {
 
-// As Adobe's own files: the same property as an attribute, as an element, in a resource and in a description.
+// As in Adobe's own files: the same property as an attribute, as an element, in a resource and in a description.
 const std::string kHead = R"(<x:xmpmeta xmlns:x="adobe:ns:meta/" x:xmptk="Adobe XMP Core">
  <rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
   <rdf:Description rdf:about="" xmlns:photoshop="http://ns.adobe.com/photoshop/1.0/"
@@ -83,7 +83,7 @@ void test_golden(void **) {
     assert_ok(imported.status);
     assert_int_equal(imported.profiles.size(), 2);  // the third has no falloff
     const lensprof_profile &first = *imported.profiles[0], &second = *imported.profiles[1];
-    for (const lensprof_profile *p : {&first, &second}) {  // the second takes from the first what it does not say
+    for (const lensprof_profile *p : {&first, &second}) {  // the second inherits missing values from the first
         assert_string_equal(p->key.camera_maker, "Canon");
         assert_string_equal(p->key.camera_model, "Canon EOS 5D Mark II");
         assert_string_equal(p->key.lens, "EF35mm f/1.4L USM");
@@ -94,7 +94,8 @@ void test_golden(void **) {
     }
     assert_true(first.key.aperture == 1.4 && second.key.aperture == 4.0);
     assert_true(first.key.distance_m == 3 && std::isinf(second.key.distance_m));
-    // Half the diagonal of 4000 x 3000 is 2500, the focal length 0.5 * 4000: r in focal lengths is 1.25 in the corner.
+    // Half the diagonal of 4000 x 3000 is 2500 and the focal length 0.5 * 4000, so r in focal lengths is 1.25 in the
+    // corner.
     const double s = 1.25 * 1.25;
     const double k[3] = {-0.2 * s, 0.04 * s * s, -0.016 * s * s * s};
     for (int n = 0; n < 3; n++) assert_close(first.vignetting[0].k[n], k[n], 1e-14);
@@ -117,7 +118,7 @@ void test_what_may_be_missing(void **) {
     assert_int_equal(p.key.processing, LENSPROF_PROCESSING_JPEG);
     // 3:2: rho / longer side = hypot(3, 2) / 2 / 3
     assert_close(p.vignetting[0].k[0], -0.2 * 13.0 / 36 / 0.25, 1e-14);
-    // Without FocalLengthX: 35 mm of a full frame are 35 / 35.
+    // Without FocalLengthX: 35 mm on a full frame are 35 / 35.
     text = replaced(kElements, "<stCamera:FocalLengthX>0.5</stCamera:FocalLengthX>", "");
     text = replaced(text, "<stCamera:FocalLengthY>0.5</stCamera:FocalLengthY>", "");
     assert_close(read_entry(text).profiles.at(0)->vignetting[0].k[0], -0.2 * 0.625 * 0.625, 1e-14);
@@ -127,7 +128,7 @@ void test_what_may_be_missing(void **) {
     assert_non_null(strstr(none.error.c_str(), "without FocalLengthX"));
 }
 
-// Knots of radius and attenuation, straight between them, instead of the three coefficients.
+// Knots of radius and attenuation with straight lines between them, instead of the three coefficients.
 void test_piecewise(void **) {
     std::string knots = "<stCamera:VignetteModelPiecewiseParam><rdf:Seq>";
     for (int i = 0; i <= 20; i++) {
@@ -140,11 +141,11 @@ void test_piecewise(void **) {
     assert_string_equal(imported.error.c_str(), "");
     const lensprof_profile &p = *imported.profiles.at(0);
     assert_close(p.vignetting[0].center[0], 0.08, 1e-14);
-    for (const double r : {0.2, 0.6, 0.9, 1.0}) {  // half diagonals, each 1.25 focal lengths
+    for (const double r : {0.2, 0.6, 0.9, 1.0}) {  // half diagonals of 1.25 focal lengths
         const double m = lensprof_vignetting_eval(&p.vignetting[0], r * r, nullptr);
         assert_close(m * (1 + 0.2 * r * r * 1.25 * 1.25), 1.0, 3e-3);
     }
-    // Knots far from any such polynomial are said to be; those that are not attenuations make no falloff.
+    // Knots far from any such polynomial make the profile doubtful; invalid attenuations give no falloff.
     std::string step =
         "<stCamera:VignetteModelPiecewiseParam><rdf:Seq><rdf:li>0, 1</rdf:li><rdf:li>0.7, 1</rdf:li>"
         "<rdf:li>0.71, 0.6</rdf:li></rdf:Seq></stCamera:VignetteModelPiecewiseParam>";
@@ -162,7 +163,7 @@ void test_piecewise(void **) {
         assert_int_equal(with(replaced(step, "0.71, 0.6", wrong)).status, LENSPROF_ERROR_SYNTAX);
 }
 
-// Focal lengths that differ: ellipses, which a gain grid holds.
+// Different focal lengths: ellipses, which a gain grid represents.
 void test_two_focal_lengths(void **) {
     std::string text = replaced(kElements, "<stCamera:FocalLengthY>0.5<", "<stCamera:FocalLengthY>0.55<");
     const Imported imported = read_entry(text);
@@ -232,8 +233,8 @@ void test_written_golden(void **) {
         at = text.find(piece, at);
         if (at == std::string::npos) fail_msg("missing: %s in %s", piece, text.c_str());
     }
-    // 36 mm is the longer side: the focal length in it is 1, and -0.25 of half diagonals is -0.25 (36 / 21.633)^2 of
-    // it.
+    // 36 mm is the longer side: the focal length is 1 of it, and -0.25 per half diagonal squared is -0.25 (36 /
+    // 21.633)^2.
     const auto number = [&](const std::string &name) {
         return std::stod(text.substr(text.rfind("<" + name + ">") + name.size() + 2));
     };

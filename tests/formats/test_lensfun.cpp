@@ -1,4 +1,4 @@
-// Lensfun databases, read and written.
+// Lensfun databases: reading and writing.
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -75,7 +75,7 @@ void test_golden(void **) {
 }
 
 // Half the diagonal of 36 x 24 is 21.633 = 6/10 of 36.0555, so r in focal lengths is 0.6 in the corner.
-// Fixed lenses: one of a mount; of several the one without a converter; where that is not clear, none.
+// Fixed lenses: the only lens of a mount; of several, the one without a converter; if ambiguous, none.
 const std::string kCameras = R"(<lensdatabase version="2">
     <camera><maker>Canon Inc.</maker><maker lang="en">Canon</maker><model>Canon  PowerShot X</model>
         <model lang="en">PowerShot X</model><mount>canonX</mount><cropfactor> 4.843 </cropfactor></camera>
@@ -148,7 +148,7 @@ void test_wrong_cameras(void **) {
     for (const auto &one : wrong) {
         assert_true(read_cameras(one.first, all, error) != LENSPROF_OK);
         if (!strstr(error.text, one.second)) fail_msg("%s", error.text);
-        assert_true(all.empty());  // all is checked first
+        assert_true(all.empty());  // everything is checked first
     }
     assert_int_equal(read_cameras("<lensdatabase><camera><model>!</model></camera></lensdatabase>", all, error),
                      LENSPROF_ERROR_CANCELLED);
@@ -163,7 +163,7 @@ void test_radius_conventions(void **) {
     assert_close(all[2].vignetting.k[0], -0.5 * 0.36, 1e-15);
     assert_close(all[2].vignetting.k[1], 0.25 * 0.36 * 0.36, 1e-15);
     assert_close(all[2].vignetting.k[2], -0.1 * 0.36 * 0.36 * 0.36, 1e-15);
-    assert_close(all[3].vignetting.k[0], -0.5 * 468 / 2500, 1e-15);  // of 50 mm: no real-focal
+    assert_close(all[3].vignetting.k[0], -0.5 * 468 / 2500, 1e-15);  // at 50 mm: no real-focal
     // 4:3: half the shorter side is 3/5 of half the diagonal.
     assert_close(all[4].vignetting.center[0], 0.3, 1e-15);
     assert_close(all[4].vignetting.center[1], -0.15, 1e-15);
@@ -177,7 +177,7 @@ void test_fixed_lenses_and_doubts(void **) {
     assert_string_equal(all[4].key.camera_maker, "Canon Inc.");
     assert_string_equal(all[4].key.camera_model, "PowerShot X");
     assert_string_equal(all[5].key.lens, "Casio Fixed");
-    assert_string_equal(all[5].key.camera_model, "");  // two cameras have it
+    assert_string_equal(all[5].key.camera_model, "");  // two cameras have this lens
     const struct {
         uint32_t usable;
         const char *doubt;
@@ -233,7 +233,7 @@ void expect_error(const std::string &text, lensprof_status status, const char *w
     assert_int_equal(database.status, status);
     assert_non_null(strstr(database.error.c_str(), words));
     assert_non_null(strchr(database.error.c_str(), ';'));
-    assert_int_equal(database.entries.size(), 0);  // nothing is visited of a text with an error
+    assert_int_equal(database.entries.size(), 0);  // a text with an error delivers no entries
 }
 
 std::string replaced(std::string text, const std::string &old_words, const std::string &new_words) {
@@ -299,7 +299,7 @@ void test_not_xml(void **) {
     assert_ok(read_lensfun("<lensdatabase>\u00e4\u20ac\U0001F4F7</lensdatabase>").status);
 }
 
-// Wherever a file is cut there is an error, and nothing is visited, but behind the end of its last element.
+// A file cut anywhere is an error and delivers nothing, unless the cut is after its last element.
 void test_cut_anywhere(void **) {
     const size_t whole = kGolden.rfind('>') + 1;
     for (size_t bytes = 0; bytes < kGolden.size(); bytes++) {
@@ -486,9 +486,9 @@ void *failing_allocation(size_t size) {
     return std::malloc(size);
 }
 
-// Every allocation of pugixml is made to fail once; test_formats_memory does so with those of lensprof.
+// Every allocation of pugixml fails once; test_formats_memory covers the allocations of lensprof.
 void test_out_of_memory(void **) {
-    const std::string lengthy(127, 'x');  // more than a page of pugixml's
+    const std::string lengthy(127, 'x');  // more than a page of pugixml
     std::vector<lensprof_profile> profiles;
     for (int i = 0; i < 120; i++) profiles.push_back(lens_profile(lengthy.c_str(), 1 + i, 50, 2, 1, -0.1));
     const std::string whole = write_lensfun(profiles);
@@ -516,7 +516,7 @@ void test_out_of_memory(void **) {
     allocations_left = -1;
 }
 
-// Every file that is installed, and the statistics of what it holds.
+// Every installed file, and statistics of the contents.
 void test_installed_database(void **) {
     const std::filesystem::path folder = "/usr/share/lensfun/version_1";
     if (!std::filesystem::is_directory(folder)) {

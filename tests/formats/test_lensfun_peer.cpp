@@ -1,13 +1,13 @@
-// What is written, as Lensfun itself reads and applies it.
+// Written databases, read and applied by Lensfun itself.
 #include <lensfun.h>
 
 #include "lensfun_support.hpp"
 
 namespace {
 
-constexpr int kWidth = 601, kHeight = 401;  // r = 1 in the pixel centre of a corner: hypot(600, 400) / 2
+constexpr int kWidth = 601, kHeight = 401;  // r = 1 at the centre of a corner pixel: hypot(600, 400) / 2
 
-// Loads a database and gives its only lens.
+// Loads a database and returns its only lens.
 class Loaded {
 public:
     explicit Loaded(const std::string &text) : db_(lf_db_new()) {
@@ -41,8 +41,8 @@ std::vector<float> gains(const lfLens *lens, float crop, float focal, float aper
     return pixels;
 }
 
-// Over the frame; Lensfun's half diagonal is that of the pixels' centres, which is why the frame of lensprof is one
-// pixel smaller here.
+// Over the frame. Lensfun measures the half diagonal between pixel centres, so the frame of lensprof is one pixel
+// smaller here.
 void compare_gains(const lensprof_profile &profile, float distance, double tolerance) {
     const Loaded loaded(write_lensfun({profile}));
     const lfLens *lens = loaded.find(nullptr, profile.key.lens);
@@ -76,7 +76,7 @@ void test_shifted_centre(void **) {
     compare_gains(profile, 1, 1e-4);
 }
 
-// A database of Adobe's model becomes one of pa with the same falloff.
+// A database with Adobe's model is converted to model pa with the same falloff.
 void test_adobe_model_converted(void **) {
     const Database adobe = read_lensfun(
         "<lensdatabase version=\"2\"><lens><maker>Acme</maker><model>Acme 24mm f/2</model><mount>Generic</mount>"
@@ -113,7 +113,7 @@ void test_every_entry_is_loaded(void **) {
     }
 }
 
-// Beside Lensfun's own database, for a camera whose mount takes "Generic".
+// Together with Lensfun's own database, for a camera whose mount accepts "Generic".
 void test_found_for_a_camera(void **) {
     const std::string cameras =
         "<lensdatabase version=\"1\"><mount><name>Acme F</name><compat>Generic</compat></mount>"

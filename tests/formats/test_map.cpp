@@ -28,7 +28,7 @@ double worst_beside(const lensprof_profile &a, const lensprof_profile &b) {
     return worst;
 }
 
-// In both senses, of a reduced map and of one a pixel, of one channel and three.
+// Both senses, a reduced map and one at full resolution, one channel and three.
 void test_round_trip(void **) {
     for (const uint32_t channels : {1u, 3u})
         for (const uint32_t sense : {0u, 1u})
@@ -56,7 +56,7 @@ void test_round_trip(void **) {
             }
 }
 
-// 8 bit of vignette.png: the noise of rounding is not more than it must be.
+// 8 bit values as in vignette.png add only the noise of rounding.
 void test_coded(void **) {
     const Profile truth = lens(1);
     std::vector<float> values = write(*truth, kWidth, kHeight, 1, 0);
@@ -67,7 +67,7 @@ void test_coded(void **) {
     assert_true(worst_beside(*found, *truth) < 1e-3);
 }
 
-// A tilt becomes a gain grid, which is written again; what is not known, 0, counts for nothing.
+// A tilt becomes a gain grid, which is written again; unknown values (0) are ignored.
 void test_grid(void **) {
     const Profile truth = lens(3);
     std::vector<float> values = write(*truth, kWidth, kHeight, 3, 1);
@@ -89,7 +89,7 @@ void test_grid(void **) {
     assert_close(again[at] / again[at + 300], values[at] / values[at + 300], 0.01);
 }
 
-// Maps of hardly any rows or columns, beside many that are averaged.
+// Maps with few rows and many columns, or the reverse; the long direction is averaged.
 void test_narrow(void **) {
     const Profile truth = lens(1);
     const uint32_t shapes[][2] = {{60000, 2}, {2100, 2}, {2, 5000}, {5000, 4}};
@@ -102,7 +102,7 @@ void test_narrow(void **) {
     }
 }
 
-// One channel of three curves is their mean.
+// Writing one channel from three curves gives their mean.
 void test_mean(void **) {
     const Profile truth = lens(3);
     const std::vector<float> one = write(*truth, 20, 15, 1, 0), all = write(*truth, 20, 15, 3, 0);

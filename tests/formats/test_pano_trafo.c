@@ -1,5 +1,5 @@
-/* lensprof_camera_project against libpano13, as the program pano_trafo of hugin-tools runs it: every lens with every
- * kind of distortion, also beyond where it turns back, seen through three kinds of panorama. */
+/* lensprof_camera_project compared with libpano13, run as pano_trafo of hugin-tools: every lens with every kind of
+ * distortion, also beyond the radius at which it turns back, seen through three kinds of panorama. */
 #include "support.h"
 
 #include <lensprof/geometry.h>
@@ -23,7 +23,8 @@ typedef struct panorama {
 
 static double spread(uint64_t *seed, double half) { return half * (2 * lp_random(seed) - 1); }
 
-/* Variant 0 plain, 1 radial, 2 shift, 3 shear, 4 translation, 5 translation to a turned plane, 6 all, 7 all, wide. */
+/* Variants: 0 plain, 1 radial, 2 shift, 3 shear, 4 translation, 5 translation to a rotated plane, 6 all, 7 all,
+ * wide. */
 static lensprof_camera make_camera(uint32_t projection, int variant, uint64_t *seed) {
     int all = variant >= 6;
     lensprof_camera camera = {.projection = projection, .width = 1500, .height = 1000};
@@ -83,7 +84,7 @@ static void direction_of(const panorama *pano, const double pixel[2], double dir
     }
 }
 
-/* The points are made once more, with the same seed, when the answers are read. */
+/* The points are generated again from the same seed when the answers are read. */
 static void random_point(const panorama *pano, uint64_t *seed, double pixel[2]) {
     pixel[0] = floor(1000 * pano->width * lp_random(seed)) / 1000;
     pixel[1] = floor(1000 * pano->height * lp_random(seed)) / 1000;
@@ -107,7 +108,7 @@ static int in_frame(const lensprof_camera *camera, const double xy[2]) {
     return xy[0] > 0 && xy[0] < camera->width - 1 && xy[1] > 0 && xy[1] < camera->height - 1;
 }
 
-/* Largest deviation and number of compared points of each lens. */
+/* Largest deviation and number of compared points per lens. */
 static void compare(const panorama *pano, const lensprof_camera *cameras, uint64_t seed, double *worst, int *compared) {
     FILE *file = fopen("pano_trafo_answers.txt", "r");
     assert_non_null(file);
@@ -118,7 +119,7 @@ static void compare(const panorama *pano, const lensprof_camera *cameras, uint64
             assert_int_equal(fscanf(file, "%lf %lf", &theirs[0], &theirs[1]), 2);
             direction_of(pano, pixel, direction);
             if (!lensprof_camera_project(&cameras[i], direction[0], direction[1], xy)) {
-                /* Nor does libpano13 see it in the frame; but it lets Thoby turn back beyond 126 degrees. */
+                /* libpano13 does not see it in the frame either; but it lets Thoby turn back beyond 126 degrees. */
                 assert_true(cameras[i].projection == LENSPROF_PROJECTION_THOBY || !in_frame(&cameras[i], theirs));
                 continue;
             }

@@ -38,7 +38,7 @@ std::string gamma_text(double gamma, int count, double low, double high) {
     return text;
 }
 
-// Any scale and number of values; the curve is sampled on 1024 irradiances, so that the darkest greys are what differs.
+// Any scale and number of values. The curve is sampled at 1024 irradiances, so the darkest greys differ most.
 void test_read(void **) {
     for (int count : {256, 1024, 65536}) {
         const double gamma = 2.2;
@@ -55,7 +55,7 @@ void test_read(void **) {
     }
 }
 
-// What was read is written again: to a tenth of a level, next to black.
+// A curve that was read is written again: within a tenth of a level, next to black.
 void test_round_trip(void **) {
     for (double gamma : {0.5, 1.0, 1.8, 2.2, 3.0}) {
         lensprof_response response;
@@ -68,7 +68,7 @@ void test_round_trip(void **) {
     }
 }
 
-// Whatever the response, the readers' test for increasing values in single precision holds.
+// For every response, values increase even in the readers' single precision.
 void test_increases(void **) {
     lensprof_response responses[4];
     const double step[5] = {0, 0, 1, 1, 1}, ends[4] = {0, 0.999, 0.999, 1};
@@ -82,7 +82,7 @@ void test_increases(void **) {
         assert_true(values[0] == 0.0 && values[255] == 255.0);
         for (int i = 1; i < 256; i++) {
             assert_true(static_cast<float>(values[i]) > static_cast<float>(values[i - 1]));
-            if (i < 255)  // which is saturated, whatever the irradiance
+            if (i < 255)  // 255 is saturated, whatever the irradiance
                 assert_true(fabs(values[i] - 255 * lensprof_response_invert(&response, i / 255.0, nullptr)) <= 0.0256);
         }
         lensprof_response again;

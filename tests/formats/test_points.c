@@ -80,7 +80,7 @@ static void test_read_errors(void **state) {
     }
 }
 
-/* Frames of 6 x 8: half the diagonal is 5, the centre (2.5, 3.5). */
+/* Frames of 6 x 8: half the diagonal is 5, the centre is (2.5, 3.5). */
 static void test_write(void **state) {
     (void)state;
     const lensprof_camera cameras[2] = {{.width = 6, .height = 8}, {.width = 600, .height = 800}};
@@ -153,7 +153,7 @@ static void test_arguments(void **state) {
     assert_int_equal(lensprof_points_read(two, 5, &pair, 1, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
 }
 
-/* What vig_optimize writes where its cubic interpolation rings. */
+/* Output of vig_optimize with the overshoot of its cubic interpolation. */
 static void test_overshoot_is_cut(void **state) {
     (void)state;
     const char *text = "0 1 10 20 30 40 1.02 0.2 0.3 0.4 0.5 -0.015 0 0.7 0.8 0\n";

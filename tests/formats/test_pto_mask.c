@@ -1,4 +1,4 @@
-/* Drawing crops and masks. The pictures below are what must come out, row by row. */
+/* Drawing crops and masks. The pictures below are the expected results, row by row. */
 #include "pto_support.h"
 
 static void assert_drawn(const lensprof_pto *pto, uint32_t index, uint32_t width, uint32_t height,
@@ -47,14 +47,14 @@ static void test_crop(void **state) {
     assert_drawn(pto, 3, 4, 3,
                  "...."
                  ".##."
-                 ".##."); /* places 0.5, 2.5, 4.5, 6.5 of pixels 2..5 */
+                 ".##."); /* positions 0.5, 2.5, 4.5, 6.5 of pixels 2..5 */
     assert_drawn(pto, 2, 16, 2,
                  "################"
                  "################");
     lensprof_pto_destroy(pto);
 }
 
-/* The circle touches the nearer sides of the crop: radius 4 around (6, 5) of 2..10 x 1..9. */
+/* The circle touches the closer sides of the crop: radius 4 around (6, 5) of 2..10 x 1..9. */
 static void test_circular_crop(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w12 h10 f2 v90 S1,11,1,9\n");
@@ -71,7 +71,7 @@ static void test_polygons(void **state) {
         "i w8 h6\n"
         "k i0 t0 p\"1.5 0.5 4.5 0.5 4.5 3.5 1.5 3.5\"\n" /* pixels 2..4 x 1..3 */
         "k i0 t0 p\"5.5 4.5 99 4.5 99 99 5.5 99\"\n"     /* beyond the corner */
-        "k i0 t0 p\"0 0 5 5\"\n");                       /* two corners enclose nothing */
+        "k i0 t0 p\"0 0 5 5\"\n");                       /* two corners enclose no area */
     assert_drawn(pto, 0, 8, 6,
                  "########"
                  "##...###"
@@ -92,11 +92,11 @@ static void test_polygons(void **state) {
                  "#..###..#"
                  "#.......#"
                  "#.......#"
-                 "#########"); /* what is enclosed twice is not excluded */
+                 "#########"); /* areas enclosed twice are not excluded */
     lensprof_pto_destroy(pto);
 }
 
-/* A triangle against the half-plane test, at the frame's size and at smaller and larger views. */
+/* A triangle compared with the half-plane test, at the size of the frame and in smaller and larger views. */
 static void test_triangle_in_views(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w40 h30\nk i0 p\"3.3 2.2 35.1 9.7 12.9 27.4\"\n");
@@ -139,7 +139,7 @@ static void test_include(void **state) {
     lensprof_pto_destroy(pto);
 }
 
-/* Stacks are images with linked j (Hugin writes j0 for every unlinked image), lenses images with linked v. */
+/* Images with linked j form a stack (Hugin writes j0 for every unlinked image), images with linked v share a lens. */
 static void test_stack_and_lens(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(

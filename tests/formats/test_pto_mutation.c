@@ -1,4 +1,4 @@
-/* Damaged projects and point files: always a status, never a crash; what is accepted can be used and written. */
+/* Damaged projects and point files: always a status, never a crash; accepted ones can be used and written. */
 #include "pto_support.h"
 
 #define MUTATIONS 5000
@@ -6,13 +6,13 @@
 
 static size_t pick(uint64_t *seed, size_t below) { return below ? (size_t)(lp_random(seed) * (double)below) : 0; }
 
-/* A random size, more often a small one. */
+/* A random size; small ones are more frequent. */
 static size_t pick_size(uint64_t *seed, size_t most) {
     size_t divisor = 1 + pick(seed, 20);
     return pick(seed, most + 1) / divisor;
 }
 
-/* One change: a byte, a removed or doubled piece, or a word that parsers stumble over. */
+/* One change: a byte, a removed or repeated piece, or a word that is difficult for parsers. */
 static size_t mutate(char *text, size_t length, uint64_t *seed) {
     static const char *const words[] = {"\n",
                                         "\r",
@@ -98,7 +98,7 @@ static void test_projects(void **state) {
         size_t length = strlen(SAMPLE_PTO), changes = 1 + pick(&seed, 4);
         memcpy(text, SAMPLE_PTO, length);
         for (size_t i = 0; i < changes; i++) length = mutate(text, length, &seed);
-        char *exact = malloc(length + 1); /* of exactly that size: the address sanitizer sees every overrun */
+        char *exact = malloc(length + 1); /* exactly that size: the address sanitizer detects every overrun */
         memcpy(exact, text, length);
         lensprof_pto *pto = NULL;
         lensprof_error error;

@@ -37,7 +37,7 @@ static void test_links_resolve_to_the_end_of_the_chain(void **state) {
     assert_memory_equal(third.camera.radial, first.camera.radial, sizeof first.camera.radial);
     assert_memory_equal(third.emor, first.emor, sizeof first.emor);
     assert_memory_equal(third.vignetting.k, first.vignetting.k, sizeof first.vignetting.k);
-    assert_close(third.vignetting.center[0], 25 / (250 * sqrt(2)), 1e-15); /* linked in pixels, in a 500 x 500 frame */
+    assert_close(third.vignetting.center[0], 25 / (250 * sqrt(2)), 1e-15); /* linked in pixels, of a 500 x 500 frame */
     assert_true(second.exposure.ev == -12.5 && third.exposure.ev == -12.5);
     assert_true(third.exposure.white_balance[0] == 1.25 && third.exposure.white_balance[2] == 1);
     assert_true(second.response_of == 0 && third.response_of == 0 && third.vignetting_of == 0);
@@ -137,7 +137,7 @@ static void test_names(void **state) {
     lensprof_pto_destroy(pto);
 }
 
-/* Windows line ends, tabs, no end of the last line, a plus sign, twice the same item (Hugin reads the first). */
+/* Windows line ends, tabs, a missing final line end, a plus sign, a repeated item (Hugin reads the first). */
 static void test_spelling(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(
@@ -165,7 +165,7 @@ static void assert_refused(const char *text, size_t bytes, lensprof_status statu
         print_error("\"%s\" does not hold \"%s\"\n", error.text, words);
         fail();
     }
-    assert_non_null(strchr(error.text, ';')); /* a next step */
+    assert_non_null(strchr(error.text, ';')); /* contains a next step */
     assert_int_equal(lensprof_pto_read(text, bytes, &pto, NULL), status);
 }
 
@@ -259,7 +259,7 @@ static void test_arguments(void **state) {
     lensprof_pto_destroy(NULL);
 }
 
-/* Hugin evaluates a response that falls as its running maximum. */
+/* Hugin evaluates a falling response as its running maximum. */
 static void test_response_as_hugin_sees_it(void **state) {
     (void)state;
     lensprof_response response;

@@ -1,4 +1,4 @@
-/* Writing Hugin projects: nothing changes but what was set, and what was set reads back. */
+/* Writing Hugin projects: nothing changes except what was set, and set values read back. */
 #include <math.h>
 
 #include "pto_support.h"
@@ -40,7 +40,7 @@ static void test_write_into_buffers(void **state) {
 static const double emor[5] = {0.71, -0.123456789012345, 0.05, 1e-7, -0.02};
 static const lensprof_vignetting falloff = {{-0.31, 0.0625, -0.011}, {0.04, -0.07}};
 
-/* Images 1 and 2 of the sample share Eev, 0 to 2 share Er. Exposures are relative to image 3. */
+/* Images 1 and 2 of the sample share Eev, images 0 to 2 share Er. Exposures are relative to image 3. */
 static void make_exposures(lensprof_exposure exposures[4]) {
     const double ev[4] = {0.75, -0.5, -0.5, 0.25}, red[4] = {1.5, 1.5, 1.5, 1}, blue[4] = {0.5, 0.8, 0.8, 1};
     for (int i = 0; i < 4; i++) exposures[i] = (lensprof_exposure){ev[i], {red[i], 1, blue[i]}};
@@ -64,7 +64,7 @@ static void assert_result(const lensprof_pto *pto) {
         lensprof_pto_image image = image_of(pto, i);
         assert_memory_equal(image.emor, emor, sizeof emor);
         assert_memory_equal(image.vignetting.k, falloff.k, sizeof falloff.k);
-        if (i != 2) { /* its centre is linked, in pixels, to that of a frame of another size */
+        if (i != 2) { /* the centre is linked, in pixels, to that of a frame of another size */
             assert_close(image.vignetting.center[0], falloff.center[0], 1e-15);
             assert_close(image.vignetting.center[1], falloff.center[1], 1e-15);
         }
@@ -91,7 +91,7 @@ static void test_only_the_result_changes(void **state) {
     lensprof_pto *pto = sample_with_result();
     char *text = write_pto(pto), *copy = text;
     const char *old = SAMPLE_PTO;
-    while (*old) { /* every other line is the same */
+    while (*old) { /* all other lines are unchanged */
         size_t length = strcspn(old, "\n") + 1, new_length = strcspn(copy, "\n") + 1;
         if (strncmp(old, "i ", 2) != 0) {
             assert_int_equal(new_length, length);
@@ -136,7 +136,7 @@ static void test_links_stay_and_missing_items_come(void **state) {
     lensprof_pto_destroy(pto);
 }
 
-/* The reference keeps its exposure and white balance to the bit, whatever they are. */
+/* The reference keeps every bit of its exposure and white balance, whatever the values. */
 static void test_reference_stays(void **state) {
     (void)state;
     lensprof_response *response = malloc(sizeof *response);
@@ -156,13 +156,14 @@ static void test_reference_stays(void **state) {
     assert_string_equal(item_of(text, 1, "Rt"), "0");
     assert_string_equal(item_of(text, 1, "Vm"), "5");
     assert_null(strstr(text, "\n\n"));
-    assert_int_equal(text[strlen(text) - 2], '\r'); /* items are added before the line end */
+    assert_int_equal(text[strlen(text) - 2], '\r'); /* items are inserted before the line end */
     free(text);
     free(response);
     lensprof_pto_destroy(pto);
 }
 
-/* A curve beyond Hugin's five modes: the remainder must be orthogonal to all five, else a nearer curve exists. */
+/* A curve that Hugin's five modes cannot represent: the remainder must be orthogonal to all five, otherwise a closer
+ * curve exists. */
 static void test_other_responses_are_projected(void **state) {
     (void)state;
     lensprof_response *response = malloc(sizeof *response);
@@ -192,8 +193,8 @@ static void test_other_responses_are_projected(void **state) {
     free(response);
 }
 
-/* Of each camera the first image has its response and the others are linked to that one, whatever they were before;
- * falloffs and exposures stay. */
+/* Per camera, the first image gets the response and the others are linked to it, whatever they were before; falloffs
+ * and exposures stay. */
 static void test_cameras(void **state) {
     (void)state;
     const char *text =
@@ -236,7 +237,7 @@ static void test_cameras(void **state) {
     lensprof_pto_destroy(pto);
 }
 
-/* Images without an exposure keep theirs, and a comment names them; a later result takes the comment's place. */
+/* Images without an exposure keep theirs, and a comment lists them; a later result replaces the comment. */
 static void test_images_that_were_left_out(void **state) {
     (void)state;
     const char *text = "i w10 h10 Eev1 Er2 Eb3 n\"a\"\ni w10 h10 Eev4 Er1 Eb1 n\"b\"\ni w10 h10 Eev5 Er1 Eb1 n\"c\"";
@@ -245,7 +246,7 @@ static void test_images_that_were_left_out(void **state) {
     assert_ok(lensprof_response_set_emor(response, emor, 5));
     lensprof_exposure exposures[3] = {{NAN, {1, 1, 1}}, {0, {1, 1, 1}}, {NAN, {1, 1, 1}}};
     assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, exposures, 3, 0, NULL), LENSPROF_ERROR_ARGUMENT);
-    for (int turn = 0; turn < 2; turn++) { /* the second has image 0 */
+    for (int turn = 0; turn < 2; turn++) { /* the second time with image 0 */
         if (turn == 1) exposures[0] = (lensprof_exposure){2, {1, 1, 1}};
         assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 3, 1, NULL));
         char *written = write_pto(pto);
@@ -273,7 +274,7 @@ static void test_images_that_were_left_out(void **state) {
     lensprof_pto_destroy(pto);
 }
 
-/* Where others share the exposure of an image that was left out, theirs is written into it. */
+/* If other images share the exposure of an image that was left out, their exposure is written to it. */
 static void test_links_to_an_image_that_was_left_out(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w10 h10 Eev0 Er1 Eb1\ni w10 h10 Eev0 Er1 Eb1\ni w10 h10 Eev=0 Er1 Eb1\n");
@@ -292,7 +293,7 @@ static void test_links_to_an_image_that_was_left_out(void **state) {
     lensprof_pto_destroy(pto);
 }
 
-/* Comments that only look like the mark say nothing and break nothing. */
+/* Comments that resemble the mark are ignored and cause no errors. */
 static void test_odd_marks(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(
@@ -361,7 +362,7 @@ static void test_set_name(void **state) {
     lensprof_pto_destroy(pto);
 }
 
-/* A name that was set and a result that is put in afterwards are both in the text. */
+/* A name that was set and a result added later are both in the text. */
 static void test_result_keeps_set_names(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w100 h80 f0 v50 Eev3 n\"a.jpg\"\ni w100 h80 f0 v=0 Eev4 n\"b.jpg\"\n");

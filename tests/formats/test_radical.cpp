@@ -1,4 +1,4 @@
-// radical's .crf and .vgn.
+// radical's .crf and .vgn files.
 #include <algorithm>
 
 #include "profile_support.hpp"
@@ -34,7 +34,7 @@ std::string write_responses(const lensprof_response *responses, uint32_t count) 
     });
 }
 
-// Blue first; to any scale.
+// Blue first, at any scale.
 std::string golden_crf() {
     std::vector<float> values;
     for (int i = 0; i < 256; i++)
@@ -122,7 +122,7 @@ void test_polynomial(void **) {
     for (int i = 0; i < 15; i++) assert_close(again[i] / terms(0)[i], 1.0, 1e-12);
 }
 
-// A centre a channel, which we do not have: near, by a refit with a grid, and it says how near.
+// A centre per channel, which a profile cannot hold: approximated by a refit with a grid, whose error is reported.
 void test_centers(void **) {
     const Found found = read_vgn(kLine + header(22, 5, 0, 1) + bytes_of(terms(12)));
     assert_string_equal(found.error.c_str(), "");
@@ -142,7 +142,7 @@ void test_centers(void **) {
         }
 }
 
-// A map, blue first; and of a profile with a grid a map is written.
+// A map, blue first. A profile with a grid is written as a map.
 void test_map(void **) {
     std::vector<float> values;
     for (int j = 0; j < 48; j++)

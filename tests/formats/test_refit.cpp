@@ -1,4 +1,5 @@
-// Falloffs of other shapes to the polynomial: exact where it is one, near where it is not, refused where it cannot be.
+// Refitting falloffs of other shapes to the polynomial: exact for polynomials, approximate for other shapes, refused if
+// impossible.
 #include <cmath>
 #include <memory>
 
@@ -81,7 +82,7 @@ void test_map_exact(void **) {
     }
 }
 
-// A tilt that no radial falloff has goes into the grid; places beyond the lens's circle, 0, count for nothing.
+// A tilt, which is not radial, goes into the grid; places outside the lens's circle (0) are ignored.
 void test_map_with_grid(void **) {
     const auto truth = lens_profile(1);
     FalloffMap map = map_of(*truth, 600, 400, 1, 1.0);
@@ -100,7 +101,7 @@ void test_map_with_grid(void **) {
     assert_int_equal(lensprof_profile_validate(found.get()), LENSPROF_OK);
 }
 
-// A table of as many values as nodes is met, not smoothed.
+// A table with as many values as nodes is reproduced, not smoothed.
 void test_map_of_few(void **) {
     FalloffMap map = map_of(*lens_profile(3), 16, 12, 3, 1.0);
     for (size_t i = 0; i < map.attenuation.size(); i++)

@@ -1,5 +1,5 @@
-// Fuzzing lensprof_import with AUTO: whatever the bytes are, the format that they look like reads them, or they are
-// refused with a text; every entry that is usable is valid, and what is written of it is read again.
+// Fuzzing lensprof_import with AUTO. Invariant for any bytes: the detected format reads them, or they are refused with
+// a text; every usable entry is valid and can be written and read again.
 #include "fuzz_import.hpp"
 
 namespace {
@@ -30,7 +30,7 @@ const char *const kNames[] = {"a.xml", "a.lcp", "a.json", "a.blob", "a.dng", "a.
 
 lensprof_status visit_any(void *user, const lensprof_import_entry *entry) {
     const lensprof_status status = visit(user, entry);
-    demand(entry->holds <= LENSPROF_HOLDS_FALLOFF, "an entry of nothing");
+    demand(entry->holds <= LENSPROF_HOLDS_FALLOFF, "an entry that holds nothing");
     return status;
 }
 
@@ -46,13 +46,13 @@ void write_and_read(const lensprof_profile &profile) {
     Visited again;
     demand(lensprof_import(text.data(), text.size(), nullptr, visit_any, &again, nullptr) == LENSPROF_OK
                && again.usable.size() == 1,
-           "not read again");
+           "does not read back");
 }
 
 bool try_bytes(const std::vector<char> &bytes) {
     static size_t turn = 0;
     bool is_read = false;
-    for (size_t n = 0; n < 2; n++) {  // by its content, and under a name that need not be right
+    for (size_t n = 0; n < 2; n++) {  // by content, and under a name that may be misleading
         lensprof_import_options options;
         lensprof_import_options_init(&options);
         options.name = n ? kNames[turn++ % (sizeof kNames / sizeof *kNames)] : nullptr;

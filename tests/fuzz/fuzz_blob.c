@@ -1,9 +1,9 @@
-/* Fuzzing profile blobs. What must hold for any bytes: they are refused and nothing is written, or they are a valid
- * profile that packs to the same bytes again, and a plan is made from both with the same result. Everything is tried as
- * it is and with length and CRC made right, behind which a mutation would get nowhere.
+/* Fuzzing profile blobs. Invariant for any bytes: they are refused and nothing is written, or they are a valid profile
+ * that packs to the same bytes again, and plans from blob and profile give the same result. Everything is tried as it
+ * is and with length and CRC corrected; otherwise mutations would not get past the CRC.
  *
  *   clang:  -fsanitize=fuzzer,address,undefined -DLENSPROF_LIBFUZZER, run with a copy of the folder corpus/blob
- *   others: fuzz_blob ROUNDS FILE...  mutates the files, the same way in every run */
+ *   others: fuzz_blob ROUNDS FILE...  mutates the files in the same way in every run */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ static void demand(int holds, const char *what) {
     abort();
 }
 
-/* An 8 bit picture corrected by these options; 0 where no plan is made. */
+/* An 8 bit picture corrected with these options; 0 if no plan can be made. */
 static int correct(const lensprof_apply_options *options, uint8_t *pixels) {
     const size_t bytes = lensprof_plan_bytes(options);
     if (!bytes) return 0;
@@ -47,13 +47,13 @@ static void compare_plans(const uint8_t *blob, size_t bytes, const lensprof_prof
     lensprof_apply_options_init(&options);
     options.frame_width = options.frame_height = SIDE;
     options.blob = blob, options.blob_bytes = bytes;
-    demand(correct(&options, a) == (profile != NULL), "a plan of a blob that is none, or none of one that is");
+    demand(correct(&options, a) == (profile != NULL), "plan and profile disagree on the validity of the blob");
     if (!profile) return;
     options.blob = NULL;
     options.responses = profile->responses, options.response = profile->response;
     options.vignettings = profile->vignettings, options.vignetting = profile->vignetting;
     options.grid = &profile->grid;
-    demand(correct(&options, b), "an unpacked profile makes no plan");
+    demand(correct(&options, b), "no plan from an unpacked profile");
     demand(memcmp(a, b, sizeof a) == 0, "blob and profile correct differently");
 }
 
@@ -62,14 +62,14 @@ static int is_untouched(const lensprof_profile *profile) {
     return bytes[4] == 0xA5 && memcmp(bytes + 4, bytes + 5, sizeof *profile - 5) == 0;
 }
 
-/* Returns whether it is a profile. */
+/* Returns whether the bytes are a profile. */
 static int try_blob(const uint8_t *blob, size_t bytes) {
     static lensprof_profile profile;
     memset(&profile, 0xA5, sizeof profile);
     profile.struct_size = sizeof profile;
     const lensprof_status status = lensprof_profile_unpack(blob, bytes, &profile);
     if (status != LENSPROF_OK) {
-        demand(status == LENSPROF_ERROR_CORRUPT || status == LENSPROF_ERROR_LAYOUT, "another status");
+        demand(status == LENSPROF_ERROR_CORRUPT || status == LENSPROF_ERROR_LAYOUT, "unexpected status");
         demand(is_untouched(&profile), "written in spite of an error");
         compare_plans(blob, bytes, NULL);
         return 0;
@@ -89,7 +89,7 @@ static void put_u32(uint8_t *at, uint32_t value) {
     for (int i = 0; i < 4; i++) at[i] = (uint8_t)(value >> 8 * i);
 }
 
-/* As it is, then sealed; in memory of its own size. Returns whether the sealed one is a profile. */
+/* As it is, then sealed, in memory of exactly its size. Returns whether the sealed blob is a profile. */
 static int try_both(const uint8_t *data, size_t bytes) {
     uint8_t *copy = malloc(bytes + 1), *blob = copy + 1;
     int is_profile = 0;
@@ -121,7 +121,7 @@ static uint64_t random_bits(uint64_t *state) {
 
 static size_t below(uint64_t *state, size_t count) { return (size_t)(random_bits(state) >> 11) % count; }
 
-/* One to three changes, mostly near the head, where counts and numbers are. Returns the new length. */
+/* One to three changes, mostly near the head with its counts and numbers. Returns the new length. */
 static size_t mutate(uint8_t *data, size_t bytes, uint64_t *random) {
     static const uint32_t words[] = {0,          1,          3,          0x7f,       0xff,       0xffff,
                                      0x7f800000, 0x7fc00000, 0x3f800000, 0x80000000, 0xbf800000, 0xffffffff};
@@ -137,10 +137,10 @@ static size_t mutate(uint8_t *data, size_t bytes, uint64_t *random) {
             if (at + 4 <= bytes) put_u32(data + at, words[below(random, sizeof words / sizeof *words)]);
             break;
         case 4: memmove(data + at, data + other, run); break;
-        case 5: /* bytes taken out */
+        case 5: /* bytes removed */
             if (bytes - run >= 16) memmove(data + at, data + at + run, bytes - at - run), bytes -= run;
             break;
-        default: /* bytes put in */
+        default: /* bytes inserted */
             if (bytes + run <= LARGEST) {
                 memmove(data + at + run, data + at, bytes - at), bytes += run;
                 for (size_t i = 0; i < run; i++) data[at + i] = below(random, 2) ? (uint8_t)random_bits(random) : 0;

@@ -1,5 +1,5 @@
-// Fuzzing Bundler's .out and the list of its images. What must hold for any bytes: tracks are read that are whole, or
-// Failure says why not.
+// Fuzzing Bundler's .out and its list of images. Invariant for any bytes: consistent tracks are read, or a Failure
+// gives the reason.
 #include "fuzz_scene.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-// Fuzzing COLMAP's database.db. What must hold for any bytes: tracks are read that are whole, or Failure says why not.
+// Fuzzing COLMAP's database.db. Invariant for any bytes: consistent tracks are read, or a Failure gives the reason.
 #include "fuzz_scene.hpp"
 
 namespace {

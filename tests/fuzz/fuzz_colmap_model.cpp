@@ -1,5 +1,5 @@
-// Fuzzing COLMAP's sparse models, binary and text. What must hold for any bytes: tracks are read that are whole, or
-// Failure says why not.
+// Fuzzing COLMAP's sparse models, binary and text. Invariant for any bytes: consistent tracks are read, or a Failure
+// gives the reason.
 #include "fuzz_scene.hpp"
 
 namespace {

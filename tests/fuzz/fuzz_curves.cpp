@@ -1,6 +1,6 @@
-// Fuzzing tables of responses and frame times: pcalib.txt, times.txt, CSV and pfstools' .m. What must hold for any
-// bytes: a text with an error has one of the statuses of formats.h and a text that says why, and the outputs are
-// untouched; of others every response is valid, and what is written of it reads back.
+// Fuzzing tables of responses and frame times: pcalib.txt, times.txt, CSV and pfstools' .m. Invariant for any bytes: an
+// invalid text gives a status of formats.h and an error text, and the outputs are untouched; otherwise every response
+// is valid, and reads back after writing.
 #include <memory>
 
 #include <lensprof/formats.h>
@@ -33,8 +33,8 @@ struct Responses {
 
 void check_outcome(lensprof_status status, const lensprof_error &error) {
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_RESPONSE,
-           "another status");
-    demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
+           "unexpected status");
+    demand((status == LENSPROF_OK) == !error.text[0], "status and error text contradict each other");
 }
 
 bool try_pcalib(const std::vector<char> &bytes) {
@@ -44,13 +44,14 @@ bool try_pcalib(const std::vector<char> &bytes) {
     response.kind = 99;
     const lensprof_status status = lensprof_pcalib_read(bytes.data(), bytes.size(), &response, &error);
     check_outcome(status, error);
-    demand(status == LENSPROF_OK || response.kind == 99, "an output of a failed call");
+    demand(status == LENSPROF_OK || response.kind == 99, "failed call wrote an output");
     if (status != LENSPROF_OK) return false;
-    demand(lensprof_response_validate(&response) == LENSPROF_OK, "a response that is not valid");
+    demand(lensprof_response_validate(&response) == LENSPROF_OK, "an invalid response");
     const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_pcalib_write(&response, to, capacity, needed, nullptr);
     });
-    demand(lensprof_pcalib_read(text.data(), text.size(), &responses->r[1], nullptr) == LENSPROF_OK, "not read again");
+    demand(lensprof_pcalib_read(text.data(), text.size(), &responses->r[1], nullptr) == LENSPROF_OK,
+           "does not read back");
     return true;
 }
 
@@ -61,16 +62,16 @@ bool try_curves(const std::vector<char> &bytes, uint32_t curve) {
     const lensprof_status status =
         lensprof_curves_read(bytes.data(), bytes.size(), curve, responses->r, &count, &error);
     check_outcome(status, error);
-    demand((status == LENSPROF_OK) == (count != 99), "an output of a failed call, or none");
+    demand((status == LENSPROF_OK) == (count != 99), "status and outputs contradict each other");
     if (status != LENSPROF_OK) return false;
     for (uint32_t c = 0; c < count; c++)
-        demand(lensprof_response_validate(&responses->r[c]) == LENSPROF_OK, "a response that is not valid");
+        demand(lensprof_response_validate(&responses->r[c]) == LENSPROF_OK, "an invalid response");
     const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_curves_write(responses->r, count, curve, 64, to, capacity, needed, nullptr);
     });
-    // A response that is black but at its end has no irradiance that a table of logarithms could hold.
+    // A response that is black except at its end has no irradiance that a table of logarithms can hold.
     const lensprof_status read = lensprof_curves_read(text.data(), text.size(), curve, again->r, &same, nullptr);
-    demand(read == LENSPROF_OK ? same == count : read == LENSPROF_ERROR_RESPONSE, "not read again");
+    demand(read == LENSPROF_OK ? same == count : read == LENSPROF_ERROR_RESPONSE, "does not read back");
     return true;
 }
 
@@ -90,7 +91,7 @@ bool try_times(const std::vector<char> &bytes) {
     uint32_t same = 0;
     demand(lensprof_times_read(text.data(), text.size(), again.data(), count + 1, &same, nullptr) == LENSPROF_OK
                && same == count,
-           "not read again");
+           "does not read back");
     return true;
 }
 

@@ -1,13 +1,13 @@
-// Fuzzing DNG opcode lists. What must hold for any bytes: a list with an error has one of the statuses of formats.h, a
-// text that says why, and nothing of it is visited; of others the falloff is a valid profile or marked, with the
-// reason, and what is written of it is read again.
+// Fuzzing DNG opcode lists. Invariant for any bytes: an invalid list gives a status of formats.h and an error text, and
+// delivers no entry; otherwise the falloff is a valid profile or marked unusable with the reason, and reads back after
+// writing.
 #include "fuzz_import.hpp"
 
 namespace {
 
 const char *const kTarget = "fuzz_dng_opcodes";
 
-constexpr uint32_t kWidth = 18, kHeight = 12;  // small, so that maps are sampled in few places
+constexpr uint32_t kWidth = 18, kHeight = 12;  // small, so that maps are sampled at few places
 
 lensprof_status read(const std::vector<char> &bytes, uint32_t layout, Visited &visited) {
     lensprof_error error{};
@@ -19,7 +19,7 @@ lensprof_status read(const std::vector<char> &bytes, uint32_t layout, Visited &v
     return status;
 }
 
-// A falloff that was read is written as a map; a steep one may be none any more when it is read again.
+// Writes a falloff as a map; a steep one may be invalid after reading it back.
 void write_and_read(const lensprof_profile &profile) {
     size_t size = 0;
     demand(lensprof_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP, nullptr,
@@ -33,7 +33,7 @@ void write_and_read(const lensprof_profile &profile) {
            "not written");
     Visited again;
     const lensprof_status status = read(bytes, LENSPROF_LAYOUT_RGGB, again);
-    demand(status == LENSPROF_OK || status == LENSPROF_ERROR_VIGNETTING, "not read again");
+    demand(status == LENSPROF_OK || status == LENSPROF_ERROR_VIGNETTING, "does not read back");
 }
 
 bool try_bytes(const std::vector<char> &bytes) {

@@ -1,6 +1,6 @@
-// Fuzzing the parser of DNG opcode lists alone, which runs much more often than fuzz_dng_opcodes, where every list is
-// sampled, fitted and written, too. What must hold for any bytes: they are parsed or an error says why not, and what is
-// parsed stays within the limits that parse_opcodes() promises.
+// Fuzzing the parser of DNG opcode lists alone, many more runs than in fuzz_dng_opcodes, which also samples, fits and
+// writes every list. Invariant for any bytes: they are parsed or an error gives the reason, and the result stays within
+// the limits that parse_opcodes() promises.
 #include "formats/dng_opcodes.hpp"
 #include "formats/text/text.hpp"
 #include "fuzz_main.hpp"
@@ -14,7 +14,7 @@ bool try_bytes(const std::vector<char> &bytes) {
         const auto gains = lensprof::parse_opcodes(reinterpret_cast<const uint8_t *>(bytes.data()), bytes.size());
         size_t points = 0;
         for (const auto &map : gains.maps) {
-            demand(map.gains.size() == size_t{map.rows} * map.columns * map.map_planes, "a map of another size");
+            demand(map.gains.size() == size_t{map.rows} * map.columns * map.map_planes, "map size differs");
             points += map.gains.size();
         }
         demand(gains.radial.size() + gains.maps.size() <= 64 && points <= 1 << 20, "beyond the limits");

@@ -1,6 +1,5 @@
-// Fuzzing XMP packets of drones' cameras. What must hold for any bytes: a packet with an error has one of the statuses
-// of formats.h, a text that says why, and nothing of it is visited; of others the falloff is a valid profile or marked,
-// with the reason.
+// Fuzzing XMP packets of drone cameras. Invariant for any bytes: an invalid packet gives a status of formats.h and an
+// error text, and delivers no entry; otherwise the falloff is a valid profile or marked unusable with the reason.
 #include "fuzz_import.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-// Bytes as a file for readers that take a path: a file in memory without a name.
+// Bytes as a file for readers that take a path: an unnamed file in memory.
 #pragma once
 
 #include <sys/mman.h>
@@ -7,7 +7,7 @@
 #include "cli/program/error.hpp"
 #include "fuzz_main.hpp"
 
-// What libheif and its decoders lose of damaged files.
+// Leaks of libheif and its decoders on damaged files.
 extern "C" const char *__lsan_default_suppressions();
 extern "C" const char *__lsan_default_suppressions() {
     return "leak:libheif\nleak:libdav1d\nleak:libaom\nleak:libde265";
@@ -18,9 +18,9 @@ namespace {
 class MemoryFile {
 public:
     explicit MemoryFile(const std::vector<char> &bytes) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
-        demand(descriptor_ >= 0, "no memory file");
+        demand(descriptor_ >= 0, "cannot create the memory file");
         const auto written = write(descriptor_, bytes.data(), bytes.size());
-        demand(written >= 0 && static_cast<size_t>(written) == bytes.size(), "no memory file");
+        demand(written >= 0 && static_cast<size_t>(written) == bytes.size(), "cannot create the memory file");
     }
     MemoryFile(const MemoryFile &) = delete;
     MemoryFile &operator=(const MemoryFile &) = delete;
@@ -32,7 +32,7 @@ private:
     int descriptor_;
 };
 
-// True when `read` returns; false when it throws Failure as unreadable, with a text. Anything else is a defect.
+// True if `read` returns; false if it throws Failure for an unreadable file, with a text. Anything else is a defect.
 template <typename Read>
 bool is_read(const Read &read) {
     try {

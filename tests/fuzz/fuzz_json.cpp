@@ -1,6 +1,5 @@
-// Fuzzing profiles as JSON. What must hold for any bytes: a text with an error has a status of formats.h and a text
-// that says why, and nothing of it is visited; of others every entry is a valid profile, and reads back the same when
-// written.
+// Fuzzing profiles as JSON. Invariant for any bytes: an invalid text gives a status of formats.h and an error text, and
+// delivers no entry; otherwise every entry is a valid profile, and reads back the same after writing.
 #include <memory>
 
 #include <lensprof/formats.h>
@@ -60,9 +59,9 @@ lensprof_status read(const std::vector<char> &text, Profiles &profiles) {
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_UNSUPPORTED
                || status == LENSPROF_ERROR_VIGNETTING || status == LENSPROF_ERROR_RESPONSE
                || status == LENSPROF_ERROR_ARGUMENT || status == LENSPROF_ERROR_NOT_FINITE,
-           "another status");
-    demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
-    demand(status == LENSPROF_OK || profiles.empty(), "entries of a text with an error");
+           "unexpected status");
+    demand((status == LENSPROF_OK) == !error.text[0], "status and error text contradict each other");
+    demand(status == LENSPROF_OK || profiles.empty(), "entries delivered despite an error");
     return status;
 }
 
@@ -81,9 +80,10 @@ std::vector<char> write(const Profiles &profiles) {
 bool try_bytes(const std::vector<char> &bytes) {
     Profiles profiles, again;
     if (read(bytes, profiles) != LENSPROF_OK) return false;
-    demand(read(write(profiles), again) == LENSPROF_OK && again.size() == profiles.size(), "not read again");
+    demand(read(write(profiles), again) == LENSPROF_OK && again.size() == profiles.size(), "does not read back");
     for (size_t i = 0; i < profiles.size(); i++)
-        demand(std::memcmp(profiles[i].get(), again[i].get(), sizeof(lensprof_profile)) == 0, "another profile");
+        demand(std::memcmp(profiles[i].get(), again[i].get(), sizeof(lensprof_profile)) == 0,
+               "reads back as another profile");
     return true;
 }
 

@@ -1,6 +1,6 @@
-// Fuzzing Adobe lens profiles. What must hold for any bytes: a text with an error has one of the statuses of formats.h,
-// a text that says why, and nothing of it is visited; of others every entry is a valid profile or marked, with the
-// reason, and what can be written reads back the same.
+// Fuzzing Adobe lens profiles. Invariant for any bytes: an invalid text gives a status of formats.h and an error text,
+// and delivers no entry; otherwise every entry is a valid profile or marked unusable with the reason, and writable ones
+// read back the same.
 #include <cmath>
 #include <cstring>
 
@@ -30,13 +30,13 @@ void write_and_read(const lensprof_profile &profile) {
     demand(lensprof_lcp_write(&pointer, 1, 600, 400, text.data(), size, &size, nullptr) == LENSPROF_OK, "not written");
     Visited again;
     const lensprof_status reread = read(text, again);
-    if (reread != LENSPROF_OK || again.usable.empty()) return;  // numbers beyond those of a lens profile
+    if (reread != LENSPROF_OK || again.usable.empty()) return;  // numbers outside the range of a lens profile
     const lensprof_profile &other = *again.usable[0];
-    demand(std::strcmp(profile.key.lens, other.key.lens) == 0, "another lens");
+    demand(std::strcmp(profile.key.lens, other.key.lens) == 0, "lens differs");
     demand(same(profile.key.focal_mm, other.key.focal_mm) && same(profile.key.aperture, other.key.aperture)
                && same(profile.key.crop_factor, other.key.crop_factor),
            "another setting");
-    for (int n = 0; n < 3; n++) demand(same(profile.vignetting[0].k[n], other.vignetting[0].k[n]), "another k");
+    for (int n = 0; n < 3; n++) demand(same(profile.vignetting[0].k[n], other.vignetting[0].k[n]), "k differs");
 }
 
 bool try_bytes(const std::vector<char> &text) {

@@ -1,6 +1,6 @@
-// Fuzzing Lensfun databases. What must hold for any bytes: a text with an error has one of the statuses of formats.h, a
-// text that says why, and nothing of it is visited; of others every entry is a valid profile or marked, with the
-// reason, and what can be written reads back the same.
+// Fuzzing Lensfun databases. Invariant for any bytes: an invalid text gives a status of formats.h and an error text,
+// and delivers no entry; otherwise every entry is a valid profile or marked unusable with the reason, and writable ones
+// read back the same.
 #include <cstring>
 
 #include "fuzz_import.hpp"
@@ -16,7 +16,7 @@ lensprof_status read(const std::vector<char> &text, Visited &visited) {
     return status;
 }
 
-// One profile at a time, as several may be of the same setting.
+// One profile at a time, because several may have the same setting.
 void write_and_read(const lensprof_profile &profile) {
     const lensprof_profile *const pointer = &profile;
     size_t bytes = 0;
@@ -24,13 +24,13 @@ void write_and_read(const lensprof_profile &profile) {
     std::vector<char> text(bytes);
     demand(lensprof_lensfun_write(&pointer, 1, text.data(), bytes, &bytes, nullptr) == LENSPROF_OK, "not written");
     Visited again;
-    demand(read(text, again) == LENSPROF_OK && again.entries == 1, "not read again");
+    demand(read(text, again) == LENSPROF_OK && again.entries == 1, "does not read back");
     demand(again.usable.size() == 1 || profile.vignetting[0].center[0] || profile.vignetting[0].center[1],
            "a valid falloff is not one when read again");
-    if (again.usable.empty()) return;  // a centre rounded beyond where M reaches its least value
+    if (again.usable.empty()) return;  // rounding moved the centre beyond the minimum of M
     const lensprof_profile &other = *again.usable[0];
-    for (int n = 0; n < 3; n++) demand(profile.vignetting[0].k[n] == other.vignetting[0].k[n], "another k");
-    demand(std::strcmp(profile.key.lens, other.key.lens) == 0, "another lens");
+    for (int n = 0; n < 3; n++) demand(profile.vignetting[0].k[n] == other.vignetting[0].k[n], "k differs");
+    demand(std::strcmp(profile.key.lens, other.key.lens) == 0, "lens differs");
     demand(profile.key.focal_mm == other.key.focal_mm && profile.key.aperture == other.key.aperture
                && profile.key.distance_m == other.key.distance_m && profile.key.crop_factor == other.key.crop_factor,
            "another setting");

@@ -1,10 +1,10 @@
 // The frame of a fuzz target for text or binary files: the entry point of libFuzzer, or a program that mutates a
 // corpus.
 //
-//   clang:  -fsanitize=fuzzer,address,undefined -DLENSPROF_LIBFUZZER, run with a copy of the target's folder of the
-//   corpus others: TARGET ROUNDS FILE...  mutates the files, the same way in every run
+//   clang:  -fsanitize=fuzzer,address,undefined -DLENSPROF_LIBFUZZER, run with a copy of the target's corpus folder
+//   others: TARGET ROUNDS FILE...  mutates the files in the same way in every run
 //
-// Included by one file, which defines the three declarations below.
+// Included by a single file, which defines the three declarations below.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@
 namespace {
 
 extern const char *const kTarget;
-extern const std::vector<std::string> kWords;  // that parsers stumble over
+extern const std::vector<std::string> kWords;  // words that are difficult for parsers
 
-// What must hold for any bytes; true where they were read.
+// Checks the invariant for any bytes; true if they were read.
 bool try_bytes(const std::vector<char> &bytes);
 
 constexpr size_t kLargest = 1 << 14;
@@ -34,7 +34,7 @@ void demand(bool holds, const char *what) {
     std::abort();
 }
 
-// What a writer writes: asked for the size first.
+// The output of a writer, which is first asked for the size.
 template <typename Write>
 [[maybe_unused]] std::vector<char> written(Write write) {
     size_t bytes = 0;
@@ -63,7 +63,7 @@ uint64_t random_bits(uint64_t &state) {
 
 size_t below(uint64_t &state, size_t count) { return static_cast<size_t>(random_bits(state) >> 11) % count; }
 
-// One to three changes: a byte, a piece taken out, moved or doubled, a digit, or one of the words.
+// One to three changes: a byte; a piece removed, moved or repeated; a digit; or one of the words.
 std::string mutate(std::string text, uint64_t &random) {
     for (size_t changes = 1 + below(random, 3); changes && !text.empty(); changes--) {
         const size_t at = below(random, text.size()), from = below(random, text.size()), run = 1 + below(random, 60);

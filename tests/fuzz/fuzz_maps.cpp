@@ -1,6 +1,6 @@
-// Fuzzing radical's files and the Raspberry Pi's tuning files. What must hold for any bytes: a file with an error has
-// one of the statuses of formats.h and a text that says why, and the outputs are untouched; of others the result is
-// valid, and what is written of it reads back.
+// Fuzzing radical's files and Raspberry Pi tuning files. Invariant for any bytes: an invalid file gives a status of
+// formats.h and an error text, and the outputs are untouched; otherwise the result is valid and reads back after
+// writing.
 #include <memory>
 
 #include <lensprof/formats.h>
@@ -54,20 +54,20 @@ void check_outcome(lensprof_status status, const lensprof_error &error) {
                || status == LENSPROF_ERROR_SIZE || status == LENSPROF_ERROR_RESPONSE
                || status == LENSPROF_ERROR_VIGNETTING || status == LENSPROF_ERROR_NOT_FINITE
                || status == LENSPROF_ERROR_ARGUMENT,
-           "another status");
-    demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
+           "unexpected status");
+    demand((status == LENSPROF_OK) == !error.text[0], "status and error text contradict each other");
 }
 
-// Whether a falloff was read; then it is valid and its error known, else the profile is untouched.
+// Whether a falloff was read. If so, it is valid and its error known; otherwise the profile is untouched.
 bool check_falloff(lensprof_status status, const lensprof_error &error, const lensprof_profile &profile, double worst) {
     check_outcome(status, error);
     if (status != LENSPROF_OK) {
         demand(std::memcmp(&profile, new_profile().get(), sizeof profile) == 0 && worst == -7.0,
-               "an output of a failed call");
+               "failed call wrote an output");
         return false;
     }
-    demand(lensprof_profile_validate(&profile) == LENSPROF_OK, "a profile that is not valid");
-    demand(worst >= 0.0, "no error of the refit");
+    demand(lensprof_profile_validate(&profile) == LENSPROF_OK, "an invalid profile");
+    demand(worst >= 0.0, "refit error is missing");
     return true;
 }
 
@@ -77,13 +77,12 @@ bool try_responses(const std::vector<char> &bytes) {
     const lensprof_status status = lensprof_radical_response_read(bytes.data(), bytes.size(), responses.get(), &error);
     check_outcome(status, error);
     if (status != LENSPROF_OK) return false;
-    for (int c = 0; c < 3; c++)
-        demand(lensprof_response_validate(&responses[c]) == LENSPROF_OK, "a response that is not valid");
+    for (int c = 0; c < 3; c++) demand(lensprof_response_validate(&responses[c]) == LENSPROF_OK, "an invalid response");
     const std::vector<char> data = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_radical_response_write(responses.get(), 3, to, capacity, needed, nullptr);
     });
     demand(lensprof_radical_response_read(data.data(), data.size(), responses.get() + 3, nullptr) == LENSPROF_OK,
-           "not read again");
+           "does not read back");
     return true;
 }
 
@@ -99,8 +98,8 @@ bool try_vignetting(const std::vector<char> &bytes) {
     });
     const lensprof_status read =
         lensprof_radical_vignetting_read(data.data(), data.size(), again.get(), nullptr, nullptr);
-    // A falloff at the edge of what is valid may be beyond it when rounded or refitted.
-    demand(read == LENSPROF_OK || read == LENSPROF_ERROR_VIGNETTING, "not read again");
+    // A falloff at the limit of validity may exceed it when rounded or refitted.
+    demand(read == LENSPROF_OK || read == LENSPROF_ERROR_VIGNETTING, "does not read back");
     return true;
 }
 

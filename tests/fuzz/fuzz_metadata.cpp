@@ -1,5 +1,5 @@
-// Fuzzing EXIF, XMP packets and opcode tags of picture files. What must hold for any bytes: each is read or Failure
-// says why not, and a key that is read is valid.
+// Fuzzing EXIF, XMP packets and opcode tags of picture files. Invariant for any bytes: each is read, or a Failure gives
+// the reason; a key that is read is valid.
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/opcode_tag.hpp"
 #include "fuzz_file.hpp"

@@ -1,5 +1,5 @@
-// Fuzzing OpenSfM's tracks.csv and reconstruction.json. What must hold for any bytes: tracks are read that are whole,
-// or Failure says why not.
+// Fuzzing OpenSfM's tracks.csv and reconstruction.json. Invariant for any bytes: consistent tracks are read, or a
+// Failure gives the reason.
 #include "fuzz_scene.hpp"
 
 namespace {

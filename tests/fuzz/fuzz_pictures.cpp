@@ -1,6 +1,6 @@
-// Fuzzing PNG, TIFF, JPEG, HEIC, AVIF, WebP and JPEG XL files. What must hold for any bytes: the header, the picture
-// and the reduced picture are read, or Failure says why not; where the picture is read, its header is, too, and
-// promises the same sizes.
+// Fuzzing PNG, TIFF, JPEG, HEIC, AVIF, WebP and JPEG XL files. Invariant for any bytes: the header, the picture and the
+// reduced picture are read, or a Failure gives the reason; if the picture is read, so is its header, with the same
+// sizes.
 #include "cli/pictures/picture.hpp"
 #include "fuzz_file.hpp"
 
@@ -34,12 +34,12 @@ const std::vector<std::string> kWords = {std::string(4, '\0'),
                                          "ALPH",
                                          "jxlp"};
 
-constexpr uint64_t kLargestFrame = 1 << 20;  // px; larger ones only take time
+constexpr uint64_t kLargestFrame = 1 << 20;  // px; larger ones only take more time
 
 void check_sizes(const Picture &picture, const Picture &header) {
     demand(picture.width == header.width && picture.height == header.height, "sizes differ from the header's");
     demand(picture.sample == header.sample && picture.layout == header.layout, "samples differ from the header's");
-    demand(picture.pixels.size() == picture.row_bytes * picture.height, "pixels of another size");
+    demand(picture.pixels.size() == picture.row_bytes * picture.height, "pixel size differs");
     demand(picture.width >= 1 && picture.height >= 1, "an empty picture");
 }
 

@@ -1,5 +1,5 @@
-// Fuzzing point files of vig_optimize. What must hold for any bytes: a file with an error has one of the statuses of
-// formats.h and a text that says why; of others as many pairs are read as are counted, and every one is within bounds.
+// Fuzzing point files of vig_optimize. Invariant for any bytes: an invalid file gives a status of formats.h and an
+// error text; otherwise as many pairs are read as are counted, and all are within bounds.
 #include <cmath>
 
 #include <lensprof/formats.h>
@@ -18,8 +18,8 @@ lensprof_status read(const std::vector<char> &text, std::vector<lensprof_pair> &
                                                         static_cast<uint32_t>(pairs.size()), count, &error);
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_SIZE
                || status == LENSPROF_ERROR_ARGUMENT,
-           "another status");
-    demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
+           "unexpected status");
+    demand((status == LENSPROF_OK) == !error.text[0], "status and error text contradict each other");
     return status;
 }
 
@@ -29,11 +29,11 @@ bool try_bytes(const std::vector<char> &bytes) {
     if (read(bytes, pairs, &count) != LENSPROF_OK || count == 0) return false;
     pairs.resize(count);
     if (read(bytes, pairs, &again) != LENSPROF_OK) return false;
-    demand(again == count, "another number of pairs");
+    demand(again == count, "number of pairs differs");
     for (const lensprof_pair &pair : pairs)
         for (int c = 0; c < 3; c++)
             for (int side = 0; side < 2; side++)
-                demand(pair.value[side][c] >= 0.0 && pair.value[side][c] <= 1.0, "a grey value beyond 0..1");
+                demand(pair.value[side][c] >= 0.0 && pair.value[side][c] <= 1.0, "grey value outside 0..1");
     return true;
 }
 

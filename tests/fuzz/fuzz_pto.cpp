@@ -1,6 +1,6 @@
-// Fuzzing Hugin projects. What must hold for any bytes: a project with an error has one of the statuses of formats.h
-// and a text that says why; of others every image, response, name and mask can be had, the project is written, reads
-// back and is written the same again, and takes a result.
+// Fuzzing Hugin projects. Invariant for any bytes: an invalid project gives a status of formats.h and an error text;
+// otherwise every image, response, name and mask can be read, the project survives writing and reading unchanged, and
+// takes a result.
 #include <array>
 #include <memory>
 
@@ -22,7 +22,7 @@ struct Destroy {
 };
 using Project = std::unique_ptr<lensprof_pto, Destroy>;
 
-constexpr uint32_t kMostImages = 64;  // more only take time
+constexpr uint32_t kMostImages = 64;  // more only take more time
 
 Project read(const std::vector<char> &text) {
     lensprof_pto *pto = nullptr;
@@ -31,9 +31,9 @@ Project read(const std::vector<char> &text) {
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_VARIABLE
                || status == LENSPROF_ERROR_UNSUPPORTED || status == LENSPROF_ERROR_SIZE
                || status == LENSPROF_ERROR_ARGUMENT,
-           "another status");
-    demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
-    demand((status == LENSPROF_OK) == (pto != nullptr), "an error with a project, or the other way round");
+           "unexpected status");
+    demand((status == LENSPROF_OK) == !error.text[0], "status and error text contradict each other");
+    demand((status == LENSPROF_OK) == (pto != nullptr), "status and project contradict each other");
     return Project(pto);
 }
 
@@ -72,7 +72,7 @@ void set_result(const Project &pto) {
     demand(
         lensprof_pto_set_result(pto.get(), &response, &vignetting, exposures.data(), count, 0, nullptr) == LENSPROF_OK,
         "takes no result");
-    demand(read(write(pto)) != nullptr, "not read again with a result");
+    demand(read(write(pto)) != nullptr, "does not read back with a result");
 }
 
 bool try_bytes(const std::vector<char> &bytes) {
@@ -81,7 +81,7 @@ bool try_bytes(const std::vector<char> &bytes) {
     visit_images(pto);
     const std::vector<char> text = write(pto);
     const Project again = read(text);
-    demand(again && write(again) == text, "not read again the same");
+    demand(again && write(again) == text, "does not read back the same");
     if (lensprof_pto_image_count(pto.get()) > 0) set_result(pto);
     return true;
 }

@@ -1,5 +1,5 @@
-// What the fuzz targets of reconstructions share: a folder with the files of one, and what must hold of each that is
-// read. Several files are one in the corpus, with a line between them.
+// Common parts of the fuzz targets for reconstructions: a folder with the files of a reconstruction, and the invariants
+// of a result. In the corpus, several files are joined into one with a separator line.
 #pragma once
 
 #include <unistd.h>
@@ -21,7 +21,7 @@ class Folder {
 public:
     Folder() {
         path_ = (std::filesystem::temp_directory_path() / "lensprof-fuzz-XXXXXX").string();
-        demand(mkdtemp(path_.data()) != nullptr, "no folder");
+        demand(mkdtemp(path_.data()) != nullptr, "cannot create the folder");
     }
     Folder(const Folder &) = delete;
     Folder &operator=(const Folder &) = delete;
@@ -34,12 +34,12 @@ public:
     std::string path(const std::string &name) const { return path_ + "/" + name; }
 
     void write(const std::string &name, const std::string &bytes) const {
-        std::filesystem::remove(path(name));  // writing it again where it is waits for the disk
+        std::filesystem::remove(path(name));  // overwriting it in place would wait for the disk
         std::ofstream file(path(name), std::ios::binary);
         file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        demand(file.good(), "no file");
+        demand(file.good(), "cannot write the file");
     }
-    // The parts of a file of the corpus; those that are not there are no files.
+    // The parts of a corpus file; missing parts are not written.
     void write_parts(const std::vector<char> &bytes, const std::vector<std::string> &names) const {
         const std::string text(bytes.begin(), bytes.end());
         size_t at = 0;
@@ -56,7 +56,7 @@ private:
     std::string path_;
 };
 
-// True when `call` returns; false when it throws Failure as unreadable or not usable, with a text.
+// True if `call` returns; false if it throws Failure as unreadable or not usable, with a text.
 template <typename Call>
 [[maybe_unused]] bool is_done(const Call &call) {
     try {
@@ -73,16 +73,16 @@ template <typename Call>
 [[maybe_unused]] void check_scene(const lensprof::Reconstruction &r) {
     std::set<std::string> names;
     for (const auto &image : r.images) {
-        demand(!image.name.empty() && names.insert(image.name).second, "a name that is empty or there twice");
+        demand(!image.name.empty() && names.insert(image.name).second, "empty or repeated image name");
         demand(image.camera < r.cameras.size(), "an image without a camera");
-        demand(!image.has_centre || lensprof::is_finite(image.centre), "a centre that is no place");
+        demand(!image.has_centre || lensprof::is_finite(image.centre), "centre is not finite");
     }
     demand(!r.observations.empty(), "no observation");
-    demand(r.points.empty() || r.points.size() == r.point_count(), "positions of other points");
+    demand(r.points.empty() || r.points.size() == r.point_count(), "number of positions differs");
     for (size_t n = 0; n < r.observations.size(); n++) {
         const auto &own = r.observations[n];
-        demand(own.image < r.images.size(), "an observation in no image");
-        demand(std::isfinite(own.xy[0]) && std::isfinite(own.xy[1]), "an observation without a place");
+        demand(own.image < r.images.size(), "observation without an image");
+        demand(std::isfinite(own.xy[0]) && std::isfinite(own.xy[1]), "observation without a position");
         if (n == 0) continue;
         const auto &last = r.observations[n - 1];
         demand(own.point == last.point ? own.image > last.image : own.point == last.point + 1, "not in order");
@@ -90,7 +90,7 @@ template <typename Call>
     }
 }
 
-// Reads, and goes on as `build` does, without pictures.
+// Reads, and continues as `build` does, without pictures.
 template <typename Read>
 [[maybe_unused]] bool try_scene(const Read &read) {
     lensprof::Reconstruction r;

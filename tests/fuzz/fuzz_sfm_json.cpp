@@ -1,5 +1,5 @@
-// Fuzzing AliceVision's .sfm and OpenMVG's sfm_data.json. What must hold for any bytes: tracks are read that are whole,
-// or Failure says why not.
+// Fuzzing AliceVision's .sfm and OpenMVG's sfm_data.json. Invariant for any bytes: consistent tracks are read, or a
+// Failure gives the reason.
 #include "fuzz_scene.hpp"
 
 namespace {

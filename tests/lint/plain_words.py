@@ -27,6 +27,13 @@ SOURCES = (
     "src/fit/**/*",
     "src/formats/**/*",
     "src/store/**/*",
+    "tests/*.?",
+    "tests/fit/*",
+    "tests/formats/*",
+    "tests/fuzz/*.?pp",
+    "tests/fuzz/*.c",
+    "tests/store/*",
+    "tests/unit/*",
 )
 # Files with sentences of other people, or tables that a program wrote.
 EXEMPT = ("tests/lint/", "docs/benchmark-results.md", "docs/reference/schema.md", "LICENSE", "NOTICE")

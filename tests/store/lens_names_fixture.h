@@ -1,5 +1,5 @@
-/* A database with names of lenses and cameras as Lensfun writes them, asked for names as cameras write them into EXIF.
- * Found means found by names alone: every lens has a profile for the same setting. */
+/* A database with names of lenses and cameras as Lensfun writes them, queried with names as cameras write them into
+ * EXIF. Lenses are matched by name alone: every lens has a profile for the same setting. */
 #ifndef LENSPROF_TESTS_LENS_NAMES_FIXTURE_H
 #define LENSPROF_TESTS_LENS_NAMES_FIXTURE_H
 
@@ -305,7 +305,7 @@ static inline void fill_names(lensprof_store *store) {
     }
 }
 
-/* The stored lens that is found, to name[128]; empty = none. */
+/* The stored lens that is found, in name[128]; empty if none is found. */
 static inline void find_name(lensprof_store *store, const char *maker, const char *camera, const char *lens,
                              char *name) {
     lensprof_profile profile = {.struct_size = sizeof profile};

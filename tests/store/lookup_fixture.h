@@ -1,4 +1,4 @@
-/* What the tests of lookups share: a lens whose falloff is known at all settings, and questions. */
+/* Common parts of the tests of lookups: a lens with a known falloff at all settings, and queries. */
 #ifndef LENSPROF_TESTS_LOOKUP_FIXTURE_H
 #define LENSPROF_TESTS_LOOKUP_FIXTURE_H
 
@@ -16,7 +16,7 @@ static inline lensprof_profile *zoom_profile(const char *lens, double focal, dou
     return p;
 }
 
-/* A lens that loses less the more it is stopped down, and the longer it is. */
+/* The falloff of a lens, weaker when stopped down and at longer focal lengths. */
 static inline void true_falloff(double focal, double aperture, double k[3]) {
     const double open = 1.8 / aperture;
     k[0] = -0.12 - 0.45 * open * open - 0.1 * log2(70.0 / focal) * open;

@@ -1,4 +1,4 @@
-/* A directory of its own for every test, and profiles to store. */
+/* A separate directory for every test, and profiles to store. */
 #ifndef LENSPROF_TESTS_STORE_FIXTURE_H
 #define LENSPROF_TESTS_STORE_FIXTURE_H
 
@@ -21,9 +21,8 @@ typedef struct place {
     char path[160]; /* of the database */
 } place;
 
-/* Makes a file or directory unwritable, also for root, who runs the tests in a container and is not bound by
- * permission bits: there the immutable flag of the file system is tried. False when neither is
- * possible; such tests are skipped. */
+/* Makes a file or directory unwritable, even for root, who ignores permission bits (tests in a container run as root),
+ * with the immutable flag of the file system. Returns false if this is not possible; such tests are skipped. */
 static inline bool set_protected(const char *path, bool on) {
     int flags, descriptor = open(path, O_RDONLY);
     if (descriptor < 0) return false;
@@ -69,7 +68,7 @@ static inline int place_teardown(void **state) {
 
 #define store_test(function) cmocka_unit_test_setup_teardown(function, place_setup, place_teardown)
 
-/* Opens or fails the test with the library's sentence. */
+/* Opens the database, or fails the test with the library's error text. */
 static inline lensprof_store *store_at(const char *path, uint32_t mode) {
     lensprof_store *store = NULL;
     lensprof_error error;
@@ -77,14 +76,14 @@ static inline lensprof_store *store_at(const char *path, uint32_t mode) {
     return store;
 }
 
-/* Another database of the same place. */
+/* Another database in the same directory. */
 static inline lensprof_store *store_in(const place *here, const char *name, uint32_t mode) {
     char path[300];
     snprintf(path, sizeof path, "%s/%s", here->directory, name);
     return store_at(path, mode);
 }
 
-/* The database, made where there is none, and another one of the place. */
+/* The database, created if missing, and another one in the same directory. */
 static inline void open_pair(const place *here, const char *other_name, uint32_t other_mode, lensprof_store **store,
                              lensprof_store **other) {
     *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -103,7 +102,7 @@ static inline int64_t put_at(lensprof_store *store, const lensprof_profile *prof
     return id;
 }
 
-/* Runs SQL on the file behind the library's back. */
+/* Runs SQL on the file without the library. */
 static inline void run_sql(const char *path, const char *sql) {
     sqlite3 *db;
     char *message = NULL;
@@ -154,8 +153,8 @@ static inline void assert_file(const char *path, const void *expected, size_t si
     free(bytes);
 }
 
-/* A file of an older layout, as the lensprof of its time made it, with these profiles but what it cannot hold: up to
- * layout 3 prior_id and forced stand at the end of the method. */
+/* A file of an older layout, as an older lensprof wrote it, with these profiles except members it cannot hold: up to
+ * layout 3, prior_id and forced are at the end of the method. */
 static inline void make_layout(const char *path, int layout, const lensprof_profile *profiles, size_t count) {
     static const char *const schemas[] = {lp_schema_0001, lp_schema_0002, lp_schema_0003, lp_schema_0004},
                              *const added[] = {
@@ -184,7 +183,7 @@ static inline void make_layout(const char *path, int layout, const lensprof_prof
     unlink(newer);
 }
 
-/* Takes out of a profile what no layout before the newest can hold. */
+/* Removes from a profile what only the newest layout can hold. */
 static inline void lose_newest(lensprof_profile *profile) {
     memset(profile->key.style, 0, sizeof profile->key.style);
     profile->provenance.gamma_sigma = 0.0;
@@ -197,21 +196,21 @@ static inline uint32_t count_at(lensprof_store *store) {
     return found;
 }
 
-/* A gain grid of 3/n, which few decimal numbers are. */
+/* A gain grid of values 3/n, few of which are decimal numbers. */
 static inline void fill_grid(lensprof_gain_grid *grid, uint32_t columns, uint32_t rows, uint32_t channels) {
     lensprof_gain_grid_init(grid);
     grid->columns = columns, grid->rows = rows, grid->channels = channels;
     for (uint32_t i = 0; i < columns * rows * channels; i++) grid->attenuation[i] = 3.0f / (float)(i % 1000 + 7);
 }
 
-/* An initialised one; free() it. */
+/* An initialised profile; free() it. */
 static inline lensprof_profile *new_profile(void) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_profile_init(profile);
     return profile;
 }
 
-/* An output whose every byte must be written. */
+/* An output of which every byte must be written. */
 static inline void scribble(lensprof_profile *profile) {
     memset(profile, 0x5A, sizeof *profile);
     profile->struct_size = sizeof *profile;
@@ -247,7 +246,7 @@ static inline void fill_profile(lensprof_profile *profile) {
         for (uint32_t j = 0; j < 10; j++) profile->covariance[10 * i + j] = i == j ? 1.0 / 7.0 : -1e-9 / (1.0 + i + j);
 }
 
-/* The values of two profiles to the bit; curves beyond the count do not matter. */
+/* Compares the values of two profiles to the bit; curves beyond the count do not matter. */
 static inline void assert_same_profile(const lensprof_profile *a, const lensprof_profile *b) {
     assert_memory_equal(&a->key, &b->key, sizeof a->key);
     assert_memory_equal(&a->provenance, &b->provenance, sizeof a->provenance);
@@ -260,7 +259,7 @@ static inline void assert_same_profile(const lensprof_profile *a, const lensprof
     assert_memory_equal(a->covariance, b->covariance, a->covariance_size * a->covariance_size * sizeof(double));
 }
 
-/* Whether a lookup has a reason among its own, and words of it in the text. */
+/* Whether a lookup reports a reason, with these words in its text. */
 static inline int has_reason(const lensprof_lookup *how, lensprof_reason code, const char *words) {
     int found = 0;
     for (int i = 0; i < LENSPROF_LOOKUP_REASONS; i++) found |= how->reason_code[i] == (uint32_t)code;

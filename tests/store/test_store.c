@@ -1,4 +1,4 @@
-/* The database in good times: what goes in comes out and is removed; what is no profile does not go in. */
+/* The database in normal operation: profiles are stored, read and removed; invalid profiles are not stored. */
 #include "store_fixture.h"
 
 static void round_trip(const place *here, const lensprof_profile *profile) {
@@ -38,7 +38,7 @@ static void test_three_curves_round_trip(void **state) {
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) values[j] /= values[LENSPROF_RESPONSE_SAMPLES - 1];
     assert_ok(lensprof_response_set_table(&profile->response[0], values, LENSPROF_RESPONSE_SAMPLES));
     assert_ok(lensprof_response_set_gamma(&profile->response[1], 2.2 + 1e-15));
-    coefficients[24] = 5e-324; /* the smallest number there is, after 24 zeros that count */
+    coefficients[24] = 5e-324; /* the smallest positive number, after 24 zeros that count */
     assert_ok(lensprof_response_set_emor(&profile->response[2], coefficients, LENSPROF_EMOR_MODES));
     for (int c = 0; c < 3; c++)
         profile->vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 1e-300 * c, 1.0 / 30}, {-1.0 / 3, 1.0}};
@@ -71,7 +71,7 @@ static void test_unknown_and_infinite_round_trip(void **state) {
     free(profile);
 }
 
-/* The one number that SQLite does not keep to the bit; see 0001_profiles.sql. */
+/* Negative zero is the only number that SQLite does not keep to the bit; see 0001_profiles.sql. */
 static void test_negative_zero_becomes_zero(void **state) {
     lensprof_profile *profile = new_profile();
     fill_profile(profile);
@@ -90,7 +90,7 @@ static void test_longest_texts_round_trip(void **state) {
     lensprof_profile_init(profile);
     memset(profile->key.camera_maker, 'a', sizeof profile->key.camera_maker - 1);
     memset(profile->key.camera_model, 'b', sizeof profile->key.camera_model - 1);
-    memset(profile->key.lens, '\xe9', sizeof profile->key.lens - 1); /* Latin-1, not UTF-8: kept as it is */
+    memset(profile->key.lens, '\xe9', sizeof profile->key.lens - 1); /* Latin-1, not UTF-8: stored unchanged */
     memset(profile->provenance.method, 'd', sizeof profile->provenance.method - 1);
     memset(profile->provenance.software, 'e', sizeof profile->provenance.software - 1);
     for (size_t i = 0; i + 2 < sizeof profile->provenance.source; i += 2)
@@ -99,7 +99,7 @@ static void test_longest_texts_round_trip(void **state) {
     free(profile);
 }
 
-/* The columns are for other SQL users: this asks as they would. */
+/* The columns are for other SQL users: this queries them the same way. */
 static void test_numbers_can_be_queried(void **state) {
     const place *here = *state;
     lensprof_profile *profile = new_profile();
@@ -216,7 +216,7 @@ static void test_put_refuses_what_is_not_a_profile(void **state) {
     free(profile);
 }
 
-/* Of a fit that was not usable only what the caller forces is stored, and then known as that. */
+/* An unusable fit is stored only if the caller forces it, and is then marked as forced. */
 static void test_put_refuses_what_is_not_usable(void **state) {
     lensprof_profile *profile = new_profile();
     lensprof_error error;
@@ -232,12 +232,12 @@ static void test_put_refuses_what_is_not_usable(void **state) {
     assert_ok(lensprof_store_get(store, id, profile, NULL));
     assert_int_equal(profile->provenance.forced, 1);
     assert_int_equal(profile->provenance.not_usable, 0);
-    put_at(store, profile); /* as it is in the database */
+    put_at(store, profile); /* as stored in the database */
     lensprof_store_close(store);
     free(profile);
 }
 
-/* The largest id there is, in a row or in a row that was removed: no full disk, and the caller's transaction stays. */
+/* The largest id possible, in a row or in a removed row: not a full disk, and the caller's transaction survives. */
 static void test_ids_are_used_up(void **state) {
     const place *here = *state;
     lensprof_profile *profile = new_profile();
@@ -261,7 +261,7 @@ static void test_ids_are_used_up(void **state) {
     assert_ok(lensprof_store_remove(store, INT64_MAX, NULL));
     assert_int_equal(lensprof_store_put(store, profile, NULL, &error), LENSPROF_ERROR_FULL);
     assert_non_null(strstr(error.text, "no free ids"));
-    assert_ok(lensprof_store_merge(other, store, NULL, NULL, NULL)); /* the next step of the text helps */
+    assert_ok(lensprof_store_merge(other, store, NULL, NULL, NULL)); /* the next step in the text helps */
     assert_int_equal(put_at(other, profile), 2);
     close_pair(store, other);
     assert_integrity(here->path);
@@ -282,7 +282,7 @@ static void test_wrong_arguments(void **state) {
     assert_int_equal(lensprof_store_open(here->path, 2, NULL, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_not_equal(error.text[0], 0);
     assert_null(store);
-    assert_int_equal(access(here->path, F_OK), -1); /* nothing was made */
+    assert_int_equal(access(here->path, F_OK), -1); /* no file was created */
     lensprof_store_close(NULL);
     store = store_at(here->path, LENSPROF_STORE_CREATE);
     assert_int_equal(lensprof_store_put(NULL, profile, &id, &error), LENSPROF_ERROR_ARGUMENT);

@@ -1,4 +1,4 @@
-/* The table of cameras: put, found by all their names, listed, merged, checked. */
+/* The table of cameras: stored, found by all their names, listed, merged, checked. */
 #include "store_fixture.h"
 
 static lensprof_camera_model camera(const char *maker, const char *model, const char *other, double crop) {
@@ -103,7 +103,7 @@ static void test_every_member(void **state) {
     put_camera(store, &put);
     assert_ok(lensprof_store_find_camera(store, "Ricoh", "GR 3", &found, NULL));
     assert_memory_equal(&found, &put, sizeof put);
-    put.crop_factor = LENSPROF_UNKNOWN; /* takes the place of the one before */
+    put.crop_factor = LENSPROF_UNKNOWN; /* replaces the previous one */
     put_camera(store, &put);
     assert_ok(lensprof_store_find_camera(store, "Ricoh", "GR III", &found, NULL));
     assert_memory_equal(&found, &put, sizeof put);
@@ -155,12 +155,12 @@ static void test_merge(void **state) {
     assert_ok(lensprof_store_list_camera_models(store, NULL, 0, &count, NULL));
     assert_int_equal(count, 7);
     assert_ok(lensprof_store_find_camera(store, "Sony", "ILCE-7M3", &found, NULL));
-    assert_close(found.crop_factor, 1.01, 0); /* what is here stays */
+    assert_close(found.crop_factor, 1.01, 0); /* existing cameras stay */
     close_pair(store, other);
     assert_integrity(here->path);
 }
 
-/* Files of layouts that have no such table: nothing is found, and a put makes it. */
+/* Files of layouts without this table: nothing is found, and a put creates it. */
 static void test_older_layouts(void **state) {
     const place *here = *state;
     lensprof_profile *profile = new_profile();

@@ -1,4 +1,4 @@
-/* A whole database checked and counted. */
+/* Checks and statistics of a whole database. */
 #include "store_fixture.h"
 
 typedef struct faults {
@@ -26,7 +26,7 @@ static void check_at(const char *path, uint32_t profiles, faults *all) {
     lensprof_store_close(store);
 }
 
-/* Whether a fault with this number has `part` in its reason. */
+/* Whether a fault with this id has `part` in its reason. */
 static bool has_fault(const faults *all, int64_t id, const char *part) {
     for (uint32_t i = 0; i < all->count && i < 50; i++)
         if (all->fault[i].id == id && strstr(all->fault[i].reason, part)) return true;
@@ -145,7 +145,7 @@ static void test_everything_is_listed(void **state) {
     free(all);
 }
 
-/* Pages overwritten: as much as can be read is checked, and nothing crashes. */
+/* Overwritten pages: everything readable is checked, and nothing crashes. */
 static void test_broken_pages(void **state) {
     const place *here = *state;
     faults *all = malloc(sizeof *all);

@@ -1,4 +1,4 @@
-/* Which profiles a lookup goes by, where there are several kinds: states of processing, repeated settings, cameras. */
+/* Which profiles a lookup uses if there are several kinds: states of processing, repeated settings, cameras. */
 #include "store_fixture.h"
 
 static lensprof_profile shared, answered = {.struct_size = sizeof answered}; /* 50 kB each */
@@ -43,8 +43,8 @@ static lensprof_status ask(lensprof_store *store, const char *camera, const char
 #define RAW LENSPROF_PROCESSING_RAW
 #define JPEG LENSPROF_PROCESSING_JPEG
 
-/* At one setting profiles of the key's processing count alone; where any will do, the newest, which the answer names.
- */
+/* Only profiles with the key's processing count; if any processing will do, that of the newest, which the answer
+ * states. */
 static void test_one_processing(void **state) {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1.5, -0.5, RAW},
                                     {"", "A 50mm", "", 4.0, 1.5, -0.3, RAW},
@@ -55,14 +55,15 @@ static void test_one_processing(void **state) {
     assert_int_equal(how.rows, 2);
     assert_int_equal(answered.key.processing, JPEG);
     assert_true(answered.vignetting[0].k[0] > -0.15);
-    assert_close(answered.key.crop_factor, 1.5, 0.0); /* what r is of */
+    assert_close(answered.key.crop_factor, 1.5, 0.0); /* the unit of r */
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 0));
     assert_int_equal(answered.key.processing, RAW);
     assert_true(answered.vignetting[0].k[0] < -0.3);
     lensprof_store_close(store);
 }
 
-/* A profile holds those of its setting that it was fitted with, or has overruled them: the newest counts alone. */
+/* A profile includes the earlier ones of its setting that it was fitted with, or has overruled them: only the newest
+ * counts. */
 static void test_newest_of_a_setting(void **state) {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.9, RAW},
                                     {"", "A 50mm", "", 2.0, 1, -0.4, RAW},
@@ -78,8 +79,8 @@ static void test_newest_of_a_setting(void **state) {
     lensprof_store_close(store);
 }
 
-/* Rows of a camera serve who asks for the lens alone or with another camera, which is said; those of a single unit are
- * said to be there. */
+/* Rows of a camera also answer queries for the lens alone or with another camera, with a reason. Rows of a single unit
+ * do not, and a reason mentions them. */
 static void test_lens_of_cameras(void **state) {
     static const entry entries[] = {{"EOS 5D", "A 50mm", "", 2.0, 1, -0.5, RAW},
                                     {"EOS 5D", "A 50mm", "", 4.0, 1, -0.3, RAW},
@@ -91,14 +92,15 @@ static void test_lens_of_cameras(void **state) {
     assert_int_equal(how.reason_code[0], LENSPROF_REASON_NONE);
     assert_ok(ask(store, "EOS 6D", "A 50mm", 50, 2.8, 0));
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_ON_OTHER_CAMERA, "on other cameras"));
-    assert_ok(ask(store, "EOS 6D", "A 50mm", 50, 2.0, 0)); /* of the setting, but of another response */
+    assert_ok(ask(store, "EOS 6D", "A 50mm", 50, 2.0, 0)); /* same setting, but measured with another response */
     assert_int_equal(how.exact, 0);
     assert_int_equal(ask(store, "", "B 50mm", 50, 2.0, 0), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_CAMERA, "single units"));
     lensprof_store_close(store);
 }
 
-/* A camera's only lens, by any of the camera's names; under a name of EXIF's where it is built in. */
+/* The only lens of a camera is found by any of the camera's names, and, if built in, also under the lens name in
+ * EXIF. */
 static void test_built_in_lens(void **state) {
     static const entry entries[] = {
         {"Canon PowerShot S110", "Canon PowerShot S110 & compatibles", "", 2.0, 4.6, -0.5, RAW},
@@ -118,7 +120,7 @@ static void test_built_in_lens(void **state) {
     lensprof_store_close(store);
 }
 
-/* Spacings of nodes below f/1, too: one more beyond f/1.4 is f/2.06. */
+/* Spacings of nodes also apply to fast lenses: one spacing beyond f/1.4 is f/2.06. */
 static void test_fast_lens(void **state) {
     static const entry entries[] = {{"", "A 50mm", "", 0.95, 1, -0.6, RAW}, {"", "A 50mm", "", 1.4, 1, -0.4, RAW}};
     lensprof_store *store = store_of(*state, entries, 2);
@@ -127,7 +129,7 @@ static void test_fast_lens(void **state) {
     lensprof_store_close(store);
 }
 
-/* One node beyond the last, which is said. */
+/* One spacing beyond the last node is answered, with a reason. */
 static void test_outside_is_said(void **state) {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.5, RAW},
                                     {"", "A 50mm", "", 2.8, 1, -0.4, RAW},

@@ -1,4 +1,4 @@
-/* What a lookup composes: the falloff of the lens and the response of the camera, each from where it is known. */
+/* A lookup composes the falloff of the lens and the response of the camera, each from the profiles that know it. */
 #include "lookup_fixture.h"
 
 #define LENS "Example 50mm f/2"
@@ -39,7 +39,7 @@ static lensprof_status ask_for(lensprof_store *store, const lensprof_profile_key
 
 static double eval(double x) { return lensprof_response_eval(&answered.response[0], x, NULL); }
 
-/* Falloffs of raw pictures serve rendered ones; the response is the kind's while the camera has none. */
+/* Falloffs of raw pictures apply to rendered ones; without a response of the camera, that of its kind is used. */
 static void test_raw_rows_serve_jpeg(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     lensprof_response typical;
@@ -83,14 +83,14 @@ static void test_raw_is_linear(void **state) {
     assert_int_equal(answered.response[0].kind, LENSPROF_RESPONSE_LINEAR);
     assert_close(how.response_sigma, 0.0, 0.0);
     assert_close(how.sigma, how.falloff_sigma, 1e-12);
-    key.aperture = 2.0; /* stored, of any camera */
+    key.aperture = 2.0; /* stored for any camera */
     assert_ok(ask_for(store, &key));
     assert_int_equal(how.exact, 1);
     assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_PROFILE);
     lensprof_store_close(store);
 }
 
-/* Of the camera, whatever the lens and however its name is written, and of no other; the mean by their errors. */
+/* Responses of this camera only, with any lens and any spelling of its name; their mean, weighted by their errors. */
 static void test_responses_of_the_camera(void **state) {
     static const char *const names[] = {"EOS 600D", "Canon EOS 600D", "canon eos REBEL T3i", "EOS Kiss X5"};
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
@@ -119,7 +119,7 @@ static void test_responses_of_the_camera(void **state) {
     lensprof_store_close(store);
 }
 
-/* A bracket, stored without lens and setting, is no falloff of none: that of the camera's lens stays. */
+/* A bracket is stored without lens and setting and has no falloff, so the falloff of the camera's lens is used. */
 static void test_bracket_has_no_falloff(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     lensprof_profile *p = profile_of("DSC-RX100", "Fixed 10-37mm", RAW, 2.0);
@@ -139,13 +139,13 @@ static void test_bracket_has_no_falloff(void **state) {
     assert_close(answered.vignetting[0].k[0], -0.4, 1e-9);
     assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_CAMERA);
     assert_int_equal(how.response_id[0], id);
-    assert_ok(ask_for(store, &bracket)); /* by itself it is found as it is */
+    assert_ok(ask_for(store, &bracket)); /* a query with its own key finds it exactly */
     assert_int_equal(how.exact, 1);
     assert_int_equal(how.id[0], id);
     lensprof_store_close(store);
 }
 
-/* Errors of a prior on the kind of camera are one error: no number of profiles makes it smaller. */
+/* Errors of a prior on the kind of camera are common to all profiles: averaging does not reduce them. */
 static void test_shared_errors_stay(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     put_raw(store);
@@ -158,7 +158,7 @@ static void test_shared_errors_stay(void **state) {
     lensprof_store_close(store);
 }
 
-/* More profiles than are used: the newest of them, whichever of its names they have the camera under. */
+/* If there are more profiles than are used, the newest count, under any of the camera's names. */
 static void test_newest_under_all_names(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     int64_t newest = 0;
@@ -173,7 +173,7 @@ static void test_newest_under_all_names(void **state) {
     lensprof_store_close(store);
 }
 
-/* Derivative of q = ln ln(I(208) / I(48)) by EMoR coefficient l, by differences. */
+/* Numeric derivative of q = ln ln(I(208) / I(48)) by EMoR coefficient l. */
 static double gamma_slope(const lensprof_response *response, uint32_t l) {
     const double h = 1e-4;
     double q[2];
@@ -189,7 +189,7 @@ static double gamma_slope(const lensprof_response *response, uint32_t l) {
     return (q[1] - q[0]) / (2.0 * h);
 }
 
-/* The covariance states the error of gamma that response_sigma does, and that of the profiles in all else. */
+/* The covariance has the variance of gamma that response_sigma states, and otherwise that of the profiles. */
 static void check_covariance_of_response(double variance, double tolerance) {
     double slope[3], along = 0.0;
     for (uint32_t i = 0; i < 3; i++) slope[i] = gamma_slope(&answered.response[0], i);
@@ -216,7 +216,7 @@ static void test_covariances_of_responses(void **state) {
         assert_int_equal(answered.covariance_size, 6);
         assert_int_equal(answered.response[0].kind, LENSPROF_RESPONSE_EMOR);
         assert_close(answered.response[0].emor[0], i ? 0.6 : 0.5, 0.02);
-        const double own = how.response_sigma * how.response_sigma - 0.018 * 0.018; /* but the repeatability */
+        const double own = how.response_sigma * how.response_sigma - 0.018 * 0.018; /* apart from the repeatability */
         if (!i) first = own;
         check_covariance_of_response(i ? 2e-4 : 4e-4, i ? 2e-5 : 1e-7);
         assert_true(own > (i ? 0.4 : 0.99) * first && own < (i ? 0.7 : 1.01) * first && first > 1e-5);
@@ -227,7 +227,7 @@ static void test_covariances_of_responses(void **state) {
     lensprof_store_close(store);
 }
 
-/* A picture style's own responses before those of no style; those of others not at all. */
+/* A picture style's own responses take precedence over those without a style; those of other styles are not used. */
 static void test_styles(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     put_raw(store);
@@ -252,8 +252,8 @@ static void test_styles(void **state) {
     lensprof_store_close(store);
 }
 
-/* Linear responses of rendered pictures are what importers write for want of one; forced and doubtful profiles, and
- * those that a newer one holds, do not count either. */
+/* Not used: linear responses of rendered pictures, which importers write if they know none; forced and doubtful
+ * profiles; and profiles that a newer one includes. */
 static void test_which_responses(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     put_raw(store);
@@ -268,7 +268,7 @@ static void test_which_responses(void **state) {
         assert_ok(ask_for(store, &key));
         assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_KIND);
     }
-    put_rendered(store, "EOS 5D", 2.2, 0.26, ""); /* less sure than the typical response is */
+    put_rendered(store, "EOS 5D", 2.2, 0.26, ""); /* less accurate than the typical response */
     assert_ok(ask_for(store, &key));
     assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_KIND);
     const int64_t old = put_rendered(store, "EOS 5D", 2.2, 0.02, "");
@@ -279,7 +279,7 @@ static void test_which_responses(void **state) {
     assert_ok(ask_for(store, &key));
     assert_int_equal(how.response_rows, 1);
     assert_int_equal(how.response_id[0], new);
-    p->provenance.prior_id = new; /* which holds the oldest, too */
+    p->provenance.prior_id = new; /* which includes the oldest, too */
     const int64_t newest = put_at(store, p);
     assert_ok(ask_for(store, &key));
     assert_int_equal(how.response_rows, 1);
@@ -290,7 +290,7 @@ static void test_which_responses(void **state) {
     lensprof_store_close(store);
 }
 
-/* What the camera has corrected is not corrected again, unless told. */
+/* Pictures that the camera has corrected are not corrected again, unless forced. */
 static void test_corrected(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     lensprof_lookup_options options;
@@ -302,7 +302,7 @@ static void test_corrected(void **state) {
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_CORRECTED, "the camera has corrected"));
     options.force_falloff = 1;
     assert_ok(ask_with(store, &key, &options));
-    assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_CAMERA); /* its rendering is the same */
+    assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_CAMERA); /* the rendering is the same */
     assert_close(answered.vignetting[0].k[0], -0.4, 1e-3);
     options.force_falloff = 0;
     lensprof_profile *p = profile_of("", LENS, CORRECTED, 2.8);
@@ -315,13 +315,13 @@ static void test_corrected(void **state) {
     assert_ok(ask_with(store, &key, &options));
     assert_int_equal(how.exact, 1);
     assert_int_equal(how.id[0], own);
-    const lensprof_profile_key raw = key_of("EOS 5D", RAW, 2.4); /* their rows do not serve others */
+    const lensprof_profile_key raw = key_of("EOS 5D", RAW, 2.4); /* they do not apply to other pictures */
     assert_ok(ask_with(store, &raw, &options));
     assert_true(answered.vignetting[0].k[0] < -0.3);
     lensprof_store_close(store);
 }
 
-/* Where the camera's own profiles have none near the setting, those of the lens alone serve. */
+/* If the camera's own profiles are far from the setting, those of the lens alone are used. */
 static void test_next_best_profiles(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     put_raw(store);
@@ -335,13 +335,13 @@ static void test_next_best_profiles(void **state) {
     key.aperture = 16.0;
     assert_ok(ask_for(store, &key));
     assert_int_equal(how.exact, 1);
-    key.aperture = 64.0; /* none has that: the reason is that of the camera's own */
+    key.aperture = 64.0; /* none is near: the reason is about the camera's own profiles */
     assert_int_equal(ask_for(store, &key), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_APERTURE_BEYOND, "beyond"));
     lensprof_store_close(store);
 }
 
-/* For fits, which find the falloff themselves. */
+/* For fits, which estimate the falloff themselves. */
 static void test_response_alone(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     lensprof_lookup_options options;
@@ -401,7 +401,7 @@ static void test_several_databases(void **state) {
     assert_ok(lensprof_store_lookup_in(both, 2, &key, &options, &answered, &how, &error));
     assert_int_equal(how.falloff_store, 0);
     assert_close(answered.vignetting[0].k[0], -0.2, 1e-3);
-    key.focal_mm = 200; /* the reason is that of a database that knows the lens, and the text names its file */
+    key.focal_mm = 200; /* the reason comes from the database that knows the lens, and the text names its file */
     assert_int_equal(lensprof_store_lookup_in(both, 2, &key, &options, &answered, &how, &error),
                      LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_FOCAL_BEYOND, "beyond"));
@@ -417,7 +417,7 @@ static void test_several_databases(void **state) {
     unlink(second_path);
 }
 
-/* The stated error has what is open: a distance, and a sensor. */
+/* The stated error includes what is unknown: distance or sensor size. */
 static void test_open_settings_widen_the_error(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     static const double distance[3] = {0.3, 1.0, INFINITY}, k[3] = {-0.05, -0.2, -0.6};
@@ -430,12 +430,12 @@ static void test_open_settings_widen_the_error(void **state) {
     assert_ok(ask_for(store, &key));
     assert_true(how.distance_sigma > 0.05 && how.sensor_sigma == 0.0);
     const double m = 1.0 + answered.vignetting[0].k[0] + answered.vignetting[0].k[1] + answered.vignetting[0].k[2];
-    assert_true(m - 2.0 * how.sigma < 0.42 && m > 0.4); /* at infinity it is .4 */
+    assert_true(m - 2.0 * how.sigma < 0.42 && m > 0.4); /* at infinity M is .4 */
     key.distance_m = INFINITY;
     key.aperture = 3.0;
     key.crop_factor = LENSPROF_UNKNOWN;
     assert_ok(ask_for(store, &key));
-    assert_true(how.distance_sigma == 0.0 && how.sensor_sigma > 0.2); /* on a smaller sensor it would be .73 */
+    assert_true(how.distance_sigma == 0.0 && how.sensor_sigma > 0.2); /* on a smaller sensor M would be .73 */
     assert_true(how.sigma > how.sensor_sigma);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, "not known"));
     lensprof_store_close(store);

@@ -1,4 +1,4 @@
-/* The process is killed in the middle of work: what was reported as done is there, nothing is there by half. */
+/* The process is killed during work: reported operations are complete, and nothing is half done. */
 #include "store_fixture.h"
 
 #include <signal.h>
@@ -6,16 +6,16 @@
 #include <time.h>
 
 #ifndef ROUNDS
-#define ROUNDS 20 /* kills of each kind; the slow variant has more */
+#define ROUNDS 20 /* kills per kind; the slow variant has more */
 #endif
 
-/* What the child reports after a call came back. */
+/* The child's report after a call returned. */
 typedef struct report {
     int64_t id;      /* put; negative: removed */
     uint32_t number; /* images of that profile */
 } report;
 
-/* Puts profiles of changing size for ever, and removes every fourth of its own again. */
+/* Stores profiles of varying size in an endless loop, and removes every fourth of them again. */
 static void work(const char *path, int pipe_end, uint32_t number) {
     lensprof_profile *profile = new_profile();
     lensprof_store *store = NULL;
@@ -35,7 +35,7 @@ static void work(const char *path, int pipe_end, uint32_t number) {
     }
 }
 
-/* Lets a child work for a time, kills it, and returns how many reports it made. */
+/* Lets a child work for some time, kills it, and returns the number of its reports. */
 static size_t work_and_kill(const char *path, uint32_t number, double seconds, report *reports, size_t capacity) {
     int ends[2], status = 0;
     size_t count = 0;
@@ -57,7 +57,7 @@ static size_t work_and_kill(const char *path, uint32_t number, double seconds, r
     return count;
 }
 
-/* Every report of the round holds; `extra` (0 or 1) call may have been done but not reported. */
+/* Every report of the round holds; one further call (`extra`: 0 or 1) may have been done but not reported. */
 static void check_reports(const char *path, uint32_t mode, const report *reports, size_t count, uint32_t expected) {
     lensprof_profile *profile = new_profile();
     lensprof_store *store = store_at(path, mode);
@@ -84,7 +84,7 @@ static void test_killed_at_random_moments(void **state) {
     uint64_t seed = 7;
     uint32_t stored = 0;
     size_t done = 0;
-    /* A busy machine needs more rounds to get so much done. */
+    /* On a busy machine more rounds are needed to get enough done. */
     for (int round = 0; round < ROUNDS || (done <= (size_t)ROUNDS && round < 10 * ROUNDS); round++) {
         size_t count =
             work_and_kill(here->path, (uint32_t)round * 1000000, 0.001 + 0.06 * lp_random(&seed), reports, CAPACITY);
@@ -93,16 +93,16 @@ static void test_killed_at_random_moments(void **state) {
         if (access(here->path, F_OK) == 0) {
             struct stat status;
             assert_int_equal(stat(here->path, &status), 0);
-            /* Killed before there was anything: only CREATE makes a database of the empty file. */
+            /* Killed before anything was written: only CREATE turns the empty file into a database. */
             uint32_t mode = done == 0 || status.st_size == 0 ? LENSPROF_STORE_CREATE : (uint32_t)round % 3;
             check_reports(here->path, mode, reports, count, stored);
             assert_integrity(here->path);
             lensprof_store *store = store_at(here->path, LENSPROF_STORE_READ);
-            stored = count_at(store); /* with the one that was not reported */
+            stored = count_at(store); /* including the unreported one */
             lensprof_store_close(store);
         }
     }
-    assert_true(done > (size_t)ROUNDS); /* else nothing was tested */
+    assert_true(done > (size_t)ROUNDS); /* otherwise nothing was tested */
     free(reports);
 }
 
@@ -125,7 +125,7 @@ static void test_killed_while_creating(void **state) {
     }
 }
 
-/* Puts batches of BATCH profiles, all with the batch's number, for ever, and reports each after its commit. */
+/* Stores batches of BATCH profiles with the batch's number in an endless loop, and reports each after its commit. */
 enum {
     BATCH = 7
 };
@@ -145,7 +145,7 @@ static void work_in_batches(const char *path, int pipe_end, uint32_t number) {
     }
 }
 
-/* Looks up and checks for ever; nothing that it sees may be half of a batch. */
+/* Looks up and checks in an endless loop; a reader must never see half of a batch. */
 static void read_for_ever(const char *path) {
     lensprof_profile *profile = new_profile();
     lensprof_profile_key key;
@@ -168,7 +168,7 @@ static void read_for_ever(const char *path) {
     }
 }
 
-/* How many profiles of a batch there are; all of them, or none. */
+/* Number of profiles of a batch: all of them, or none. */
 static uint32_t count_batch(sqlite3 *db, uint32_t number) {
     char sql[80];
     int64_t count = -1;
@@ -177,8 +177,8 @@ static uint32_t count_batch(sqlite3 *db, uint32_t number) {
     return (uint32_t)count;
 }
 
-/* One writer of batches and two readers, all killed at a random moment:
- * every batch that was reported is whole, the next one whole or not there, and the readers saw nothing else. */
+/* One writer of batches and two readers, all killed at a random moment. Every reported batch is complete, the next one
+ * complete or missing, and the readers saw nothing else. */
 static void test_batches_beside_readers(void **state) {
     const place *here = *state;
     uint64_t seed = 9;
@@ -212,7 +212,7 @@ static void test_batches_beside_readers(void **state) {
         lensprof_store_close(store);
         assert_integrity(here->path);
     }
-    assert_true(reported > (uint32_t)ROUNDS / 4); /* else nothing was tested */
+    assert_true(reported > (uint32_t)ROUNDS / 4); /* otherwise nothing was tested */
 }
 
 int main(void) {

@@ -1,5 +1,5 @@
-/* Damaged and crafted databases: every call returns a status and never a profile that is not valid. Run it with the
- * sanitizers too: what it looks for is a read outside of a buffer. */
+/* Damaged and crafted databases: every call returns a status and never an invalid profile. Run it with the sanitizers
+ * too, to detect reads outside of buffers. */
 #include "store_fixture.h"
 
 #ifndef ROUNDS
@@ -28,7 +28,7 @@ static unsigned char *make_three(const place *here, size_t *size) {
     return read_file(here->path, size);
 }
 
-/* The database of make_three after SQL that the constraints would not let pass. */
+/* The database of make_three after SQL that violates the constraints. */
 static lensprof_store *crafted(const place *here, const char *sql) {
     size_t size;
     char text[1200];
@@ -39,7 +39,7 @@ static lensprof_store *crafted(const place *here, const char *sql) {
     return store_at(here->path, LENSPROF_STORE_WRITE);
 }
 
-/* Profile 1 is refused with a text that names it and `named`, outputs stay, and profile 3 can still be had. */
+/* Profile 1 is refused with a text that names it and `named`, outputs stay, and profile 3 is still readable. */
 static void assert_damaged(const place *here, const char *sql, const char *named, bool in_list) {
     lensprof_profile *profile = new_profile(), *before = new_profile();
     lensprof_store_row rows[3];
@@ -62,7 +62,7 @@ static void assert_damaged(const place *here, const char *sql, const char *named
         if (rows[i].damaged != (in_list && rows[i].id == 1)) fail_msg("%s: row %d", sql, (int)rows[i].id);
         assert_ok(lensprof_profile_key_validate(&rows[i].key));
     }
-    assert_ok(lensprof_store_remove(store, 1, NULL)); /* the next step of the text helps */
+    assert_ok(lensprof_store_remove(store, 1, NULL)); /* the next step in the text helps */
     assert_int_equal(count_at(store), 2);
     lensprof_store_close(store);
     free(profile);
@@ -76,13 +76,13 @@ static void test_impossible_keys_and_provenance(void **state) {
         {"lens = printf('%.1000000c', 'x')", "lens"},
         {"lens = 'a' || char(10)", "LENSPROF_ERROR_ARGUMENT"},
         {"focal_mm = 0", "LENSPROF_ERROR_ARGUMENT"},
-        {"focal_mm = -1", "focal_mm"}, /* LENSPROF_UNKNOWN, which is NULL here */
+        {"focal_mm = -1", "focal_mm"}, /* LENSPROF_UNKNOWN is stored as NULL */
         {"focal_mm = 9e999", "LENSPROF_ERROR_ARGUMENT"},
         {"aperture = -9e999", "aperture"},
         {"color_temperature_k = -1", "color_temperature_k"},
         {"color_temperature_k = 0", "LENSPROF_ERROR_ARGUMENT"},
         {"color_temperature_k = 2e6", "LENSPROF_ERROR_ARGUMENT"},
-        {"prior_id = 0", "prior_id"}, /* none is NULL */
+        {"prior_id = 0", "prior_id"}, /* no prior is NULL */
         {"prior_id = -7", "prior_id"},
         {"forced = 2", "forced"},
         {"style = printf('%.64c', 'x')", "style"},
@@ -184,7 +184,7 @@ static void test_impossible_tables(void **state) {
     }
 }
 
-/* Without STRICT any column holds any type. */
+/* Without STRICT, a column can hold any type. */
 static void test_wrong_types(void **state) {
     static const char *const cases[][3] = {
         {"profiles", "focal_mm", "'abc'"},
@@ -287,7 +287,7 @@ static void use_everything(lensprof_store *store) {
     (void)!lensprof_store_remove(store, 2, &error);
 }
 
-/* Schemas that would run something, fail everything or take up all memory: no crash, no file made, no wrong profile. */
+/* Schemas that would run code, fail every statement or exhaust memory: no crash, no new file, no invalid profile. */
 static void test_crafted_schemas(void **state) {
     static const char *const schemas[] = {
         "ALTER TABLE profiles RENAME TO p; CREATE VIEW profiles AS SELECT *, load_extension('/tmp/evil') AS e FROM p",
@@ -315,7 +315,7 @@ static void test_crafted_schemas(void **state) {
         free(make_three(here, &size));
         snprintf(text, sizeof text, "PRAGMA ignore_check_constraints = ON; PRAGMA foreign_keys = OFF; %s", schemas[i]);
         assert_int_equal(sqlite3_open(here->path, &db), SQLITE_OK);
-        (void)sqlite3_exec(db, text, NULL, NULL, NULL); /* what STRICT tables or this SQLite refuse is not there */
+        (void)sqlite3_exec(db, text, NULL, NULL, NULL); /* STRICT tables or this SQLite may refuse it */
         sqlite3_close(db);
         for (uint32_t mode = 0; mode < 2; mode++) {
             lensprof_error error = {"", {0, 0, 0, 0}};
@@ -325,12 +325,12 @@ static void test_crafted_schemas(void **state) {
             else if (status != LENSPROF_ERROR_CORRUPT)
                 fail_msg("%s: %s", schemas[i], error.text);
             if (status == LENSPROF_OK) lensprof_store_close(store);
-            if (i < 2) assert_int_equal(status, LENSPROF_ERROR_CORRUPT); /* views are no tables */
+            if (i < 2) assert_int_equal(status, LENSPROF_ERROR_CORRUPT); /* views are not tables */
         }
     }
 }
 
-/* A constraint of somebody else's fails the put and leaves nothing of it. */
+/* A constraint added by others fails the put, which has no effect. */
 static void test_foreign_constraint(void **state) {
     lensprof_profile *profile = new_profile();
     lensprof_error error;
@@ -339,7 +339,7 @@ static void test_foreign_constraint(void **state) {
     fill_profile(profile);
     assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_CORRUPT);
     assert_int_equal(id, 99);
-    run_sql(store->path, "BEGIN IMMEDIATE; COMMIT"); /* the lock is gone */
+    run_sql(store->path, "BEGIN IMMEDIATE; COMMIT"); /* the lock is released */
     assert_int_equal(count_at(store), 3);
     lensprof_store_close(store);
     free(profile);
@@ -352,14 +352,14 @@ static void assert_sane(lensprof_status status, const lensprof_error *error, con
     case LENSPROF_ERROR_NOT_FOUND:
     case LENSPROF_ERROR_CORRUPT:
     case LENSPROF_ERROR_LAYOUT:
-    case LENSPROF_ERROR_READ_ONLY:   /* the header has a byte that says so */
-    case LENSPROF_ERROR_FULL: break; /* a counter of ids at its end */
+    case LENSPROF_ERROR_READ_ONLY:   /* a byte of the header makes it read-only */
+    case LENSPROF_ERROR_FULL: break; /* a counter of ids at its maximum */
     default: fine = false;
     }
     if (!fine) fail_msg("round %d: %s: %s: %s", round, what, lensprof_status_name(status), error->text);
 }
 
-/* Every call on the file at `path`; what is delivered must be valid. */
+/* Every call on the file at `path`; delivered profiles must be valid. */
 static lensprof_status use(const char *path, uint32_t mode, int round) {
     static lensprof_profile profile = {.struct_size = sizeof profile}, asked = {.struct_size = sizeof asked};
     lensprof_store *store = NULL;
@@ -429,7 +429,7 @@ static void test_random_damage(void **state) {
             bytes[at] = lp_random(&seed) < 0.5 ? (unsigned char)(lp_random(&seed) * 256)
                                                : bytes[at] ^ (unsigned char)(1 << (int)(lp_random(&seed) * 8));
         }
-        if (round % 8 == 7) memcpy(bytes + page, good + page * 2, page); /* pages in the wrong place */
+        if (round % 8 == 7) memcpy(bytes + page, good + page * 2, page); /* pages swapped */
         put_file(here, bytes, size);
         use(here->path, LENSPROF_STORE_WRITE, round);
         put_file(here, bytes, size);

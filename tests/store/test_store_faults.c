@@ -1,16 +1,16 @@
-/* Allocations and file operations of SQLite fail in turn, once or from there on: each call returns a status, leaks
- * nothing, and the database is as before it or as after it. */
+/* Allocations and file operations of SQLite fail in turn, once or permanently: each call returns a status, leaks
+ * nothing, and the database is as before or after the call. */
 #include "store_fixture.h"
 
-#define MOST_ROWS 4000 /* that the sessions of one fault leave */
+#define MOST_ROWS 4000 /* left by the sessions of one fault */
 #ifndef STEP
-#define STEP 101 /* every 101st operation is made to fail; in the slow variant every 47th */
+#define STEP 101 /* every 101st operation fails; in the slow variant every 47th */
 #endif
 
-static int countdown = -1; /* faults when it comes to 0; negative = never */
-static bool for_good;      /* all later ones fail too */
+static int countdown = -1; /* the operation that makes it 0 fails; negative: none */
+static bool for_good;      /* all later ones fail, too */
 static int file_fault;     /* result code of failing file operations */
-static bool sync_failed;   /* whether a commit is in the log, then, nobody knows: the disk may have it or not */
+static bool sync_failed;   /* then the commit may or may not be in the log */
 static char other_path[200];
 static sqlite3_mem_methods memory;
 static sqlite3_vfs *real_vfs;
@@ -25,7 +25,7 @@ static void *faulty_malloc(int size) { return !file_fault && faults() ? NULL : m
 
 static void *faulty_realloc(void *old, int size) { return !file_fault && faults() ? NULL : memory.xRealloc(old, size); }
 
-/* Behind every file, in the same allocation, is the real one. */
+/* The real file follows every faulty one in the same allocation. */
 static sqlite3_file *real(sqlite3_file *file) { return file + 1; }
 
 #define PLAIN(call) return real(file)->pMethods->call
@@ -55,7 +55,7 @@ static int plain_control(sqlite3_file *file, int op, void *data) { PLAIN(xFileCo
 static int plain_sector(sqlite3_file *file) { PLAIN(xSectorSize)(real(file)); }
 static int plain_features(sqlite3_file *file) { PLAIN(xDeviceCharacteristics)(real(file)); }
 
-/* The memory that processes share for the log's index. */
+/* Shared memory for the log's index. */
 static int faulty_shm_map(sqlite3_file *file, int page, int size, int extend, void volatile **out) {
     if (file_fault && faults()) return file_fault == SQLITE_FULL ? SQLITE_FULL : SQLITE_IOERR_SHMMAP;
     PLAIN(xShmMap)(real(file), page, size, extend, out);
@@ -100,7 +100,7 @@ static int faulty_delete(sqlite3_vfs *vfs, const char *name, int sync) {
     return file_fault && faults() ? SQLITE_IOERR_DELETE : real_vfs->xDelete(real_vfs, name, sync);
 }
 
-/* A batch that is taken back, a check of everything, a lookup, and another database merged and taken back. */
+/* A batch that is rolled back, a check of everything, a lookup, and a merge that is rolled back. */
 static lensprof_status whole_database(lensprof_store *store, const lensprof_profile *profile, lensprof_error *error) {
     static lensprof_profile found = {.struct_size = sizeof found};
     lensprof_lookup_options options;
@@ -124,7 +124,7 @@ static lensprof_status whole_database(lensprof_store *store, const lensprof_prof
     return status;
 }
 
-/* One call after another, as a program would; puts one profile. `done` tells whether it is in the file. */
+/* A sequence of calls, as in a program; stores one profile. `done`: whether it is in the file. */
 static lensprof_status session(const char *path, const lensprof_profile *profile, bool *done, lensprof_error *error) {
     static lensprof_profile found = {.struct_size = sizeof found};
     lensprof_store *store = NULL;
@@ -146,14 +146,14 @@ static lensprof_status session(const char *path, const lensprof_profile *profile
     return status;
 }
 
-/* What a session begins with: the file as the one before left it, none, or one of layout 1 to bring up to date. */
+/* Initial state of a session: the file left by the previous one, no file, or a file of layout 1 to upgrade. */
 typedef enum start {
     AS_LEFT,
     NO_FILE,
     LAYOUT_1
 } start;
 
-/* Lets the n-th operation fail for growing n until a session is over before; returns that n. */
+/* Lets the n-th operation fail, for growing n, until a session ends before it; returns that n. */
 static int fail_each(const place *here, int first, start start_at, lensprof_status only) {
     lensprof_profile *profile = new_profile();
     lensprof_error error;
@@ -192,7 +192,7 @@ static int fail_each(const place *here, int first, start start_at, lensprof_stat
         lensprof_store_close(store);
         if (!reached) break;
     }
-    assert_ok(status); /* the last session met no fault */
+    assert_ok(status); /* the last session had no fault */
     assert_integrity(here->path);
     free(layout_1);
     free(profile);
@@ -216,7 +216,7 @@ static void fail_each_way(void **state, int fault, lensprof_status only) {
         for_good = way % 2;
         int n = fail_each(here, 1 + 5 * way % STEP, (start)(way / 2), only);
         file_fault = 0;
-        assert_true(n > 50); /* else the faults were not where they should be */
+        assert_true(n > 50); /* otherwise the faults did not occur where expected */
     }
 }
 
@@ -226,7 +226,7 @@ static void test_input_output_error(void **state) { fail_each_way(state, SQLITE_
 
 static void test_full_disk_at_every_operation(void **state) { fail_each_way(state, SQLITE_FULL, LENSPROF_OK); }
 
-/* Before SQLite is used for the first time. */
+/* Runs before SQLite is used for the first time. */
 static int install_faults(void **state) {
     static sqlite3_vfs vfs;
     sqlite3_mem_methods faulty;

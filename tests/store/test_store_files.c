@@ -1,4 +1,4 @@
-/* The database in bad times: files that are missing, foreign, protected, locked, or on a full disk. */
+/* The database under adverse conditions: files that are missing, foreign, protected or locked, and a full disk. */
 #include "store_fixture.h"
 
 #include <signal.h>
@@ -16,7 +16,7 @@ static void assert_refused(const char *path, uint32_t mode, lensprof_status stat
     if (!strstr(error.text, name ? name + 1 : path) || !strstr(error.text, "; ")) fail_msg("text: %s", error.text);
 }
 
-/* Every mode refuses the file, which stays as it is, without anything new beside it. */
+/* Every mode refuses the file; it stays unchanged, and no new file appears next to it. */
 static void assert_refused_untouched(const place *here, lensprof_status status) {
     size_t size, entries[2] = {0, 0};
     unsigned char *bytes = read_file(here->path, &size);
@@ -41,7 +41,7 @@ static void make_database(const place *here) {
     free(profile);
 }
 
-/* Opens for reading: so many profiles, file sound. */
+/* Opens for reading: the number of profiles is right, and the file is intact. */
 static void assert_profiles(const char *path, uint32_t count) {
     lensprof_store *store = store_at(path, LENSPROF_STORE_READ);
     assert_int_equal(count_at(store), count);
@@ -98,7 +98,7 @@ static void test_text_file(void **state) {
         write_file(here->path, text, sizes[i]);
         assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT);
     }
-    memcpy(text, "SQLite format 3", 16); /* only looks like one */
+    memcpy(text, "SQLite format 3", 16); /* only resembles a database */
     write_file(here->path, text, sizeof text);
     assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT);
     memcpy(text + 68, "LPRF", 4);
@@ -116,7 +116,7 @@ static void test_empty_file(void **state) {
     assert_profiles(here->path, 1);
 }
 
-/* Ends without commit after some pages were written to the file: what kill -9 leaves in the worst case. */
+/* Ends without a commit after some pages were written to the file: the worst case of kill -9. */
 static void cut_off_write(const char *path, const char *sql) {
     pid_t child = fork();
     assert_true(child >= 0);
@@ -139,7 +139,7 @@ static void test_foreign_database(void **state) {
             "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 500)"
             " INSERT INTO profiles SELECT randomblob(1000) FROM n");
     cut_off_write(here->path, "UPDATE profiles SET a = randomblob(1000)");
-    assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT); /* not even undone */
+    assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT); /* not even rolled back */
 }
 
 static void test_foreign_database_with_log(void **state) {
@@ -169,7 +169,7 @@ static void test_layouts(void **state) {
     assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT);
     run_sql(here->path, "PRAGMA user_version = 5");
     store = store_at(here->path, LENSPROF_STORE_WRITE);
-    run_sql(here->path, "PRAGMA user_version = 6"); /* another process brings it up to date while we hold it */
+    run_sql(here->path, "PRAGMA user_version = 6"); /* another process upgrades it while it is open here */
     assert_int_equal(lensprof_store_list(store, NULL, NULL, 0, &(uint32_t){0}, &error), LENSPROF_ERROR_LAYOUT);
     assert_int_equal(lensprof_store_remove(store, 1, &error), LENSPROF_ERROR_LAYOUT);
     lensprof_store_close(store);
@@ -202,7 +202,7 @@ static void test_symbolic_link(void **state) {
     assert_refused(link, LENSPROF_STORE_READ, LENSPROF_ERROR_NOT_FOUND);
 }
 
-/* What a handle that may not write does, on a database with one profile. */
+/* A handle without write access, on a database with one profile. */
 static void assert_reads_only(lensprof_store *store) {
     lensprof_profile *profile = new_profile();
     lensprof_error error;
@@ -243,7 +243,7 @@ static void test_protected_directory(void **state) {
     make_database(here);
     if (!set_protected(here->directory, true)) skip();
     assert_reads_only(store_at(here->path, LENSPROF_STORE_READ));
-    assert_refused(here->path, LENSPROF_STORE_WRITE, LENSPROF_ERROR_READ_ONLY); /* no place for the log */
+    assert_refused(here->path, LENSPROF_STORE_WRITE, LENSPROF_ERROR_READ_ONLY); /* the log cannot be created */
     snprintf(path, sizeof path, "%s/new.db", here->directory);
     assert_refused(path, LENSPROF_STORE_CREATE, LENSPROF_ERROR_READ_ONLY);
 }
@@ -256,7 +256,7 @@ static void test_cut_off_write_is_undone(void **state) {
     for (uint32_t mode = 0; mode < 3; mode++) {
         unlink(here->path);
         make_database(here);
-        run_sql(here->path, "PRAGMA journal_mode = DELETE"); /* as before there was a log */
+        run_sql(here->path, "PRAGMA journal_mode = DELETE"); /* as in versions without a log */
         unsigned char *bytes = read_file(here->path, &size);
         cut_off_write(here->path,
                       "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 50)"
@@ -292,7 +292,7 @@ static void test_removed_while_open(void **state) {
     lensprof_store_close(store);
 }
 
-/* The store's own limit stands for the end of the disk. */
+/* SQLite's page limit simulates a full disk. */
 static void test_no_page_left(void **state) {
     const place *here = *state;
     lensprof_profile *profile = new_profile();
@@ -316,15 +316,15 @@ static void test_no_page_left(void **state) {
         assert_file(here->path, bytes, size);
     }
     assert_int_equal(sqlite3_exec(store->db, "PRAGMA max_page_count = 1000", NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(put_at(store, profile), 2); /* the same handle goes on */
+    assert_int_equal(put_at(store, profile), 2); /* the handle remains usable */
     lensprof_store_close(store);
     assert_profiles(here->path, 2);
     free(bytes);
     free(profile);
 }
 
-/* In a child whose files may not grow beyond `bytes`: puts until that fails. Exit code: 100 + profiles stored when the
- * failure was as it should be; `there` were in the file before. */
+/* In a child whose files may not grow beyond `bytes`: stores profiles until that fails. Exit code: 100 + the number of
+ * stored profiles if the failure was as expected; `there` profiles were in the file before. */
 static int fill_limited(const char *path, rlim_t bytes, uint32_t there) {
     pid_t child = fork();
     if (child == 0) {
@@ -368,7 +368,7 @@ static void test_no_room_for_the_file(void **state) {
     make_database(here);
     size_t size;
     unsigned char *bytes = read_file(here->path, &size);
-    assert_int_equal(fill_limited(here->path, 600, 1), 100); /* not even for the journal */
+    assert_int_equal(fill_limited(here->path, 600, 1), 100); /* not even room for the journal */
     assert_profiles(here->path, 1);
     assert_file(here->path, bytes, size);
     free(bytes);
@@ -389,12 +389,12 @@ static void test_busy(void **state) {
     assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_BUSY);
     assert_non_null(strstr(error.text, "locked by another process"));
     assert_int_equal(lensprof_store_remove(store, 1, &error), LENSPROF_ERROR_BUSY);
-    assert_int_equal(count_at(store), 1); /* readers go on */
+    assert_int_equal(count_at(store), 1); /* readers continue */
     assert_int_equal(sqlite3_exec(other, "COMMIT; BEGIN EXCLUSIVE", NULL, NULL, NULL), SQLITE_OK);
     assert_ok(lensprof_store_get(store, 1, profile, &error));
     for (uint32_t mode = 0; mode < 3; mode++) lensprof_store_close(store_at(here->path, mode));
     assert_int_equal(sqlite3_exec(other, "COMMIT; BEGIN; SELECT count(*) FROM profiles", NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(put_at(store, profile), 2); /* nothing of the failed ones is left; a reader does not hinder it */
+    assert_int_equal(put_at(store, profile), 2); /* no trace of the failed ones; a reader does not block it */
     assert_int_equal(sqlite3_exec(other, "COMMIT", NULL, NULL, NULL), SQLITE_OK);
     sqlite3_close(other);
     lensprof_store_close(store);

@@ -1,4 +1,4 @@
-/* Which profile a key finds, and what is listed in which order. */
+/* Which profile a key finds, and the order of lists. */
 #include "store_fixture.h"
 
 static void test_newest_wins(void **state) {
@@ -16,7 +16,7 @@ static void test_newest_wins(void **state) {
     assert_ok(lensprof_store_get(store, first, found, NULL)); /* the older one stays */
     assert_close(found->vignetting[0].k[0], -0.3, 0.0);
     assert_ok(lensprof_store_remove(store, second, NULL));
-    assert_ok(lensprof_store_find(store, &profile->key, found, NULL, NULL)); /* nobody need ask for the id */
+    assert_ok(lensprof_store_find(store, &profile->key, found, NULL, NULL)); /* the id is optional */
     assert_ok(lensprof_store_find(store, &profile->key, found, &id, NULL));
     assert_int_equal(id, first);
     assert_true(put_at(store, profile) > second); /* an id is never used again */
@@ -25,7 +25,7 @@ static void test_newest_wins(void **state) {
     free(found);
 }
 
-/* Puts a profile with `put` and looks for `asked`. */
+/* Stores a profile with key `put` and looks for `asked`. */
 static lensprof_status match(void **state, const lensprof_profile_key *put, const lensprof_profile_key *asked) {
     const place *here = *state;
     lensprof_profile *profile = new_profile();
@@ -50,9 +50,9 @@ static void test_texts_match_without_case_and_blanks(void **state) {
     strcpy(asked.camera_maker, "cANON");
     strcpy(asked.camera_model, " eos 5d  ");
     assert_ok(match(state, &put, &asked));
-    strcpy(asked.camera_model, "eos  5d"); /* inner blanks count */
+    strcpy(asked.camera_model, "eos  5d"); /* inner blanks matter */
     assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
-    strcpy(asked.camera_model, ""); /* unknown equals unknown only */
+    strcpy(asked.camera_model, ""); /* unknown matches unknown only */
     assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
     asked = put;
     strcpy(asked.lens, "EF50mm");

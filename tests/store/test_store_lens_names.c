@@ -1,5 +1,5 @@
-/* Names of lenses as cameras write them into EXIF: which lens of the database is found. The names are from cameras'
- * files and lists. */
+/* Which stored lens is found for lens names as cameras write them into EXIF. The names come from files of cameras and
+ * from lists. */
 #include "lens_names_fixture.h"
 
 static const struct {

@@ -1,5 +1,4 @@
-/* Names of lenses that the database does not have, as cameras write them into EXIF: a neighbour is never found in their
- * place. */
+/* Lens names from EXIF that the database does not have: a similar lens is never found instead. */
 #include "lens_names_fixture.h"
 
 static const struct {

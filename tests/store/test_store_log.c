@@ -1,4 +1,4 @@
-/* The write-ahead log: who makes it, that it goes, and what there is where it cannot be. */
+/* The write-ahead log: when it is created and removed, and what happens if it cannot be created. */
 #include "store_fixture.h"
 
 #include <signal.h>
@@ -13,7 +13,7 @@ static bool has_file(const place *here, const char *end) {
     return access(path, F_OK) == 0;
 }
 
-/* The file's header says what its readers must do: 2 = log. */
+/* The journal mode in the file's header: 2 = log. */
 static int mode_of(const place *here) {
     size_t size;
     unsigned char *bytes = read_file(here->path, &size);
@@ -56,7 +56,7 @@ static void test_settings(void **state) {
     fill_profile(&profile);
     put_at(store, &profile);
     assert_int_equal(lp_store_number(store->db, "PRAGMA synchronous", &value), SQLITE_OK);
-    assert_int_equal(value, 2); /* a commit survives the loss of power */
+    assert_int_equal(value, 2); /* a commit survives a power failure */
     assert_int_equal(lp_store_number(store->db, "PRAGMA busy_timeout", &value), SQLITE_OK);
     assert_int_equal(value, LP_STORE_BUSY_MS);
     assert_int_equal(lp_store_number(store->db, "PRAGMA trusted_schema", &value), SQLITE_OK);
@@ -68,7 +68,8 @@ static void test_settings(void **state) {
     lensprof_store_close(store);
 }
 
-/* A file of an older lensprof: readers leave it as it is, the first writer makes a log, also while others read. */
+/* A file of an older lensprof: readers leave it unchanged, the first writer switches to a log, even while others
+ * read. */
 static void test_rollback_mode_becomes_a_log(void **state) {
     const place *here = *state;
     make_database(here, 1);
@@ -92,7 +93,7 @@ static void test_rollback_mode_becomes_a_log(void **state) {
     assert_integrity(here->path);
 }
 
-/* Somebody reads: the profile is stored, and the mode is changed by a later write. */
+/* While another process reads, the profile is stored; a later write changes the mode. */
 static void test_reader_keeps_the_mode(void **state) {
     const place *here = *state;
     sqlite3 *reader;
@@ -114,7 +115,7 @@ static void test_reader_keeps_the_mode(void **state) {
     lensprof_store_close(store);
 }
 
-/* Ends without closing: the log stays, with `more` committed profiles and one that is not. */
+/* Ends without closing: the log stays, with `more` committed profiles and an uncommitted one. */
 static void leave_log(const char *path, int more) {
     pid_t child = fork();
     if (child == 0) {
@@ -157,7 +158,7 @@ static void assert_read_there(const char *path, lensprof_status expected, const 
     lensprof_store_close(store);
 }
 
-/* A folder that cannot be written: read as it is when it was closed; a log left there is said. */
+/* A read-only folder: the file is read as of its last close; a log left there is reported. */
 static void test_read_only_folder(void **state) {
     const place *here = *state;
     make_database(here, 1);
@@ -168,12 +169,12 @@ static void test_read_only_folder(void **state) {
     leave_log(here->path, 1);
     char shared[200];
     snprintf(shared, sizeof shared, "%s-shm", here->path);
-    unlink(shared); /* as on a medium that was copied to */
+    unlink(shared); /* as on a medium it was copied to */
     assert_true(set_protected(here->directory, true));
     assert_read_there(here->path, LENSPROF_ERROR_READ_ONLY, "interrupted write");
 }
 
-/* A user who may only read, with names that an address would read otherwise. */
+/* A user with read access only; the name contains characters that are special in a URI. */
 static void test_another_user(void **state) {
     const place *here = *state;
     char path[300];
@@ -193,7 +194,7 @@ static void test_another_user(void **state) {
     assert_int_equal(WEXITSTATUS(status), 77);
 }
 
-/* A reader without locks notices a writer that comes later. */
+/* A reader without locks notices a later writer. */
 static void test_writer_beside_an_immutable_reader(void **state) {
     const place *here = *state;
     make_database(here, 1);
@@ -213,7 +214,7 @@ static void test_writer_beside_an_immutable_reader(void **state) {
     assert_alone(here);
 }
 
-/* No room for the log's index, 32 KiB: what is there can be read, and nothing new lies beside it. */
+/* No room for the log's index (32 KiB): existing profiles can be read, and no new file appears next to the database. */
 static void test_full_disk(void **state) {
     const place *here = *state;
     make_database(here, 1);

@@ -17,7 +17,7 @@ static void test_exact(void **state) {
     lensprof_store_close(store);
 }
 
-/* Of the rows with a colour temperature those of the nearest count, in mired, where the key has one. */
+/* Of rows with a colour temperature, those with the nearest one in mired count, if the key has one. */
 static void test_nearest_light(void **state) {
     static const double kelvins[] = {2800, 4000, 6500};
     lensprof_lookup_options options;
@@ -33,7 +33,7 @@ static void test_nearest_light(void **state) {
         int64_t id;
         bool noted;
     } cases[] = {{LENSPROF_UNKNOWN, 3, false}, {4000, 2, false}, {2800, 1, false}, {4900, 2, true}, {5200, 3, true}};
-    for (int i = 0; i < 5; i++) { /* 5000 K lie in the middle of 4000 and 6500: 200 mired between 250 and 154 */
+    for (int i = 0; i < 5; i++) { /* 5000 K is in the middle between 4000 and 6500 K: 200 mired between 250 and 154 */
         p->key.color_temperature_k = cases[i].asked;
         assert_ok(ask_with(store, &p->key, &options));
         assert_int_equal(how.id[0], cases[i].id);
@@ -41,7 +41,7 @@ static void test_nearest_light(void **state) {
         assert_int_equal(strstr(how.reason, "colour temperature") != NULL, cases[i].noted);
         assert_int_equal(how.reason_code[0] == LENSPROF_REASON_LOOKUP_OTHER_LIGHT, cases[i].noted);
     }
-    p->key.color_temperature_k = LENSPROF_UNKNOWN; /* one of no temperature is for all */
+    p->key.color_temperature_k = LENSPROF_UNKNOWN; /* a row without a temperature matches all */
     assert_int_equal(put_at(store, p), 4);
     p->key.color_temperature_k = 2800;
     assert_ok(ask_with(store, &p->key, &options));
@@ -67,7 +67,7 @@ static void test_between_settings(void **state) {
     lensprof_store_close(store);
 }
 
-/* Without a bit of difference, whoever asks and however often. */
+/* The answer is the same to the bit every time, and nothing is written. */
 static void test_same_answer_and_nothing_written(void **state) {
     const place *here = *state;
     size_t before, after;
@@ -88,13 +88,13 @@ static void test_same_answer_and_nothing_written(void **state) {
     free(is);
 }
 
-/* Leaves bytes on the stack that no error has. */
+/* Leaves bytes on the stack that do not occur in an error. */
 static __attribute__((noinline)) void soil_stack(void) {
     volatile unsigned char bytes[1 << 16];
     for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = 0x5A;
 }
 
-/* A refusal names no image or pair: the error's item is NONE, whatever was in memory before. */
+/* A refusal does not refer to an image or pair: the error has item NONE, whatever was in memory before. */
 static void test_refusal_has_no_item(void **state) {
     lensprof_store *store = zoom_store(*state);
     lensprof_lookup_options options;
@@ -162,7 +162,8 @@ static void test_names(void **state) {
     lensprof_store_close(store);
 }
 
-/* A camera's own profiles before a lens's, a unit's before the model's, the smallest sensor that is large enough. */
+/* A camera's own profiles come before the lens's, a unit's before the model's; then the smallest sensor that is large
+ * enough. */
 static void test_which_rows(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -191,7 +192,7 @@ static void test_which_rows(void **state) {
     key.crop_factor = 1.5;
     assert_ok(ask_with(store, &key, &options));
     assert_int_equal(how.id[0], id[1]);
-    key.crop_factor = 1.2; /* of the full frame: r = 1 is at 1 / 1.2 of it */
+    key.crop_factor = 1.2; /* on a full frame: r = 1 is at 1 / 1.2 of it */
     assert_ok(ask_with(store, &key, &options));
     assert_int_equal(how.id[0], id[0]);
     assert_close(answered.vignetting[0].k[0], k[0] / (1.2 * 1.2), 1e-3);
@@ -201,7 +202,7 @@ static void test_which_rows(void **state) {
     lensprof_store_close(store);
 }
 
-/* Beyond the last focal length the aperture counts as it does at it. */
+/* Beyond the last focal length, the aperture has the same effect as at it. */
 static void test_aperture_beyond_the_last_focal_length(void **state) {
     const place *here = *state;
     lensprof_store *store = zoom_store(here);
@@ -218,8 +219,8 @@ static void test_aperture_beyond_the_last_focal_length(void **state) {
     lensprof_store_close(store);
 }
 
-/* A sensor that is not known is taken as the smallest measured, so that not too much is taken out; curves of sensors
- * are not mixed, and one whose crop factor EXIF rounds is the same. */
+/* An unknown sensor is taken as the smallest measured one, so that the falloff is not overcorrected. Curves of
+ * different sensors are not mixed; a crop factor that EXIF rounds counts as the same sensor. */
 static void test_unknown_sensor(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -246,7 +247,7 @@ static void test_unknown_sensor(void **state) {
     lensprof_store_close(store);
 }
 
-/* What there is, but was not asked for, is said. */
+/* A reason mentions profiles that exist but were not asked for. */
 static void test_left_out_is_said(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -272,7 +273,8 @@ static void test_left_out_is_said(void **state) {
     lensprof_store_close(store);
 }
 
-/* One distance tells nothing of others: it is the answer, and the error is that of lenses known at several. */
+/* A lens known at one distance only: that profile is the answer, and the error is typical of lenses known at
+ * several. */
 static void test_lone_distance(void **state) {
     lensprof_store *store = zoom_store(*state);
     assert_ok(ask(store, zoom, 28, 2.4, INFINITY));
@@ -291,7 +293,7 @@ static void test_lone_distance(void **state) {
     lensprof_store_close(store);
 }
 
-/* Nothing that was not there is taken out. */
+/* Without a distance, the correction is conservative. */
 static void test_unknown_distance(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -304,14 +306,14 @@ static void test_unknown_distance(void **state) {
         put_at(store, p);
     }
     lensprof_profile_key key = zoom_profile("Lens", 50, 2.0, LENSPROF_UNKNOWN)->key;
-    assert_ok(ask_with(store, &key, &options)); /* most photographs are taken at some metres and beyond */
+    assert_ok(ask_with(store, &key, &options)); /* most photographs are taken at a distance of some metres or more */
     assert_true(answered.vignetting[0].k[0] > -0.48 && answered.vignetting[0].k[0] < -0.40);
     assert_true(how.distance_sigma > 0.015 && how.distance_sigma < 0.06);
     assert_true(how.sigma >= sqrt(how.distance_sigma * how.distance_sigma + how.falloff_sigma * how.falloff_sigma));
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_USUAL_DISTANCE, "usual distances"));
     options.distance_rule = LENSPROF_DISTANCE_WEAKEST;
     assert_ok(ask_with(store, &key, &options));
-    assert_true(how.distance_sigma > 0.1); /* it is on the side of doing too little */
+    assert_true(how.distance_sigma > 0.1); /* the weakest falloff undercorrects */
     assert_true(answered.vignetting[0].k[0] > -0.32 && answered.vignetting[0].k[0] < -0.28);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE, "weakest"));
     options.distance_rule = LENSPROF_DISTANCE_FARTHEST;
@@ -342,7 +344,7 @@ static void test_doubt_and_processing(void **state) {
     lensprof_store_close(store);
 }
 
-/* What no profile has, by another program's hand. */
+/* Values that no valid profile has, written by another program. */
 static void test_damaged_rows(void **state) {
     static const char *const damages[] = {"profiles SET aperture = -2.0", "profiles SET focal_mm = 0.0",
                                           "vignettings SET k1 = 9e999", "profiles SET camera_model = char(7)"};
@@ -369,7 +371,7 @@ static void test_transactions(void **state) {
     assert_ok(lensprof_store_begin(store, &error));
     assert_int_equal(lensprof_store_begin(store, &error), LENSPROF_ERROR_ARGUMENT);
     put_falloff(store, zoom, 24, 2.0, INFINITY);
-    assert_int_equal(lensprof_store_remove(store, 77, &error), LENSPROF_ERROR_NOT_FOUND); /* takes nothing else along */
+    assert_int_equal(lensprof_store_remove(store, 77, &error), LENSPROF_ERROR_NOT_FOUND); /* removes nothing else */
     put_falloff(store, zoom, 35, 2.0, INFINITY);
     assert_ok(lensprof_store_list(store, NULL, NULL, 0, &found, &error));
     assert_int_equal(found, 2);
@@ -415,7 +417,7 @@ static void test_arguments(void **state) {
     lensprof_store_close(store);
 }
 
-/* A corner that no row is near: one number outside is predicted, both are not. */
+/* A corner of the range without rows nearby: if one setting is outside, it is predicted; if both are, it is not. */
 static void test_outside_both_ranges(void **state) {
     static const double focals[] = {24, 28, 35}, apertures[] = {2.8, 4.0, 5.6};
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
@@ -424,7 +426,7 @@ static void test_outside_both_ranges(void **state) {
     assert_ok(ask(store, zoom, 24.0001, 2.8, INFINITY));
     const double inside = how.falloff_sigma;
     assert_ok(ask(store, zoom, 23.9999, 2.8, INFINITY));
-    assert_true(how.falloff_sigma > 1.8 * inside); /* nothing but the side of 24 mm has changed */
+    assert_true(how.falloff_sigma > 1.8 * inside); /* only the side of 24 mm has changed */
     assert_ok(ask(store, zoom, 22, 2.8, INFINITY));
     assert_ok(ask(store, zoom, 24, 2.5, INFINITY));
     assert_ok(ask(store, zoom, 23.5, 2.5, INFINITY)); /* another rounding of 24 mm */

@@ -1,4 +1,4 @@
-/* Databases merged: everything arrives as it was, nothing twice, all or nothing. */
+/* Merging databases: every profile arrives unchanged, none twice, all or nothing. */
 #include "store_fixture.h"
 
 static lensprof_profile sample[3], found = {.struct_size = sizeof found};
@@ -23,7 +23,7 @@ static void fill_samples(void) {
     assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 2.2));
 }
 
-/* A database of the samples from `first` on, closed. */
+/* A closed database with the samples from `first` on. */
 static void make_other(const place *here, const char *name, int first, int count) {
     lensprof_store *store = store_in(here, name, LENSPROF_STORE_CREATE);
     for (int i = 0; i < count; i++) put_at(store, &sample[first + i]);
@@ -57,7 +57,7 @@ static void test_everything_arrives_as_it_was(void **state) {
     assert_integrity(here->path);
 }
 
-/* Whatever differs makes another profile, be it the last bit of one number. */
+/* Any difference makes another profile, even the last bit of one number. */
 static void test_what_differs_is_added(void **state) {
     const place *here = *state;
     enum {
@@ -93,7 +93,7 @@ static void test_what_differs_is_added(void **state) {
     free(p);
 }
 
-/* The newest of a key is the newest of the other database, as it was there; two that are the same become one. */
+/* The newest profile of a key in the other database is the newest here; two equal ones become one. */
 static void test_order_and_repetitions(void **state) {
     const place *here = *state;
     int64_t id;
@@ -137,7 +137,7 @@ static void test_older_layouts_are_read_as_they_are(void **state) {
     }
 }
 
-/* A prior has another id here, also where it was here before; 0 where it is not here. */
+/* A prior gets its id in this database, even if it was already here, and 0 if it is not here. */
 static void test_priors_are_renumbered(void **state) {
     const place *here = *state;
     static const int64_t priors[] = {0, 1, 2, 99, 5, INT64_MAX}, here_as[] = {3, 4, 0, 0, 0};
@@ -165,7 +165,7 @@ static void test_priors_are_renumbered(void **state) {
     close_pair(store, other);
 }
 
-/* A known profile gets its prior from the other database; one that it has stays, and so does `forced`. */
+/* A known profile without a prior gets it from the other database; an existing prior and `forced` stay. */
 static void test_known_profiles_get_their_priors(void **state) {
     const place *here = *state;
     static const int64_t own[] = {0, 0, 1}, theirs[] = {0, 1, 2};
@@ -193,14 +193,14 @@ static void test_known_profiles_get_their_priors(void **state) {
     close_pair(store, other);
 }
 
-/* The same rule for importers: not the newest alone, and whatever made it. */
+/* The same rule for importers: every profile is compared, not only the newest, and whatever its method. */
 static void test_find_same(void **state) {
     const place *here = *state;
     lensprof_error error;
     int64_t id = 77;
     fill_samples();
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    sample[0].vignetting[0].center[0] = -0.0; /* which a database keeps as 0 */
+    sample[0].vignetting[0].center[0] = -0.0; /* stored as 0 */
     put_at(store, &sample[0]);
     sample[0].provenance.images++;
     put_at(store, &sample[0]);
@@ -213,7 +213,7 @@ static void test_find_same(void **state) {
     sample[0].provenance.forced = 0;
     assert_ok(lensprof_store_find_same(store, &sample[0], &id, NULL));
     assert_int_equal(id, 1);
-    assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 1.8)); /* the number says it, and not the table */
+    assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 1.8)); /* compared by the number, not by the table */
     put_at(store, &sample[2]);
     sample[2].response[0].table[500] += 1e-11;
     assert_ok(lensprof_store_find_same(store, &sample[2], &id, NULL));
@@ -248,7 +248,7 @@ static void test_damaged_row_takes_everything_back(void **state) {
     assert_non_null(strstr(error.text, "other.db: profile 3 is damaged ("));
     assert_int_equal(added, 77);
     assert_int_equal(count_at(store), 0);
-    assert_ok(lensprof_store_begin(store, NULL)); /* in the caller's transaction too, whose other calls stay */
+    assert_ok(lensprof_store_begin(store, NULL)); /* also in the caller's transaction, whose other calls remain */
     put_at(store, &sample[1]);
     assert_int_equal(lensprof_store_merge(store, other, &added, NULL, &error), LENSPROF_ERROR_CORRUPT);
     assert_ok(lensprof_store_commit(store, NULL));

@@ -1,4 +1,4 @@
-/* Names that are written in many ways: what is the same lens or camera, and above all what is not. */
+/* Different spellings of names: which are the same lens or camera, and above all which are not. */
 #include "store_fixture.h"
 
 #include "store/names/names.h"
@@ -53,17 +53,17 @@ static void test_words(void **state) {
         {"Canon EF 85mm f/1.8 USM", "USM EF 85mm f/1.8", "NIKON CORPORATION", 0},
         {"Canon EF 85mm f/1.8 USM", "USM EF 85mm f/1.8", "CANON INC.", 1},
         {"Canon EF 85mm f/1.8 USM", "USM EF 85mm f/1.8", "Unheard Of", 0},
-        {"Kit lens", "lens Kit", "", 0}, /* without a number anything could be meant */
+        {"Kit lens", "lens Kit", "", 0}, /* without a number, not specific enough */
         {"50 20 mm", "502 0 mm", "", 0},
         {"", "", "", 0},
-        {"50mm f/1.8", "50mm f/1.8", "", 0}, /* anybody's */
+        {"50mm f/1.8", "50mm f/1.8", "", 0}, /* no maker */
         {"LUMIX G 20/F1.7", "Panasonic Lumix G 20mm f/1.7", "Panasonic", 1},
         {"Summicron TL 1:2 23 ASPH.", "Summicron-TL 1:2/23 ASPH.", "LEICA CAMERA AG", 1},
         {"ZEISS Batis 2/25", "Zeiss Batis 25mm f/2", "SONY", 1},
         {"Tamron 14-150mm Di III", "Tamron 14-150mm DiIII", "", 1},
         {"8mm Fisheye", "8mm Fish-Eye", "", 1},
         {"SIGMA 18-35mm F1.8 DC HSM | A", "Sigma 18-35mm f/1.8 DC HSM [Art]", "Canon", 1},
-        {"35mm F1.2 DG DN", "Sigma 35mm f/1.2 DG DN", "SONY", 1}, /* for others' cameras */
+        {"35mm F1.2 DG DN", "Sigma 35mm f/1.2 DG DN", "SONY", 1}, /* made for other makers' cameras */
         {"AF 35mm f/2.8", "Samyang AF 35mm f/2.8", "SONY", 0},
         {"EF 35mm f/2 IS", "Canon EF 35mm f/2 IS", "SONY", 0},
         {"Tamron E 28-75mm F2.8-2.8", "Tamron E 28-75mm F2.8", "", 0},
@@ -79,10 +79,10 @@ static void test_words(void **state) {
         }
     char longest[128];
     memset(longest, 0, sizeof longest);
-    for (size_t i = 0; i + 1 < sizeof longest; i++) longest[i] = i % 2 ? '7' : 'x'; /* more words than are looked at */
+    for (size_t i = 0; i + 1 < sizeof longest; i++) longest[i] = i % 2 ? '7' : 'x'; /* more words than are compared */
     assert_close(lp_words_score(longest, longest, ""), 0.0, 0.0);
     memset(longest, '7', sizeof longest - 1);
-    assert_close(lp_words_score(longest, longest, longest), 0.0, 0.0); /* a number alone */
+    assert_close(lp_words_score(longest, longest, longest), 0.0, 0.0); /* only a number */
     memcpy(longest, "ef ", 3);
     assert_close(lp_words_score(longest, longest, longest), 0.6, 0.0);
 }
@@ -98,14 +98,14 @@ static void test_words_that_may_be_missing(void **state) {
         {"LUMIX G VARIO 12-32/F3.5-5.6", "Lumix G Vario 12-32mm f/3.5-5.6 Asph. Mega OIS", "Panasonic", 3},
         {"LUMIX G VARIO 14-42/F3.5-5.6II", "Lumix G Vario 14-42mm f/3.5-5.6 II Asph.", "Panasonic", 1},
         {"LUMIX G VARIO 14-42/F3.5-5.6", "Lumix G Vario 14-42mm f/3.5-5.6 II Asph.", "Panasonic", 0},
-        {"XF18-55mmF2.8-4", "XF18-55mmF2.8-4 R LM OIS", "FUJIFILM", 0}, /* of others OIS says which */
+        {"XF18-55mmF2.8-4", "XF18-55mmF2.8-4 R LM OIS", "FUJIFILM", 0}, /* for other makers OIS is distinctive */
         {"LEICA DG ELMARIT 12-60/F2.8-4.0", "Leica DG 12-60mm f/2.8-4.0", "Panasonic", 1},
         {"LEICA DG ELMARIT 45/F2.8", "Leica DG SUMMILUX 45mm f/2.8", "Panasonic", 0},
         {"AF-S NIKKOR 24-70mm f/2.8G ED", "Nikon AF-S Zoom-Nikkor 24-70mm f/2.8G", "NIKON CORPORATION", 2},
         {"AF Nikkor 28mm f/2.8D", "Nikon AF Nikkor 28mm f/2.8D 62", "NIKON CORPORATION", 1},
         {"Nikon AF Nikkor 28mm f/2.8D 61", "Nikon AF Nikkor 28mm f/2.8D 62", "", 0},
         {"DT 18-55mm F3.5-5.6 SAM", "Sony DT 18-55mm f/3.5-5.6 SAM (SAL1855)", "SONY", 1},
-        {"E 20mm F2.8 F050", "Sony E 20mm F2.8", "SONY", 0}, /* a code of somebody else */
+        {"E 20mm F2.8 F050", "Sony E 20mm F2.8", "SONY", 0}, /* a code of another maker */
         {"TAMRON SP 35mm F/1.4 Di USD F045", "Tamron 35mm f/1.4 Di USD", "Canon", 2},
         {"TAMRON SP 15-30mm F/2.8 Di VC USD A012", "Tamron SP 15-30mm f/2.8 Di VC USD (A041)", "Canon", 0},
         {"TAMRON SP 15-30mm F/2.8 Di VC USD", "Tamron SP 15-30mm f/2.8 Di VC USD G2", "Canon", 0},
@@ -215,7 +215,7 @@ static void test_fixed_lenses(void **state) {
     assert_int_equal(how.exact, 1);
     assert_int_equal(ask(store, "Canon", "EOS 5D", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SEVERAL_LENSES, "several lenses; give the lens"));
-    assert_ok(ask(store, "Canon", "EOS 5D", "Canon EF 50mm", 51, 2)); /* a lens of its own name: 51 mm are 51 mm */
+    assert_ok(ask(store, "Canon", "EOS 5D", "Canon EF 50mm", 51, 2)); /* a lens with its own name: not rounded */
     assert_int_equal(how.exact, 0);
     assert_int_equal(ask(store, "Canon", "", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);
     lensprof_store_close(store);
@@ -238,7 +238,7 @@ static void test_fixed_lenses_by_the_table_of_cameras(void **state) {
     put(store, "", "", "Sony E 35mm f/1.8 OSS", 35, 1.8);
     put_camera(store, "DSC-RX100M4", "Sony DSC-RX100 III & compatibles", 1);
     put_camera(store, "DSC-RX9", "Sony gone", 1);
-    put_camera(store, "ILCE-6000", "Sony E 35mm f/1.8 OSS", 0); /* a lens, but it can be changed */
+    put_camera(store, "ILCE-6000", "Sony E 35mm f/1.8 OSS", 0); /* a lens, but interchangeable */
     assert_ok(ask(store, "SONY", "DSC-RX100M4", "24-70mm F1.8-2.8", 8.8, 1.8));
     assert_int_equal(how.id[0], id);
     assert_close(how.name_score, 0.6, 0.0);
@@ -249,7 +249,7 @@ static void test_fixed_lenses_by_the_table_of_cameras(void **state) {
     assert_int_equal(ask(store, "SONY", "DSC-RX9", "", 8.8, 1.8), LENSPROF_ERROR_NOT_FOUND);
     assert_int_equal(ask(store, "SONY", "ILCE-6000", "E 35mm F1.4", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
     assert_int_equal(ask(store, "SONY", "ILCE-6000", "", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
-    put(store, "Sony", "ILCE-6000", "Sony ILCE-6000 kit", 35, 1.8); /* nor is one built in that is named after it */
+    put(store, "Sony", "ILCE-6000", "Sony ILCE-6000 kit", 35, 1.8); /* named after the camera, but not built in */
     assert_int_equal(ask(store, "SONY", "ILCE-6000", "E 35mm F1.4", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
     lensprof_store_close(store);
 }
@@ -273,7 +273,7 @@ static void test_the_nearest_of_several(void **state) {
     assert_ok(ask(store, "Canon", "", "TAMRON SP AF 17-50mm F/2.8 Di II LD Aspherical (IF)", 17, 2.8));
     assert_int_equal(how.id[0], id); /* has more in common */
     assert_close(how.name_score, 0.5, 0.0);
-    assert_int_equal(ask(store, "Canon", "", "TAMRON 90mm F/2.8 Di", 90, 2.8), LENSPROF_ERROR_NOT_FOUND); /* either */
+    assert_int_equal(ask(store, "Canon", "", "TAMRON 90mm F/2.8 Di", 90, 2.8), LENSPROF_ERROR_NOT_FOUND); /* A or B */
     assert_ok(ask(store, "Canon", "", "TAMRON 90mm F/2.8 Di (B)", 90, 2.8));
     lensprof_store_close(store);
 }

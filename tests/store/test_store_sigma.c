@@ -1,4 +1,5 @@
-/* What a lookup says of its answer: the standard error, by the covariance of what is stored, and reasons as text. */
+/* What a lookup states about its answer: the standard error, from the covariance of stored profiles, and reasons as
+ * text. */
 #include "lookup_fixture.h"
 
 #include "falloff/prediction.h"
@@ -17,7 +18,7 @@ static void test_covariance_counts(void **state) {
     assert_true(unequal.k[0][0] < equal.k[0][0] - 0.03);
 }
 
-/* The same covariance of six coefficients and a falloff, after one response of six modes, or three of two. */
+/* The same covariance of six coefficients and a falloff, with one response of six modes or three of two. */
 static void put_uncertain(lensprof_store *store, uint32_t responses, double aperture, double sigma) {
     static const double none[6] = {0.0};
     lensprof_profile *p = zoom_profile(zoom, 50, aperture, INFINITY);
@@ -42,7 +43,7 @@ static void test_covariance_of_three_responses(void **state) {
         assert_close(how.sigma, 0.0017, 1e-12);
         lensprof_profile_corner_falloff(&answered, 0, &sigma);
         assert_close(sigma, how.sigma, 0.0);
-        assert_ok(ask(store, zoom, 50, 2.4, INFINITY)); /* the first one counts less */
+        assert_ok(ask(store, zoom, 50, 2.4, INFINITY)); /* the first one has less weight */
         memcpy(k[i], answered.vignetting[0].k, sizeof k[i]);
         lensprof_store_close(store);
         unlink(here->path);
@@ -50,7 +51,7 @@ static void test_covariance_of_three_responses(void **state) {
     assert_memory_equal(k[0], k[1], sizeof k[0]);
 }
 
-/* Of three curves that counts of which least is known, in answers and in what weighs the rows of a prediction. */
+/* Of three curves the least accurate counts, in answers and in the weights of a prediction. */
 static void test_covariance_of_three_curves(void **state) {
     const place *here = *state;
     double k[2];
@@ -76,7 +77,7 @@ static void test_covariance_of_three_curves(void **state) {
     assert_true(fabs(k[0] - k[1]) > 1e-4);
 }
 
-/* Sentences for which the text has no room are left out whole; their codes stay. */
+/* Sentences that do not fit into the text are left out completely; their codes stay. */
 static void test_reasons_are_whole(void **state) {
     (void)state;
     static const lensprof_reason codes[] = {

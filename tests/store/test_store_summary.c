@@ -76,7 +76,7 @@ static void test_parts(void **state) {
         {" 2470 CANON ", 2, 0},
         {"usm ii", 1, 0},
         {"35mm f/1.8", 1, 0},
-        {"Canon EF 24-70mm f/2.8L USM", 2, 0}, /* a name, with and without the maker: not II as well */
+        {"Canon EF 24-70mm f/2.8L USM", 2, 0}, /* a name, with and without the maker: does not match II */
         {"d500", 0, 1},
         {"nikon", 0, 1},
         {"canon 6d", 0, 1},
@@ -144,7 +144,7 @@ static void test_set_key(void **state) {
     assert_memory_equal(&after->key, &key, sizeof key);
     assert_memory_equal(&after->provenance, &before->provenance, sizeof after->provenance);
     assert_memory_equal(after->vignetting, before->vignetting, sizeof after->vignetting);
-    assert_ok(lensprof_store_lookup(store, &key, &options, after, &how, &error)); /* by its new name */
+    assert_ok(lensprof_store_lookup(store, &key, &options, after, &how, &error)); /* under its new name */
     assert_int_equal(how.id[0], 4);
     assert_int_equal(lensprof_store_set_key(store, 99, &key, &error), LENSPROF_ERROR_NOT_FOUND);
     key.aperture = -3;

@@ -1,10 +1,9 @@
-/* Databases of older layouts: read as they are, brought up to date by the first write. Each test runs from each of
- * them. */
+/* Databases of older layouts: read as they are, upgraded by the first write. Each test runs for each layout. */
 #include "store_fixture.h"
 
 #include <sys/wait.h>
 
-/* Two profiles as layout `from` can hold them, made once. */
+/* Two profiles that layout `from` can hold, made once. */
 static lensprof_profile old[2], found = {.struct_size = sizeof found};
 static int from;
 
@@ -36,7 +35,7 @@ static int64_t layout_of(const char *path) {
     return layout;
 }
 
-/* Both profiles are there as they were. */
+/* Both profiles are present and unchanged. */
 static void assert_old_profiles(lensprof_store *store) {
     lensprof_store_row rows[20];
     uint32_t count;
@@ -65,7 +64,7 @@ static void test_reading_changes_nothing(void **state) {
     make_old(here->path);
     assert_int_equal(layout_of(here->path), from);
     unsigned char *bytes = read_file(here->path, &size);
-    for (uint32_t mode = 0; mode < 3; mode++) { /* also in those that could write */
+    for (uint32_t mode = 0; mode < 3; mode++) { /* also in modes that could write */
         lensprof_store *store = store_at(here->path, mode);
         assert_old_profiles(store);
         if (mode == LENSPROF_STORE_READ)
@@ -84,7 +83,7 @@ static void test_first_put_brings_up_to_date(void **state) {
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE), *other = store_at(here->path, 0);
     assert_int_equal(count_at(other), 2);
     assert_int_equal(put_at(store, newer), 3);
-    for (int handle = 0; handle < 2; handle++) { /* the other one was opened before */
+    for (int handle = 0; handle < 2; handle++) { /* the other handle was opened before */
         assert_old_profiles(handle ? other : store);
         assert_ok(lensprof_store_get(handle ? other : store, 3, &found, NULL));
         assert_same_profile(&found, newer);
@@ -111,7 +110,7 @@ static void test_first_remove_brings_up_to_date(void **state) {
     assert_integrity(here->path);
 }
 
-/* A write that fails takes the new layout back with it. */
+/* A write that fails rolls back the new layout, too. */
 static void test_failed_write_leaves_the_layout(void **state) {
     const place *here = *state;
     lensprof_error error;
@@ -126,13 +125,13 @@ static void test_failed_write_leaves_the_layout(void **state) {
     assert_int_equal(lp_store_number(store->db, "PRAGMA page_count", &pages), SQLITE_OK);
     snprintf(sql, sizeof sql, "PRAGMA max_page_count = %d", (int)pages);
     assert_int_equal(sqlite3_exec(store->db, sql, NULL, NULL, NULL), SQLITE_OK);
-    fill_profile(&found); /* of more than what is left of the pages */
+    fill_profile(&found); /* larger than the remaining pages */
     assert_ok(lensprof_response_set_table(&found.response[0], (double[]){0.0, 0.7, 1.0}, 3));
     assert_int_equal(lensprof_store_put(store, &found, NULL, &error), LENSPROF_ERROR_FULL);
     assert_old_profiles(store);
     assert_file(here->path, bytes, size);
     assert_int_equal(sqlite3_exec(store->db, "PRAGMA max_page_count = 1000", NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(put_at(store, &old[0]), 3); /* the same handle goes on */
+    assert_int_equal(put_at(store, &old[0]), 3); /* the handle remains usable */
     lensprof_store_close(store);
     free(bytes);
 }
@@ -169,7 +168,7 @@ static void test_old_and_new_files_become_the_same(void **state) {
     assert_string_equal(schema[0], schema[1]);
 }
 
-/* All bring it up to date at once; one is the first, nobody fails. */
+/* Several processes upgrade it simultaneously; one of them does it, and none fails. */
 static void test_several_processes(void **state) {
     const place *here = *state;
     enum {
@@ -197,8 +196,7 @@ static void test_several_processes(void **state) {
     assert_integrity(here->path);
 }
 
-/* What was at the end of the method is read from there, before the file is brought up to date and by the same rule
- * then. */
+/* Values at the end of the method are read from there before the upgrade, and moved by the same rule during it. */
 static void test_methods(void **state) {
     const place *here = *state;
     static const struct {
@@ -255,7 +253,7 @@ static void test_methods(void **state) {
     free(all);
 }
 
-/* Somebody's own table of that name, or a column: the write fails, reading goes on. */
+/* A user's own table or column of that name: the write fails, reading still works. */
 static void test_names_that_are_taken(void **state) {
     const place *here = *state;
     static const char *const taken[] = {"ALTER TABLE profiles ADD COLUMN style TEXT",

@@ -1,4 +1,4 @@
-/* Random models that apply in integers, pixels for them, and what those shall become. */
+/* Random models for integer plans, pixels for them, and the expected results. */
 #ifndef LENSPROF_TESTS_FIXED_CASES_H
 #define LENSPROF_TESTS_FIXED_CASES_H
 
@@ -18,7 +18,7 @@ typedef struct fixture {
     uint8_t in[ROOM], out[ROOM];
     uint32_t x0, y0, bytes;
     lensprof_image from, to;
-    uint32_t memory[2048]; /* 8 KiB: what every plan fits into */
+    uint32_t memory[2048]; /* 8 KiB, enough for every plan */
     const lensprof_fixed_plan *plan;
 } fixture;
 
@@ -31,7 +31,7 @@ static void make_plan(fixture *f) {
     assert_ok(lensprof_fixed_plan_init(f->memory, sizeof f->memory, &f->m.options, &f->plan, NULL));
 }
 
-/* A random model that integers take, and random pixels of a row somewhere in its frame. */
+/* A random model that an integer plan supports, and random pixels of a row somewhere in its frame. */
 static void make_case(fixture *f, uint32_t sample, uint64_t *random) {
     lensprof_apply_options *o = &f->m.options;
     random_model(&f->m, random);
@@ -53,7 +53,7 @@ static void make_case(fixture *f, uint32_t sample, uint64_t *random) {
     make_plan(f);
 }
 
-/* Colour channel of sample s of pixel (x, y), by the names of the layouts; -1 for alpha. */
+/* Colour channel of sample s of pixel (x, y), according to the names of the layouts; -1 for alpha. */
 static int channel_at(uint32_t layout, uint32_t s, uint32_t x, uint32_t y) {
     static const char *const orders[] = {"G", "Ga", "RGB", "RGBa", "BGR", "BGRa", "", "RGGB", "GRBG", "GBRG", "BGGR"};
     const char name = orders[layout][layout >= LENSPROF_LAYOUT_RGGB ? 2 * (y & 1) + (x & 1) : s];
@@ -66,7 +66,7 @@ static double value_at(const uint8_t *data, uint32_t sample, uint32_t i) {
     return sample == LENSPROF_SAMPLE_U8 ? data[i] : word;
 }
 
-/* The code that sample i of the row shall become. */
+/* The expected code of sample i of the row. */
 static inline double wanted_at(const fixture *f, uint32_t i) {
     const uint32_t samples = lensprof_layout_samples(f->from.layout), x = f->x0 + i / samples;
     const double unit = f->from.sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0,

@@ -1,5 +1,5 @@
-/* A row kernel of which tests count the values that were guessed. A lanes_*.h and ROW_KERNEL come first in what defines
- * one. */
+/* A row kernel that counts guessed values for tests. The including file first includes a lanes_*.h and defines
+ * ROW_KERNEL. */
 #ifndef LENSPROF_TESTS_GUESSED_ROW_H
 #define LENSPROF_TESTS_GUESSED_ROW_H
 

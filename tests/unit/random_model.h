@@ -1,4 +1,4 @@
-/* Random models of real cameras, and what applying one shall give, in double precision. */
+/* Random models of real cameras, and the expected result of applying one, in double precision. */
 #ifndef LENSPROF_TESTS_RANDOM_MODEL_H
 #define LENSPROF_TESTS_RANDOM_MODEL_H
 
@@ -32,7 +32,7 @@ static void random_response(lensprof_response *r, uint64_t *random) {
     assert_ok(lensprof_response_set_table(r, table, 40));
 }
 
-/* Falloffs of real lenses: between .25 and 1.1 anywhere in the frame. */
+/* Falloffs of real lenses: between .25 and 1.1 everywhere in the frame. */
 static void random_falloff(lensprof_vignetting *v, const double center[2], uint64_t *random) {
     int good = 0;
     while (!good) {

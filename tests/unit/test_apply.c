@@ -1,4 +1,4 @@
-/* Applying a model to pixels, against the formula in double precision. */
+/* Applying a model to pixels, compared with the formula in double precision. */
 #include "support.h"
 
 #include <lensprof/apply.h>
@@ -46,7 +46,7 @@ static void make_model(fixture *f, uint32_t kind, uint32_t curves) {
     f->options.saturated = LENSPROF_SATURATED_AS_VALUE;
 }
 
-/* Attenuations 0.6..1.4 without any order. */
+/* Random attenuations of 0.6..1.4. */
 static void make_grid(fixture *f, uint32_t columns, uint32_t rows, uint32_t channels) {
     uint64_t random = columns + 100 * rows;
     lensprof_gain_grid_init(&f->grid);
@@ -131,7 +131,7 @@ static void compare(const fixture *f, const lensprof_image *source, const lenspr
             }
 }
 
-/* Every sample type in and out, every layout, response kind, direction, encoding, one and three curves. */
+/* Every input and output sample type, layout, response kind, direction and encoding, with one and three curves. */
 static void test_every_format_follows_the_formula(void **state) {
     (void)state;
     for (uint32_t n = 0; n < 3 * 3 * 6 * 4 * 2 * 2 * 2 * 2; n++) {
@@ -152,7 +152,7 @@ static void test_every_format_follows_the_formula(void **state) {
     }
 }
 
-/* Every kind of response in, every kind out, one and three of each, encoded and light, corrected and simulated. */
+/* Every kind of response for input and output, one and three of each, encoded and linear, corrected and simulated. */
 static void test_output_has_a_response_of_its_own(void **state) {
     (void)state;
     for (uint32_t n = 0; n < 3 * 3 * 4 * 4 * 2 * 2 * 2 * 2; n++) {
@@ -171,7 +171,7 @@ static void test_output_has_a_response_of_its_own(void **state) {
         lensprof_image source = make_image(source_sample, n % 6, n), target = make_image(target_sample, n % 6, 1);
         assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
         compare(&f, &source, &target);
-        /* The response itself as that of the output is the plan as ever. */
+        /* If the output response equals the input response, the plan is the same as without an output response. */
         if (f.options.responses == f.options.output_responses) {
             lensprof_image same = make_image(target_sample, n % 6, 2), plain = make_image(target_sample, n % 6, 3);
             for (int own = 0; own < 2; own++) {
@@ -200,7 +200,7 @@ static void test_gain_grids_follow_the_formula(void **state) {
         f.options.source_layout = layout;
         f.options.source_sample = f.options.target_sample = (k /= 6) % 3;
         make_plan(&f);
-        memset(&f.grid.attenuation, 0, sizeof f.grid.attenuation); /* the plan has a copy */
+        memset(&f.grid.attenuation, 0, sizeof f.grid.attenuation); /* the plan has its own copy */
         lensprof_image source = make_image(k % 3, layout, n), target = make_image(k % 3, layout, 1);
         assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
         make_grid(&f, sides[side][0], sides[side][1], channels);
@@ -209,7 +209,7 @@ static void test_gain_grids_follow_the_formula(void **state) {
     }
 }
 
-/* A grid of ones, no grid at all and NULL are the same. */
+/* A grid of ones, an empty grid and NULL give the same result. */
 static void test_no_gain_grid(void **state) {
     (void)state;
     lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 3), target[3];
@@ -238,7 +238,7 @@ static void tiles_give_the_whole(int has_grid) {
     lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 4),
                    whole = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 5);
     assert_ok(lensprof_apply(f.plan, &source, &whole, 0, 0));
-    lensprof_image bottom_up = source; /* the rows of the tiles below are those of the frame */
+    lensprof_image bottom_up = source; /* the tiles below use the row order of the frame */
     uint8_t *flipped = malloc((size_t)source.row_bytes * H);
     for (uint32_t y = 0; y < H; y++)
         memcpy(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)source.data + y * source.row_bytes,
@@ -265,7 +265,7 @@ static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state) {
     tiles_give_the_whole(1);
 }
 
-/* Simulate, then correct: back to the start within rounding. */
+/* Simulating, then correcting restores the pixels within rounding. */
 static void test_correct_undoes_simulate(void **state) {
     (void)state;
     fixture f;
@@ -298,7 +298,7 @@ static void test_not_a_number_stays_in_its_sample(void **state) {
     free(image.data), free(f.memory);
 }
 
-/* White stays without a cast when the white balance changes, and well exposed pixels follow the formula. */
+/* White stays neutral when the white balance changes; well exposed pixels follow the formula. */
 static void test_saturated_pixels_stay_neutral(void **state) {
     (void)state;
     fixture f;
@@ -309,7 +309,7 @@ static void test_saturated_pixels_stay_neutral(void **state) {
                    before = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8);
     uint8_t *data = image.data;
     data[0] = data[1] = data[2] = 255;
-    data[3] = 255, data[4] = 200, data[5] = 100; /* bright, but a colour */
+    data[3] = 255, data[4] = 200, data[5] = 100; /* bright, but coloured */
     assert_ok(lensprof_apply(f.plan, &image, &image, 0, 0));
     assert_int_equal(data[0], data[1]);
     assert_int_equal(data[1], data[2]);
@@ -374,7 +374,7 @@ static void test_plan_refuses(void **state) {
     assert_int_equal(lensprof_plan_bytes(&f.options), 0);
     f.grid.rows = 33;
     REFUSED(f.options.grid = &f.grid, LENSPROF_ERROR_SIZE);
-    make_grid(&f, 4, 3, 1); /* needs memory of its own */
+    make_grid(&f, 4, 3, 1); /* needs its own memory */
     assert_int_equal(lensprof_plan_bytes(&f.options), bytes + 12 * sizeof(float));
     REFUSED(f.options.grid = &f.grid, LENSPROF_ERROR_CAPACITY);
     REFUSED(f.response[0].table[3] = 0.0, LENSPROF_ERROR_RESPONSE);
@@ -390,7 +390,7 @@ static void test_plan_refuses(void **state) {
     free(memory);
 }
 
-/* A profile's model stands in place of what was set; the plan is that of its parts set one by one. */
+/* A profile's model replaces the options set before; the plan equals that of its parts set one by one. */
 static void test_model_of_a_profile(void **state) {
     (void)state;
     fixture f;
@@ -466,7 +466,7 @@ static void test_apply_refuses_and_writes_nothing(void **state) {
     assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
     bad = t, bad.height = 0;
     assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
-    bad = s, bad.data = (uint8_t *)s.data + 3, bad.height = H - 1; /* overlaps the source, but is not the same memory */
+    bad = s, bad.data = (uint8_t *)s.data + 3, bad.height = H - 1; /* overlaps the source at another address */
     lensprof_image shorter = s;
     shorter.height = H - 1;
     assert_int_equal(lensprof_apply(f.plan, &shorter, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);

@@ -1,6 +1,6 @@
-/* Apply against a reference in double precision, over random profiles: 8 bit within a level and nearly always the same,
- * 16 bit within a level, float within four units in the last place where both sides are linear and within a twentieth
- * of a 16 bit level through responses. */
+/* Apply compared with a reference in double precision over random profiles. 8 bit: within one level, and nearly always
+ * identical. 16 bit: within one level. Float: within four units in the last place if both sides are linear, and within
+ * a twentieth of a 16 bit level through responses. */
 #include "unit/random_model.h"
 
 enum {
@@ -10,7 +10,7 @@ enum {
     PIXELS = 900
 };
 
-/* How far the result is from the reference for pixels of a few rows: the worst, and the share that is the same. */
+/* Difference from the reference for pixels of a few rows: the largest, and the share of identical samples. */
 static double worst_error(const model *m, uint32_t sample, uint64_t *random, double *same) {
     static union {
         uint8_t u8[3 * PIXELS];
@@ -74,7 +74,7 @@ static void through_responses(model *m, uint64_t *random) {
     (void)random;
 }
 
-/* The worst error over all profiles; *same receives the share of samples that are the same. */
+/* The largest error over all profiles; *same receives the share of identical samples. */
 static double worst_of_profiles(uint32_t sample, uint64_t random, encoder encode, double *same) {
     double count = 0.0, worst = 0.0;
     for (int n = 0; n < PROFILES; n++) {
@@ -91,7 +91,7 @@ static double worst_of_profiles(uint32_t sample, uint64_t random, encoder encode
 static void check_levels(uint32_t sample, double smallest_share) {
     double same;
     const double worst = worst_of_profiles(sample, 17, as_drawn, &same);
-    print_message("worst %.0f level, %.4f %% the same\n", worst, 100.0 * same);
+    print_message("worst %.0f level, %.4f %% identical\n", worst, 100.0 * same);
     assert_true(worst <= 1.0);
     assert_true(same >= smallest_share);
 }

@@ -1,4 +1,4 @@
-/* Profile blobs: there and back, and everything that is not one. */
+/* Profile blobs: round trips, and rejection of everything else. */
 #include "blob_support.h"
 
 enum {
@@ -51,7 +51,7 @@ static uint8_t *golden_blob(int which, size_t *bytes) {
     return blob;
 }
 
-/* A profile that nobody has: to see that nothing was written to it. */
+/* A profile filled with a pattern, to detect writes. */
 static lensprof_profile *poisoned(void) {
     lensprof_profile *p = malloc(sizeof *p);
     memset(p, 0xA5, sizeof *p);
@@ -81,7 +81,7 @@ static void refused(const uint8_t *blob, size_t bytes, lensprof_status status, i
     if (memcmp(target, poison, sizeof *target)) fail_msg("line %d: the profile was written", line);
 }
 
-/* ---- there and back ---- */
+/* ---- round trip ---- */
 
 static void assert_response(const lensprof_response *from, const lensprof_response *to) {
     const int has_samples = from->kind == LENSPROF_RESPONSE_EMOR || from->kind == LENSPROF_RESPONSE_TABLE;
@@ -122,7 +122,7 @@ static void test_random_profiles_come_back(void **state) {
     free(p), free(back);
 }
 
-/* Files that a released lensprof may have written: if this fails, the format changed and needs another number. */
+/* Files that a released lensprof may have written. If this fails, the format has changed and needs a new number. */
 static void test_format_is_that_of_the_files(void **state) {
     (void)state;
     for (int which = 0; which < GOLDEN; which++) {
@@ -131,7 +131,7 @@ static void test_format_is_that_of_the_files(void **state) {
         uint8_t *blob = golden_blob(which, &bytes), *file = malloc(bytes + 1);
         snprintf(name, sizeof name, "%s/%s.blob", LENSPROF_BLOBS, golden_name[which]);
         FILE *f = fopen(name, "rb");
-        if (!f) fail_msg("%s: cannot be opened", name);
+        if (!f) fail_msg("cannot open %s", name);
         assert_int_equal(fread(file, 1, bytes + 1, f), bytes);
         fclose(f);
         assert_memory_equal(file, blob, bytes);
@@ -145,7 +145,7 @@ static void assert_size(const lensprof_profile *p, size_t expected) {
     assert_int_equal(bytes, expected);
 }
 
-/* Those of docs/blob.md. */
+/* The sizes given in docs/blob.md. */
 static void test_sizes(void **state) {
     (void)state;
     const double values[4] = {0.0, 0.0, 0.0, 0.0}, line[2] = {0.0, 1.0};
@@ -235,7 +235,7 @@ static void test_every_other_length_is_found(void **state) {
             uint8_t *cut = malloc(length + 1); /* malloc(0) may be NULL */
             memcpy(cut + 1, blob, length);
             assert_refused(cut + 1, length, LENSPROF_ERROR_CORRUPT);
-            if (length >= 16) { /* cut, and made whole again by somebody */
+            if (length >= 16) { /* cut, then sealed again */
                 seal(cut + 1, length);
                 assert_refused(cut + 1, length, LENSPROF_ERROR_CORRUPT);
             }
@@ -266,7 +266,7 @@ static void test_newer_layouts(void **state) {
     assert_refused(blob, bytes, LENSPROF_ERROR_CORRUPT);
     seal(blob, bytes);
     assert_refused(blob, bytes, LENSPROF_ERROR_LAYOUT);
-    for (size_t length = 16; length < bytes; length++) { /* of any content */
+    for (size_t length = 16; length < bytes; length++) { /* any content */
         memset(blob + 12, 0xEE, length - 12);
         seal(blob, length);
         assert_refused(blob, length, LENSPROF_ERROR_LAYOUT);
@@ -275,13 +275,13 @@ static void test_newer_layouts(void **state) {
     blob[4] = 0, blob[5] = 1;
     seal(blob, bytes);
     assert_refused(blob, bytes, LENSPROF_ERROR_LAYOUT);
-    blob[5] = 0; /* there is no layout 0 */
+    blob[5] = 0; /* layout 0 does not exist */
     seal(blob, bytes);
     assert_refused(blob, bytes, LENSPROF_ERROR_CORRUPT);
     free(blob);
 }
 
-/* ---- with a right CRC ---- */
+/* ---- with a correct CRC ---- */
 
 /* Writes `value` in `count` bytes at an offset of a golden blob, seals it, and expects it to be refused. */
 static void refuse_number(int which, size_t offset, uint64_t value, size_t count) {
@@ -316,7 +316,7 @@ static void test_fixed_fields(void **state) {
         for (uint64_t value = 0; value < 256; value++) {
             size_t bytes;
             uint8_t *blob = golden_blob(which, &bytes);
-            for (size_t at = 13; at < 25; at++) /* every other count, side and length: not what follows */
+            for (size_t at = 13; at < 25; at++) /* every other count contradicts the bytes that follow */
                 if (at != 19 && blob[at] != value) refuse_number(which, at, value, 1);
             free(blob);
         }
@@ -354,7 +354,7 @@ static void test_responses(void **state) {
         refuse_double(1, 128 + 12 * (size_t)c, INFINITY);
     }
     const size_t coefficients = 100 + 72 + 4, samples = coefficients + 32; /* of the EMoR blob */
-    refuse_number(2, coefficients - 3, 3, 1);                              /* modes: all that follows moves */
+    refuse_number(2, coefficients - 3, 3, 1);                              /* modes: everything after them moves */
     refuse_number(2, coefficients - 3, 5, 1);
     refuse_number(2, coefficients - 3, 255, 1);
     for (size_t l = 0; l < 4; l++) {
@@ -399,7 +399,7 @@ static void test_grids_covariances_and_texts(void **state) {
     }
 }
 
-/* Sides and counts that ask for more than there is, with as many bytes as that and with too few. */
+/* Sides and counts that need more bytes than a blob can hold, with all those bytes present and with too few. */
 static void test_huge_sizes(void **state) {
     (void)state;
     enum {
@@ -421,7 +421,7 @@ static void test_huge_sizes(void **state) {
             seal(blob, length);
             assert_refused(blob, length, LENSPROF_ERROR_CORRUPT);
         }
-    for (size_t n = 37; n < 256; n += 73) { /* a covariance beyond the largest, all there */
+    for (size_t n = 37; n < 256; n += 73) { /* a covariance larger than allowed, all bytes present */
         const size_t length = bytes + 8 * n * (n + 1) / 2;
         memset(blob, 0, ROOM);
         memcpy(blob, golden, 128);
@@ -429,7 +429,7 @@ static void test_huge_sizes(void **state) {
         seal(blob, length);
         assert_refused(blob, length, LENSPROF_ERROR_CORRUPT);
     }
-    for (size_t t = 0; t < 5; t++) { /* texts longer than their fields, all there */
+    for (size_t t = 0; t < 5; t++) { /* texts longer than their fields, all bytes present */
         static const uint8_t room[5] = {64, 64, 128, 32, 32};
         for (size_t length = room[t] - 1u; length <= room[t]; length++) {
             memcpy(blob, golden, 128);

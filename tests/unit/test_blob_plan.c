@@ -1,4 +1,4 @@
-/* Plans made from a blob: the same as from the profile unpacked from it. */
+/* Plans made from a blob equal plans made from the profile unpacked from it. */
 #include "blob_support.h"
 
 enum {
@@ -94,7 +94,7 @@ static void test_same_bytes_as_from_the_profile(void **state) {
         o.blob = blob + shift, o.blob_bytes = bytes;
         const size_t needed = lensprof_plan_bytes(&o);
         const lensprof_plan *from_blob = make_plan(&o, &memory[0]);
-        memset(blob, 0xFF, bytes + 8); /* the plan does not look at it again */
+        memset(blob, 0xFF, bytes + 8); /* the plan does not read it again */
         use_profile(&o, unpacked);
         assert_int_equal(needed, lensprof_plan_bytes(&o));
         const lensprof_plan *from_profile = make_plan(&o, &memory[1]);
@@ -108,8 +108,8 @@ static void test_same_bytes_as_from_the_profile(void **state) {
     free(p), free(unpacked), free(a), free(b);
 }
 
-/* Single precision of the samples does not show in 8 bit: the codes of the profile itself, or a neighbour where they
- * are about to be rounded the other way. */
+/* Storing the samples in single precision does not show in 8 bit: the codes equal those of the profile itself, or
+ * differ by one near a rounding boundary. */
 static void test_close_to_the_profile_itself(void **state) {
     (void)state;
     uint64_t random = 9;
@@ -187,7 +187,7 @@ static void test_plan_refuses(void **state) {
     assert_int_equal(lensprof_plan_init(memory, needed - 1, &good, &plan, NULL), LENSPROF_ERROR_CAPACITY);
     for (size_t i = 0; i < needed; i++) assert_int_equal(memory[i], 0xAA);
     assert_null(plan);
-    good.responses = good.vignettings = 77; /* the blob's own count */
+    good.responses = good.vignettings = 77; /* the count comes from the blob */
     assert_ok(lensprof_plan_init(memory, needed, &good, &plan, NULL));
     free(memory), free(blob), free(p);
 }

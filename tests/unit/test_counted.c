@@ -1,6 +1,6 @@
-/* Results of any length, one rule for all of them (lensprof/base.h): capacity 0 asks for *count, a buffer of exactly
- * that does, and one element less is refused with CAPACITY, *count and a text, and stays untouched. The table holds
- * every public function with a capacity; test_table_is_complete counts them. */
+/* Results of variable length follow one rule (lensprof/base.h): capacity 0 asks for *count, a buffer of exactly that
+ * size suffices, and one element less is refused with CAPACITY, *count and a text, leaving the buffer untouched. The
+ * table holds every public function with a capacity; test_table_is_complete counts them. */
 #include "support.h"
 
 #include <glob.h>
@@ -23,7 +23,7 @@ static const lensprof_camera cameras[2] = {{.width = WIDTH, .height = HEIGHT}, {
 static lensprof_export_options as_json;
 static const lensprof_frame_time frames[2] = {{"00000", 0.0, 1.5}, {"00001", 0.5, 2.0}};
 
-/* name(buffer, capacity, count, error) for the table: of bytes, and of elements. */
+/* name(buffer, capacity, count, error) for the table, for bytes and for elements. */
 #define BYTES(name, call) \
     static lensprof_status name(void *b, size_t capacity, size_t *count, lensprof_error *error) { return call; }
 #define ELEMENTS(name, call)                                                                   \
@@ -52,7 +52,7 @@ BYTES(dng_opcodes_write, lensprof_dng_opcodes_write(&here.profile, WIDTH, HEIGHT
                                                     LENSPROF_DNG_RADIAL, b, capacity, count, NULL, error))
 BYTES(export, lensprof_export(profiles, 1, &as_json, b, capacity, count, error))
 BYTES(profile_pack, (snprintf(error->text, sizeof error->text, "-"),
-                     lensprof_profile_pack(&here.profile, 0, b, capacity, count))) /* has no text */
+                     lensprof_profile_pack(&here.profile, 0, b, capacity, count))) /* reports no text */
 ELEMENTS(points_read, lensprof_points_read(point_lines, sizeof point_lines - 1, b, capacity, count, error))
 ELEMENTS(times_read, lensprof_times_read(time_lines, sizeof time_lines - 1, b, capacity, count, error))
 ELEMENTS(store_list, lensprof_store_list(store, NULL, b, capacity, count, error))
@@ -67,9 +67,9 @@ ELEMENTS(sample_tracks, lensprof_sample_tracks(&here.sample, here.samples, 2, b,
 #define ROW(name, element, kind) \
     { "lensprof_" #name, name, element, kind }
 enum {
-    TEXT,   /* with a terminator where there is room */
+    TEXT,   /* with a terminator if there is room */
     OTHERS, /* bytes or elements, exactly *count of them */
-    UP_TO   /* *count of capacity 0 is the most there may be */
+    UP_TO   /* with capacity 0, *count is an upper bound */
 };
 static const struct {
     const char *name;
@@ -143,7 +143,7 @@ static int teardown(void **state) {
     return rmdir(folder);
 }
 
-/* The buffer is as long as the capacity says: a sanitizer sees what is written behind it. */
+/* The buffer is exactly as long as the capacity, so that a sanitizer detects writes after its end. */
 static void check_row(size_t row, size_t wanted, size_t capacity) {
     const char *name = table[row].name;
     const size_t bytes = capacity * table[row].element;
@@ -161,7 +161,7 @@ static void check_row(size_t row, size_t wanted, size_t capacity) {
             fail_msg("%s with capacity %zu of %zu: byte %zu is written", name, capacity, wanted, at);
     if (capacity < wanted && !*error.text) fail_msg("%s: no text", name);
     if (capacity > wanted && table[row].kind == TEXT && (buffer[wanted] || strlen((char *)buffer) != wanted))
-        fail_msg("%s: no terminator where there is room for one", name);
+        fail_msg("%s: terminator is missing", name);
     free(buffer);
 }
 
@@ -198,7 +198,7 @@ static void test_buffer_is_needed(void **state) {
     }
 }
 
-/* Declarations with a capacity in the public headers, and whether they are written alike. */
+/* Declarations with a capacity in the public headers all have the same form. */
 static void test_table_is_complete(void **state) {
     (void)state;
     static char text[1 << 17];
@@ -215,7 +215,7 @@ static void test_table_is_complete(void **state) {
             const char *next = at + strlen("_t capacity,");
             next += strspn(next, " \n");
             if (strncmp(next, "size_t *count", 13) && strncmp(next, "uint32_t *count", 15))
-                fail_msg("%s: a capacity is followed by %.20s, not by *count", headers.gl_pathv[h], next);
+                fail_msg("%s: a capacity is followed by %.20s instead of *count", headers.gl_pathv[h], next);
         }
     }
     globfree(&headers);

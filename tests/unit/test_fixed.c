@@ -1,5 +1,5 @@
-/* Applying in integers: against double precision over random profiles, and against the path in single precision where
- * that defines what happens (nearly saturated pixels). */
+/* Applying in integers, compared with double precision over random profiles, and with the single precision path, which
+ * defines the treatment of nearly saturated pixels. */
 #include "unit/fixed_cases.h"
 
 #include <lensprof/profile.h>
@@ -10,7 +10,7 @@ enum {
     PROFILES = 3000
 };
 
-/* The worst difference to the reference, levels; counts samples that are the same. */
+/* The largest difference from the reference, in levels; counts identical samples. */
 static double worst_error(const fixture *f, double *same, double *all) {
     const uint32_t sample = f->from.sample, samples = lensprof_layout_samples(f->from.layout);
     double worst = 0.0;
@@ -36,7 +36,7 @@ static void check_levels(uint32_t sample, double smallest_share) {
         assert_ok(lensprof_fixed_apply(f.plan, &f.from, &f.to, f.x0, f.y0));
         worst = fmax(worst, worst_error(&f, &same, &all));
     }
-    print_message("worst %.0f level of %.0f samples, %.4f %% the same\n", worst, all, 100.0 * same / all);
+    print_message("worst %.0f level of %.0f samples, %.4f %% identical\n", worst, all, 100.0 * same / all);
     assert_true(worst <= 1.0);
     assert_true(same >= smallest_share * all);
 }
@@ -51,7 +51,7 @@ static void test_16_bit_are_within_a_level(void **state) {
     check_levels(LENSPROF_SAMPLE_U16, 0.95);
 }
 
-/* Odd curves, falloffs near what is allowed, centres far outside, small frames, great exposures. */
+/* Extreme curves, falloffs near the permitted limits, centres far outside, small frames, large exposures. */
 static void test_wild_models_are_within_a_level(void **state) {
     (void)state;
     uint64_t random = 11;
@@ -87,13 +87,13 @@ static void test_wild_models_are_within_a_level(void **state) {
             worst = fmax(worst, worst_error(&f, &same, &all));
         }
     }
-    print_message("worst %.0f level, %.4f %% the same, %u refused\n", worst, 100.0 * same / all, refused);
+    print_message("worst %.0f level, %.4f %% identical, %u refused\n", worst, 100.0 * same / all, refused);
     assert_true(worst <= 1.0);
     assert_true(same >= 0.999 * all);
     assert_true(refused < PROFILES / 10);
 }
 
-/* Nothing to do changes nothing, whatever the curve. */
+/* A plan without a correction changes nothing, whatever the curve. */
 static void test_nothing_to_do_changes_nothing(void **state) {
     (void)state;
     uint64_t random = 3;
@@ -109,7 +109,7 @@ static void test_nothing_to_do_changes_nothing(void **state) {
     }
 }
 
-/* Nearly saturated pixels as the path in single precision has them. */
+/* Nearly saturated pixels give the same result as the single precision path. */
 static void test_white_stays_white(void **state) {
     (void)state;
     uint64_t random = 23;
@@ -143,11 +143,12 @@ static void test_white_stays_white(void **state) {
             same += sample == LENSPROF_SAMPLE_U8 && error == 0.0, all += sample == LENSPROF_SAMPLE_U8;
         }
     }
-    print_message("%.4f %% the same\n", 100.0 * same / all);
+    print_message("%.4f %% identical\n", 100.0 * same / all);
     assert_true(same >= 0.998 * all);
 }
 
-/* Tiles and rows upside down, in place or not, give the frame; nothing beside the tile is written. */
+/* Tiles and bottom-up rows, in place or not, give the same result as the whole frame; nothing outside the tile is
+ * written. */
 static void test_tiles_give_the_frame(void **state) {
     (void)state;
     enum {
@@ -180,7 +181,7 @@ static void test_tiles_give_the_frame(void **state) {
         assert_memory_equal(whole, tiled, sizeof whole);
         if (from.layout >= LENSPROF_LAYOUT_RGGB) continue;
         f.m.options.frame_height = 1;
-        for (uint32_t y = 0; y < H; y++) { /* rows as stored upside down */
+        for (uint32_t y = 0; y < H; y++) { /* rows stored bottom up */
             from = (lensprof_image){in + (H - 1 - y) * PITCH, -PITCH, W, 1, LENSPROF_SAMPLE_U8, to.layout};
             lensprof_image row = {upside + y * PITCH, PITCH, W, 1, LENSPROF_SAMPLE_U8, to.layout};
             assert_ok(lensprof_fixed_apply(f.plan, &from, &row, 0, H - 1 - y));
@@ -189,7 +190,7 @@ static void test_tiles_give_the_frame(void **state) {
     }
 }
 
-/* A plan is bytes: copied anywhere it does the same; damaged it is refused, each time a bit of it is another. */
+/* A plan is plain bytes: a copy gives the same result; a plan with any flipped bit is refused. */
 static void test_plans_can_be_copied(void **state) {
     (void)state;
     uint64_t random = 31;
@@ -208,7 +209,7 @@ static void test_plans_can_be_copied(void **state) {
         to.data = again;
         assert_ok(lensprof_fixed_apply(opened, &f.from, &to, f.x0, f.y0));
         make_plan(&f);
-        assert_memory_equal(f.memory, copy, bytes); /* no address, nothing left over */
+        assert_memory_equal(f.memory, copy, bytes); /* no addresses, no uninitialised bytes */
         assert_ok(lensprof_fixed_apply(f.plan, &f.from, &f.to, f.x0, f.y0));
         assert_memory_equal(f.out, again, PIXELS * f.bytes);
         opened = untouched;
@@ -228,7 +229,7 @@ static void test_plans_can_be_copied(void **state) {
     }
 }
 
-/* From a blob as from the profile that it holds; damaged it is refused. */
+/* A plan from a blob equals the plan from its profile; a damaged blob is refused. */
 static void test_blobs_give_the_same_plan(void **state) {
     (void)state;
     uint64_t random = 37;
@@ -310,7 +311,7 @@ static void test_options_that_are_refused(void **state) {
     assert_int_equal(lensprof_fixed_plan_bytes(NULL), 0);
     lensprof_gain_grid_init(&f.m.grid);
     make_case(&f, LENSPROF_SAMPLE_U8, &random);
-    o->grid = &f.m.grid; /* a grid without nodes is none */
+    o->grid = &f.m.grid; /* a grid without nodes does not count as a grid */
     make_plan(&f);
     const lensprof_fixed_plan *plan;
     const size_t bytes = lensprof_fixed_plan_bytes(o);

@@ -1,5 +1,5 @@
-/* Plans in integers from elsewhere: whatever their bytes are, they are refused, or applying them stays within them and
- * the pixels (which the sanitizers watch). */
+/* Integer plans from untrusted memory: whatever their bytes, they are refused, or applying them stays within their
+ * memory and the pixels (checked by the sanitizers). */
 #include "unit/fixed_cases.h"
 
 #include <core/fixed_plan.h>
@@ -9,7 +9,7 @@ enum {
     HEAD_WORDS = sizeof(lensprof_fixed_plan) / 4
 };
 
-/* In memory of its own size, with or without the check made right. Returns whether it opens. */
+/* In memory of exactly its size, with or without a corrected checksum. Returns whether it opens. */
 static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture *f) {
     uint32_t *copy = malloc(bytes);
     const lensprof_fixed_plan *opened = NULL;
@@ -68,7 +68,7 @@ static void test_any_bytes_are_safe(void **state) {
     assert_true(opened > ROUNDS / 10 && refused > ROUNDS / 10);
 }
 
-/* One number that no plan holds is enough. */
+/* A single impossible number is enough to refuse a plan. */
 static void test_numbers_that_cannot_be(void **state) {
     (void)state;
     uint64_t random = 59;

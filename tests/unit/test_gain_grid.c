@@ -30,7 +30,7 @@ static void test_nodes_lie_from_first_to_last_pixel(void **state) {
             for (uint32_t i = 0; i < 5; i++)
                 assert_close(lensprof_gain_grid_eval(&g, 401, 301, 100.0 * i, 100.0 * j, c),
                              g.attenuation[(c * 4 + j) * 5 + i], 1e-14);
-    /* Outside: as at the border. */
+    /* Outside the frame: the value at the border. */
     assert_close(lensprof_gain_grid_eval(&g, 401, 301, -30.0, -1e9, 0), g.attenuation[0], 0.0);
     assert_close(lensprof_gain_grid_eval(&g, 401, 301, 400.5, 1e300, 2), g.attenuation[59], 0.0);
     g.channels = 1;
@@ -40,7 +40,7 @@ static void test_nodes_lie_from_first_to_last_pixel(void **state) {
     assert_close(lensprof_gain_grid_eval(&g, 401, 301, 400.0, 300.0, 3), 1.0, 0.0);
 }
 
-/* a + b x + c y + d x y is bilinear in every cell, so that a grid holds it to the precision of its floats. */
+/* a + b x + c y + d x y is bilinear in every cell, so a grid represents it to the precision of its floats. */
 static void test_bilinear_functions_are_exact(void **state) {
     (void)state;
     uint64_t random = 11;

@@ -1,4 +1,4 @@
-/* Camera projections: exact points, limits, and the round trip over every lens. The comparison with libpano13 is in
+/* Camera projections: exact points, limits, and the round trip for every lens. The comparison with libpano13 is in
  * tests/formats/test_pano_trafo.c. */
 #include "support.h"
 
@@ -32,7 +32,7 @@ static void assert_unseen(const lensprof_camera *camera, double longitude, doubl
     assert_true(xy[0] == 7 && xy[1] == 8);
 }
 
-/* By definition of the field of view, half of it lies at the right edge of the last pixel, whatever the lens. */
+/* By definition, half the field of view ends at the right edge of the last pixel, for every lens. */
 static void test_centre_and_edges(void **state) {
     (void)state;
     for (size_t i = 0; i < LENSES; i++) {
@@ -69,7 +69,7 @@ static void test_lens_formulas(void **state) {
     }
 }
 
-/* The optical axis looks at (yaw, -pitch); roll turns the picture clockwise. */
+/* The optical axis points to (yaw, -pitch); roll turns the picture clockwise. */
 static void test_rotation(void **state) {
     (void)state;
     for (size_t i = 0; i < LENSES; i++) {
@@ -84,8 +84,8 @@ static void test_rotation(void **state) {
     assert_pixel(&camera, 0.5, 0, 599.5, 399.5 - 0.5 * 1200 / (120 * DEGREE));
 }
 
-/* Plane z = 1: the point (1, 0, 1) is seen straight ahead after moving right by 1, at slope 1/1.5 after moving back
- * by 0.5, and by nobody from behind the plane. */
+/* Plane z = 1: the point (1, 0, 1) is straight ahead after moving right by 1, at slope 1/1.5 after moving back by 0.5,
+ * and invisible from the other side of the plane. */
 static void test_translation(void **state) {
     (void)state;
     lensprof_camera camera = plain_camera(LENSPROF_PROJECTION_RECTILINEAR, 90);
@@ -98,7 +98,7 @@ static void test_translation(void **state) {
     camera.translation[1] = 0;
     camera.translation[2] = 0.5;
     assert_pixel(&camera, 45 * DEGREE, 0, 599.5 + 600 / 1.5, 399.5);
-    camera.plane_deg[0] = 30; /* now the plane faces yaw 30: seen from the centre at distance 1 there */
+    camera.plane_deg[0] = 30; /* now the plane faces yaw 30: at distance 1 from the centre there */
     camera.yaw_deg = 30;
     camera.translation[0] = -sin(30 * DEGREE);
     camera.translation[2] = cos(30 * DEGREE); /* one unit back along that axis */
@@ -147,7 +147,7 @@ static void test_limits_of_sight(void **state) {
     assert_true(direction[0] == 3 && direction[1] == 4);
 }
 
-/* P = R (1.3 - 0.3 R^2) turns back where 1.3 = 0.9 R^2; b alone and c alone likewise. */
+/* P = R (1.3 - 0.3 R^2) turns back at 1.3 = 0.9 R^2; b alone and c alone likewise. */
 static void test_radial_turns_back(void **state) {
     (void)state;
     const double radial[3][3] = {{0, -0.3, 0}, {0, 0, -0.4}, {-0.1, 0, 0}};
@@ -189,7 +189,7 @@ static lensprof_camera random_camera(uint32_t projection, uint64_t *seed) {
     return camera;
 }
 
-/* Every pixel that has a direction comes back. Some have none: outside the image circle, behind the plane. */
+/* Every pixel with a direction comes back. There is no direction outside the image circle or beyond the plane. */
 static void test_round_trip(void **state) {
     (void)state;
     uint64_t seed = 20070627;
@@ -217,7 +217,7 @@ static void test_round_trip(void **state) {
     }
 }
 
-/* The other way: what a lens shows of a direction is where the direction comes from. */
+/* The reverse: projecting a direction and back gives that direction. */
 static void test_round_trip_of_directions(void **state) {
     (void)state;
     uint64_t seed = 5;
@@ -234,7 +234,7 @@ static void test_round_trip_of_directions(void **state) {
             }
             seen++;
             double apart = hypot(sin(latitude - direction[1]), cos(latitude) * sin(longitude - direction[0]));
-            assert_close(apart, 0, 1e-6); /* not finer: at the rim of a lens all pixels are nearly one direction */
+            assert_close(apart, 0, 1e-6); /* at the rim all pixels have nearly the same direction */
         }
         assert_true(seen > 2000);
     }
@@ -273,11 +273,11 @@ static void test_validate(void **state) {
     INVALID(good, shift_px[1] = INFINITY);
     INVALID(good, shear_px[0] = NAN);
     INVALID(good, translation[2] = NAN);
-    INVALID(good, translation[2] = -1); /* stands on the remapping plane */
+    INVALID(good, translation[2] = -1); /* lies on the remapping plane */
     INVALID(good, plane_deg[1] = NAN);
     good.width = good.height = 1u << 20;
     assert_ok(lensprof_camera_validate(&good));
-    good.shear_px[0] = good.shear_px[1] = 1u << 20; /* both axes fall on one line */
+    good.shear_px[0] = good.shear_px[1] = 1u << 20; /* both axes coincide */
     assert_invalid(good);
 }
 

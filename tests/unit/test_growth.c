@@ -1,13 +1,13 @@
-/* Structs that grow, in every size: nothing behind them is written, and what no version has is refused with a text. In
- * the sanitized build the library's structs are longer than the first ones (cmake/longer_headers.py), and ASan watches.
- */
+/* Structs that grow, in every size: nothing after them is written, and a size that no version has is refused with a
+ * text. In the sanitized build the library's structs are longer than their first version (cmake/longer_headers.py), and
+ * ASan watches. */
 #include "support.h"
 
 #include <unistd.h>
 
 #include "install/growth/calls.h"
 
-#define GUARD 64 /* bytes behind a struct that an _init_sized function has no business with */
+#define GUARD 64 /* bytes after a struct that an _init_sized function must not touch */
 
 static char directory[] = "/tmp/lensprof-growth-XXXXXX", path[64];
 
@@ -24,7 +24,7 @@ static int remove_directory(void **state) {
     return rmdir(directory);
 }
 
-/* For ABIs with addresses of 64 bits: what 0.2.0 had is the first version for ever. */
+/* For ABIs with 64 bit addresses: the struct sizes of 0.2.0 remain the first version for ever. */
 static void test_first_sizes_stay(void **state) {
     (void)state;
     for (size_t i = 0; sizeof(void *) == 8 && i < STRUCTS; i++)
@@ -46,14 +46,14 @@ static void test_init_writes_the_size_and_no_more(void **state) {
             for (size_t at = size < 4 ? 0 : size; at < size + GUARD; at++)
                 if (memory[at] != 0xA5) fail_msg("%s of %zu bytes: byte %zu is written", g->name, size, at);
             if (size >= 4) assert_int_equal(*(uint32_t *)(void *)memory, size);
-            for (size_t at = g->size; at < size; at++) /* of a newer program's struct nothing is known */
+            for (size_t at = g->size; at < size; at++) /* members of a newer program's struct are unknown */
                 if (memory[at]) fail_msg("%s of %zu bytes: byte %zu is not 0", g->name, size, at);
             free(memory);
         }
     }
 }
 
-/* Every size from the first version's on works, in memory of just that size. */
+/* Every size from the first version on works, in memory of exactly that size. */
 static void test_sizes_of_older_programs(void **state) {
     (void)state;
     for (size_t i = 0; i < STRUCTS; i++)
@@ -67,7 +67,7 @@ static void test_sizes_of_older_programs(void **state) {
                 fail_msg("%s of %zu bytes: %s %s", structs[i].name, size, lensprof_status_name(status), error.text);
             assert_int_equal(wrong_results, 0);
             for (uint32_t n = 0; n < structs[i].count; n++)
-                assert_int_equal(*(uint32_t *)(void *)(given + n * size), size); /* stays */
+                assert_int_equal(*(uint32_t *)(void *)(given + n * size), size); /* unchanged */
             free(given);
         }
 }
@@ -76,7 +76,7 @@ static void refuse(const growing *g, size_t size, const char *why) {
     lensprof_error error = {"", {0, 0, 0, 0}};
     prepare();
     wrong_results = 0;
-    /* A call may fill in its members before the library looks at the size. */
+    /* A call may fill in its members before the library checks the size. */
     const size_t room = size > g->size ? size : g->size;
     char *given = calloc(g->count, room);
     for (uint32_t n = 0; n < g->count; n++) g->init(given + n * size, size, n);
@@ -105,14 +105,14 @@ static void test_elements_have_one_size(void **state) {
     assert_non_null(strstr(error.text, "image 2: struct_size"));
     here.samples[1].struct_size += 8;
     assert_int_equal(lensprof_sample_overlap(&here.sample, here.samples, 2, NULL, 0, &(uint32_t){0}, &error),
-                     LENSPROF_OK); /* the capacity is asked for: no picture is looked at */
+                     LENSPROF_OK); /* asks for the capacity: no picture is read */
     lensprof_pair pairs[100];
     assert_int_equal(lensprof_sample_overlap(&here.sample, here.samples, 2, pairs, 100, &(uint32_t){0}, &error),
                      LENSPROF_ERROR_STRUCT_SIZE);
     assert_non_null(strstr(error.text, "image 1: struct_size"));
 }
 
-/* Results of images are as long as the caller's result says. */
+/* Results of images have the size that the caller's result states. */
 static void test_image_quality(void **state) {
     (void)state;
     lensprof_error error;
@@ -136,7 +136,7 @@ static void test_image_quality(void **state) {
     assert_non_null(strstr(error.text, "flat result: image_quality_size"));
 }
 
-/* Room for members to come: a value there is a newer lensprof's. */
+/* Reserved room for future members: a nonzero value comes from a newer lensprof. */
 static void test_reserved_room_is_empty(void **state) {
     (void)state;
     prepare();

@@ -1,17 +1,17 @@
-/* Long rows of values are guessed, and of smooth responses the guesses are right: test_kernels.c, which compares bytes,
- * would not notice if they were not. */
+/* Long rows of values are guessed, and for smooth responses the guesses are right. test_kernels.c compares bytes only
+ * and would not notice wrong guesses. */
 #include "support.h"
 
 #include "guessed_row.h"
 
 enum {
-    LEAST_WIDTH = 512, /* from which on kernels/README.md has rows guessed */
+    LEAST_WIDTH = 512, /* rows at least this long are guessed (kernels/README.md) */
     MOST_WIDTH = 701
 };
 
 guess_count guess_counts;
 
-/* Runs a kernel over a row of evenly spread values, through the response of EMoR and back. */
+/* Runs a kernel over a row of evenly spaced values, through the EMoR response and back. */
 static guess_count count_of(lp_row_kernel *row, const lensprof_response *response, uint32_t width) {
     static float source[3 * MOST_WIDTH], target[3 * MOST_WIDTH];
     for (uint32_t i = 0; i < 3 * width; i++) source[i] = (float)(i * 2654435761u) / 4294967296.0f;

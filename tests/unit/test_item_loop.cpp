@@ -1,4 +1,4 @@
-// The loop over items on several threads: every item once, and what is begun when one fails.
+// The loop over items on several threads: every item runs once, and which items are started if one fails.
 #include "threads/item_loop.hpp"
 
 #include <csetjmp>
@@ -31,8 +31,8 @@ void test_every_item_once(void **) {
     assert_true(for_each_item(0, threads, [](uint32_t, uint32_t) { return false; }));
 }
 
-// Items from `first` on throw their numbers. Those below are begun, whatever the timing, and it is the lowest number
-// that arrives. There are so many items that all threads are at work by then.
+// Items from `first` on throw their numbers. Items below it are started whatever the timing, and the lowest number is
+// reported. There are so many items that all threads are at work by then.
 void test_lowest_failure(void **) {
     constexpr uint32_t many = 400000;
     for (uint32_t round = 0; round < 40; round++) {

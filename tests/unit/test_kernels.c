@@ -1,4 +1,4 @@
-/* The row kernels: every lane count gives the scalar one's bytes, and stays within the pixels it was given. */
+/* The row kernels: every lane count gives the same bytes as the scalar kernel and stays within the given pixels. */
 #include "campaign.h"
 #include "support.h"
 
@@ -15,7 +15,7 @@ enum {
     FRAME_H = 700
 };
 
-/* Memory whose last byte is followed by one that must not be touched. */
+/* Memory whose last byte is followed by a guard page. */
 typedef struct guarded {
     uint8_t *pages, *end;
     size_t bytes;
@@ -51,7 +51,7 @@ static void random_response(lensprof_response *r, uint32_t kind, uint64_t *rando
         assert_ok(lensprof_response_set_emor(r, emor, 1));
 }
 
-/* One model of many, by its number. */
+/* One of many models, selected by number. */
 static void make_model(model *m, uint64_t seed) {
     uint64_t random = seed * 977 + 5;
     uint32_t kinds = (uint32_t)(5 * lp_random(&random));
@@ -119,7 +119,7 @@ static void fill_samples(uint8_t *p, size_t bytes, uint32_t sample, uint64_t ran
     }
 }
 
-/* Rows of a tile that end where the guarded memory does, with `gap` bytes between rows. */
+/* Rows of a tile that end at the end of the guarded memory, with `gap` bytes between rows. */
 static lensprof_image tile_in(const guarded *g, uint32_t sample, uint32_t layout, uint32_t width, size_t gap) {
     uint32_t bytes = lensprof_sample_type_bytes(sample) * lensprof_layout_samples(layout);
     lensprof_image image = {NULL, (ptrdiff_t)(width * bytes + gap), width, ROWS, sample, layout};
@@ -161,7 +161,7 @@ static void check_case(uint64_t seed, uint32_t width, const guarded *in, const g
         if (n == 0)
             memcpy(wanted, out->pages, out->bytes);
         else if (memcmp(wanted, out->pages, out->bytes))
-            fail_msg("model %llu, width %u, layout %u, samples %u to %u: %u lanes give other bytes",
+            fail_msg("model %llu, width %u, layout %u, samples %u to %u: bytes of %u lanes differ",
                      (unsigned long long)seed, width, m.options.source_layout, m.options.source_sample,
                      m.options.target_sample, lanes[n]);
         free(memory);
@@ -180,8 +180,9 @@ static void test_every_lane_count_gives_the_same_bytes(void **state) {
     free(wanted);
 }
 
-/* Rows long enough for the places of values to be guessed: smooth responses, where guesses are right, and ones with
- * kinks, where many are not. Nothing beyond the last sample is touched. test_guess.c counts the guesses. */
+/* Rows long enough for guessing the table positions of values: smooth responses, for which guesses are right, and
+ * responses with kinks, for which many are wrong. Nothing after the last sample is touched. test_guess.c counts the
+ * guesses. */
 static void test_long_rows_of_values(void **state) {
     (void)state;
     enum {
@@ -216,7 +217,7 @@ static void test_long_rows_of_values(void **state) {
     }
 }
 
-/* A row in pieces, at any place, is the row. */
+/* A row processed in pieces, split anywhere, equals the whole row. */
 static void test_pieces_give_the_row(void **state) {
     (void)state;
     static uint8_t source[4 * 4 * FRAME_W], whole[4 * 4 * FRAME_W], pieces[4 * 4 * FRAME_W];
@@ -247,7 +248,7 @@ static void test_pieces_give_the_row(void **state) {
     }
 }
 
-/* Planes give what interleaved pixels give. */
+/* Planes give the same result as interleaved pixels. */
 static void test_planes_are_the_same_picture(void **state) {
     (void)state;
     enum {
@@ -287,7 +288,7 @@ enum {
     SIDE = 8
 };
 
-/* A plan for planes of 8 bit; views 0..2 are the sources, 3..5 the targets, each of its own memory. */
+/* A plan for planes of 8 bit; views 0..2 are the sources, 3..5 the targets, each with its own memory. */
 typedef struct planes {
     uint8_t data[6][SIDE * SIDE];
     lensprof_image views[6];
@@ -320,7 +321,7 @@ static void test_planes_that_are_refused(void **state) {
     assert_int_equal(lensprof_apply_planar(NULL, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_apply_planar(p.plan, source, target, FRAME_W, 0), LENSPROF_ERROR_SIZE);
     memcpy(wrong, target, sizeof wrong);
-    wrong[2].data = p.data[3]; /* two targets in one place */
+    wrong[2].data = p.data[3]; /* two targets at the same address */
     assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
     wrong[2].data = p.data[0]; /* another plane's source */
     assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
@@ -331,11 +332,11 @@ static void test_planes_that_are_refused(void **state) {
     wrong[1].layout = LENSPROF_LAYOUT_RGB, wrong[1].row_bytes = 3 * SIDE;
     assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_untouched(&p);
-    assert_ok(lensprof_apply_planar(p.plan, source, source, 0, 0)); /* each in its place */
+    assert_ok(lensprof_apply_planar(p.plan, source, source, 0, 0)); /* each in place */
     free(p.memory);
 }
 
-/* All six views are checked before any two are compared: what a view holds must not be calculated with before. */
+/* All six views are checked before any two are compared: unchecked members must not enter a calculation. */
 static void test_planes_are_checked_before_they_are_compared(void **state) {
     (void)state;
     static const ptrdiff_t strides[] = {PTRDIFF_MIN, PTRDIFF_MAX, PTRDIFF_MIN / 2};
@@ -351,7 +352,7 @@ static void test_planes_are_checked_before_they_are_compared(void **state) {
     free(p.memory);
 }
 
-/* Each site of a mosaic gets what its channel gets in a picture of that colour alone. */
+/* Each site of a mosaic gets the same result as its channel in a picture of that colour alone. */
 static void test_mosaics_follow_their_pattern(void **state) {
     (void)state;
     enum {
@@ -390,7 +391,7 @@ static void test_mosaics_follow_their_pattern(void **state) {
     }
 }
 
-/* Half floats: all of them survive, and others go to the nearest, halves to even. */
+/* Half floats survive a round trip; other values go to the nearest half, ties to even. */
 static void test_half_floats(void **state) {
     (void)state;
     static uint16_t half[65536], back[65536];

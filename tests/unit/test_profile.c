@@ -75,8 +75,8 @@ enum {
     DRAWS = 40000
 };
 
-/* Three responses of two modes, three falloffs off the centre, a gain grid. The covariance is F F', with far more of
- * the coefficients of the responses than of the falloff. */
+/* Three responses of two modes, three falloffs off the centre, a gain grid. The covariance is F F', with much larger
+ * entries for the coefficients of the responses than for the falloff. */
 static lensprof_profile *uncertain_profile(double f[ALL][ALL]) {
     lensprof_profile *p = malloc(sizeof *p);
     uint64_t random = 5;
@@ -105,7 +105,7 @@ static lensprof_profile *uncertain_profile(double f[ALL][ALL]) {
 
 static double polynomial(const double *k, double r2) { return 1.0 + k[0] * r2 + k[1] * r2 * r2 + k[2] * r2 * r2 * r2; }
 
-/* M at (10, 70) of 400 x 300 pixels, half of whose diagonal are 250, in the corner and at r = 0.5, of red. */
+/* Red M at (10, 70) of 400 x 300 pixels (half diagonal 250), in the corner and at r = 0.5. */
 static void measure(const double *k, const double *center, double m[3]) {
     const double x = (10.0 - 199.5) / 250.0 - center[0], y = (70.0 - 149.5) / 250.0 - center[1];
     m[0] = polynomial(k, x * x + y * y), m[1] = polynomial(k, 1.0), m[2] = polynomial(k, 0.25);
@@ -178,7 +178,7 @@ static void test_falloff_errors_that_are_not_known(void **state) {
         for (uint32_t j = CENTER; j < ALL; j++) p->covariance[i * ALL + j] = p->covariance[j * ALL + i] = 0.0;
     lensprof_profile_falloff(p, 0, 400, 300, 10, 70, &sigma);
     assert_close(sigma, LENSPROF_UNKNOWN, 0.0);
-    lensprof_profile_corner_falloff(p, 1, &sigma); /* the others are known as before */
+    lensprof_profile_corner_falloff(p, 1, &sigma); /* the other channels are unaffected */
     assert_true(sigma > 0.0);
     lensprof_profile_radial_falloff(p, 1, 0.0, &sigma); /* M = 1 in the centre, whatever k */
     assert_close(sigma, 0.0, 0.0);

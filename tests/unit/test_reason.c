@@ -19,8 +19,10 @@ static void test_every_reason_has_a_name_and_a_sentence_of_its_own(void **state)
         if (strlen(lensprof_reason_text(i)) < 15) fail_msg("%u: %s", i, lensprof_reason_text(i));
         for (uint32_t j = 0; j < i; j++) {
             if (!is_known(j)) continue;
-            if (strcmp(lensprof_reason_text(i), lensprof_reason_text(j)) == 0) fail_msg("%u and %u: one text", i, j);
-            if (strcmp(lensprof_reason_name(i), lensprof_reason_name(j)) == 0) fail_msg("%u and %u: one name", i, j);
+            if (strcmp(lensprof_reason_text(i), lensprof_reason_text(j)) == 0)
+                fail_msg("%u and %u have the same text", i, j);
+            if (strcmp(lensprof_reason_name(i), lensprof_reason_name(j)) == 0)
+                fail_msg("%u and %u have the same name", i, j);
         }
     }
     assert_int_equal(known, 106);

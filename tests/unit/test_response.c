@@ -18,7 +18,7 @@ static void test_emor_tables(void **state) {
     assert_null(lensprof_emor_table(LENSPROF_EMOR_MODES + 1));
     assert_close(lensprof_emor_table(0)[0], 0.0, 0.0);
     assert_close(lensprof_emor_table(0)[LAST], 1.0, 0.0);
-    assert_close(lensprof_emor_table(0)[1], 8.833750e-03, 0.0); /* first figures of the published file */
+    assert_close(lensprof_emor_table(0)[1], 8.833750e-03, 0.0); /* first values of the published file */
     assert_close(lensprof_emor_table(1)[1], -1.452326e-03, 0.0);
     for (uint32_t l = 1; l <= LENSPROF_EMOR_MODES; l++)
         for (uint32_t m = 1; m <= l; m++) {
@@ -75,7 +75,7 @@ static void test_invert_undoes_eval(void **state) {
         }
 }
 
-/* Where the curve is flat, the inverse is the smallest irradiance that gives the grey value. */
+/* On a flat stretch of the curve, the inverse is the smallest irradiance that gives the grey value. */
 static void test_invert_of_a_flat_curve(void **state) {
     (void)state;
     lensprof_response r;

@@ -1,4 +1,4 @@
-/* Typical responses of the kinds of cameras, and the kind that a key names. */
+/* Typical responses of the kinds of cameras, and the kind derived from a key. */
 #include "support.h"
 
 #include <lensprof/profile.h>
@@ -12,7 +12,7 @@ static double position(const lensprof_response *r) {
     return log(log(lensprof_response_invert(r, 208.0 / 255.0, NULL) / lensprof_response_invert(r, 48.0 / 255.0, NULL)));
 }
 
-/* Positions as measured on the curves themselves (profiles/tools/make_typical_responses.py prints them). */
+/* Positions measured on the curves themselves (printed by profiles/tools/make_typical_responses.py). */
 static void test_typical_curves_stand_where_measured_ones_do(void **state) {
     (void)state;
     const double expected[5] = {0.897, 0.889, 0.822, 0.882, 0.860};
@@ -26,7 +26,7 @@ static void test_typical_curves_stand_where_measured_ones_do(void **state) {
     }
 }
 
-/* Today's cameras reach mid grey at a sixth to a ninth of white, and keep shadows darker than a pure power does. */
+/* Current cameras reach mid grey at a sixth to a ninth of white, and render shadows darker than a pure power law. */
 static void test_cameras_have_a_tone_curve(void **state) {
     (void)state;
     for (uint32_t kind = LENSPROF_CAMERA_CAMERA; kind <= LENSPROF_CAMERA_PHONE; kind++) {
@@ -47,7 +47,7 @@ static double pivot(double *matrix, uint32_t k) {
     return p;
 }
 
-/* Symmetric, positive definite, and what it says of the position is the error that is stated of ln gamma. */
+/* Symmetric and positive definite; the variance of the position equals the stated error of ln gamma. */
 static void test_covariance_holds_the_error_of_gamma(void **state) {
     (void)state;
     for (uint32_t kind = 0; kind < LENSPROF_CAMERA_LINEAR; kind++) {
@@ -73,8 +73,7 @@ static void test_covariance_holds_the_error_of_gamma(void **state) {
     }
 }
 
-/* What is said of pictures of which nothing is known holds for the curves that programs make: within two standard
- * errors. */
+/* The prior for pictures of unknown origin covers the curves that programs use, within two standard errors. */
 static void test_any_reaches_plain_curves(void **state) {
     (void)state;
     lensprof_response any, plain;
@@ -173,7 +172,7 @@ static void test_cameras_by_name(void **state) {
                                       {"Panasonic", "DMC-GF7", ""},
                                       {"OLYMPUS IMAGING CORP.", "E-M5", "OLYMPUS M.45mm F1.8"},
                                       {"DJI", "FC220", ""},
-                                      {"Algolux", "A1", ""}, /* lg stands inside a word */
+                                      {"Algolux", "A1", ""}, /* lg occurs inside a word */
                                       {"", "Canon EOS 5D", ""}};
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++)
         assert_kind(cameras[i][0], cameras[i][1], cameras[i][2], LENSPROF_CAMERA_CAMERA);
