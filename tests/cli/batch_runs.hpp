@@ -9,7 +9,7 @@ namespace batch_runs {
 
 using namespace cli_runs;
 
-// A falloff, a response and a gain grid, so that the correction depends on every pixel's place.
+// A falloff, a response and a gain grid, so that the correction depends on the position of every pixel.
 inline std::unique_ptr<lensprof_profile> make_profile_of_lens() {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());

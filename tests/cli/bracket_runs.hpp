@@ -14,7 +14,7 @@ constexpr uint32_t frame_width = 240, frame_height = 180;
 
 inline double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }
 
-// Log2 radiance over some nine EV: slow waves, with a different colour at every place.
+// Log2 radiance over about nine EV: slow waves, with a different colour at every place.
 inline double scene_ev(uint32_t number, uint32_t x, uint32_t y, uint32_t c) {
     const double u = x / 60.0 + 3.0 * number, v = y / 45.0 - 2.0 * number;
     return -4.0 + 3.2 * sin(u + 0.6 * cos(v)) + 1.2 * cos(1.7 * v + u) + 0.5 * sin(0.9 * u + 2.1 * c);
@@ -27,7 +27,7 @@ struct Shot {
     double noise = 1.0;  // levels of 255; white stays white
     uint32_t width = frame_width, height = frame_height;
     std::function<double(double)> response = srgb;
-    double waves_ev = 0.0;  // of light that differs in its place from picture to picture
+    double waves_ev = 0.0;  // of light that varies over the frame, with another pattern in each picture
 };
 
 inline void save_shot(const std::string &path, const Shot &shot) {
@@ -100,7 +100,7 @@ inline const std::vector<double> three = {2.0, 0.0, -2.0}, five = {3.0, 1.5, 0.0
 
 inline double found_ev(const Json &json, size_t i) { return json["images"][i]["ev"].get<double>(); }
 
-// Slope of the recovered exposures against the true ones, gamma; `worst` receives the largest deviation from it.
+// Slope of the recovered against the true exposures, gamma; `worst` receives the largest deviation from it.
 inline double slope(const Json &json, const std::vector<double> &truth, double &worst) {
     double cross = 0.0, square = 0.0, mean = 0.0, true_mean = 0.0;
     for (size_t i = 0; i < truth.size(); ++i)

@@ -30,12 +30,12 @@ using namespace picture_files;
 using Words = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
 
-// The exit codes of the contract, repeated here because they must not follow a change of the program.
+// The exit codes of the contract. They are repeated here so that a change of the program cannot change them unnoticed.
 constexpr int done = 0, failed = 1, usage = 2, unreadable = 3, not_usable = 4, not_found = 5, store_failed = 6,
               stopped = 130;
 
 struct Outcome {
-    int code;  // or 128 + number of the signal that ended a child
+    int code;  // or 128 + number of the signal that ended the child
     std::string out, err;
 };
 
@@ -135,14 +135,14 @@ inline std::string difference(const Disk &before, const Disk &after) {
     return text;
 }
 
-// Checks that the failure is reported on standard error with the names it is about, and that the disk is unchanged.
+// Checks that the failure is reported on standard error with these names, and that the disk is unchanged.
 inline void assert_refusal(const Words &words, const Outcome &outcome, int code, const Words &named,
                            const Disk &before) {
     const std::string what = joined(words);
     if (outcome.code != code)
         fail_msg("%s: exit code %d, not %d: %s", what.c_str(), outcome.code, code, outcome.err.c_str());
     if (outcome.err.rfind("lensprof: ", 0) != 0 || outcome.err.back() != '\n')
-        fail_msg("%s: not a line of lensprof's: %s", what.c_str(), outcome.err.c_str());
+        fail_msg("%s: not an error line of lensprof: %s", what.c_str(), outcome.err.c_str());
     for (const std::string &name : named)
         if (!contains(outcome.err, name))
             fail_msg("%s: '%s' does not name %s", what.c_str(), outcome.err.c_str(), name.c_str());
@@ -158,8 +158,8 @@ inline void assert_refused(int code, const Words &words, const Words &named) {
         fail_msg("%s: printed %s", joined(words).c_str(), outcome.out.c_str());
 }
 
-// Range of the first match of an extended regular expression in `text` from `at` on, and those of its groups; empty
-// without a match. `.` does not match a line break.
+// Range of the first match of an extended regular expression in `text` from `at` on, and the ranges of its groups;
+// empty without a match. `.` does not match a line break.
 inline std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pattern, const std::string &text,
                                                            size_t at = 0) {
     regex_t compiled;
@@ -217,7 +217,7 @@ inline std::string lensfun_text(const std::string &lens, const std::vector<Lensf
     return text.str();
 }
 
-// `scene` holds four PNG and `mixed` one picture of every kind, rendered once; `work` is empty before every test.
+// `scene` holds four PNG files and `mixed` one picture of every kind, rendered once; `work` is empty before every test.
 constexpr const char *mixed_names[] = {"img000.png", "img001.png", "img002.tif",
                                        "img003.tif", "img004.tif", "img005.jpg"};
 

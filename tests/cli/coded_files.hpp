@@ -1,5 +1,5 @@
 // HEIF, WebP and JPEG XL files written with the encoders of the libraries, if the program was built with them. They are
-// lossless, so that the truth is the input picture.
+// lossless, so the input picture is the ground truth.
 #pragma once
 
 #include <cstring>
@@ -30,8 +30,8 @@ using namespace picture_files;
 // What a file contains in addition to its pixels.
 struct Extras {
     Bytes exif, xmp, icc;
-    uint16_t orientation = 1;  // the format's own
-    int transfer = 0;          // ITU-T H.273, of HEIF: 0 = sRGB
+    uint16_t orientation = 1;  // the format's own orientation
+    int transfer = 0;          // ITU-T H.273, for HEIF; 0 = sRGB
 };
 
 // A TIFF structure, as embedded in all of these files.
@@ -223,7 +223,7 @@ struct JxlKind {
     float distance = 0;  // 0 = lossless
     uint32_t transfer = JXL_TRANSFER_FUNCTION_SRGB;
     bool boxes_compressed = false, animated = false;
-    uint32_t bits = 0;  // 0: as the picture
+    uint32_t bits = 0;  // 0: as in the picture
 };
 
 inline JxlBasicInfo jxl_info(const Picture &picture, const Extras &extras, const JxlKind &kind) {

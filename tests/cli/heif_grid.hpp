@@ -1,4 +1,4 @@
-// An HEIC picture composed of tiles, as phones write them: libheif's encoder of Debian 12 cannot write one of several
+// An HEIC picture composed of tiles, as phones write them. Needed because libheif's encoder in Debian 12 cannot write
 // tiles.
 #pragma once
 
@@ -33,7 +33,7 @@ inline Bytes full_box(const char *type, unsigned version, const Bytes &content) 
     return box(type, joined({number(uint64_t(version) << 24, 4), content}));
 }
 
-// The content of the first box of a type in a file with one picture, found by its name.
+// The content of the first box of a type, found by its name in a file with a single picture.
 inline Bytes content_of(const Bytes &file, const char *type) {
     const std::string name = type;
     const auto at = std::search(file.begin(), file.end(), name.begin(), name.end());

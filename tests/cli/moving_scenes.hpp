@@ -29,7 +29,7 @@ inline Pose pose_of(const Json &truth, size_t i) {
     return pose;
 }
 
-// Place of a point of the scene; false if its depth is not positive.
+// Position of a point of the scene in a picture; false if its depth is not positive.
 inline bool project(const Pose &pose, const Vector3 &point, double xy[2]) {
     const double way[3] = {point.x - pose.centre[0], point.y - pose.centre[1], point.z - pose.centre[2]};
     double seen[3] = {};
@@ -57,7 +57,8 @@ struct Track {
     std::vector<Sight> sights;
 };
 
-// A simulated sequence in work(name), and points on a grid of every picture in all pictures that see them.
+// A simulated sequence in work(name), and points on a grid in every picture with their positions in all pictures that
+// see them.
 class MovingScene {
 public:
     MovingScene(const std::string &name, MovingKind kind, uint32_t images, const Words &more = {})
@@ -110,7 +111,7 @@ private:
 inline std::array<double, 4> quaternion_of(const double r[3][3]) {
     std::array<double, 4> q = {1 + r[0][0] + r[1][1] + r[2][2], r[2][1] - r[1][2], r[0][2] - r[2][0],
                                r[1][0] - r[0][1]};
-    if (q[0] < 1e-3) {  // about half a turn: uses the largest column instead
+    if (q[0] < 1e-3) {  // about half a turn: use the largest column instead
         const int k = r[0][0] >= r[1][1] ? (r[0][0] >= r[2][2] ? 0 : 2) : (r[1][1] >= r[2][2] ? 1 : 2);
         const int l = (k + 1) % 3, m = (k + 2) % 3;
         q[size_t(1 + k)] = 1 + r[k][k] - r[l][l] - r[m][m];

@@ -1,5 +1,5 @@
-// Common parts of the tests of picture files: a separate folder, synthetic pictures, and files that the libraries
-// themselves write, so that nothing is checked against the code under test.
+// Common parts of the tests of picture files: a separate folder, synthetic pictures, and files written by the libraries
+// themselves, so that nothing is checked against the code under test.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 #include "cli/pictures/picture.hpp"
 #include "cli/program/error.hpp"
 
-// cmocka 1.1.5 does not declare its functions as C; support.h includes it too, then for the second time.
+// cmocka 1.1.5 does not declare its functions as C; support.h then includes it a second time.
 extern "C" {
 #include <cmocka.h>
 }
@@ -44,7 +44,7 @@ inline size_t files_in_folder() {
     return static_cast<size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-// Reads in blocks: byte by byte takes longer than the tested code. Empty if there is no such file.
+// Reads in blocks, because reading byte by byte takes longer than the tested code. Empty if there is no such file.
 inline Bytes load(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
     Bytes bytes;
@@ -75,7 +75,7 @@ inline std::string failure_of(ExitCode code, const std::function<void()> &call) 
 
 inline void assert_failure(ExitCode code, const std::string &part, const std::function<void()> &call) {
     const std::string text = failure_of(code, call);
-    if (text.find(part) == std::string::npos) fail_msg("'%s' does not say '%s'", text.c_str(), part.c_str());
+    if (text.find(part) == std::string::npos) fail_msg("'%s' does not contain '%s'", text.c_str(), part.c_str());
 }
 
 // The smallest profile that libpng accepts: a header and no tag (ICC.1:2010 section 7.2); padded to `size`.
@@ -148,7 +148,7 @@ struct TiffKind {
     const char *mode = "w";
     uint16_t compression = COMPRESSION_NONE, planar = PLANARCONFIG_CONTIG, photometric = PHOTOMETRIC_MINISBLACK;
     uint32_t tile = 0, rows_per_strip = 7;
-    uint16_t bits = 0, format = SAMPLEFORMAT_UINT;  // bits 0: as the picture
+    uint16_t bits = 0, format = SAMPLEFORMAT_UINT;  // bits 0: as in the picture
 };
 
 inline void write_block(TIFF *tiff, const Picture &picture, uint32_t x0, uint32_t y0, uint32_t width, uint32_t height,

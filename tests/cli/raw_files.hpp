@@ -20,12 +20,12 @@ enum class Packing {
 };
 
 struct Dng {
-    uint32_t width = 0, height = 0, samples = 1;  // of all stored pixels
+    uint32_t width = 0, height = 0, samples = 1;  // including masked pixels
     std::vector<uint16_t> values;
     uint16_t bits = 16;
     Packing packing = Packing::words;
     uint32_t white = 65535;
-    std::vector<uint32_t> black = {0};  // one value, or those of 2 x 2 places
+    std::vector<uint32_t> black = {0};  // one value, or one per site of a 2 x 2 pattern
     std::array<uint8_t, 4> pattern = {0, 1, 1, 2};
     std::vector<uint32_t> pattern6;        // of 6 x 6 places, instead of 2 x 2; may be empty
     std::vector<uint32_t> active, masked;  // top, left, bottom, right

@@ -1,4 +1,4 @@
-// Conditions that must hold for a reconstruction that was read, and for one that cannot be read.
+// Invariants of a reconstruction that was read, and of the failure if it cannot be read.
 #pragma once
 
 #include "reconstruction_files.hpp"
@@ -28,7 +28,7 @@ inline void assert_centre(const ReconstructionImage &image, double x, double y, 
 inline void assert_unreadable(const std::string &path, const std::string &part, const Read &read) {
     const std::string text = failure_of(ExitCode::unreadable, [&] { read(); });
     if (text.find(path) == std::string::npos) fail_msg("'%s' does not name %s", text.c_str(), path.c_str());
-    if (text.find(part) == std::string::npos) fail_msg("'%s' does not say '%s'", text.c_str(), part.c_str());
+    if (text.find(part) == std::string::npos) fail_msg("'%s' does not contain '%s'", text.c_str(), part.c_str());
 }
 
 // Cuts a file at every `step`-th byte: the result must be valid, or a Failure that names its folder.
@@ -43,7 +43,7 @@ inline void cut_everywhere(const std::string &path, size_t step, const Read &rea
             failures++;
             if (failure.code != ExitCode::unreadable && failure.code != ExitCode::not_usable)
                 fail_msg("exit code %d: %s", int(failure.code), failure.what());
-            if (!std::strstr(failure.what(), folder.c_str())) fail_msg("no file is named: %s", failure.what());
+            if (!std::strstr(failure.what(), folder.c_str())) fail_msg("no file name in: %s", failure.what());
         }
     }
     assert_true(failures * 2 > whole.size() / step);

@@ -1,4 +1,4 @@
-// Raw files and the JPEGs that a simulated camera renders from them: its response, colours and falloff are known.
+// Raw files and the JPEGs that a simulated camera renders from them, with known response, colours and falloff.
 #pragma once
 
 #include <array>
@@ -23,18 +23,18 @@ struct Shot {
     uint32_t width = 900, height = 600;  // of the sensor
     lensprof_response response{};
     double white_ev = 0.3;             // EV between the rendering's white and the sensor's saturation
-    double exposure = 1.0;             // of the scene, 1: its mid-grey is near a sixth of the rendering's white
+    double exposure = 1.0;             // of the scene; at 1 its mid-grey is near a sixth of the rendering's white
     double mixing = 0.5;               // off-diagonal weight of the colour matrix; 0 = none
     Colour balance = {2.0, 1.0, 1.6};  // gains of the channels
     Colour falloff = {-0.40, 0.10, -0.05};
-    bool corrects = false;    // whether it corrects the falloff, before the curve
-    double local_ev = 0.0;    // gain of tones depending on the mean of their surroundings
-    double saturation = 0.0;  // change of colours, after the curve
+    bool corrects = false;    // whether it corrects the falloff before the curve
+    double local_ev = 0.0;    // gain of tones that depends on the mean of their surroundings
+    double saturation = 0.0;  // change of colours after the curve
     double sharpen = 0.3;
     double noise = 0.0015,
            shot_noise = 0.01;  // of a photosite: constant, and proportional to the square root of the light
-    double crop = 0.01;        // share left out at every edge
-    double bend = 0.0;         // k1 of a distortion that the rendering corrects
+    double crop = 0.01;        // share cropped at every edge
+    double bend = 0.0;         // k1 of the distortion that the rendering corrects
     uint32_t rendered_width = 800;
     int quarter_turns = 0;  // of the rendering
     JpegKind jpeg = {92, 2, 2};
@@ -131,7 +131,7 @@ inline Field demosaiced(const raw_files::Dng &dng) {
     return field;
 }
 
-// In the size of the rendering: linear light, white 1, in the colours of the output.
+// At the size of the rendering: linear light with white at 1, in the output colours.
 inline Field linear_rendering(const Shot &shot, const Field &full) {
     const double kept = 1.0 - 2.0 * shot.crop, reduction = kept * shot.width / shot.rendered_width;
     Field out{shot.rendered_width, uint32_t(std::lround(kept * shot.height / reduction)), {}};
@@ -193,7 +193,7 @@ inline Picture rendered_of(const Shot &shot, const Field &full) {
     picture.pixels.resize(picture.row_bytes * picture.height);
     for (uint32_t y = 0; y < picture.height; y++)
         for (uint32_t x = 0; x < picture.width; x++) {
-            // In a picture that was turned clockwise, (x, y) shows what was at (u, v).
+            // In a picture rotated clockwise, (x, y) shows the original (u, v).
             uint32_t u = x, v = y;
             if (shot.quarter_turns == 1) u = y, v = field.height - 1 - x;
             if (shot.quarter_turns == 2) u = field.width - 1 - x, v = field.height - 1 - y;

@@ -1,4 +1,4 @@
-// What `calibrate` knows to be its own: records, locks, and files that stand in the way.
+// Which files `calibrate` recognises as its own: records, locks, and existing files that block outputs.
 #include "calibrate_runs.hpp"
 #include "cli/calibrate/ledger.hpp"
 
@@ -12,8 +12,8 @@ constexpr const char *record = ".lensprof-calibrate.json";
 
 void write_by_program(const std::string &file, const std::string &text) { write_file(file, text.data(), text.size()); }
 
-// A run that ends between begin() and finish(): what it wrote is known by the next one, what somebody else wrote is
-// not.
+// After a run that ends between begin() and finish(), the next run recognises its files; files written by others are
+// not recognised.
 void test_ended_within(void **) {
     const std::string file = work("a.png"), other = work("b.png");
     {
@@ -39,7 +39,8 @@ void test_ended_within(void **) {
     assert_true(text_of(file) == "edited, and longer");
 }
 
-// An older file of its own that was to be replaced stays its own; one of others, with --overwrite, does not become it.
+// If a run ends before it replaces a file, its own older file stays its own; a file of others does not become its own,
+// even with --overwrite.
 void test_begun_and_not_written(void **) {
     const std::string own = work("own.png"), other = work("other.png");
     save_text(other, "by somebody else");
@@ -78,7 +79,7 @@ void test_names(void **) {
     fs::current_path(here);
 }
 
-// Damage anywhere: no notes, or no records; nothing of others is taken for its own.
+// Damage anywhere: the notes or records are lost; no file of others is taken for its own.
 void test_damaged_records(void **) {
     const std::string file = work("a.png");
     {
@@ -111,7 +112,7 @@ void test_damaged_records(void **) {
     assert_true(Ledger(work("")).is_in_the_way(file) && !has_ledger(work("")));
 }
 
-// Edited files of every kind are kept, and named, when what stands in them changes.
+// Edited files of every kind are kept, and named if their content would change.
 void test_edited_files(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
@@ -139,7 +140,7 @@ void test_edited_files(void **) {
     }
 }
 
-// Panoramas that are no more leave what somebody has edited.
+// Edited files of panoramas that no longer exist are kept.
 void test_forgotten(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
@@ -153,7 +154,7 @@ void test_forgotten(void **) {
     assert_true(fs::exists(work("out/panorama_x0.pto")) && !fs::exists(work("out/panorama_x0.jpg")));
 }
 
-// A link in the output folder is replaced; what it leads to is not written to.
+// A link in the output folder is replaced; its target is not written to.
 void test_links(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
@@ -165,7 +166,7 @@ void test_links(void **) {
     assert_true(text_of(work("outside.png")) == "outside" && !fs::is_symlink(work("out/img001.png")));
 }
 
-// Two at once: the second one is told so. The lock goes with its process.
+// If two run simultaneously, the second one is refused. The lock is released with its process.
 void test_two_at_once(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "2", "--seed", "21"});
@@ -178,7 +179,7 @@ void test_two_at_once(void **) {
     assert_true(fs::exists(work("out/calibrate.json")));
 }
 
-// The folder is the same however it is written.
+// All spellings of a path mean the same folder.
 void test_spellings_of_the_folder(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
@@ -197,7 +198,7 @@ void test_spellings_of_the_folder(void **) {
     fs::current_path(here);
 }
 
-// Records that were edited: the job is done again or refused, and what is printed are the program's own words.
+// Edited records: the job is done again or refused, with the program's own messages.
 void test_edited_records(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
@@ -215,7 +216,7 @@ void test_edited_records(void **) {
     }
 }
 
-// What a killed run has left is removed; what a living process is writing is not.
+// Temporary files of a killed run are removed; those of a running process are kept.
 void test_left_over(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "2", "--seed", "21"});
@@ -230,7 +231,7 @@ void test_left_over(void **) {
     assert_true(!fs::exists(dead) && fs::exists(alive) && fs::exists(other));
 }
 
-// The database may be in the output folder, before that is there.
+// The database may be in the output folder, even before the folder exists.
 void test_database_inside(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});

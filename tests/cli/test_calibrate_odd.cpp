@@ -1,4 +1,4 @@
-// `calibrate` of folders with something odd in them: that is named, and the rest is done.
+// `calibrate` of folders with unusual content: it is named, and the rest is processed.
 #include "calibrate_runs.hpp"
 #include "cli/pictures/picture.hpp"
 
@@ -6,7 +6,7 @@ using namespace calibrate_runs;
 
 namespace {
 
-// Four pictures that overlap, and three others.
+// Four overlapping pictures, and three of another panorama.
 std::string two_panoramas() {
     simulate("row", {"--images", "4", "--seed", "21"});
     simulate("three", {"--images", "3", "--seed", "22"});
@@ -19,7 +19,7 @@ Words unstored(const Words &more = {}) {
     return Words{"calibrate", work("row"), "-o", work("out"), "--no-store", "--json"} + more;
 }
 
-// Why a picture is left out; "" where it is not.
+// Why a picture is left out; "" if it is not.
 std::string reason_of(const Json &json, const std::string &name) {
     for (const Json &one : json["left_out"])
         if (fs::path(one["file"].get<std::string>()).filename() == name) return one["reason"];
@@ -32,7 +32,7 @@ void assert_left_out(const Json &json, const std::string &name, const std::strin
         fail_msg("%s: '%s' of %s", name.c_str(), reason.c_str(), part.c_str());
 }
 
-// A project that was edited is applied to the pictures that it names, in whatever order.
+// An edited project is applied to the pictures it names, in any order.
 void test_edited_project(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -61,8 +61,8 @@ void test_edited_project(void **) {
     assert_left_out(garbage, "img000.png", "panorama img000 cannot be corrected");
 }
 
-// Nobody reads a picture for a while: what failed by that is tried again. (As root, permissions do not hinder reading:
-// the file is damaged and comes back with its size and time.)
+// A picture is temporarily unreadable: the failed work is tried again. (Permissions do not stop root from reading, so
+// the file is damaged and restored with its size and time.)
 void test_passing_read_error(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -85,7 +85,7 @@ void test_passing_read_error(void **) {
     assert_int_equal(second["pictures"].size(), 7);
 }
 
-// Names that a project cannot hold, and names that state another format than the content.
+// Names that a project cannot hold, and extensions that contradict the content.
 void test_odd_names(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -102,11 +102,11 @@ void test_odd_names(void **) {
     assert_left_out(json, "img\"3.png", "a quote or a line break");
     assert_left_out(json, "x\n1.png", "a quote or a line break");
     for (const char *name : {"out/q.png", "out/y0.png", "out/y1.png"})
-        if (!fs::exists(work(name))) fail_msg("%s is not there: %s", name, json.dump().c_str());
+        if (!fs::exists(work(name))) fail_msg("%s is missing: %s", name, json.dump().c_str());
     assert_int_equal(read_picture(work("out/y0.png")).sample, LENSPROF_SAMPLE_U16);
 }
 
-// The copy of an earlier run was damaged since: its cell of the sheet is empty.
+// The copy of an earlier run has been damaged: its cell of the sheet is empty.
 void test_damaged_copy(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -118,7 +118,7 @@ void test_damaged_copy(void **) {
     assert_true(read_picture(work("out/calibrate_sheet.jpg")).width > 1000);
 }
 
-// Pictures with the names of the command's own files.
+// Pictures with the same names as the command's own files.
 void test_names_of_its_own(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -135,7 +135,7 @@ void test_names_of_its_own(void **) {
     assert_now(json_of(unstored()), false, 0, 0);
 }
 
-// A folder that cannot list the folder is named. As root there is none: another user looks.
+// A folder that cannot be listed is named. Root can list all folders, so another user runs the command.
 void test_unlisted_folder(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -151,7 +151,7 @@ void test_unlisted_folder(void **) {
     assert_left_out(Json::parse(outcome.out), "closed", "cannot list the folder");
 }
 
-// A file of the name calibrate.json does not hide a folder.
+// A foreign file named calibrate.json does not hide a folder.
 void test_somebody_elses_summary(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -162,7 +162,7 @@ void test_somebody_elses_summary(void **) {
     assert_int_equal(json_of(unstored())["pictures"].size(), 7);
 }
 
-// Named twice is found once; the exit code does not change by it.
+// A picture named twice is found once, and the exit code stays the same.
 void test_named_twice(void **) {
     if (is_missing()) return;
     fs::create_directory(work("row"));
@@ -173,8 +173,8 @@ void test_named_twice(void **) {
     assert_int_equal(json_of(words + Words{"--json"})["found"], 8);
 }
 
-// `build` of the folder, after calibrate has stored its panoramas: no picture counts twice, and the profile of the
-// panorama that was fitted before is no profile of these pictures.
+// `build` of the folder after calibrate has stored its panoramas: no picture counts twice, and a profile from these
+// pictures is not their prior.
 void test_sources(void **) {
     if (is_missing()) return;
     two_panoramas();
@@ -184,7 +184,7 @@ void test_sources(void **) {
     const Json built = json_of({"build", work("row"), "--db", work("p.db"), "--json", "--no-store"});
     assert_true(built["prior"]["profile"].is_null());
     assert_true(contains(built["prior"]["reason"], "already includes these pictures"));
-    // Without its first picture the panorama is the same one.
+    // Without its first picture it is still the same panorama.
     fs::remove(work("row/img000.png"));
     const Json again = json_of(calibrated(work("row")));
     assert_now(again, true, 1, 3);

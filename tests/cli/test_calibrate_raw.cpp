@@ -1,4 +1,4 @@
-// `calibrate` of camera raw files among others of their names and scenes.
+// `calibrate` of camera raw files together with other files of the same names and scenes.
 #include "calibrate_runs.hpp"
 #include "raw_runs.hpp"
 
@@ -18,7 +18,7 @@ std::string reason_of(const Json &json, const std::string &name) {
     return {};
 }
 
-// All that has the name of a raw file but its end is named, and of two raw files one is taken.
+// Other files with the name of a raw file are reported, and of two equal raw files one is used.
 void test_one_stem(void **) {
     needs_libraw();
     if (is_missing()) return;
@@ -40,7 +40,7 @@ void test_one_stem(void **) {
     assert_int_equal(json["found"].get<size_t>(), json["pictures"].size() + json["left_out"].size());
 }
 
-// One response cannot be that of both: the others of the scene are a panorama of their own.
+// Raw files and rendered pictures cannot share a response: the others of the scene are a separate panorama.
 void test_one_lens(void **) {
     needs_libraw();
     if (is_missing()) return;

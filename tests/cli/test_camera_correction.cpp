@@ -1,4 +1,4 @@
-// What pictures say of a falloff that was corrected before lensprof saw them, written through Exiv2 as cameras do.
+// Metadata about a falloff correction made before lensprof, written through Exiv2 as cameras do.
 #include <cstring>
 
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
@@ -59,7 +59,7 @@ void test_switches_of_cameras(void **) {
          {"Exif.Pentax.0x007d", "Undefined", "1 1 0 1"},
          {"Exif.Pentax.0x007d", "Undefined", "0 0 1 0"},
          "in camera (Pentax: peripheral illumination correction)"},
-        // Words: version 0 and size, then the switch.
+        // Fields: version 0 and size, then the switch.
         {"Canon",
          {"Exif.Canon.0x4015", "Short", "0 22 0 1 1 1 70 0 0 0 0"},
          {"Exif.Canon.0x4015", "Short", "0 22 1 0 0 0 70 0 0 0 0"},
@@ -77,14 +77,14 @@ void test_switches_of_cameras(void **) {
         const Tag make{"Exif.Image.Make", "Ascii", camera.maker};
         assert_corrected(read_with("a.jpg", {make, camera.off}), "");
         assert_corrected(read_with("a.jpg", {make, camera.on}), camera.by);
-        // Of a raw converter's picture, and of other formats, the notes are those of the raw file.
+        // In a raw converter's picture, and in other formats, the maker notes are those of the raw file.
         assert_corrected(read_with("a.jpg", {make, {"Exif.Image.Software", "Ascii", "darktable 4.2.1"}, camera.on}),
                          "");
         assert_corrected(read_with("a.tif", {make, camera.on}), "");
     }
 }
 
-// The menu said on, but there were no data of the lens.
+// The menu was on, but the camera had no data for the lens.
 void test_canon_says_what_was_done(void **) {
     const Tag make{"Exif.Image.Make", "Ascii", "Canon"}, menu{"Exif.Canon.0x4016", "SLong", "32 0 0 0 0 1 0 0"};
     assert_corrected(read_with("a.jpg", {make, {"Exif.Canon.0x4015", "Short", "0 22 0 0 0 0 0 0 0 0 0"}, menu}), "");
@@ -117,7 +117,7 @@ void test_raw_converters(void **) {
         assert_corrected(read_with(name, {}, {disabled, applied}), "");
         assert_corrected(read_with(name, {}, {enabled, planned}), "");
     }
-    // One opcode of 4 bytes of data: 3 is FixVignetteRadial, 1 WarpRectilinear.
+    // One opcode with 4 bytes of data: 3 is FixVignetteRadial, 1 is WarpRectilinear.
     const char *falloff = "0 0 0 1 0 0 0 3 1 3 0 0 0 0 0 0 0 0 0 4 0 0 0 0",
                *other = "0 0 0 1 0 0 0 1 1 3 0 0 0 0 0 0 0 0 0 4 0 0 0 0",
                *second = "0 0 0 2 0 0 0 1 1 3 0 0 0 0 0 0 0 0 0 1 7 0 0 0 9 1 3 0 0 0 0 0 0 0 0 0 0",

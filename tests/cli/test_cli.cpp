@@ -1,12 +1,12 @@
-// The program's commands, in process, on a rendered sequence. Bad input is in test_cli_faults.cpp, pictures that are
-// corrected in test_cli_apply.cpp.
+// The program's commands, in process, on a rendered sequence. Bad input is covered in test_cli_faults.cpp, correction
+// of pictures in test_cli_apply.cpp.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
 
 namespace {
 
-// The object without its time, as text: what must not differ from run to run.
+// The object without its timings, as text, to compare runs.
 std::string timeless(const std::string &json) {
     const std::string text = replaced(json, "\"seconds\":\\{[^}]*\\}", "");
     assert_true(text != json);
@@ -83,8 +83,8 @@ void test_build_keeps_its_contract(void **) {
     for (const char *key : {"load", "sample", "solve"}) assert_true(json.at("seconds").at(key).get<double>() >= 0);
 }
 
-// What was rendered comes out, up to the exponent g that pictures alone leave open: with another response, EV times g
-// and falloff and white balance to the power g explain the same pictures (Grossberg & Nayar 2003).
+// The result equals the rendered truth up to the exponent g that pictures alone leave open: with another response, EV
+// times g, and falloff and white balance to the power g explain the same pictures (Grossberg & Nayar 2003).
 void test_build_finds_the_truth(void **) {
     const Json truth = Json::parse(text_of(scene("truth.json"))),
                json = json_of({"build", scene("pano.pto"), "--no-store", "--json"});
@@ -136,7 +136,7 @@ void test_build_table(void **) {
 void test_points_replace_pictures(void **) {
     const std::string copy = copy_of("scene", "mit Leer \xc3\xa4"), points = work("points.txt");
     const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--json", "--exif-sigma", "0"} + quick;
-    // Points do not say what links the pictures had.
+    // A point file does not record the links of the pictures.
     const auto fitted = [&](const char *option) {
         const std::string json = timeless(must_exit(done, words + Words{option, points}));
         return replaced(json, "\"links\":\\[[^;]*\\],\"components\"", "\"components\"");
@@ -161,7 +161,7 @@ void test_points_replace_pictures(void **) {
     assert_int_equal(count, 600);
 }
 
-// The number behind `name` on the i line of an image of a project.
+// The number after `name` on the i line of an image of a project.
 double pto_number(const std::string &pto, int image, const std::string &name) {
     std::istringstream lines(pto);
     std::string line;
@@ -215,7 +215,7 @@ void test_project_in_another_folder(void **) {
     assert_true(fs::exists(work("corrected/img003.png")));
 }
 
-// Another reference is another zero, not another result.
+// Another reference shifts the zero, not the result.
 void test_reference(void **) {
     const Json plain = json_of(build_scene({}));
     for (const char *wanted : {"2", "img002.png"}) {
@@ -230,7 +230,7 @@ void test_reference(void **) {
 }
 
 void test_what_is_free(void **) {
-    // Exposures alone cannot explain this camera, and the program says so, with the result all the same.
+    // Exposures alone cannot explain this camera: the program reports that, together with the result.
     const Outcome poor = run_words(build_scene({"--free", "ev"}));
     assert_int_equal(poor.code, not_usable);
     assert_true(contains(poor.err, "pano.pto: not usable: the pairs deviate by"));
@@ -240,7 +240,7 @@ void test_what_is_free(void **) {
     assert_close(ev["images"][1]["white_balance"][0].get<double>(), 1, 0);
     assert_true(std::fabs(ev["images"][1]["ev"].get<double>()) > 0.1);
     const Json falloff =
-        json_of(build_scene({"--free", "falloff,ev,wb"}));  // no profile, but it evens the pictures out
+        json_of(build_scene({"--free", "falloff,ev,wb"}));  // not a profile, but usable to even out the pictures
     assert_true(falloff["usable"] == false && falloff["evens"] == true);
     assert_close(falloff["vignetting"]["center"][0].get<double>(), 0, 0);
     assert_true(falloff["response"]["values"] == ev["response"]["values"]);
@@ -265,7 +265,7 @@ void test_one_lens(void **) {
     const std::string copy = copy_of("scene");
     edit(copy + "/pano.pto", "Ra=0 (.*img002)", "Ra0 $1");
     const Words words = Words{"build", copy + "/pano.pto", "--no-store"} + quick;
-    assert_true(json_of(words + Words{"--json"})["cameras"].empty());  // EXIF says that all are of one camera
+    assert_true(json_of(words + Words{"--json"})["cameras"].empty());  // according to EXIF, all are from one camera
     must_exit(done, words + Words{"--one-lens"});
 }
 
@@ -282,8 +282,8 @@ void test_variants_of_the_fit(void **) {
     json_of(build_scene({"--max-side", "0"}));
 }
 
-// Tracks instead of pairs: as good, the profile says so, and what --points-out writes makes the same tracks again, less
-// what was saturated.
+// Tracks instead of pairs: as accurate, the profile records the method, and the output of --points-out gives the same
+// tracks again except for saturated observations.
 void test_method_radiance(void **) {
     const std::string points = work("tracks.txt"), db = work("tracks.db");
     const Words words = Words{"build", scene("pano.pto"), "--json", "--method", "radiance", "--db",
@@ -323,7 +323,7 @@ void test_store_query_show_remove(void **) {
     must_exit(done, Words{"build", scene("pano.pto"), "--aperture", "8"} + quick + db);
     must_exit(done, Words{"build", scene("pano.pto"), "--seed", "2"} + quick + db);
     const Words query = Words{"query", "--json"} + db;
-    const Json open = json_of(query + Words{"--camera", "simulated camera"});  // of two apertures: neither is meant
+    const Json open = json_of(query + Words{"--camera", "simulated camera"});  // stored at two apertures: ambiguous
     assert_true(open["id"].is_null() && open["found"].get<bool>());
     assert_int_equal(open["matches"].get<int>(), 3);
     assert_true(open["range"]["aperture"] == Json::array({2.8, 8.0}));
@@ -346,7 +346,7 @@ void test_store_query_show_remove(void **) {
         assert_true(contains(outcome.err, none["reason"].get<std::string>()));
     }
     const Json raw = json_of(query + Words{"--camera", "Simulated Camera", "--aperture", "2.8", "--processing", "raw"});
-    assert_true(raw["id"].is_null() && raw["lookup"]["response"]["from"] == "raw");  // its falloff, of other pictures
+    assert_true(raw["id"].is_null() && raw["lookup"]["response"]["from"] == "raw");  // its falloff, from other pictures
     assert_true(raw["response"]["kind"] == "linear");
 
     const Json list = json_of(Words{"profile", "list", "--json"} + db);
@@ -384,7 +384,7 @@ void test_own_database(void **) {
 
 void test_forced(void **) {
     const std::string copy = copy_of("scene"), db = work("p.db");
-    edit(copy + "/pano.pto", " y[-.0-9]+( .*img00[23])", " y180$1");  // over each other
+    edit(copy + "/pano.pto", " y[-.0-9]+( .*img00[23])", " y180$1");  // overlapping each other
     const Words words = Words{"build", copy + "/pano.pto", "--db", db, "--json"} + quick;
     const Json json = json_of(words, not_usable);
     assert_false(json["usable"].get<bool>());
@@ -424,8 +424,8 @@ void test_simulate_is_repeatable(void **) {
     assert_int_equal(same, 0);
 }
 
-// The pictures follow B = f(L M e w): the ratio of two pictures at a point both see is that of the truth, with the sRGB
-// formula written out here.
+// The pictures follow B = f(L M e w): the ratio of two pictures at a common point equals that of the truth, computed
+// here with the sRGB formula.
 void test_simulated_pairs_follow_the_model(void **) {
     const Json truth = Json::parse(text_of(scene("truth.json")));
     const auto linear = [](double b) { return b <= 0.04045 ? b / 12.92 : std::pow((b + 0.055) / 1.055, 2.4); };

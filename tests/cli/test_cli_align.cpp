@@ -1,4 +1,4 @@
-// `lensprof align`: frames of simulated sequences whose overlapping pixels must agree afterwards, and what is refused.
+// `lensprof align`: frames of simulated sequences whose overlapping pixels must agree afterwards, and refused input.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -18,7 +18,7 @@ double light(uint32_t x, uint32_t y, uint32_t c) {
 
 std::string frame_name(size_t i) { return work("in/f" + std::to_string(i) + ".png"); }
 
-// Frames of a camera that stands still; each with its exposure and red factor.
+// Frames of a stationary camera, each with its own exposure and red factor.
 Words make_frames() {
     fs::create_directories(work("in"));
     Words files;
@@ -37,7 +37,7 @@ Words make_frames() {
     return files;
 }
 
-// Root mean square difference of two pictures, levels, where both inputs were neither dark nor nearly saturated.
+// RMS difference of two pictures, in levels, over pixels that were neither dark nor nearly saturated in both inputs.
 double rms_difference(const Picture &a, const Picture &b, const Picture &source_a, const Picture &source_b) {
     double sum = 0, count = 0;
     for (size_t s = 0; s < a.pixels.size(); ++s) {
@@ -50,7 +50,7 @@ double rms_difference(const Picture &a, const Picture &b, const Picture &source_
     return std::sqrt(sum / count);
 }
 
-// All aligned frames look like frame `like`, which changes by rounding alone.
+// All aligned frames look like frame `like`, which changes by rounding only.
 void check_alike(const std::string &out, size_t like) {
     const std::string name = out + "/f" + std::to_string(like) + ".png";
     const Picture wanted = read_picture(frame_name(like));
@@ -78,7 +78,7 @@ void test_static_sequence(void **) {
     }
 }
 
-// The mean is the geometric one: its frames are alike, and lie between the darkest and the brightest.
+// The mean is geometric: the frames agree, with a brightness between the darkest and the brightest.
 void test_mean_and_json(void **) {
     const Words frames = make_frames();
     const Json json = json_of(Words{"align", "--json", "-o", work("mean")} + frames);
@@ -99,7 +99,7 @@ void test_mean_and_json(void **) {
     assert_true(json["residual"]["before_rms"].get<double>() > 10 * json["residual"]["noise"].get<double>());
 }
 
-// A rendered panorama: the camera moves and has a falloff, which the result is free of.
+// A rendered panorama: the camera moves and has a falloff, which the result does not have.
 void test_moving_camera(void **) {
     must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--ev",
                      "1", "--noise", "1"});
@@ -110,7 +110,7 @@ void test_moving_camera(void **) {
             json_of({"align", "--method", method, "--project", pto, "--to", "first", "-o", out, "--json"});
         assert_int_equal(json["frames"].size(), 5);
         assert_true(json["residual"]["heldout_median"].get<double>() < 2.0);
-        // What is left between aligned frames is a model without falloff and with equal exposures.
+        // A fit of the aligned frames gives no falloff and equal exposures.
         fs::copy(pto, out + "/pano.pto");
         const Json again = json_of({"build", out + "/pano.pto", "--no-store", "--json"});
         for (const Json &image : again["images"]) assert_close(image["ev"].get<double>(), 0.0, 0.1);
@@ -121,7 +121,8 @@ void test_moving_camera(void **) {
     assert_int_equal(std::distance(fs::directory_iterator(work("one")), fs::directory_iterator()), 1);
 }
 
-// What is white stays without what it was, and dark frames are noise: said of the frames they are true of.
+// White pixels stay white although they lack their true value, and dark frames are noisy: warnings name the frames
+// concerned.
 void test_limits_are_said(void **) {
     Words frames = make_frames();
     const Outcome first = run_words(Words{"align", "--to", "last", "-o", work("dark")} + frames);
@@ -163,7 +164,7 @@ void test_refusals(void **) {
     refuse(usage, two + Words{"-o", work("in/text.png/deeper")}, "text.png is not a folder");
 }
 
-// Where no fit could be made --json prints the object all the same, with the reason.
+// If no fit is possible, --json still prints the object, with the reason.
 void test_object_without_a_fit(void **) {
     Picture white = make_noise(width, height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     std::fill(white.pixels.begin(), white.pixels.end(), uint8_t(255));
@@ -176,7 +177,7 @@ void test_object_without_a_fit(void **) {
     assert_false(fs::exists(work("out")));
 }
 
-// No picture of the call may be written over, however its name is written.
+// No input picture may be overwritten, however its name is spelled.
 void test_inputs_stay(void **) {
     const Words frames = make_frames();
     fs::create_directories(work("other"));
@@ -190,7 +191,7 @@ void test_inputs_stay(void **) {
     refuse({frames[0], work("other/f0.png"), "-o", work("out")}, "two pictures");
     must_exit(done, {"simulate", "-o", work("pano"), "--images", "3", "--size", "160x120", "--format", "png"});
     fs::create_directories(work("far"));
-    fs::copy(work("pano/img000.png"), work("far/img001.png"));  // a picture of the project under another one's name
+    fs::copy(work("pano/img000.png"), work("far/img001.png"));  // a picture of the project under another picture's name
     std::string pto = text_of(work("pano/pano.pto"));
     pto.replace(pto.find("img000.png"), 10, "../far/img001.png");
     save_text(work("pano/far.pto"), pto);

@@ -1,4 +1,4 @@
-// `lensprof apply`: pixels against formulas written out here, and what is kept of a picture beside its pixels.
+// `lensprof apply`: pixels compared with formulas computed here, and preservation of everything else in the file.
 #include "cli_runs.hpp"
 
 #include <lensprof/store.h>
@@ -7,7 +7,7 @@ using namespace cli_runs;
 
 namespace {
 
-// A project of pictures with a linear response and a known falloff and exposures, so that every pixel has a formula.
+// A project of pictures with a linear response and known falloff and exposures, so that a formula gives every pixel.
 constexpr uint32_t width = 40, height = 30;
 constexpr double k1 = -0.3, k2 = 0.1, true_ev[3] = {0, 0.7, -0.4}, true_red[3] = {1, 1.1, 0.9},
                  true_blue[3] = {1, 0.95, 1.2};
@@ -23,7 +23,7 @@ double exposure(size_t image, size_t channel) {
 
 std::string picture_name(size_t image) { return work("in/p" + std::to_string(image) + ".tif"); }
 
-// Grey values of the middle range: nothing is near saturation.
+// Grey values of the middle range, far from saturation.
 Picture make_picture(size_t image, uint32_t sample = LENSPROF_SAMPLE_U16) {
     Picture picture = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB);
     uint64_t state = image + 1;
@@ -43,7 +43,7 @@ double value_of(const Picture &picture, size_t i) {
     return picture.pixels[i] / 255.0;
 }
 
-// Writes pictures and project; the project's exposures begin at an absolute value, as Hugin's do.
+// Writes pictures and project; the project's exposures start at an absolute value, as Hugin's do.
 std::string make_project() {
     fs::create_directories(work("in"));
     std::ostringstream pto;
@@ -59,7 +59,7 @@ std::string make_project() {
     return work("in/pano.pto");
 }
 
-// Every pixel of every output is `wanted(image, channel)` times the input over falloff and exposure.
+// Every pixel of every output is `wanted(image, channel)` times the input divided by falloff and exposure.
 void check_pixels(const std::string &out, uint32_t sample, const std::function<double(size_t, size_t)> &wanted) {
     for (size_t i = 0; i < 3; ++i) {
         const Picture before = read_picture(picture_name(i)),
@@ -115,7 +115,7 @@ void test_simulate_undoes_correct(void **) {
     }
 }
 
-// A folder is its pictures, in order; what else there is in it is left alone.
+// A folder means its pictures, in order; other files in it are ignored.
 void test_folder(void **) {
     make_project();
     write_picture(work("in/.hidden.tif"), make_picture(0));
@@ -137,7 +137,7 @@ void test_folder(void **) {
         contains(run_words(words + Words{work("empty")}).err, work("empty") + ": is a folder without pictures"));
 }
 
-// --strength and --gain-cap change what the falloff counts as; --dither keeps the mean of what rounding would lose.
+// --strength and --gain-cap limit the effect of the falloff; --dither preserves the mean that rounding would change.
 void test_strength_cap_and_dither(void **) {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());
@@ -181,7 +181,7 @@ void test_some_pictures_of_a_project(void **) {
     assert_int_equal(std::distance(fs::directory_iterator(work("out")), fs::directory_iterator()), 2);
 }
 
-// What both pictures see agrees better afterwards: at points that the simulation knows, not the fit.
+// The median disagreement of overlapping pictures at points known from the simulation, not from the fit.
 double disagreement(const std::string &pictures) {
     std::vector<Picture> held;
     for (int i = 0; i < 4; ++i) held.push_back(read_picture(pictures + "/img00" + std::to_string(i) + ".png"));
@@ -201,7 +201,7 @@ double disagreement(const std::string &pictures) {
         }
     }
     std::nth_element(squares.begin(), squares.begin() + long(squares.size() / 2), squares.end());
-    return std::sqrt(squares[squares.size() / 2]);  // the median forgives edges
+    return std::sqrt(squares[squares.size() / 2]);  // the median tolerates edges
 }
 
 void test_overlaps_agree_better(void **) {
@@ -211,7 +211,7 @@ void test_overlaps_agree_better(void **) {
         must_exit(done, {"apply", "--pto", copy + "/out.pto", "--output-exposure", exposure, "-o", work(exposure)});
         const double before = disagreement(in_folder("scene")), after = disagreement(work(exposure));
         if (!(before > 10 && after < 3.5))
-            fail_msg("%s: the median difference was %.1f levels and is %.1f", exposure, before, after);
+            fail_msg("%s: median difference: %.1f levels before, %.1f after", exposure, before, after);
     }
 }
 
@@ -269,7 +269,7 @@ void test_profile_by_id_or_exif(void **) {
     must_exit(done, Words{"apply", "--profile", "1", "-o", work("one"), scene("img001.png")} + db);
     assert_true(load(work("exif/img001.png")) == load(work("two/img001.png")));
     assert_true(load(work("exif/img001.png")) != load(work("one/img001.png")));
-    // One picture alone keeps its exposure: the middle stays, the corner gains what the falloff took, about 0.6 EV.
+    // A single picture keeps its exposure: the middle stays, the corner gains what the falloff took, about 0.6 EV.
     const Picture before = read_picture(scene("img001.png")), after = read_picture(work("two/img001.png"));
     const size_t middle = (119 * 320 + 160) * 3;
     for (size_t c = 0; c < 3; ++c) assert_true(std::abs(before.pixels[middle + c] - after.pixels[middle + c]) <= 1);
@@ -282,7 +282,7 @@ void test_profile_by_id_or_exif(void **) {
     assert_true(sum[1] > 1.1 * sum[0]);
 }
 
-// The gain grid of a stored profile: undone, or made, in every pixel and channel.
+// The gain grid of a stored profile is removed or applied in every pixel and channel.
 void test_gain_grid_of_a_profile(void **) {
     const double flat = 20000;
     auto p = std::make_unique<lensprof_profile>();

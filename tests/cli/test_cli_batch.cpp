@@ -1,5 +1,5 @@
-// Many pictures corrected at once, each in strips: the same bytes whatever the threads and strips, what a failure
-// leaves.
+// Many pictures corrected simultaneously, each in strips: the bytes do not depend on threads and strips. Also what
+// remains after a failure.
 #include "batch_runs.hpp"
 
 #include "cli/correct/correction.hpp"
@@ -8,7 +8,7 @@ using namespace batch_runs;
 
 namespace {
 
-// One picture of every way in which rows are read and written.
+// One picture for every way of reading and writing rows.
 Words make_kinds() {
     Words files;
     const auto next = [&](const std::string &name) { return files.emplace_back(work("in/" + name)); };
@@ -43,7 +43,7 @@ std::map<std::string, Bytes> contents(const std::string &place) {
     return all;
 }
 
-// The whole picture at once: what strips must come to.
+// The expected result: the whole picture corrected in one step.
 Picture corrected_whole(const std::string &file, const lensprof_profile &model, bool linear) {
     Picture source = read_picture(file), result = source;
     lensprof_apply_options options;
@@ -110,7 +110,7 @@ void test_same_bytes_by_any_threads_and_strips(void **) {
         for (const auto &way : {std::pair<uint32_t, uint32_t>{1, 1}, {2, 7}, {5, 16}, {500, 0}})
             for (const auto &file : correct_by(files, linear, way.first, way.second))
                 if (file.second != wanted.at(file.first))
-                    fail_msg("%u threads, strips of %u rows: other bytes of %s", way.first, way.second,
+                    fail_msg("%u threads, strips of %u rows: bytes of %s differ", way.first, way.second,
                              file.first.c_str());
         for (const std::string &file : files) {
             const std::string name = fs::path(file).filename().string();
@@ -118,14 +118,14 @@ void test_same_bytes_by_any_threads_and_strips(void **) {
             const Picture whole = read_picture(work("whole" + name + ".tif")),
                           strips = read_picture(work("strips/" + name + (linear ? ".tif" : "")));
             if (fs::path(file).extension() == ".jpg" && !linear)
-                assert_near_pixels(whole, strips, 60);  // noise of coding
+                assert_near_pixels(whole, strips, 60);  // coding noise
             else
                 assert_same_pixels(whole, strips);
         }
     }
 }
 
-// Strips written by PictureWriter as PictureReader gives them are the file that write_picture makes.
+// Strips read by PictureReader and written by PictureWriter give the same file as write_picture.
 void test_reader_and_writer(void **) {
     for (const std::string &file : make_kinds()) {
         const std::string extension = fs::path(file).extension().string();
@@ -151,7 +151,7 @@ void test_reader_and_writer(void **) {
     }
 }
 
-// A contact sheet does not depend on them either.
+// A contact sheet does not depend on the number of threads either.
 void test_sheet_by_any_threads(void **) {
     const Words files = make_kinds();
     Bytes wanted;
@@ -168,7 +168,7 @@ void test_sheet_by_any_threads(void **) {
 
 // Failures.
 
-// A picture whose header is good and whose pixels are not all there.
+// Gives a picture a valid header but incomplete pixels.
 void damage(const std::string &file) {
     Bytes bytes = load(file);
     if (fs::path(file).extension() == ".tif")  // the directory is at the end
@@ -186,7 +186,7 @@ void set_not_a_number(const std::string &file) {
     write_picture(file, picture);
 }
 
-// Pictures before the first bad one are written, it and those behind are not, nothing else is left.
+// Pictures before the first bad one are written; the bad one and those after it are not, and nothing else remains.
 void test_bad_picture_among_good_ones(void **) {
     for (const std::string extension : {".png", ".jpg", ".tif", ".float.tif"}) {
         fs::remove_all(work("in"));
@@ -216,7 +216,7 @@ void test_bad_picture_among_good_ones(void **) {
     }
 }
 
-// The disk is full for one picture: an older file of its name stays.
+// The disk is full for one picture: an older file of this name stays.
 void test_full_disk_among_pictures(void **) {
     fs::create_directories(work("in"));
     fs::create_directories(work("out"));
@@ -240,7 +240,7 @@ void test_full_disk_among_pictures(void **) {
     }
 }
 
-// What is said.
+// Messages.
 
 void test_speed_is_said(void **) {
     fs::create_directories(work("in"));
@@ -277,14 +277,14 @@ void test_bad_thread_counts(void **) {
 void test_time_left(void **) {
     TimeLeft left;
     assert_close(left.seconds("reading", 0.0, 100.0), 0.0, 0.0);
-    assert_close(left.seconds("reading", 0.1, 101.0), 0.0, 0.0);  // too soon to know
+    assert_close(left.seconds("reading", 0.1, 101.0), 0.0, 0.0);  // too early for an estimate
     assert_close(left.seconds("reading", 0.25, 110.0), 30.0, 1e-9);
     assert_close(left.seconds("reading", 0.5, 110.0), 10.0, 1e-9);
-    assert_close(left.seconds("sampling", 0.2, 111.0), 0.0, 0.0);   // other work begins anew,
-    assert_close(left.seconds("sampling", 0.6, 115.0), 4.0, 1e-9);  // from what was done of it then
-    assert_close(left.seconds("sampling", 0.1, 116.0), 0.0, 0.0);   // and so does work that is done once more
+    assert_close(left.seconds("sampling", 0.2, 111.0), 0.0, 0.0);   // other work starts a new estimate,
+    assert_close(left.seconds("sampling", 0.6, 115.0), 4.0, 1e-9);  // from the progress it had then
+    assert_close(left.seconds("sampling", 0.1, 116.0), 0.0, 0.0);   // and so does work that is repeated
     left.seconds("fitting", 0.0, 120.0), left.seconds("fitting", 1.0, 140.0);
-    assert_close(left.seconds("fitting", 0.0, 140.0), 0.0, 0.0);  // the same once more
+    assert_close(left.seconds("fitting", 0.0, 140.0), 0.0, 0.0);  // repeated once more
     assert_close(left.seconds("fitting", 0.3, 143.0), 7.0, 1e-9);
     assert_true(describe_time_left(4.0).empty());
     assert_string_equal(describe_time_left(41.2).c_str(), ", 42 s left");

@@ -5,13 +5,13 @@
 
 using namespace cli_runs;
 
-// What fontconfig keeps for the life of the process is no leak of ours; LeakSanitizer asks here.
+// What fontconfig keeps for the life of the process is not a leak of lensprof; LeakSanitizer reads this list.
 extern "C" const char *__lsan_default_suppressions();
 extern "C" const char *__lsan_default_suppressions() { return "leak:libfontconfig"; }
 
 namespace {
 
-// Number 1: an EMoR response, a gain grid and a covariance; number 2: linear, without any.
+// Profile 1: an EMoR response, a gain grid and a covariance; profile 2: linear, with none of these.
 std::unique_ptr<lensprof_profile> make_profile(bool is_rich) {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());

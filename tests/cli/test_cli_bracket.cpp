@@ -1,4 +1,4 @@
-// lensprof bracket: what it prints and stores, and what it refuses.
+// lensprof bracket: output, stored profiles, and refused input.
 #include "bracket_runs.hpp"
 
 using namespace bracket_runs;
@@ -72,7 +72,7 @@ void test_an_overexposed_picture_is_left_out(void **) {
     assert_true(contains(words.out, "unknown"));
 }
 
-// -1 is an exposure like any other.
+// -1 is a valid exposure.
 void test_an_exposure_of_minus_one(void **) {
     const std::vector<double> evs = {0.0, -1.0, 1.0};
     const Words files = shots(evs);
@@ -83,7 +83,7 @@ void test_an_exposure_of_minus_one(void **) {
     assert_true(contains(text.out, "-1.000") && !contains(text.out, "unknown"));
 }
 
-// A reason names files, whatever these are called.
+// A reason names files correctly, whatever their names are.
 void test_names_that_look_like_numbers(void **) {
     Shot like;
     like.noise = 0.0;
@@ -93,7 +93,7 @@ void test_names_that_look_like_numbers(void **) {
     assert_refused(not_usable, bracket(odd, no_store), {odd[0]});
 }
 
-// A forced result is known as that, however long the method's name is.
+// A forced result is marked as forced, however long the method's name is.
 void test_forced(void **) {
     const Words files = shots(five);
     must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--pairs", "4000", "--method",
@@ -121,7 +121,7 @@ void test_profile_of_the_camera_alone(void **) {
     assert_true(found["id"] == stored["id"]);
 }
 
-// The reference variant: from known exposures alone, which it takes as they are.
+// The reference method uses known exposures only, and takes them as exact.
 void test_debevec(void **) {
     const Words files = shots(five);
     const Words debevec = no_store + Words{"--method", "debevec"};
@@ -212,7 +212,7 @@ void test_refused_pictures(void **) {
     assert_refused(unreadable, bracket({files[0], work("text.png")}, store), {work("text.png")});
 }
 
-// Pictures that show no response: the reason is told, as text and as an object, and nothing is stored.
+// Pictures that show no response: the reason is printed, as text and in the object, and nothing is stored.
 void assert_shows_nothing(const Words &files, const Words &more = {}) {
     const Words stored = Words{"--db", work("p.db"), "--camera", "X", "--pairs", "4000"} + more;
     assert_refused(not_usable, bracket(files, stored), {});

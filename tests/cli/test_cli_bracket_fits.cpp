@@ -1,4 +1,4 @@
-// lensprof bracket: what is recovered, on every kind of picture and knowledge of the exposures.
+// lensprof bracket: accuracy of the results for every kind of picture and every kind of known exposures.
 #include "bracket_runs.hpp"
 
 using namespace bracket_runs;
@@ -42,7 +42,7 @@ void test_kinds_of_pictures(void **) {
         }
 }
 
-// A linear camera, which the prior does not expect, and one whose curve no few modes follow.
+// A linear camera, which the prior does not expect, and one whose curve a few modes cannot represent.
 void test_other_responses(void **) {
     Shot like;
     like.response = [](double x) { return x; };
@@ -59,7 +59,7 @@ void test_other_responses(void **) {
     assert_true(heldout(refined) < heldout(modes));
 }
 
-// The camera changed its sensitivity and did not say so.
+// The camera changed its sensitivity, which the metadata do not show.
 void test_wrong_metadata_is_said(void **) {
     for (double wrong : {0.6, -1.0})
         for (size_t count : {5u, 7u}) {
@@ -79,7 +79,7 @@ void test_wrong_metadata_is_said(void **) {
         }
 }
 
-// A step, an exposure at the end, the wrong order: what is not one exposure in the middle.
+// A step, a wrong exposure at the end, the wrong order: faults other than one exposure in the middle.
 void test_other_wrong_metadata(void **) {
     struct Case {
         std::vector<double> truth, stated;
@@ -107,8 +107,8 @@ void test_other_wrong_metadata(void **) {
         }
 }
 
-// Whatever the response: exposures that are known settle gamma, and the result keeps to it. Modes alone cannot always,
-// and say so.
+// For any response, known exposures determine gamma, and the result matches them. Modes alone cannot always do so; then
+// a reason reports it.
 void test_known_exposures_hold_gamma(void **) {
     const auto tone = [](double x) {
         double y = srgb(x);
@@ -136,7 +136,7 @@ void test_known_exposures_hold_gamma(void **) {
     }
 }
 
-// Two of three always agree: the wrong one cannot be named, and the answer is not stated to be sure.
+// Two of three always agree: the wrong exposure cannot be identified, and the stated error is large.
 void test_exposures_of_three_pictures_contradict(void **) {
     const Words files = shots(three);
     for (const char *stated : {"2,0.6,-2", "2,-0.8,-2", "3,0,-2", "2.6,0,-2", "2,0,-1.2", "2,0,-2.8"}) {
@@ -152,7 +152,7 @@ void test_exposures_of_three_pictures_contradict(void **) {
     assert_string_equal(right["reason"].get<std::string>().c_str(), "");
 }
 
-// Things that change from picture to picture in their own places: light, or tone mapping.
+// Local changes from picture to picture: light, or tone mapping.
 void test_changed_light_is_refused(void **) {
     Shot like;
     like.waves_ev = 0.4;
@@ -161,7 +161,7 @@ void test_changed_light_is_refused(void **) {
     if (!contains(reason, "light changed") || contains(reason, "free them")) fail_msg("%s", reason.c_str());
 }
 
-// Pictures of one exposure hold no response, whatever the method, and whatever exposures are said to be theirs.
+// Pictures of one exposure show no response, whatever the method, and whatever exposures are stated for them.
 void test_one_exposure_is_refused(void **) {
     const Words files = shots({0.0, 0.02, -0.02});
     for (const char *method : {"transfer", "radiance", "transfer-function"}) {
@@ -171,7 +171,7 @@ void test_one_exposure_is_refused(void **) {
     must_exit(not_usable, bracket(files, no_store + Words{"--ev", "0,2,-2"}));
 }
 
-// Scanned film: black is grey, and dark pictures show nothing else.
+// Scanned film: its black is grey, and dark pictures contain almost nothing else.
 void test_black_that_is_not_0(void **) {
     const auto film = [](double x) { return (16.0 + 239.0 * std::pow(x, 0.6)) / 255.0; };
     Shot like;

@@ -1,4 +1,4 @@
-// What settles gamma, and how many falloff curves: options of build on pictures that tell their exposures.
+// What determines gamma, and the number of falloff curves: options of build on pictures with known exposures.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -17,7 +17,7 @@ Words build(const std::string &path, const Words &more) {
     return Words{"build", path + "/pano.pto", "--no-store", "--json", "--pairs", "2000"} + more;
 }
 
-// Slope of recovered on true exposures: gamma.
+// Slope of recovered against true exposures: gamma.
 double slope(const Json &json, const std::string &path) {
     const Json truth = Json::parse(text_of(path + "/truth.json"));
     const size_t count = json["images"].size();
@@ -56,7 +56,7 @@ void test_gamma_from_the_prior(void **) {
     assert_gamma(json, "prior");
     assert_string_equal(json["gamma"]["camera_kind"].get<std::string>().c_str(), "any");
     assert_true(std::fabs(slope(json, path) - 1.0) > 0.05);
-    // Without exposures nothing else is left.
+    // Without exposures only the prior remains.
     const Json none = json_of(build(path, {"--exif-sigma", "0"}));
     assert_gamma(none, "prior");
     for (const Json &image : none["images"]) assert_close(image["known_ev_residual"].get<double>(), 0.0, 0.0);
@@ -71,7 +71,7 @@ void test_gamma_from_the_prior(void **) {
     assert_close(slope(linear, path), 1.0, 0.01);
 }
 
-// The project's own response is kept, and gamma with it: here one that was found by the exposures.
+// The project's own response is kept, and gamma with it; here the response was found from known exposures.
 void test_gamma_known(void **) {
     const std::string path = linear_scene(), pto = path + "/found.pto";
     const Json found = json_of(build(path, {"--gamma-from", "exif", "--modes", "5", "--pto-out", pto}));
@@ -112,7 +112,7 @@ void test_coverage_and_errors_are_told(void **) {
     for (const Json &one : json["gamma"]["correlation"]) assert_true(std::fabs(one.get<double>()) <= 1.0);
 }
 
-// Standard errors are relative to the reference, whichever it is.
+// Standard errors are relative to the reference, whichever image it is.
 void test_another_reference(void **) {
     const std::string path = linear_scene();
     const Json first = json_of(build(path, {"--exif-sigma", "0"}));
@@ -125,7 +125,7 @@ void test_another_reference(void **) {
     assert_close(other["images"][base]["ev_sigma"].get<double>(), first["images"][3]["ev_sigma"].get<double>(), 0.01);
 }
 
-// Exposures that are held (wrongly, here) are relative to the project's own reference, whichever image is asked for.
+// Held exposures (wrong ones here) are relative to the project's own reference, whichever image is requested.
 void test_another_reference_beside_held_exposures(void **) {
     const std::string pto = linear_scene() + "/pano.pto";
     edit(pto, "\nv E[^\n]*", "");
@@ -134,7 +134,7 @@ void test_another_reference_beside_held_exposures(void **) {
     const Json other =
         json_of({"build", pto, "--no-store", "--json", "--exif-sigma", "0", "--reference", "1"}, not_usable);
     const double moved = first["images"][1]["ev"].get<double>();
-    size_t compared = 0;  // exposures that are held and contradict the pictures can leave an image out, of both alike
+    size_t compared = 0;  // contradicting held exposures can leave an image out, the same one in both
     for (size_t i : {0u, 2u, 3u}) {
         const Json &a = other["images"][i]["ev"], &b = first["images"][i]["ev"];
         assert_int_equal(a.is_null(), b.is_null());
@@ -145,7 +145,7 @@ void test_another_reference_beside_held_exposures(void **) {
     assert_true(compared > 0);
 }
 
-// Small pictures of one manual exposure: a strip of 28 stays level, by what EXIF says of it.
+// Small pictures of one manual exposure: according to EXIF, a strip of 28 stays level.
 void test_a_strip_at_one_manual_exposure(void **) {
     const std::string path = work("strip");
     must_exit(done, {"simulate", "-o",        path,       "--size",  "200x150",   "--hfov", "12",
@@ -153,7 +153,7 @@ void test_a_strip_at_one_manual_exposure(void **) {
                      "0",        "--mean-ev", "-1",       "--noise", "5",         "--exif", "--exif-manual"});
     const Json known = json_of(build(path, {"--stored", "none"}));
     const auto spread = [](const Json &json) {
-        double low = 0, high = 0;  // the reference's
+        double low = 0, high = 0;  // exposure of the reference
         for (const Json &image : json["images"]) {
             low = std::min(low, image["ev"].get<double>());
             high = std::max(high, image["ev"].get<double>());
@@ -164,7 +164,8 @@ void test_a_strip_at_one_manual_exposure(void **) {
     assert_true(spread(known) < spread(json_of(build(path, {"--stored", "none", "--exif-sigma", "0"}))));
 }
 
-// White balances that differ but are held: the option that frees them is named, and mends it.
+// Different white balances that are held: a message names the option that frees them, and the option solves the
+// problem.
 void test_held_balances(void **) {
     const std::string path = work("warm");
     must_exit(done, {"simulate", "-o", path, "--size", "400x300", "--images", "6", "--wb", "0.03", "--ev", "0.5"});
@@ -174,7 +175,7 @@ void test_held_balances(void **) {
     assert_string_equal(json_of(build(path, {"--free", "all"}))["reason_code"].get<std::string>().c_str(), "none");
 }
 
-// What is held settles gamma.
+// Held values determine gamma.
 void test_known_is_said(void **) {
     const std::string path = linear_scene();
     const Outcome known = run_words({"build", path + "/pano.pto", "--no-store", "--gamma-from", "known"});

@@ -1,4 +1,4 @@
-// `calibrate`: the whole job, its second run, what stands in the way, and bad input.
+// `calibrate`: the whole job, its second run, existing files that block outputs, and bad input.
 #include "calibrate_runs.hpp"
 #include "cli/calibrate/ledger.hpp"
 #include "cli/pictures/picture.hpp"
@@ -7,7 +7,7 @@ using namespace calibrate_runs;
 
 namespace {
 
-// Two panoramas, a picture of neither in a subfolder, a copy and a damaged file.
+// Two panoramas, an unrelated picture in a subfolder, a copy and a damaged file.
 std::string make_folder_of_many() {
     simulate("many", {"--images", "4", "--seed", "21"});
     simulate("three", {"--images", "3", "--seed", "22"});
@@ -31,7 +31,7 @@ Stamps stamps() {
     return all;
 }
 
-// The first run does all of it; the second nothing; what is lost is written again alone.
+// The first run does everything, the second nothing; only lost files are written again.
 void test_a_folder_of_many_things(void **) {
     if (is_missing()) return;
     const std::string many = make_folder_of_many();
@@ -51,7 +51,7 @@ void test_a_folder_of_many_things(void **) {
     assert_true(contains(json["left_out"][0]["reason"], "bad.png"));
     assert_true(contains(json["left_out"][1]["reason"], "a copy of img001.png"));
     assert_true(fs::exists(work("out/sub/y.png")) && fs::exists(work("out/calibrate_sheet.jpg")));
-    assert_true(json["pictures"][4]["panorama"].is_null());  // sub/y.png, by the profile that the panoramas stored
+    assert_true(json["pictures"][4]["panorama"].is_null());  // sub/y.png, with the profile of the panoramas
 
     const Stamps before = stamps();
     assert_now(json_of(calibrated(many)), false, 0, 0);
@@ -63,7 +63,7 @@ void test_a_folder_of_many_things(void **) {
     assert_int_equal(json_of({"profile", "list", "--db", work("p.db"), "--json"})["profiles"].size(), 2);
 }
 
-// The same numbers as `build` of the same pictures, and copies as `apply --pto` makes them.
+// The same numbers as `build` of the same pictures, and the same copies as `apply --pto`.
 void test_as_build_and_apply(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "5", "--seed", "11"});
@@ -79,7 +79,7 @@ void test_as_build_and_apply(void **) {
     assert_now(json_of(calibrated(work("row"), {"--threads", "1"})), false, 0, 0);
 }
 
-// Of a new picture only its own panorama is done again; the output may be in the folder.
+// If a picture is added, only its panorama is processed again; the output folder may be inside the input folder.
 void test_new_pictures(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
@@ -91,12 +91,12 @@ void test_new_pictures(void **) {
     const Json json = json_of(words);
     assert_now(json, true, 1, 3);
     assert_int_equal(json["found"], 7);
-    // Another output folder does not take the first one's for pictures.
+    // With another output folder, the first one's files are not taken for pictures.
     const Json other = json_of({"calibrate", work("row"), "-o", work("row/other"), "--no-store", "--json"});
     assert_int_equal(other["found"], 7);
 }
 
-// Nothing of others is replaced, and that is said before anything is computed.
+// Files of others are never replaced; this is reported before anything is computed.
 void test_what_stands_in_the_way(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
@@ -104,7 +104,7 @@ void test_what_stands_in_the_way(void **) {
     save_text(work("out/img001.png"), "mine");
     assert_refused(usage, calibrated(work("row")), {"out/img001.png", "--overwrite"});
     assert_now(json_of(calibrated(work("row"), {"--overwrite"})), true, 1, 4);
-    // One that was edited is kept while its correction is the same, and in the way when that changes.
+    // An edited file is kept while its correction is unchanged, and blocks the output when it changes.
     save_text(work("out/img002.png"), "edited");
     assert_now(json_of(calibrated(work("row"))), false, 0, 0);
     assert_true(text_of(work("out/img002.png")) == "edited");
@@ -131,7 +131,7 @@ void test_bad_input(void **) {
     assert_refused(usage, {"calibrate", work("one")}, {"-o"});
 }
 
-// However many pictures, ten lines.
+// Ten lines of output, for any number of pictures.
 void test_ten_lines(void **) {
     if (is_missing()) return;
     const std::string text =
@@ -140,7 +140,7 @@ void test_ten_lines(void **) {
     assert_true(contains(text, "profile 1 stored") && contains(text, "left out  2 pictures"));
 }
 
-// Ctrl-C in a run of its own process: what is finished stays, nothing is left half written, and the next run goes on.
+// Ctrl-C in a separate process: finished files stay, no partial file is left, and the next run continues.
 void test_interrupted(void **) {
     if (is_missing()) return;
     const std::string many = make_folder_of_many();
@@ -157,7 +157,7 @@ void test_interrupted(void **) {
         int status = 0;
         assert_int_equal(waitpid(child, &status, 0), child);
         const bool ended = WIFEXITED(status) && (WEXITSTATUS(status) == stopped || WEXITSTATUS(status) == done);
-        assert_true(ended || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT));  // before the handler is there
+        assert_true(ended || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT));  // before the handler was installed
         if (fs::exists(work("out")))
             for (const fs::directory_entry &entry : fs::directory_iterator(work("out")))
                 assert_false(entry.path().filename().string().rfind(".lensprof-", 0) == 0

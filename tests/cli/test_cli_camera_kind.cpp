@@ -1,4 +1,4 @@
-// Whose typical response the prior of build is: what EXIF in the pictures' own files says of the camera.
+// Which typical response build uses as the prior: according to EXIF in the pictures' own files.
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
 #include "cli_runs.hpp"
@@ -52,7 +52,7 @@ void test_jpeg_files(void **) {
     assert_true(sigma["camera"] < 0.5 * sigma["any"]);
 }
 
-// An option contradicts EXIF and is obeyed.
+// An option overrides EXIF.
 void test_option(void **) {
     const std::string path = jpeg_files();
     set_camera(path, {"Apple", "iPhone 12", "", ""});

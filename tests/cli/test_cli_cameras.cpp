@@ -1,4 +1,4 @@
-// Pictures of several cameras: a response, a falloff and a profile for each, joined by what they share.
+// Pictures of several cameras: a response, a falloff and a profile for each, joined by common parameters.
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/registration/registration.hpp"
@@ -23,7 +23,7 @@ void state_camera(const std::string &file, const char *maker, const char *model)
 
 std::string two_cameras() { return in_folder("pair"); }
 
-// Pictures of one scene in turn by two cameras, which differ in response and falloff.
+// Pictures of one scene, alternating between two cameras with different response and falloff.
 int make_pictures(void **state) {
     if (make_folder(state) != 0) return -1;
     const Words same{"--images", std::to_string(kImages),
@@ -48,7 +48,7 @@ int make_pictures(void **state) {
 
 std::string project() { return two_cameras() + "/pano.pto"; }
 
-// A folder of the pictures alone.
+// A folder with only the pictures.
 std::string pictures(const std::string &name) {
     fs::remove_all(work(name));
     fs::create_directory(work(name));
@@ -57,7 +57,7 @@ std::string pictures(const std::string &name) {
     return work(name);
 }
 
-// EXIF of both settles gamma, so that falloffs compare with the true ones.
+// EXIF of both determines gamma, so that falloffs can be compared with the true ones.
 void assert_both_found(const Json &json, double tolerance) {
     assert_true(json["usable"] == true && json["evens"] == true);
     assert_int_equal(json["cameras"].size(), 2);
@@ -99,13 +99,13 @@ void test_one_lens_takes_all_as_one(void **) {
     assert_true(json["cameras"].empty() && !json["images"][0].contains("camera"));
     assert_true(json["residual"]["heldout_median"].get<double>()
                 > 2.0 * each["residual"]["heldout_median"].get<double>());
-    // Linear pictures have one response, and each setting of each camera its falloff.
+    // Linear pictures have one response, and a falloff per setting of each camera.
     const Json linear = Json::parse(run_words(Words{"build", project(), "--camera-kind", "linear"} + quietly).out);
     assert_true(linear["cameras"].empty());
     assert_int_equal(linear["settings"].size(), 2);
-    // What the command line states holds for all pictures.
+    // Values on the command line hold for all pictures.
     assert_true(Json::parse(run_words(Words{"build", project(), "--camera", "One"} + quietly).out)["cameras"].empty());
-    // Also where the project does not link them.
+    // Also if the project does not link them.
     std::string text = text_of(project());
     for (size_t at = text.find("Ra=0"); at != std::string::npos; at = text.find("Ra=0", at)) text.replace(at, 4, "Ra0");
     const std::string unlinked = two_cameras() + "/unlinked.pto";
@@ -114,7 +114,7 @@ void test_one_lens_takes_all_as_one(void **) {
     assert_int_equal(Json::parse(run_words(Words{"build", unlinked} + quietly).out)["cameras"].size(), 2);
 }
 
-// Without a project: the overlaps join both cameras, and the project that is written says which picture is of which.
+// Without a project: the overlaps join both cameras, and the written project assigns each picture to its camera.
 void test_folder(void **) {
     if (!can_register()) return skip();  // built without OpenCV, which finds overlaps
     const std::string folder = pictures("folder"), found = work("found.pto");
@@ -124,7 +124,7 @@ void test_folder(void **) {
     const Json json = Json::parse(outcome.out);
     assert_both_found(json, 0.02);
     assert_true(json["left_out"].empty());
-    // The cameras stay apart where no EXIF tells them apart.
+    // The project keeps the cameras apart even without EXIF.
     for (size_t i = 0; i < kImages; i++) state_camera(folder + "/" + numbered(i), "", "");
     assert_int_equal(json_of(Words{"build", found} + quietly)["cameras"].size(), 2);
 }
@@ -155,7 +155,7 @@ double seams(const std::string &folder) {
     return Json::parse(run_words(words).out)["residual"]["before_rms"].get<double>();
 }
 
-// One response encodes all, and the seams are gone; each its own where each keeps its exposure.
+// One response encodes all pictures, and the seams disappear; if pictures keep their exposure, each uses its own.
 void test_apply(void **) {
     const std::string result = two_cameras() + "/result.pto", out = work("even"), kept = work("kept");
     must_exit(done, Words{"build", project(), "--pto-out", result} + quietly);
@@ -174,17 +174,17 @@ void test_apply(void **) {
     assert_false(
         contains(run_words({"apply", "--pto", result, "--output-exposure", "keep", "-o", kept}).err, "several"));
     assert_true(seams(kept) > 2.0 * after);
-    // So it is by the profiles of a database, which has both.
+    // The same with profiles from a database, which has both.
     const std::string db = work("both.db"), by_db = work("by_db");
     must_exit(done, {"build", project(), "--db", db});
     must_exit(done, {"apply", "--pto", result, "--from-db", "--db", db, "-o", by_db});
     assert_true(seams(by_db) < 0.15 * before);
-    // A preview has both, too.
+    // A preview shows both, too.
     must_exit(done, Words{"build", project(), "--preview", work("preview.png")} + quietly);
     assert_true(fs::exists(work("preview.png")));
 }
 
-// The whole job: a profile for each, and pictures that look alike.
+// The whole job: a profile for each, and pictures that match.
 void test_calibrate(void **) {
     if (!can_register()) return skip();  // built without OpenCV, which finds overlaps
     const std::string folder = pictures("job"), out = work("job_out"), db = work("job.db");
@@ -198,7 +198,7 @@ void test_calibrate(void **) {
     assert_true(contains(must_exit(done, {"calibrate", folder, "-o", out, "--db", db}), "all in earlier runs"));
 }
 
-// Light is one, whichever camera saw it.
+// The light is the same, whichever camera saw it.
 void test_light(void **) {
     const std::string result = two_cameras() + "/result.pto";
     must_exit(done, Words{"build", project(), "--pto-out", result} + quietly);
@@ -206,7 +206,7 @@ void test_light(void **) {
     for (const Json &picture : json["pictures"]) assert_true(picture["agreement"].get<double>() > 0.85);
 }
 
-// A picture of a third camera, which no other of it overlaps, is left out with the reason; the others are as ever.
+// A single picture of a third camera is left out with a reason; the others are unaffected.
 void test_single_picture(void **) {
     const std::string folder = pictures("third");
     fs::copy_file(project(), folder + "/pano.pto");
@@ -229,10 +229,10 @@ void test_single_picture(void **) {
     }
 }
 
-// What says no camera is not stored, and is no reason not to store the others.
+// A camera without a name is not stored; the others are.
 void test_camera_without_a_name(void **) {
     const std::string folder = pictures("unnamed"), db = work("unnamed.db");
-    std::string text = text_of(project());  // with a response of its own for each second image, as EXIF says nothing
+    std::string text = text_of(project());  // a separate response for every second image, since EXIF is missing
     const std::string linked = "Ra=0 Rb=0 Rc=0 Rd=0 Re=0", own = "Ra0 Rb0 Rc0 Rd0 Re0",
                       other = "Ra=1 Rb=1 Rc=1 Rd=1 Re=1";
     for (size_t at = text.find(linked), n = 0; at != std::string::npos; at = text.find(linked, at + 1), n++)
@@ -252,11 +252,11 @@ void test_camera_without_a_name(void **) {
     assert_true(json["settings"][1]["profile"].is_null());
 }
 
-// Nothing that one camera shows is in pictures of the other: that of the reference is the result.
+// The cameras' pictures have nothing in common: the result is that of the reference's camera.
 void test_cameras_that_share_nothing(void **) {
     const std::string folder = pictures("apart"), db = work("apart.db");
     fs::copy_file(project(), folder + "/pano.pto");
-    // Masks over all but what the first three pictures share would be many: turned pictures show something else.
+    // Instead of many masks, the other camera's pictures are flipped, so that they show something else.
     for (size_t i = 1; i < kImages; i += 2) {
         Picture picture = read_picture(folder + "/" + numbered(i));
         Picture turned = picture;

@@ -5,7 +5,7 @@
 
 using namespace cli_runs;
 
-// What fontconfig keeps for the life of the process is no leak of ours; LeakSanitizer asks here.
+// What fontconfig keeps for the life of the process is not a leak of lensprof; LeakSanitizer reads this list.
 extern "C" const char *__lsan_default_suppressions();
 extern "C" const char *__lsan_default_suppressions() { return "leak:libfontconfig"; }
 
@@ -18,10 +18,10 @@ struct Setting {
     double focal_mm, aperture;
     uint32_t vignettings;
     bool has_covariance;
-    uint32_t modes = 0;  // above 0: of each of three responses
+    uint32_t modes = 0;  // above 0: number of modes of each of three responses
 };
 
-// Variances of k1..k3, covariance of k1 and k2, after the coefficients of the responses.
+// Variances of k1..k3 and the covariance of k1 and k2, after the coefficients of the responses.
 constexpr double variance[3] = {4e-4, 9e-4, 4e-4}, covariance12 = -3e-4;
 
 double light(const double *k, double r) {
@@ -92,7 +92,7 @@ void check_terminal(uint32_t modes) {
     assert_true(contains(line_with(text, "b  f/8"), "  0.600"));
     assert_false(contains(line_with(text, "b  f/8"), "+-"));
     assert_true(contains(text.substr(text.find("a  f/2.8")), "-0.74\n"));  // log2 0.6
-    // 72 columns from r = 0 at column 10: both curves are the same, the first one's letter shows.
+    // 72 columns from r = 0 at column 10: the curves coincide, and the first one's letter is shown.
     assert_true(line_with(text, "       1 +").at(10) == 'a');
     assert_int_equal(line_with(text, "     0.6 +").size(), 10 + 72 + 1);
     for (char c : text) assert_true(c == '\n' || (c >= ' ' && c <= '~'));
@@ -127,7 +127,7 @@ void test_json(void **) {
     }
 }
 
-// Curves are called by what differs among them; green stands for three channels where profiles are compared.
+// Labels contain what differs between the curves; green represents three channels when profiles are compared.
 void test_labels_and_channels(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 3, false},
                                     {"A", 50, 2.8, 1, false},
@@ -148,7 +148,7 @@ void test_labels_and_channels(void **) {
     assert_string_equal(labels({"--camera", "A", "--focal", "28"}).c_str(), "red;green;blue;");
 }
 
-// Without --chart several profiles are shown one after the other.
+// Without --chart several profiles are printed in sequence.
 void test_several_without_chart(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, false}, {"A", 28, 4, 1, false}});
     const std::string text = must_exit(done, {"profile", "show", "--camera", "A", "--db", db});
@@ -158,7 +158,7 @@ void test_several_without_chart(void **) {
     assert_int_equal(json_of({"profile", "show", "2", "--json", "--db", db})["id"].get<int>(), 2);
 }
 
-// A gain grid is no function of the radius: it is shown, and named below the chart.
+// A gain grid is not a function of the radius; it is mentioned below the chart.
 void test_gain_grid(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, true}, {"A", 28, 4, 1, false}});
     lensprof_store *store = nullptr;
@@ -197,7 +197,7 @@ void test_gain_grid(void **) {
     assert_true(text_of(work("a.svg")).size() > text_of(work("b.svg")).size());  // the note
 }
 
-// Tags of an XML document: every one that opens closes, in order.
+// Checks the tags of an XML document: each opening tag is closed, in order.
 void assert_well_formed(const std::string &xml) {
     assert_int_equal(xml.rfind("<?xml version=\"1.0\" encoding=\"UTF-8\"?>", 0), 0);
     std::vector<std::string> open;
@@ -229,7 +229,7 @@ std::pair<uint32_t, uint32_t> size_of_svg(const std::string &svg) {
 void test_svg(void **) {
     const std::string db = make_db({{"A & <B>", 28, 2.8, 1, true}, {"A & <B>", 28, 4, 3, false}});
     const Words words = {"profile", "show", "1", "2", "--db", db, "--chart-out"};
-    for (const char *name : {"a.svg", "b.SVG"}) {  // every run is a process of its own
+    for (const char *name : {"a.svg", "b.SVG"}) {  // a separate process per run
         const Outcome outcome = run_child(words + Words{work(name)});
         assert_int_equal(outcome.code, done);
         assert_true(contains(outcome.out, work(name)));
@@ -240,16 +240,16 @@ void test_svg(void **) {
     assert_true(size_of_svg(svg).first > 650 && size_of_svg(svg).second > 450);
     for (const char *colour : {"rgb(0%,44.7%,69.8%)", "rgb(83.5%,36.9%,0%)"}) assert_true(contains(svg, colour));
     assert_true(contains(svg, "dasharray"));
-    assert_int_equal(files_in_folder(), 3);  // scene, mixed and work: nothing beside them
+    assert_int_equal(files_in_folder(), 3);  // scene, mixed and work: nothing else was written
 }
 
-// A pixel's red, green and blue; the drawing's point (x, y) is at pixel (2x, 2y).
+// Red, green and blue of a pixel; point (x, y) of the drawing is at pixel (2x, 2y).
 std::array<int, 3> pixel_at(const Picture &picture, double x, double y) {
     const uint8_t *p = picture.pixels.data() + size_t(2 * y) * picture.row_bytes + size_t(2 * x) * 3;
     return {p[0], p[1], p[2]};
 }
 
-// The plot is 520 x 360 points and begins at (70, 64); M goes from 0.5 to 1.
+// The plot is 520 x 360 points and starts at (70, 64); M goes from 0.5 to 1.
 void test_png(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, true}, {"A", 28, 4, 3, false}});
     const Words words = {"profile", "show", "1", "2", "--channel", "red", "--db", db, "--chart-out"};
@@ -300,14 +300,14 @@ void test_refused_files(void **) {
     assert_refused(failed, {"profile", "show", "1", "--chart-out", work("none/a.svg"), "--db", db}, {"none/a.svg"});
     fs::create_directories(work("folder.png"));
     assert_refused(usage, {"profile", "show", "1", "--chart-out", work("folder.png"), "--db", db}, {"folder.png"});
-    // The database itself, by another name that looks like a picture's.
+    // The database itself, through a link with the extension of a picture.
     fs::create_symlink(db, work("link.svg"));
     assert_refused(usage, {"profile", "show", "1", "--chart-out", work("link.svg"), "--db", db}, {"link.svg"});
     fs::rename(db, work("db.png"));
     assert_refused(usage, {"profile", "show", "1", "--chart-out", work("db.png"), "--db", work("db.png")}, {"db.png"});
 }
 
-// A folder that may not be written, and a disk that is full.
+// A read-only folder, and a full disk.
 void test_unwritable(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, true}});
     const Words words = {"profile", "show", "1", "--chart-out", work("a.png"), "--db", db};
@@ -320,7 +320,7 @@ void test_unwritable(void **) {
                                  setrlimit(RLIMIT_FSIZE, &limit);
                              }),
                    failed, {work("a.png")}, before);
-    if (geteuid() != 0) return;  // only root can become somebody else
+    if (geteuid() != 0) return;  // only root can change the user
     const mode_t mode = 0755;
     chmod(work("").c_str(), mode);
     const Outcome outcome = run_child(words, [] {

@@ -1,4 +1,4 @@
-// `lensprof profile check ID... --against PICTURES`: which profile fits, by how much, and what is refused.
+// `lensprof profile check ID... --against PICTURES`: which profile fits and by how much, and refused input.
 #include <exiv2/exiv2.hpp>
 
 #include "cli_runs.hpp"
@@ -30,7 +30,7 @@ std::string pictures(const std::string &name, const char *seed, const char *fall
 
 constexpr const char *kFalloff = "-0.4,0.1,-0.1";
 
-// The profile `id` with other content, stored as the next.
+// Stores profile `id` with other content as the next one.
 void store_changed(int id, const std::string &name, const std::function<void(Json &)> &change) {
     const std::string file = in_folder(name + ".json");
     must_exit(done, {"profile", "export", std::to_string(id), "-o", file, "--db", db()});
@@ -42,8 +42,9 @@ void store_changed(int id, const std::string &name, const std::function<void(Jso
     must_exit(done, {"profile", "import", file, "--db", db()});
 }
 
-// 1: measured on other pictures of the lens. 2: half of its falloff. 3: a table for its response. 4: its falloff as a
-// gain grid, without response. 5: no falloff. 6: three curves, all alike. 7: of a telephoto lens, hardly any falloff.
+// 1: measured on other pictures of the lens. 2: half of its falloff. 3: a table as its response. 4: its falloff as a
+// gain grid, without response. 5: no falloff. 6: three equal curves. 7: from a telephoto lens, with very little
+// falloff.
 int make_profiles(void **state) {
     if (make_scene(state) != 0) return -1;
     must_exit(done, {"build", pictures("one", "1", kFalloff), "--db", db(), "--stored", "none"});
@@ -72,7 +73,7 @@ const Json &of(const Json &json, int id) {
     return json;
 }
 
-// By a project, a folder and single pictures.
+// With a project, a folder and single pictures.
 void test_right_one_is_named(void **) {
     const std::string folder_of = in_folder("two");
     for (const std::string &given : {folder_of + "/pano.pto", folder_of}) {
@@ -94,7 +95,7 @@ void test_right_one_is_named(void **) {
     const std::string said = must_exit(done, against("2 1", folder_of + "/pano.pto"));
     assert_true(contains(said, "best           profile 1\n"));
     assert_true(contains(said, "no falloff"));
-    // As a shell writes *.png: the words after the first are further pictures.
+    // As a shell expands *.png: the words after the first are further pictures.
     const Words more = {folder_of + "/img001.png", folder_of + "/img002.png", folder_of + "/img003.png"};
     assert_int_equal(json_of(against("1 2", folder_of + "/img000.png", more + Words{"--json"}))["best"], 1);
 }
@@ -119,7 +120,7 @@ void test_undecided(void **) {
     assert_true(contains(said, "cannot distinguish profiles 1 and 6"));
 }
 
-// A falloff alone is tried with the response by which it does best: with that of the pictures' camera it fits.
+// A falloff alone is combined with the best response: with that of the pictures' camera it fits.
 void test_parts(void **) {
     const Json json = measured("4 1", in_folder("two/pano.pto"));
     assert_true(of(json, 4)["response"] == "other");
@@ -133,7 +134,7 @@ void test_parts(void **) {
     assert_true(contains(said, "has no falloff"));
 }
 
-// Each channel by its own curve: one falloff for all is worse than three.
+// Each channel has its own curve: a single falloff is worse than three.
 void test_three_channels(void **) {
     const char *falloffs = "-0.3,0,0,-0.4,0.1,-0.1,-0.5,0.1,0";
     must_exit(done, {"build", pictures("colours1", "4", falloffs), "--falloff-curves", "3", "--db", db(), "--stored",
@@ -145,7 +146,7 @@ void test_three_channels(void **) {
     must_exit(done, {"profile", "remove", "8", "--db", db()});
 }
 
-// Sensor data have a linear response, whatever the profile's is, and a frame may have another shape.
+// Sensor data have a linear response, whatever the profile's response is, and a frame may have another shape.
 void test_linear_pictures(void **) {
     const std::string linear =
         pictures("linear", "6", kFalloff, {"--response", "linear", "--format", "tiff32"}, "300x300");
@@ -153,10 +154,10 @@ void test_linear_pictures(void **) {
     assert_int_equal(json["images"], 5);
     for (int id : {1, 2, 4}) assert_true(of(json, id)["response"] == "linear");
     assert_false(of(json, 2)["as_good_as_best"].get<bool>());
-    assert_true(of(json, 1)["rms"] < 3.5);  // the profile's falloff is of another gamma, within its error
+    assert_true(of(json, 1)["rms"] < 3.5);  // the profile's falloff has another gamma, within its error
 }
 
-// Things that moved are in no model: they are counted, and the right one is still named.
+// Moving objects are not part of any model: they are counted, and the right profile is still found.
 void test_moving_objects(void **) {
     const Json json = measured("1 2", pictures("objects", "7", kFalloff, {"--objects", "0.1", "--outliers", "0.05"}));
     assert_int_equal(json["best"], 1);
@@ -165,7 +166,7 @@ void test_moving_objects(void **) {
     assert_true(of(json, 1)["rms"] < 1.5);
 }
 
-// No profile is better than none: of pictures without falloff, and for profiles that have none.
+// No profile is better than no correction: pictures without falloff, and profiles without falloff.
 void test_none_fits(void **) {
     const std::string flat = pictures("flat", "3", "0,0,0");
     const Json json = measured("1 2", flat, not_usable);
@@ -177,7 +178,7 @@ void test_none_fits(void **) {
     assert_int_equal(measured("5 1", in_folder("two/pano.pto"))["best"], 1);
 }
 
-// A profile is of one setting: pictures at another are named and left out.
+// A profile applies to one setting: pictures with other settings are named and left out.
 void test_other_settings(void **) {
     const std::string mixed_db = work("two");
     fs::copy(in_folder("two"), mixed_db);

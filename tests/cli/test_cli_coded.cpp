@@ -1,5 +1,5 @@
-// Commands on HEIC, AVIF, WebP and JPEG XL: each does what it does with the same pixels in PNG.
-#include "coded_files.hpp"  // Exiv2, before a macro of cmocka's
+// Commands on HEIC, AVIF, WebP and JPEG XL behave as with the same pixels in PNG.
+#include "coded_files.hpp"  // Exiv2, before a macro of cmocka
 
 #include "batch_runs.hpp"
 
@@ -8,9 +8,9 @@ using namespace coded_files;
 
 namespace {
 
-// A format that the program reads here, and writes in tests.
+// A format that the program reads, and that the tests can write.
 struct Coding {
-    const char *end, *other_end;  // other_end: not its own
+    const char *end, *other_end;  // other_end: the extension of another format
     std::function<void(const std::string &path, const Picture &, const Extras &)> write;
     bool is_deep;  // holds 16 bit
 };
@@ -80,7 +80,7 @@ void test_apply(void **) {
         }
 }
 
-// Content decides, whatever the name; and a name alone makes no such file.
+// The content decides, whatever the name; the name alone does not make it such a file.
 void test_other_names(void **) {
     for (const Coding &coding : codings()) {
         const std::string name = std::string("a") + coding.other_end;
@@ -106,7 +106,7 @@ void test_folder(void **) {
     for (const std::string &name : wanted) assert_true(fs::exists(name));
 }
 
-// The project that simulate wrote, its pictures in another format: the fit is the same.
+// A project written by simulate, with its pictures in another format: the fit is the same.
 void test_build(void **) {
     const auto fit = [](const std::string &project) {
         Json json = json_of(Words{"build", project, "--no-store", "--json"} + quick);
@@ -127,7 +127,7 @@ void test_build(void **) {
     }
 }
 
-// Frames of a camera that stood still, each a stop darker than the one before.
+// Frames of a stationary camera, each a stop darker than the previous one.
 Words make_frames(const std::string &end, const Coding *coding) {
     Words files;
     for (const int step : {0, 1, 2}) {
@@ -186,13 +186,13 @@ void test_flat(void **) {
     }
 }
 
-// Cut anywhere, or with nothing but its beginning: exit code 3, the name, and nothing written.
+// Cut anywhere, or reduced to its beginning: exit code 3, the name, and nothing written.
 void test_cut(void **) {
     for (const Coding &coding : codings()) {
         const std::string path = work(std::string("a") + coding.end);
         coding.write(path, smooth(), {});
         const Bytes whole = load(path);
-        fs::create_directories(work("out"));  // stays where a file turns out to be damaged after its header
+        fs::create_directories(work("out"));  // stays if a file turns out to be damaged after its header
         for (const size_t size : {size_t(16), size_t(40), size_t(200), whole.size() / 3, whole.size() / 2,
                                   whole.size() * 9 / 10, whole.size() - 20}) {
             save(path, Bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size)));
@@ -206,13 +206,13 @@ void test_cut(void **) {
 }
 
 #ifdef LENSPROF_HAS_HEIF
-// ISO/IEC 23008-12, 6.5.3: the sizes of the pictures of a file, in boxes of a type of their own.
+// ISO/IEC 23008-12, 6.5.3: the sizes of a file's pictures, in boxes of a separate type.
 void test_heif_of_false_size(void **) {
     for (const Coding &coding : codings()) {
         const std::string path = work(std::string("a") + coding.end);
         coding.write(path, smooth(), {});
         Bytes bytes = load(path);
-        if (bytes[4] != 'f' || bytes[5] != 't') continue;  // no HEIF
+        if (bytes[4] != 'f' || bytes[5] != 't') continue;  // not HEIF
         const auto declare = [&](uint32_t side) {
             const std::string type = "ispe";
             for (auto at = bytes.begin();;) {
@@ -241,7 +241,7 @@ void test_not_written(void **) {
                        {name, "does not write it; give a name ending in .tif, .png or .jpg"});
 }
 
-// The camera of a phone corrects the falloff before it writes any of these.
+// Phone cameras correct the falloff before writing any of these formats.
 void test_phone(void **) {
     for (const Coding &coding : codings()) {
         Exiv2::ExifData exif;
@@ -256,7 +256,7 @@ void test_phone(void **) {
     }
 }
 
-// Without a library its files are named for what they are; the bytes are those that tell the kind.
+// Without the library, files are identified by their content; these bytes identify the kind.
 void test_without(void **) {
     const struct {
         bool is_read;

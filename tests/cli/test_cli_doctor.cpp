@@ -20,10 +20,10 @@ void test_damaged(void **) {
     const Outcome outcome = run_words({"doctor", "--db", work("a.db")});
     assert_int_equal(outcome.code, store_failed);
     assert_true(contains(outcome.out, work("a.db")) && contains(outcome.out, "cannot be read"));
-    assert_int_equal(load(work("a.db")).size(), 32);  // as it was
+    assert_int_equal(load(work("a.db")).size(), 32);  // unchanged
 }
 
-// What it is for: an installation where something is wrong.
+// Its purpose: a faulty installation.
 void test_no_home(void **) {
     const std::string data = getenv("XDG_DATA_HOME"), home = getenv("HOME") ? getenv("HOME") : "";
     unsetenv("XDG_DATA_HOME");

@@ -1,11 +1,11 @@
-// Bad input: the exit code, a message that names the file, nothing left behind, and the database as it was.
+// Bad input: the exit code, a message that names the file, no partial files, and an unchanged database.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
 
 namespace {
 
-// A database with one profile, made once and copied: what a failing command must not change.
+// A database with one profile, made once and copied; a failing command must not change it.
 Bytes database;
 
 int make_all(void **state) {
@@ -22,7 +22,7 @@ int prepare(void **state) {
     return 0;
 }
 
-// A build with everything that could leave something behind.
+// A build with every option that writes files.
 Words build_of(const std::string &pto) {
     return Words{"build",          pto,         "--db",          work("p.db"), "--camera", "X", "--points-out",
                  work("left.txt"), "--pto-out", work("left.pto")}
@@ -96,7 +96,7 @@ void test_not_finite_picture(void **) {
         assert_refused(unreadable, build_of(work("float/pano.pto")), {name, "12, 7"});
     }
     write_picture(name, good, options);
-    must_exit(done, build_of(work("float/pano.pto")));  // it was the number
+    must_exit(done, build_of(work("float/pano.pto")));  // the number was the cause
 }
 
 void test_no_usable_sample(void **) {
@@ -121,7 +121,7 @@ void test_pictures_apart(void **) {
     assert_refused(not_usable, build_of(pto), {pto, "overlap"});
 }
 
-// Two pictures are far from the others, and lie over each other, which they do not show.
+// Two pictures are far from the others and overlap in the project, but not in content.
 void test_pictures_in_the_wrong_place(void **) {
     const std::string pto = copy_of("scene") + "/pano.pto";
     edit(pto, " y[-.0-9]+( .*img00[23])", " y180$1");
@@ -186,7 +186,7 @@ void test_bad_points(void **) {
         {"0 1.5 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
         {"-1 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
         {"0 1 inf 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
-        {"# a comment is no point\n", "line 3"},
+        {"# a comment, not a point\n", "line 3"},
     };
     for (const auto &bad : cases) {
         save_text(path, good + good + bad.line + good);
@@ -206,7 +206,7 @@ void test_points_of_other_images(void **) {
     assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path, "point 2", "img001.png"});
 }
 
-// Where no fit can be made at all, --json still prints the object with the reason.
+// If no fit is possible, --json still prints the object with the reason.
 void test_reason_in_json(void **) {
     save_text(work("one.pto"), "i w320 h240 f0 v50 n\"one.png\"\nv Ra0\n");
     const Outcome outcome = run_words({"build", work("one.pto"), "--no-store", "--json"});
@@ -217,7 +217,7 @@ void test_reason_in_json(void **) {
     assert_int_equal(json["response"]["values"][0].size(), 1024);
 }
 
-// Outputs that would take the place of an input, the database or each other.
+// Outputs that would overwrite an input, the database or each other.
 void test_outputs_that_meet(void **) {
     const std::string copy = copy_of("scene"), pto = copy + "/pano.pto", db = work("p.db");
     const Words build = Words{"build", pto, "--db", db, "--camera", "X"} + quick;
@@ -227,7 +227,7 @@ void test_outputs_that_meet(void **) {
     assert_refused(usage, build + Words{"--points-out", work("same"), "--pto-out", work("same")}, {"same"});
 }
 
-// Bytes that are not UTF-8, in names and options: stored as question marks, printed as U+FFFD.
+// Bytes that are not UTF-8 in names and options: stored as question marks, printed as U+FFFD.
 void test_text_that_is_not_utf8(void **) {
     const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json",
                                "--pairs", "600", "--modes", "3"});
@@ -236,7 +236,7 @@ void test_text_that_is_not_utf8(void **) {
     assert_true(contains(list.dump(), "X?"));
 }
 
-// A project that was not written by build holds nothing to undo.
+// A project not written by build contains no result to apply.
 void test_apply_without_a_result(void **) {
     assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--pto-out"});
     assert_refused(usage,
@@ -245,7 +245,7 @@ void test_apply_without_a_result(void **) {
                    {"--pto"});
 }
 
-// Truth to compare with.
+// Invalid truth files.
 
 void test_bad_truth(void **) {
     const Words words = build_of(scene("pano.pto")) + Words{"--compare", work("truth.json")};
@@ -255,7 +255,7 @@ void test_bad_truth(void **) {
         save_text(work("truth.json"), text);
         assert_refused(unreadable, words, {work("truth.json")});
     }
-    // JSON, but of something else. In a child, because a crash is one of the answers; nothing may be stored by then.
+    // Valid JSON with unexpected content. In a child process, because it might crash; nothing may be stored by then.
     for (const char *text : {"[]", "3", "{\"images\":[]}", "{\"images\":[{},{},{},{}]}",
                              "{\"images\":[{\"ev\":0},{\"ev\":0},{\"ev\":0},{\"ev\":0}]}",
                              "{\"images\":[{\"ev\":\"x\"},{\"ev\":0},{\"ev\":0},{\"ev\":0}],\"vignetting\":{\"k\":[[0,"
@@ -288,7 +288,7 @@ void test_corrupt_database(void **) {
     }
 }
 
-// What else was asked for is not written either.
+// Other requested outputs are not written either.
 void test_corrupt_database_leaves_no_output(void **) {
     save_text(work("p.db"), std::string(300, 'x') + "\n");
     assert_refused(store_failed, build_of(scene("pano.pto")), {work("p.db")});
@@ -363,7 +363,7 @@ void test_picture_of_no_project(void **) {
                    {mixed("img000.png"), scene("pano.pto")});
 }
 
-// A picture that fails later: those before it are complete, nothing else is there.
+// A later picture fails: earlier ones are complete, and no other files exist.
 void test_later_picture_fails(void **) {
     const std::string copy = copy_of("scene");
     cut(copy + "/img002.png", 50000);

@@ -1,4 +1,4 @@
-// `lensprof flat` in process: cards of a known lens as picture files, what is printed and stored, what is refused.
+// `lensprof flat` in process: cards of a known lens as picture files; printed and stored results, refused input.
 #include "cli_runs.hpp"
 #include "icc_files.hpp"
 
@@ -17,8 +17,8 @@ const lensprof_vignetting lens{{-0.42, 0.10, -0.05}, {0.03, -0.02}};
 struct Card {
     double ev = 0.0, turn_deg = 0.0, slant = 0.08, texture = 0.0, gamma = 1.0;
     uint32_t layout = LENSPROF_LAYOUT_RGB;
-    double left = 0.0, right = 1.0;  // part of the width that is the card
-    bool told = false;               // EXIF tells exposure and camera
+    double left = 0.0, right = 1.0;  // part of the width covered by the card
+    bool told = false;               // EXIF has exposure and camera
     Bytes icc;                       // colour profile
 };
 
@@ -93,7 +93,7 @@ void test_turned_shots_are_measured_and_stored(void **) {
         assert_true(contains(table, part));
 }
 
-// Grey of a corner over that of the middle, each the mean of 16 x 16 pixels.
+// Grey value of a corner relative to the middle, each the mean of 16 x 16 pixels.
 double evenness(const std::string &file) {
     const Picture picture = read_picture(file);
     const auto mean = [&](uint32_t left, uint32_t top) {
@@ -106,7 +106,7 @@ double evenness(const std::string &file) {
     return mean(0, 0) / mean(width / 2 - 8, height / 2 - 8);
 }
 
-// `flat` and `apply` agree on what a card is: linear by its colour profile, or where both are told.
+// `flat` and `apply` treat a card alike: linear because of its colour profile, or because of an option for both.
 void test_the_card_is_corrected(void **) {
     for (bool has_profile : {true, false}) {
         Card card;
@@ -156,7 +156,7 @@ void test_exposures_come_from_exif_or_the_command_line(void **) {
     const Json wrong = json_of(words + Words{"--ev", "-2,-1.6,0.5"}, not_usable);
     assert_true(contains(wrong["reason"].get<std::string>(), "EV away"));
     assert_string_equal(wrong["reason_code"].get<std::string>().c_str(), "flat_exposure_wrong");
-    const std::string file = wrong["images"][1]["file"];  // the one with the wrong exposure
+    const std::string file = wrong["images"][1]["file"];  // the picture with the wrong exposure
     assert_true(contains(wrong["reason"].get<std::string>(), file));
     assert_true(wrong["reason_item"] == Json({{"kind", "image"}, {"index", 1}, {"file", file}}));
     assert_true(wrong["reason_values"].size() == 1 && wrong["reason_values"][0].get<double>() > 0.3);

@@ -1,12 +1,12 @@
-// Many pictures of which some are not to be corrected: subfolders, pictures without a profile, corrected before, and
-// outputs that are there.
+// Many pictures, some of which must not be corrected: subfolders, pictures without a profile, already corrected
+// pictures, and existing outputs.
 #include "batch_runs.hpp"
 
 using namespace batch_runs;
 
 namespace {
 
-// A picture of the lens that `lens_database` knows, or of another.
+// A picture with the lens that `lens_database` knows, or another lens.
 std::string make_picture(const std::string &name, const char *lens, uint32_t side = 60) {
     const std::string file = work(name);
     fs::create_directories(fs::path(file).parent_path());
@@ -64,7 +64,7 @@ void test_subfolders_are_kept(void **) {
     assert_files(work("out"), wanted);
 }
 
-// A folder that links lead to more than once is entered once, by its own name where it has one there.
+// A folder reached through several links is entered once, under its own name if it has one there.
 void test_links_do_not_loop(void **) {
     make_picture("in/a/x.jpg", "Good 35mm");
     make_picture("elsewhere/y.jpg", "Good 35mm");
@@ -76,7 +76,7 @@ void test_links_do_not_loop(void **) {
     assert_files(work("out"), {"a/x.jpg", "linked/y.jpg"});
 }
 
-// Outputs in a subfolder of the pictures are no pictures of the next call.
+// Outputs in a subfolder of the pictures are not inputs of the next call.
 void test_outputs_within_the_folder(void **) {
     make_picture("in/x.jpg", "Good 35mm");
     for (int i = 0; i < 2; i++) must_exit(done, corrected_into("in/out", {work("in")}));
@@ -119,7 +119,7 @@ void test_help_tells_of_refused_pictures(void **) {
     assert_true(contains(help, "Exit code 5: pictures were refused") && contains(help, "default corrected"));
 }
 
-// What EXIF does not say is what to give.
+// The message names the options for values missing in EXIF.
 void test_missing_setting_is_named(void **) {
     lens_database();
     const std::string file = make_picture("in/a.jpg", "Other 24mm");
@@ -128,7 +128,7 @@ void test_missing_setting_is_named(void **) {
                    {"give the lens name used in the database with --lens"});
 }
 
-// Without -o they go to a folder here, which takes the place of nothing that is not by lensprof.
+// Without -o, outputs go to a folder in the current directory, where only files written by lensprof are replaced.
 void test_output_by_default(void **) {
     lens_database();
     const std::string file = make_picture("a.jpg", "Good 35mm"), here = fs::current_path().string();
@@ -166,7 +166,7 @@ void test_named_pictures_are_all_or_none(void **) {
     assert_false(fs::exists(work("none")) || fs::exists(work("sheet.png")));
 }
 
-// A picture that cannot be read is no picture without a profile.
+// An unreadable picture is not treated as one without a profile.
 void test_unreadable_ends_it(void **) {
     lens_database();
     make_picture("in/a.jpg", "Good 35mm");
@@ -194,7 +194,7 @@ void test_corrected_once(void **) {
                        {once, "already corrected, by lensprof", "--force-falloff"});
         must_exit(done, corrected_into("twice", {"--force-falloff", once}));
     }
-    // Of a folder they are left out, which is no failure.
+    // In a folder they are left out, without a failure.
     fs::copy(work("in/a.png"), work("once/new.png"));
     const Json json = json_of(corrected_into("rest", {"--json", work("once")}));
     assert_files(work("rest"), {"new.png"});
@@ -211,7 +211,7 @@ void test_simulated_may_be_corrected(void **) {
     assert_true(read_metadata(work("again/a.png")).mark->falloff == CorrectionMark::Falloff::added);
 }
 
-// What changes the exposure alone says nothing of the falloff; nor does it take back what was said.
+// A change of exposure alone does not mark the falloff as corrected, nor does it remove an existing mark.
 void test_kept_falloff(void **) {
     const std::string file = make_picture("in/a.png", "Good 35mm");
     must_exit(done, corrected_into("none", {"--strength", "0", file}));
@@ -223,7 +223,7 @@ void test_kept_falloff(void **) {
     assert_true(mark->falloff == CorrectionMark::Falloff::removed && mark->linear);
 }
 
-// Outputs that are there.
+// Existing outputs.
 
 void test_outputs_of_other_pictures(void **) {
     const std::string one = make_picture("1/a.jpg", "Good 35mm", 60), two = make_picture("2/a.jpg", "Good 35mm", 62);

@@ -1,4 +1,4 @@
-// `lensprof profile export` and `import` of other programs' files: written by name, read by content.
+// `lensprof profile export` and `import` of other programs' files: written by name, recognised by content.
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/opcode_tag.hpp"
 #include "cli_runs.hpp"
@@ -8,7 +8,7 @@ using namespace picture_files;
 
 namespace {
 
-// A database of one profile whose every number is known.
+// A database with one profile of which every number is known.
 void make_db() {
     save_text(
         work("one.json"),
@@ -20,7 +20,7 @@ void make_db() {
 
 Json show(const std::string &db) { return json_of({"profile", "show", "1", "--db", work(db), "--json"}); }
 
-// Light in the corner, and the grey value at a fifth of full irradiance.
+// M in the corner, and the grey value at a fifth of full irradiance.
 void assert_same_curves(const Json &json, bool falloff, bool response, double tolerance = 2e-3) {
     double m = 1.0;
     for (const Json &k : json["vignetting"]["k"][0]) m += k.get<double>();
@@ -33,7 +33,7 @@ Words export_to(const std::string &file, const Words &more = {}) {
     return Words{"profile", "export", "1", "--db", work("p.db"), "-o", file} + more;
 }
 
-// What names a file's format, then what is read back from it.
+// Arguments that select a file's format, then what is read back from it.
 void test_round_trips(void **) {
     const Words frame = {"--frame", "600x400"}, camera = {"--camera", "Other"};
     const struct {
@@ -65,7 +65,7 @@ void test_round_trips(void **) {
     }
 }
 
-// A response and a falloff of two files are one profile.
+// A response and a falloff from two files form one profile.
 void test_two_files_one_profile(void **) {
     make_db();
     must_exit(done, export_to(work("pcalib.txt")));
@@ -92,7 +92,7 @@ void test_two_files_one_profile(void **) {
     assert_int_equal(json_of(again)["known"], 1);
 }
 
-// Opcodes go into a picture that is there; all else in it stays.
+// Opcodes are added to an existing picture; everything else in it stays.
 void test_opcodes(void **) {
     make_db();
     const Picture picture = make_smooth(300, 200, LENSPROF_LAYOUT_RGB);
@@ -107,7 +107,7 @@ void test_opcodes(void **) {
     }
 }
 
-// Camera, lens and setting of a falloff are those of the picture's EXIF where the command line leaves them open.
+// Camera, lens and setting of a falloff come from the picture's EXIF unless given on the command line.
 void test_opcodes_name_their_camera(void **) {
     make_db();
     write_picture(work("raw.tif"), make_smooth(300, 200, LENSPROF_LAYOUT_RGB));
@@ -127,7 +127,7 @@ void test_opcodes_name_their_camera(void **) {
     assert_true(key["distance_m"].is_null());
 }
 
-// What a picture's lists do beside is not lost, and no falloff corrected twice.
+// Other opcodes of a picture are not lost, and no falloff is corrected twice.
 void test_opcodes_of_others_stay(void **) {
     make_db();
     const auto list_of = [](uint8_t id) {
@@ -143,7 +143,7 @@ void test_opcodes_of_others_stay(void **) {
     assert_refused(usage, export_to(work("gain.tif"), {"--format", "opcodes"}), {"gain.tif", "already"});
 }
 
-// A gain that was taken for an attenuation is doubted, and not looked up.
+// A gain read as an attenuation is marked doubtful, and lookups skip it.
 void test_wrong_sense_is_doubted(void **) {
     make_db();
     must_exit(done, export_to(work("gain.tif"), {"--frame", "60x40"}));
@@ -164,7 +164,7 @@ void test_several_profiles(void **) {
                    {"None"});
 }
 
-// A map's values are those of all channels: 27 million pixels of three channels are too many.
+// The limit counts the values of all channels: 27 million pixels with three channels are too many.
 void test_too_large_maps(void **) {
     save_text(
         work("three.json"),
@@ -179,7 +179,7 @@ void test_too_large_maps(void **) {
     assert_false(fs::exists(work("large.tif")));
 }
 
-// Nothing is stored or written by what is refused.
+// A refused command neither stores nor writes anything.
 void test_refused(void **) {
     make_db();
     must_exit(done, export_to(work("pcalib.txt")));

@@ -70,7 +70,7 @@ void test_query_between(void **) {
     assert_refused(usage, query + Words{"--unknown-distance", "nearest"}, {"--unknown-distance"});
 }
 
-// Samples that were rounded on the way; several profiles of one key; none is stored twice.
+// Samples rounded in the file; several profiles of one key; none is stored twice.
 void test_json_again(void **) {
     Json all = Json::array();
     for (double k1 : {-0.1, -0.2}) {
@@ -90,7 +90,7 @@ void test_json_again(void **) {
                 < 1e-12);
 }
 
-// Profiles of one unit say so; a full setting is never answered by another one's profile; formats and ids in words.
+// Profiles of one unit state it; a full setting is never answered by another profile; formats and ids in words.
 void test_units_and_settings(void **) {
     Json all = Json::array();
     for (double aperture : {2.0, 4.0})
@@ -118,7 +118,7 @@ void test_units_and_settings(void **) {
     must_exit(done, {"profile", "export", "2", "-o", work("one.csv"), "--grid", "2x1024", "--db", work("l.db")});
 }
 
-// All files or none.
+// All files are imported, or none.
 void test_import_refuses(void **) {
     const std::string good = make_file();
     save_text(work("cut.xml"), lensfun_text(kLens, {{24, 2.8, -0.6}}).substr(0, 150));

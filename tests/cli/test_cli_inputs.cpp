@@ -1,4 +1,4 @@
-// Inputs that are no ordinary files, too long, too many, or whose names are not UTF-8.
+// Inputs that are not regular files, that are too long or too many, or whose names are not UTF-8.
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
 #include "cli_runs.hpp"
@@ -10,7 +10,7 @@ using namespace cli_runs;
 
 namespace {
 
-// In a child with 1 GB of memory and 20 s: a file without an end must not be read to it.
+// In a child with 1 GB of memory and 20 s: an endless file must not be read completely.
 void assert_refused_in_bounds(const Words &words, const std::string &named) {
     const Outcome outcome = run_child(words, [] {
         alarm(20);
@@ -70,7 +70,7 @@ void test_what_is_no_file(void **) {
     assert_int_equal(mkfifo(work("fifo").c_str(), 0600), 0);
     fs::create_directory(work("folder"));
     for (const std::string &name : {std::string("/dev/zero"), work("fifo"), work("folder")}) {
-        if (name != work("folder")) assert_refused_in_bounds(build(name), name);  // which may hold pictures
+        if (name != work("folder")) assert_refused_in_bounds(build(name), name);  // a folder may hold pictures
         assert_refused_in_bounds(build(scene("pano.pto"), {"--points", name}), name);
         assert_refused_in_bounds(build(scene("pano.pto"), {"--compare", name}), name);
         assert_refused_in_bounds({"apply", "--pto", name, "-o", work("out")}, name);
@@ -80,7 +80,7 @@ void test_what_is_no_file(void **) {
     }
 }
 
-// A file of that size without its bytes on the disk.
+// A sparse file of this size, which takes no space on the disk.
 std::string sparse(const std::string &name, uint64_t bytes) {
     save_text(name, "p f2\n");
     fs::resize_file(name, bytes);
@@ -101,7 +101,7 @@ void test_files_that_are_too_large(void **) {
     assert_true(contains(unknown.err, "give it with --format"));
 }
 
-// Point files may be large: the first lines show what is none.
+// Point files may be large: the first lines show whether it is one.
 void test_large_files_of_no_points(void **) {
     const std::string points = sparse(work("points.txt"), uint64_t(3) << 30), line = work("line.txt");
     save_text(line, std::string(100000, '1'));
@@ -110,7 +110,7 @@ void test_large_files_of_no_points(void **) {
     fs::remove(points);
 }
 
-// A project of many pictures, all of them one file.
+// A project of many images, all of the same file.
 std::string many_pictures(const std::string &folder, const char *last, uint32_t count, const char *size) {
     std::string text = "p f2 w3000 h1500 v360\n";
     for (uint32_t i = 0; i < count; i++)
@@ -126,20 +126,20 @@ double seconds_now() {
     return double(now.tv_sec) + 1e-6 * double(now.tv_usec);
 }
 
-// All are looked at before the first is loaded: an error of the last one comes at once.
+// All are checked before the first is loaded: an error in the last one is reported without delay.
 void test_pictures_are_checked_first(void **) {
     write_picture(work("one.png"), make_smooth(1500, 1500, LENSPROF_LAYOUT_RGB));
     write_picture(work("small.png"), make_smooth(150, 100, LENSPROF_LAYOUT_RGB));
     const double start = seconds_now();
     for (const char *last : {"missing.png", "small.png", "many.pto"})
         assert_refused(unreadable, build(many_pictures(work(""), last, 1000, "w1500 h1500"), {"--one-lens"}), {last});
-    assert_true(seconds_now() - start < 20.0);  // to load them takes minutes
+    assert_true(seconds_now() - start < 20.0);  // loading them takes minutes
     const std::string pto = many_pictures(work(""), "one.png", 2000, "w1500 h1500");
     assert_refused(unreadable, build(pto, {"--one-lens", "--max-side", "0"}),
                    {pto, "2000 pictures need 16.8 GiB of memory", "--max-side"});
 }
 
-// A file is known again among thousands, under whatever name.
+// A file is recognised among thousands, under any name.
 void test_many_files(void **) {
     constexpr uint32_t count = 3000;
     write_picture(work("0.png"), make_smooth(20, 10, LENSPROF_LAYOUT_GREY));
@@ -165,7 +165,7 @@ void test_many_files(void **) {
         run_words({"apply", "--pto", work("many.pto"), "-o", work("out"), work(""), work("other.png")});
     assert_int_equal(apply.code, usage);
     assert_true(contains(apply.err, "other.png: is not a picture of"));
-    assert_true(seconds_now() - start < 20.0);  // all pairs of them take minutes
+    assert_true(seconds_now() - start < 20.0);  // comparing all pairs takes minutes
 }
 
 void test_image_without_a_name(void **) {
@@ -175,7 +175,7 @@ void test_image_without_a_name(void **) {
         assert_refused(unreadable, words, {pto + ": image 1 has no file name", "correct the project"});
 }
 
-// Warnings, too, are lines for a terminal: of names, control characters of one and of two bytes are spelt.
+// Warnings are also lines for a terminal: control characters in names are escaped, whether of one or two bytes.
 void test_names_with_control_characters(void **) {
     const std::string name = work("a\x1b[31m\xc2\x9b\xc2\xa0.jpg");
     fs::copy_file(mixed("img005.jpg"), name);
@@ -198,7 +198,7 @@ void test_files_in_place_of_folders(void **) {
         assert_refused(usage, build(pto, {"--points-out", name}), {name + ": ", "give the name of a file"});
 }
 
-// What a profile cannot hold is not cut in silence.
+// Values that a profile cannot hold are not truncated silently.
 void test_names_that_are_too_long(void **) {
     const std::string camera(63, 'c'), lens(127, 'l'), db = work("p.db"), copy = copy_of("scene");
     const Words words = Words{"build", copy + "/pano.pto", "--db", db} + quick;
@@ -221,7 +221,7 @@ void test_names_that_are_too_long(void **) {
         assert_false(contains(run_words(quiet).err, "--lens"));
 }
 
-// What people and scripts get of a name that is not UTF-8.
+// How people and scripts see a name that is not UTF-8.
 void test_names_that_are_not_utf8(void **) {
     const std::string copy = copy_of("scene"), name = "b\xe9\xed\xa0\x80.png", db = work("p.db");
     fs::rename(copy + "/img001.png", copy + "/" + name);

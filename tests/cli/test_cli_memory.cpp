@@ -1,5 +1,5 @@
-// Memory of the program while it corrects pictures: its peak as a process. A child begins with the peak of its
-// parent, so that this process must stay small: pictures are made by children.
+// Peak memory of the program, as a process, while it corrects pictures. A child starts with the peak of its parent, so
+// this process must stay small: pictures are made in children.
 #include "program_runs.hpp"
 
 using namespace program_runs;
@@ -19,7 +19,7 @@ long peak_of(const Words &words) {
     return ended.peak;
 }
 
-// Rows that are alike compress well, which keeps the test short.
+// Equal rows compress well, which keeps the test fast.
 Picture make_tall(uint32_t height) {
     Picture picture = make_smooth(600, 16, LENSPROF_LAYOUT_RGB);
     picture.pixels.resize(picture.row_bytes * height);
@@ -29,7 +29,7 @@ Picture make_tall(uint32_t height) {
     return picture;
 }
 
-// A file that is `height` rows high: its own process, so that this one's memory, which a child begins with, stays
+// A file with `height` rows, made in a separate process so that this process, from which later children start, stays
 // small.
 std::string make_tall_file(const std::string &kind, uint32_t height) {
     const std::string path = work(kind + std::to_string(height) + "." + kind.substr(kind.size() - 3));
@@ -69,7 +69,7 @@ void test_memory_does_not_grow_with_height(void **) {
     }
 }
 
-// A picture on every thread.
+// One picture per thread.
 void test_memory_does_not_grow_with_pictures(void **) {
     if (keeps_freed_memory) skip();
     database();
@@ -84,7 +84,7 @@ void test_memory_does_not_grow_with_pictures(void **) {
     if (many - few > 6 << 20) fail_msg("%ld KiB for two pictures, %ld KiB for 16", few / 1024, many / 1024);
 }
 
-// Of each value of a map the program holds 12 bytes at most, which is what its limit of 80 million values is for.
+// The program uses at most 12 bytes per value of a map, on which its limit of 80 million values is based.
 void test_memory_of_a_map(void **) {
     if (keeps_freed_memory) skip();
     save_text(

@@ -16,7 +16,7 @@ constexpr uint32_t width = 200, height = 120;
 
 double encode(double x) { return std::pow(std::min(std::max(x, 0.0), 1.0), 1 / 2.2); }
 
-// Soft blobs over nine stops; 1 is white of a frame at 0 EV.
+// Soft blobs over nine stops; 1 is white in a frame at 0 EV.
 double light(uint32_t x, uint32_t y, uint32_t c) {
     const double u = x / 23.0, v = y / 17.0;
     return 0.3 * std::exp2(4.5 * std::sin(0.4 * u + 0.1 * c) * std::cos(0.5 * v));
@@ -50,8 +50,8 @@ Words make_frames(const std::vector<double> &ev, const char *end = ".png") {
 
 const std::vector<double> bracket_ev = {0.0, -2.5, 2.5, -5.0};
 
-// Stops by which a merged picture is off from the truth, pixel by pixel: the largest, and the RMS. Gamma is open, so
-// that the logarithms are fitted by a line first.
+// Error of a merged picture in stops, pixel by pixel: the largest, and the RMS. Gamma is open, so a line is first
+// fitted to the logarithms.
 void errors_of(const Picture &merged, double &largest, double &rms, double &brightest) {
     double n = 0, a = 0, b = 0, aa = 0, ab = 0, bb = 0;
     brightest = 0;
@@ -89,10 +89,10 @@ void test_light_beyond_white(void **) {
     assert_true(merged.width == width && merged.height == height);
     double largest, rms, brightest;
     errors_of(merged, largest, rms, brightest);
-    print_message("off by %.3f stops RMS, %.3f at most; brightest %.2f stops above white\n", rms, largest, brightest);
+    print_message("error %.3f stops RMS, %.3f at most; brightest %.2f stops above white\n", rms, largest, brightest);
     assert_true(rms < 0.02 && largest < 0.2);
-    assert_true(brightest > 1.5);  // of 2.76, up to gamma
-    // Other orders draw other pairs.
+    assert_true(brightest > 1.5);  // out of 2.76, up to gamma
+    // Another order samples other pairs.
     const Words turned = {frames[0], frames[3], frames[2], frames[1]};
     must_exit(done, Words{"align", "--merge", work("again.tif"), "--to", "first"} + turned);
     double again[3];
@@ -118,7 +118,7 @@ std::vector<float> read_exr(const std::string &path) {
 }
 #endif
 
-// OpenEXR holds the same numbers as TIFF, or is refused with what to do.
+// OpenEXR holds the same numbers as TIFF, or is refused with the next step.
 void test_openexr(void **) {
     const Words frames = make_frames({0.0, -2.0});
     const Words to_exr = Words{"align", "--merge", work("hdr.exr")} + frames;
@@ -135,7 +135,7 @@ void test_openexr(void **) {
     assert_refused(usage, {"align", "--merge", work("y.png"), frames[0], frames[1]}, {"y.png"});
     assert_refused(usage, {"apply", "--profile", "1", "--db", work("c.db"), "--linear-output", "exr", frames[0]},
                    {"--linear"});
-    // A light of other pictures is not replaced, one of the same is.
+    // A light file of other pictures is not replaced, one of the same pictures is.
     must_exit(done, to_exr);
     must_exit(done, linear + Words{"--linear-output", "exr"});
     const std::string other = work("other/h0.png");
@@ -154,7 +154,7 @@ void test_openexr(void **) {
 #endif
 }
 
-// What is white in all frames is what the darkest says; black, what the brightest says.
+// Pixels that are white in all frames get their value from the darkest frame; black ones, from the brightest.
 void test_beyond_all_frames(void **) {
     const Words frames = make_frames({0.0, 1.5, 3.0});
     const std::string out = work("bright.tif");
@@ -165,7 +165,7 @@ void test_beyond_all_frames(void **) {
     assert_true(largest > 1.0);
 }
 
-// Saturated colours: where red is next to nothing, or alone, the frames that show the pixel well decide.
+// Saturated colours: if red is almost zero, or the only colour, the frames that show the pixel well determine it.
 void test_saturated_colours(void **) {
     Words frames = make_frames({0.0, -2.0, 3.0});
     for (size_t i = 0; i < frames.size(); i++) {
@@ -186,7 +186,7 @@ void test_saturated_colours(void **) {
     const auto at = [&](uint32_t x, uint32_t c) {
         return reinterpret_cast<const float *>(merged.pixels.data() + 50 * merged.row_bytes)[3 * x + c];
     };
-    // What is half of white in the frame at 0 EV, up to gamma; the brightest frame has white there.
+    // Half of white in the frame at 0 EV, up to gamma; white in the brightest frame.
     const double half = at(60, 0);
     print_message("red %.3f, green and blue next to it %.3f\n", half, double(at(80, 1)));
     assert_true(half > 0.3 && half < 0.7);

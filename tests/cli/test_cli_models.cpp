@@ -1,5 +1,5 @@
-// Which profile `lensprof apply` corrects a picture with: by EXIF and what is said in its place, by number, and what it
-// refuses.
+// Which profile `lensprof apply` uses for a picture: according to EXIF and options that replace it, or by id; and what
+// it refuses.
 #include <sstream>
 
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
@@ -15,7 +15,7 @@ namespace {
 constexpr uint32_t width = 64, height = 48;
 constexpr uint8_t grey = 60;
 
-// Even grey, with EXIF of camera and lens where they are given.
+// A uniform grey picture, with EXIF of camera and lens if given.
 std::string make_picture(const std::string &name, const char *camera = "", const char *lens = "",
                          uint32_t sample = LENSPROF_SAMPLE_U8) {
     Picture picture = make_noise(width, height, sample, LENSPROF_LAYOUT_RGB);
@@ -35,7 +35,7 @@ std::string make_picture(const std::string &name, const char *camera = "", const
     return work(name);
 }
 
-// By what its camera says; the switch is Panasonic's.
+// According to the camera's maker notes; the switch is Panasonic's.
 std::string make_corrected(const std::string &name) {
     const std::string file = make_picture(name, "Camera", "Lens 50mm");
     auto image = Exiv2::ImageFactory::open(file);
@@ -52,7 +52,8 @@ double corner_falloff(double k1) {
     return 1 + k1 * r2;
 }
 
-// Profiles 1 (raw, linear, k1 -0.4) of `lens`, 2 (jpeg, gamma 2, k1 -0.2) of "JPEG 35mm", in the user's own database.
+// Profiles 1 (raw, linear, k1 -0.4) of `lens` and 2 (jpeg, gamma 2, k1 -0.2) of "JPEG 35mm", in the user's own
+// database.
 std::string make_database(const char *lens = "Lens 50mm") {
     const std::string path = work("data/lensprof/profiles.db");
     fs::create_directories(fs::path(path).parent_path());
@@ -86,7 +87,7 @@ void assert_corner(const std::string &file, double wanted) {
 
 const double by_gamma_2 = grey / std::sqrt(corner_falloff(-0.2)), by_linear = grey / corner_falloff(-0.4);
 
-// The first command: nothing is said but where to.
+// The first command of a user: only the output folder is given.
 void test_database_by_default(void **) {
     const std::string file = make_picture("a.png", "Camera", "JPEG 35mm");
     assert_refused(usage, {"apply", "-o", work("out"), file},
@@ -116,7 +117,7 @@ void test_words_in_place_of_exif(void **) {
     assert_corner(work("word/a.png"), by_linear);
 }
 
-// A falloff measured on raw files serves other pictures once their curve is known.
+// A falloff measured on raw files applies to other pictures once their response is known.
 void test_response_in_place_of_the_profiles(void **) {
     make_database();
     const std::string file = make_picture("a.png", "Camera", "Lens 50mm");
@@ -147,7 +148,7 @@ void test_profile_of_another_processing(void **) {
     assert_corner(work("out/b.tif"), by_gamma_2);
 }
 
-// What the camera has corrected is not corrected twice.
+// Pictures that the camera has corrected are not corrected twice.
 void test_corrected_in_camera(void **) {
     make_database("Lens 35mm");
     const std::string file = make_corrected("in/a.jpg");
@@ -162,12 +163,12 @@ void test_corrected_in_camera(void **) {
         assert_true(contains(forced.err, std::string("note: ") + file + ": " + by + ", and is corrected again"));
         assert_corner(work("forced/a.jpg"), by_gamma_2);
     }
-    must_exit(done, words + Words{"--processing", "jpeg", "-o", work("said"), file});
-    assert_corner(work("said/a.jpg"), by_gamma_2);
+    must_exit(done, words + Words{"--processing", "jpeg", "-o", work("jpeg"), file});
+    assert_corner(work("jpeg/a.jpg"), by_gamma_2);
     must_exit(done, words + Words{"--simulate", "-o", work("simulated"), file});
     assert_corner(work("simulated/a.jpg"), grey * std::sqrt(corner_falloff(-0.2)));
     make_picture("in/b.jpg", "Camera", "JPEG 35mm");
-    const Json json = json_of({"apply", "--json", "-o", work("folder"), work("in")});  // left out, and no failure
+    const Json json = json_of({"apply", "--json", "-o", work("folder"), work("in")});  // left out, without a failure
     assert_int_equal(json["pictures"].size(), 1);
     assert_true(json["left_out"][0]["corrected_already"].get<bool>());
 }
@@ -188,14 +189,15 @@ std::string make_lens(const std::string &name, const char *lens, double k1) {
     return work(name);
 }
 
-// The corner of grey `grey` in a corrected picture, as a share of linear light by the response sRGB.
+// The corner of a corrected picture of grey `grey`, as a share of linear light according to the sRGB response.
 double corrected_by(const std::string &file) {
     const Picture picture = read_picture(file);
     const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
     return linear(grey / 255.0) / linear(picture.pixels[0] / 255.0);
 }
 
-// The installed database is asked after one's own, without a step; those of --db in their order, and no other.
+// The installed database is searched after the user's own, without extra options; those of --db in their order, and no
+// others.
 void test_several_databases(void **) {
     const std::string picture = make_picture("p.png", "Camera", "Lens 50mm");
     const Words apply = {"apply", "--overwrite", "--response", "srgb", "--crop-factor",
@@ -203,13 +205,13 @@ void test_several_databases(void **) {
     assert_refused(usage, apply, {"--pto", "no database found"});
     make_lens("share/lensprof/lensfun.db", "Lens 50mm", -0.4);
     const std::string out = work("out/p.png");
-    must_exit(done, apply);  // there is no database of one's own
+    must_exit(done, apply);  // the user has no database
     assert_close(corrected_by(out), corner_falloff(-0.4), 0.02);
     make_lens("data/lensprof/profiles.db", "Lens 35mm", -0.1);
     const Json json = json_of(apply + Words{"--json"});
     const Json &found = json["pictures"][0]["lookup"];
     assert_true(found["database"] == work("share/lensprof/lensfun.db"));
-    assert_true(found["response"]["from"] == "given");  // by --response: nothing is said of another
+    assert_true(found["response"]["from"] == "given");  // from --response: no other response is mentioned
     for (const auto &code : found["reason_codes"]) assert_true(code != "lookup_typical_response");
     assert_false(contains(found["reason"].get<std::string>(), "typical"));
     assert_close(corrected_by(out), corner_falloff(-0.4), 0.02);
@@ -230,11 +232,11 @@ void test_several_databases(void **) {
     assert_true(contains(said, "of this lens in " + b));
     const Json range = json_of({"query", "--lens", "Lens 50mm", "--json"});
     assert_int_equal(range["matches"], 2);                    // of both
-    save_text(work("share/lensprof/lensfun.db"), "damaged");  // nobody named it: it is passed over
+    save_text(work("share/lensprof/lensfun.db"), "damaged");  // not named on the command line: it is skipped
     must_exit(done, apply);
 }
 
-// An error that nobody stated is not one of 0; no label stands for two things.
+// An unknown error is not reported as 0, and no label has two meanings.
 void test_unknown_error(void **) {
     const std::string db = make_database();
     const std::string said = must_exit(done, {"query", "--lens", "Lens 50mm", "--db", db});

@@ -59,7 +59,7 @@ void test_filters_take_parts_of_names(void **) {
     assert_refused(not_found, Words{"profile", "show", "--lens", "85mm"} + db_words(), {"85mm"});
 }
 
-// For people and as JSON; not where the lens is stored, but not for the setting.
+// As text and as JSON; not if the lens is stored and only the setting is missing.
 void test_nearest_names(void **) {
     make_db();
     const Words query = Words{"query", "--maker", "Canon"} + db_words();
@@ -92,7 +92,7 @@ void test_remove_what_matches(void **) {
     assert_refused(usage, remove + Words{"--yes"}, {"give ids"});
     assert_refused(not_found, remove + Words{"--lens", "85mm", "--yes"}, {"85mm"});
     assert_refused(not_found, remove + Words{"1", "9"}, {"9"});
-    assert_int_equal(listed({}), 4);  // none, for one that is not there
+    assert_int_equal(listed({}), 4);  // nothing is removed, because one id does not exist
     assert_true(json_of(remove + Words{"1", "4", "--json"})["removed"] == Json({1, 4}));
     assert_true(contains(must_exit(done, remove + Words{"--lens", "24-70", "--yes"}), "removed 2 profiles"));
     assert_int_equal(listed({}), 0);
@@ -119,7 +119,7 @@ void test_set(void **) {
     assert_true(load(work("p.db")) == before);
 }
 
-// A camera with a maker and without one is listed once each; every part of a key can be set, and no two ways at once.
+// A camera is listed once with a maker and once without; every member of a key can be set, but not in two ways.
 void test_each_once(void **) {
     const std::string db = work("once.db");
     lensprof_store *store = nullptr;
@@ -143,7 +143,7 @@ void test_each_once(void **) {
     must_exit(done, Words{"profile", "remove", "--camera", "EOS 5D", "--yes"} + at);
 }
 
-// The installed database is read after one's own, or alone; what writes, and what ids are of, is one's own.
+// The installed database is read after the user's own, or alone; changes and ids always refer to the user's own.
 void test_installed_database(void **) {
     make_db();
     const std::string own = work("data/lensprof/profiles.db"), installed = work("share/lensprof/lensfun.db");
@@ -152,7 +152,7 @@ void test_installed_database(void **) {
     const Words lenses = {"profile", "lenses"}, cameras = {"profile", "cameras"}, list = {"profile", "list"},
                 stats = {"profile", "stats"}, show = {"profile", "show", "--lens", "24-70", "--focal", "70"};
     for (const Words &words : {lenses, cameras, list, stats, show})
-        assert_false(contains(must_exit(done, words), "  in "));  // of one there is no need to say which
+        assert_false(contains(must_exit(done, words), "  in "));  // with a single database it is not named
     assert_int_equal(json_of(stats + Words{"--json"})["profiles"], 4);
     must_exit(done, {"profile", "export", "1", "-o", work("one.json")});
     assert_false(fs::exists(own));
@@ -182,7 +182,7 @@ void test_installed_database(void **) {
         return json_of(Words{"profile", "export", "--format", "json", "-o", work("out.json"), "--json"} + which);
     };
     assert_int_equal(exported({"--all"})["profiles"].size(), 1);
-    assert_int_equal(exported({"--lens", "24-70"})["profiles"].size(), 1);  // one's own goes before
+    assert_int_equal(exported({"--lens", "24-70"})["profiles"].size(), 1);  // the user's own takes precedence
     assert_int_equal(exported({"--lens", "RF50mm"})["profiles"].size(), 1);
     assert_refused(usage, {"profile", "export", "1", "-o", installed, "--format", "json"}, {"is the profile database"});
     must_exit(done, {"profile", "remove", "--lens", "24-70", "--yes"});

@@ -1,4 +1,4 @@
-// Every option of every command, as `lensprof help` lists them; words that are nearly right; numbers with units.
+// Every option of every command, as listed by `lensprof help`; misspelled words; numbers with units.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -29,7 +29,7 @@ std::vector<Words> all_commands() {
     return commands;
 }
 
-// "--seed" of "  --seed COUNT   about", "--output" of "  -o,--output FILE   about", for options that take a value.
+// "--seed" from "  --seed COUNT   about", "--output" from "  -o,--output FILE   about", for options that take a value.
 Words options_with_values(const std::string &help) {
     std::istringstream lines(help);
     Words options;
@@ -55,7 +55,7 @@ void assert_wrong_usage(const Words &words, const std::string &named) {
         fail_msg("%s: exit code %d: %s", joined(words).c_str(), outcome.code, outcome.err.c_str());
 }
 
-// An empty value is what a shell makes of a variable that is not set.
+// The shell turns an unset variable into an empty value.
 void test_no_value_may_be_empty(void **) {
     for (const Words &command : all_commands()) {
         const std::string help = must_exit(done, Words{"help"} + command);
@@ -95,7 +95,7 @@ void test_the_nearest_is_named(void **) {
     assert_refused(usage, {"help", "profile", "export", "more"}, {"has no verbs", "`lensprof help profile export`"});
 }
 
-// What begins with "-" is an option: no value of the one before it, but for numbers and what stands behind "=".
+// A word that starts with "-" is an option, not the value of the previous one, except for numbers and values after "=".
 void test_options_are_no_values(void **) {
     const struct {
         Words words;
@@ -124,7 +124,7 @@ void test_options_are_no_values(void **) {
     assert_refused(not_found, {"query", "--db=-x.db", "--camera=-X", "--json=false"}, {"-x.db: no such file"});
 }
 
-// A word within brackets is no list, and is told as it was given.
+// A word in brackets is not a list, and messages quote it as given.
 void test_words_within_brackets(void **) {
     assert_refused(usage, {"profile", "show", "[1]"}, {": [1] is not a profile id; see"});
     assert_refused(usage, {"help", "[x]"}, {"lensprof: [x]: no such command"});
@@ -137,7 +137,7 @@ void test_words_within_brackets(void **) {
     if (!contains(outcome.out, "\"file\":\"[x]\"")) fail_msg("%s%s", outcome.out.c_str(), outcome.err.c_str());
 }
 
-// As "--output=FILE" and "-oFILE".
+// Like "--output=FILE" and "-oFILE".
 void test_a_short_option_with_an_equals_sign(void **) {
     const std::string out = work("out");
     must_exit(done, {"simulate", "-o=" + out, "--images", "2", "--size", "40x30"});
@@ -145,7 +145,7 @@ void test_a_short_option_with_an_equals_sign(void **) {
     assert_refused(usage, {"simulate", "-o="}, {"--output: empty folder name; give one"});
 }
 
-// "--" ends the options wherever it stands.
+// "--" ends the options at any position.
 void test_two_dashes_end_options(void **) {
     const std::string copy = copy_of("scene");
     must_exit(done, Words{"build", copy + "/pano.pto", "--db", work("p.db")} + quick);
@@ -217,7 +217,7 @@ void test_version(void **) {
     assert_refused(usage, {"query", "--version"}, {"--version: no such option"});
 }
 
-// Only what may be left out is said to be.
+// A message mentions that a value is optional only if it is.
 void test_empty_values_that_are_needed(void **) {
     const struct {
         Words words;
@@ -237,7 +237,7 @@ void test_empty_values_that_are_needed(void **) {
                    {"--free: ev,: a value is missing before or after a comma"});
 }
 
-// Whatever is echoed, a message is a line that can be read.
+// Whatever is echoed, a message is a single readable line.
 void test_long_and_odd_words(void **) {
     const std::string word(100000, 'x'), db = work("none.db");
     const std::pair<int, Words> cases[] = {
@@ -280,7 +280,7 @@ void test_help_of_a_verb(void **) {
     }
 }
 
-// Typed values: what stands in the database is what was meant.
+// Typed values: the database holds what was meant.
 void test_units(void **) {
     const Json plain = json_of(Words{"build", scene("pano.pto"), "--db", work("p.db"), "--json", "--camera", "X",
                                      "--focal", "24", "--aperture", "4", "--distance", "3"}
@@ -323,7 +323,7 @@ void test_units(void **) {
     assert_refused(usage, bracket + Words{"1/60"}, {"--times: 1 value for 2 pictures"});
 }
 
-// Times with and without units are the same exposures.
+// Exposure times with and without units are the same.
 void test_times_with_units(void **) {
     const auto exposures = [](const char *times) {
         const Outcome outcome = run_words({"bracket", scene("img000.png"), scene("img001.png"), "--no-store", "--json",

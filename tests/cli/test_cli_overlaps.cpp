@@ -1,4 +1,4 @@
-// `lensprof apply --linear --merge`: light of overlapping pictures against the light they were rendered from.
+// `lensprof apply --linear --merge`: light of overlapping pictures compared with the light they were rendered from.
 #include "cli_runs.hpp"
 
 #include "cli/program/format.hpp"
@@ -24,7 +24,7 @@ double falloff(uint32_t x, uint32_t y) {
     return 1 + k1 * r * r;
 }
 
-// Light of a direction, .01 to 1.9 of white of an exposure of 0 EV: smooth, with both ends in all three pictures.
+// Light of a direction, from .01 to 1.9 times white at 0 EV: smooth, with both extremes in all three pictures.
 double light_of(const double direction[2], size_t channel) {
     const double stops = -2.9 + 3.8 * std::sin(9.0 * direction[0] + 4.0 * direction[1]);
     return std::exp2(stops) * (channel == 0 ? 0.9 : channel == 2 ? 0.8 : 1.0);
@@ -37,7 +37,7 @@ double truth(size_t image, uint32_t x, uint32_t y, size_t channel) {
     return light_of(direction, channel);
 }
 
-// The grey value of the linear camera; something stands before the scene where `things` says so.
+// The grey value of the linear camera; `things` covers parts of the scene.
 double grey(size_t image, uint32_t x, uint32_t y, size_t channel) {
     return std::min(1.0, truth(image, x, y, channel) * std::exp2(evs[image]) * falloff(x, y));
 }
@@ -78,7 +78,7 @@ double light_in(const Picture &picture, uint32_t x, uint32_t y, size_t c) {
     return double(reinterpret_cast<const float *>(picture.pixels.data())[(size_t(y) * width + x) * 3 + c]);
 }
 
-// Whether another image shows a pixel well within black and white.
+// Whether another image shows a pixel far from black and white.
 bool is_well_seen_by(size_t other, size_t image, uint32_t x, uint32_t y) {
     const lensprof_camera own = camera_of(image), camera = camera_of(other);
     double direction[2], xy[2];
@@ -98,7 +98,7 @@ struct Counts {
     double worst = 0.0;
 };
 
-// Pixels that are white in the image itself, and those of which it is sure, against the truth.
+// Pixels that are white in the image itself, and those known reliably, compared with the truth.
 Counts compare(size_t image, const std::string &file) {
     const Picture merged = read_picture(file);
     assert_int_equal(merged.sample, LENSPROF_SAMPLE_F32);
@@ -126,7 +126,7 @@ void test_white_is_filled(void **) {
     }
 }
 
-// Without the others the same pixels are as bright as white is.
+// Without the other pictures, these pixels are only as bright as white.
 void test_own_light_is_not_enough(void **) {
     make_project();
     must_exit(done,
@@ -134,7 +134,7 @@ void test_own_light_is_not_enough(void **) {
     assert_true(compare(1, work("out/p1.tif")).worst > 0.3);
 }
 
-// What another picture shows before the scene does not come into this one, where this one has seen the scene.
+// An object that covers the scene in another picture does not appear in a picture that shows the scene.
 void test_moving_things_stay_out(void **) {
     make_project(
         [](size_t image, uint32_t x, uint32_t y) { return image == 1 && x > 30 && x < 70 && y > 20 && y < 60; });
@@ -148,7 +148,7 @@ void test_moving_things_stay_out(void **) {
         }
 }
 
-// Masks exclude both other pictures: nothing of them, be it light or white, comes into this one.
+// Masks exclude both other pictures: neither their light nor their white enters this one.
 void test_masks_are_respected(void **) {
     make_project();
     must_exit(done, merging + Words{work("in/pano.pto"), "-o", work("all")});
@@ -176,7 +176,7 @@ void test_threads_and_json(void **) {
     assert_true(fs::exists(work("exr/p0.exr")));
 }
 
-// A picture of one grey value, or two: from column `from` on another.
+// A picture of one grey value, or of two: `right` from column `from` on.
 void write_even(const std::string &file, uint32_t w, uint32_t h, double left, double right, uint32_t from) {
     Picture picture = make_noise(w, h, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
     auto *codes = reinterpret_cast<uint16_t *>(picture.pixels.data());
@@ -205,7 +205,7 @@ double middle_of(const std::string &file, uint32_t x, uint32_t y) {
     return double(light[(size_t(y) * picture.width + x) * 3 + 1]);
 }
 
-// What is almost white agrees with what is brighter among white pixels alone.
+// Almost white pixels among white ones agree with brighter light from other pictures.
 void test_almost_white(void **) {
     fs::remove_all(work("two"));
     for (const double grey : {0.96, 0.975, 0.979}) {
@@ -222,7 +222,7 @@ void test_almost_white(void **) {
     }
 }
 
-// Cameras that are the same show the same to the outermost pixel.
+// Identical cameras: every pixel is filled, including the outermost.
 void test_to_the_edges(void **) {
     write_even(work("two/p0.tif"), 120, 80, 1.0, 1.0, 0);
     write_even(work("two/p1.tif"), 120, 80, 0.5, 0.5, 0);
@@ -234,7 +234,7 @@ void test_to_the_edges(void **) {
         for (uint32_t x = 0; x < 120; x++) assert_close(middle_of(work("out/p0.tif"), x, y), 4.0, 0.01);
 }
 
-// A tele picture within one all around, which is cut behind it: light is that of its own side of the cut.
+// A telephoto picture inside a 360 degree panorama: at the panorama's seam, light comes from the matching side.
 void test_all_around(void **) {
     write_even(work("two/p0.tif"), 400, 300, 1.0, 1.0, 0);
     write_even(work("two/p1.tif"), 2000, 1000, 0.25, 0.75, 1000);
@@ -255,7 +255,7 @@ void test_all_around(void **) {
     }
 }
 
-// In shadows what moved differs by less than .03 of full scale, and by more than noise.
+// In shadows, moved objects differ by less than .03 of full scale, but by more than noise.
 void test_moving_shadows_stay_out(void **) {
     const auto dark = [](size_t image, uint32_t from) {
         Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
@@ -285,13 +285,13 @@ void test_moving_shadows_stay_out(void **) {
     assert_close(mean(33, 47), 0.025, 0.0015);
     assert_close(mean(73, 87), 0.05, 0.0015);
     assert_close(mean(100, 115), 0.05, 0.0005);
-    double spread = 0.0;  // of noise, which another picture of four times the light has a quarter of
+    double spread = 0.0;  // noise, a quarter as large in the other picture, which has four times the light
     for (uint32_t y = 24; y < 56; y++)
         for (uint32_t x = 100; x < 115; x++) spread += std::pow(light_in(merged, x, y, 1) - 0.05, 2);
     assert_true(std::sqrt(spread / (15 * 32)) < 0.35 * 0.012 / std::sqrt(12.0));
 }
 
-// A picture that is another one than the project was fitted to says so.
+// A picture that differs from the one the project was fitted to is reported.
 void test_changed_pictures_are_named(void **) {
     make_project();
     const Json right = json_of(merging + Words{work("in/pano.pto"), "--json", "-o", work("right")})["pictures"];
@@ -307,7 +307,7 @@ void test_changed_pictures_are_named(void **) {
     assert_true(pictures[0]["agreement"] < 0.5);
 }
 
-// Outputs in the folder of their sources replace what lensprof has made alone.
+// Outputs in the folder of their sources replace only files made by lensprof.
 void test_pictures_beside_are_kept(void **) {
     make_project();
     for (size_t i = 0; i < 3; i++) {
@@ -322,7 +322,7 @@ void test_pictures_beside_are_kept(void **) {
     must_exit(done, merging + Words{work("in/pano.pto"), "-o", work("in")});
 }
 
-// Light of a picture whose falloff is taken out already would be wrong.
+// Light from a picture whose falloff is already removed would be wrong.
 void test_corrected_pictures_give_no_light(void **) {
     make_project();
     must_exit(done, {"apply", "--pto", work("in/pano.pto"), "-o", work("even")});
@@ -350,7 +350,7 @@ void test_bad_merges(void **) {
         must_exit(usage, words + Words{"-o", work("none")});
         assert_true(!fs::exists(work("none")));
     }
-    // A picture that cannot be merged is refused, and where another one is asked for gives it no light.
+    // A picture that cannot be merged is refused; if only another one is requested, it contributes no light.
     const auto only_others = [&](int code) {
         must_exit(code, merging + Words{project, "-o", work("none")});
         assert_true(!fs::exists(work("none")));

@@ -1,4 +1,4 @@
-// `build` of pictures and folders that are in no project.
+// `build` of pictures and folders without a project.
 #include <cmath>
 #include <map>
 #include <random>
@@ -19,7 +19,7 @@ void simulate(const std::string &name, const Words &more) {
                         + (is_sized ? Words() : Words{"--size", "480x360"}) + more);
 }
 
-// With the program built without OpenCV there is nothing to test but what it says.
+// If the program was built without OpenCV, only its message can be tested.
 bool is_missing() {
     if (can_register()) return false;
     simulate("none", {"--images", "2"});
@@ -44,7 +44,7 @@ void assert_alike(const Json &one, const Json &other) {
         assert_close(one["images"][i]["ev"].get<double>(), other["images"][i]["ev"].get<double>(), 0.03);
 }
 
-// The same as with the true project; and the project found says the same again.
+// The same result as with the true project; the project that was found gives it again.
 void test_a_folder_is_as_good_as_its_project(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "6", "--seed", "11"});
@@ -59,7 +59,7 @@ void test_a_folder_is_as_good_as_its_project(void **) {
     assert_alike(own, json_of(Words{"build", found} + quietly));
     assert_true(contains(text_of(found), "n\"row/img003.png\""));
     assert_true(contains(text_of(found), "\nc n0 N1 "));
-    // Twice the same; and files in place of the folder.
+    // A repeated run gives the same, and so do files instead of the folder.
     const Json again = json_of(Words{"build", work("row")} + quietly);
     assert_true(again["vignetting"] == own["vignetting"]);
     Words files{"build"};
@@ -68,7 +68,7 @@ void test_a_folder_is_as_good_as_its_project(void **) {
     assert_true(json_of(files + quietly)["vignetting"] == own["vignetting"]);
 }
 
-// What makes pictures unlike each other: exposures 4 EV apart, white balances, a deep falloff.
+// Pictures that look different: exposures 4 EV apart, white balances, a strong falloff.
 void test_pictures_that_look_unlike(void **) {
     if (is_missing()) return;
     simulate("unlike", {"--images", "5", "--ev", "4", "--wb", "0.3", "--vignetting=-0.8,0.5,-0.3", "--seed", "5"});
@@ -77,7 +77,7 @@ void test_pictures_that_look_unlike(void **) {
     for (const Json &image : json["images"]) assert_true(image["joined"] == true);
 }
 
-// Two panoramas, a picture of neither, one that is damaged, a copy, and one of another size.
+// Two panoramas, an unrelated picture, a damaged one, a copy, and one of another size.
 void test_a_folder_of_many_things(void **) {
     if (is_missing()) return;
     simulate("mixed", {"--images", "5", "--seed", "21"});
@@ -107,7 +107,7 @@ void test_a_folder_of_many_things(void **) {
     assert_true(json["seconds"]["register"].get<double>() > 0.0);
 }
 
-// `build` of a row of pictures one of which is of another size.
+// `build` of a row of pictures, one of which has another size.
 Outcome build_with_one_smaller(const std::string &name, const Words &row, const std::string &picture) {
     simulate(name, row);
     simulate(name + "_small", row + Words{"--size", "400x300"});
@@ -115,7 +115,8 @@ Outcome build_with_one_smaller(const std::string &name, const Words &row, const 
     return run_words(Words{"build", work(name)} + quietly);
 }
 
-// What joins two parts of a row is of another size: the larger part is taken, and the reasons name the size.
+// The picture that joins two parts of a row has another size: the larger part is used, and the reasons mention the
+// size.
 void test_another_camera_in_a_chain(void **) {
     if (is_missing()) return;
     const Outcome run = build_with_one_smaller("chain", {"--images", "6", "--seed", "61"}, "img002.png");
@@ -127,10 +128,10 @@ void test_another_camera_in_a_chain(void **) {
     assert_true(contains(run.err, "img002.png: left out: no two pictures of its camera, size or processing overlap"));
 }
 
-// A picture that only one of another size joins to the others is not itself of another size.
+// If only a picture of another size connects a picture to the others, the reason does not blame the picture's own size.
 void test_one_picture_behind_another_camera(void **) {
     if (is_missing()) return;
-    const Outcome run = build_with_one_smaller("behind", {"--images", "5", "--seed", "62"}, "img001.png");
+    const Outcome run = build_with_one_smaller("end", {"--images", "5", "--seed", "62"}, "img001.png");
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "img001.png: left out: no two pictures of its camera, size or processing overlap"));
     assert_true(contains(run.err,
@@ -138,7 +139,8 @@ void test_one_picture_behind_another_camera(void **) {
                          "it"));
 }
 
-// A bracket shows no falloff: what takes it is named. Beside a row of pictures it is left out, however many it has.
+// A bracket shows no falloff: the message names the commands for it. Together with a row of pictures it is left out,
+// whatever its length.
 void test_a_bracket(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "3", "--seed", "71"});
@@ -159,7 +161,7 @@ void test_a_bracket(void **) {
     assert_true(contains(run.err, "s3.png: left out: part of another group, whose camera did not move"));
 }
 
-// Pictures a third of which is fixed to the frame, as from behind a windscreen, are of a camera that turned.
+// If a third of each picture is fixed to the frame, as through a windscreen, the camera still counts as rotating.
 void test_behind_a_dashboard(void **) {
     if (is_missing()) return;
     simulate("drive", {"--images", "5", "--seed", "75", "--overlap", "0.5"});
@@ -177,7 +179,7 @@ void test_behind_a_dashboard(void **) {
     assert_true(contains(run.err, "5 pictures overlap") && contains(run.err, "a camera that turned"));
 }
 
-// A panorama of brackets: within a stack the camera stood still, from stack to stack it turned; all are of one.
+// A panorama of brackets: the camera is stationary within a stack and rotates between stacks; all belong together.
 void test_stacks(void **) {
     if (is_missing()) return;
     fs::create_directory(work("stacks"));
@@ -191,11 +193,11 @@ void test_stacks(void **) {
     const Json json = json_of(Words{"build", work("stacks")} + quietly);
     assert_int_equal(json["images"].size(), 12);
     const auto ev = [&](size_t i) { return json["images"][i]["ev"].get<double>(); };
-    for (size_t view = 0; view < 12; view += 3)  // -2, 0 and 1 EV, but for gamma
+    for (size_t view = 0; view < 12; view += 3)  // -2, 0 and 1 EV, apart from gamma
         assert_close((ev(view + 2) - ev(view)) / (ev(view + 1) - ev(view)), 1.5, 0.02);
 }
 
-// Pictures that lensprof has made are no photographs of the camera, unless they are named.
+// Pictures written by lensprof are not photographs, unless they are named.
 void test_own_pictures_are_left_out(void **) {
     if (is_missing()) return;
     simulate("own", {"--images", "3", "--seed", "65"});
@@ -208,7 +210,7 @@ void test_own_pictures_are_left_out(void **) {
     must_exit(not_usable, Words{"build", work("own/even")} + quietly);
 }
 
-// What cannot be written is said before the overlaps are found, and no picture that is named is written over, be it
+// Unwritable outputs are reported before the search for overlaps, and no named picture is overwritten, whether it is
 // part of the result or not.
 void test_outputs_are_checked_first(void **) {
     if (is_missing()) return;
@@ -249,7 +251,7 @@ void test_corrected_copies_are_not_read(void **) {
     assert_true(contains(run.err, "img000.png: left out: it is in an output folder of calibrate"));
 }
 
-// A logo in the same place of all frames matches everywhere, and says nothing of the scene.
+// A logo at the same place in all frames matches everywhere, but is not part of the scene.
 void test_what_is_fixed_to_the_frame(void **) {
     if (is_missing()) return;
     simulate("stamped", {"--images", "5", "--seed", "81", "--size", "640x480"});
@@ -272,8 +274,8 @@ void test_what_is_fixed_to_the_frame(void **) {
     assert_alike(plain, json_of(Words{"build", work("stamped")} + quietly));
 }
 
-// Standard deviation of the logarithm of one panel over another: 0 where they differ by a factor alone. Places without
-// a picture, near black and near white do not count.
+// Standard deviation of the logarithm of one panel divided by the other: 0 if they differ only by a factor. Places
+// without a picture, near black and near white are ignored.
 double spread(const Picture &one, uint32_t one_top, const Picture &other, uint32_t other_top, uint32_t height) {
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (uint32_t y = 0; y < height; y++)
@@ -290,7 +292,7 @@ double spread(const Picture &one, uint32_t one_top, const Picture &other, uint32
     return std::sqrt(squares / count - sum / count * (sum / count));
 }
 
-// The mosaic after correction against that of the same scene by a camera without falloff and with one exposure.
+// The corrected mosaic compared with that of the same scene from a camera without falloff and with one exposure.
 void test_the_preview_is_even(void **) {
     simulate("uneven", {"--images", "5", "--ev", "0.8", "--seed", "8"});
     simulate("truth", {"--images", "5", "--ev", "0", "--wb", "0", "--vignetting", "0,0,0", "--seed", "8"});
@@ -308,7 +310,7 @@ void test_the_preview_is_even(void **) {
     assert_false(fs::exists(wide));
 }
 
-// A cropped picture is of another angle of view for the geometry, also with --one-lens.
+// A cropped picture has another angle of view for the geometry, also with --one-lens.
 void test_one_lens_keeps_the_geometry(void **) {
     if (is_missing()) return;
     simulate("crops", {"--images", "4", "--seed", "41", "--size", "800x600", "--overlap", "0.5"});
@@ -328,7 +330,7 @@ void test_one_lens_keeps_the_geometry(void **) {
     assert_true(json["residual"]["heldout_median"].get<double>() < 3.0);
 }
 
-// Pictures that are no more than a line, and files that are not pictures, do not stop the others.
+// Pictures that are only a line, and files that are not pictures, do not stop the others.
 void test_odd_files_among_good_ones(void **) {
     if (is_missing()) return;
     simulate("odd", {"--images", "3", "--seed", "51"});
@@ -342,7 +344,7 @@ void test_odd_files_among_good_ones(void **) {
     assert_true(contains(run.err, "empty1.jpg") && contains(run.err, "empty2.jpg") && !contains(run.err, "a copy of"));
 }
 
-// Pictures by a camera that moved above the ground, which it sees from aside: sRGB of radiances, falloff, exposures.
+// Pictures from a camera that moved above the ground at an oblique angle: sRGB of radiances, falloff, exposures.
 constexpr double moved_ev[] = {0.0, 0.5, -0.4, 0.3, -0.2}, moved_k1 = -0.35;
 constexpr uint32_t moved_width = 640, moved_height = 480, ground = 2400;
 
@@ -384,12 +386,12 @@ void write_moved(const std::string &folder) {
     }
 }
 
-// They are compared where they match, and again so from the records of `calibrate`.
+// They are compared at their matches; a second time from the records of `calibrate`.
 void test_a_camera_that_moved(void **) {
     if (is_missing()) return;
     write_moved(work("moved"));
     const auto is_right = [](const Json &json) {
-        double both = 0.0, squares = 0.0;  // of the exponent that pictures leave open
+        double both = 0.0, squares = 0.0;  // up to the exponent that pictures leave open
         for (size_t i = 0; i < 5; i++) {
             const double ev = json["images"][i]["ev"].get<double>();
             both += ev * moved_ev[i], squares += ev * ev;
@@ -411,7 +413,7 @@ void test_a_camera_that_moved(void **) {
     must_exit(done, calibrate);
     const Json first = Json::parse(text_of(work("moved_out/calibrate.json")));
     is_right(first["panoramas"][0]["result"]);
-    fs::remove(work("moved_out/panorama_moved0.pto"));  // fitted again, by what the records have of the registration
+    fs::remove(work("moved_out/panorama_moved0.pto"));  // fitted again, with the registration from the records
     must_exit(done, calibrate);
     const Json second = Json::parse(text_of(work("moved_out/calibrate.json")));
     assert_true(second["panoramas"][0]["result"]["images"] == first["panoramas"][0]["result"]["images"]);

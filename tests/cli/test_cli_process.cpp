@@ -1,4 +1,4 @@
-// The program and the system around it: another user's files, full disks, Ctrl-C, closed outputs.
+// The program and the operating system: another user's files, full disks, Ctrl-C, closed outputs.
 #include "cli_runs.hpp"
 
 #include <fcntl.h>
@@ -10,13 +10,13 @@ namespace {
 
 Words build_quick(const Words &more) { return Words{"build", scene("pano.pto")} + quick + more; }
 
-// Read-only files: root may write everywhere, so that a child becomes nobody.
+// Read-only files: root can write everywhere, so the child becomes nobody.
 
 void become_nobody() {
     if (getuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(254);
 }
 
-// A folder with a database, nothing of which may be written, and one that anybody may write.
+// A read-only folder with a database, and a folder that everybody may write to.
 void make_read_only() {
     fs::permissions(folder, fs::perms(0755));
     fs::create_directories(work("closed"));
@@ -33,7 +33,7 @@ void test_read_only_database(void **) {
     const Words outputs = {"--points-out", work("open/left.txt"), "--pto-out", work("open/left.pto")};
     Outcome outcome = run_child({"profile", "list", "--db", work("closed/p.db")}, become_nobody);
     if (outcome.code == 254) {
-        print_message("skipped: this root may not become another user\n");
+        print_message("skipped: root cannot change the user here\n");
         skip();
     }
     assert_int_equal(outcome.code, done);  // reading is allowed
@@ -60,7 +60,7 @@ void test_unreadable_inputs(void **) {
     if (outcome.code == 254) skip();
     assert_refusal(build, outcome, unreadable, {copy + "/img001.png"}, before);
     fs::permissions(copy + "/pano.pto", fs::perms(0));
-    before = disk();  // not as root: what cannot be read is empty here
+    before = disk();  // unless root, unreadable files are empty here
     assert_refusal(build, run_child(build, become_nobody), unreadable, {copy + "/pano.pto"}, before);
     fs::permissions(copy + "/pano.pto", fs::perms(0644));
     fs::permissions(copy + "/img001.png", fs::perms(0644));
@@ -70,7 +70,7 @@ void test_unreadable_inputs(void **) {
     assert_refusal(query, run_child(query, become_nobody), store_failed, {work("closed/p.db")}, before);
 }
 
-// Teardown: who is not root could not empty the folder.
+// Teardown: only root could empty the folder otherwise.
 int open_again(void **) {
     std::error_code none;
     fs::permissions(work("closed"), fs::perms(0755), none);
@@ -99,12 +99,12 @@ void test_full_disk(void **) {
     for (rlim_t bytes : {0, 512, 8192, 20000})
         assert_refused_when_full(bytes, build_quick({"--db", work("p.db")}), store_failed, work("p.db"));
     assert_refused_when_full(512, {"profile", "remove", "1", "--db", work("p.db")}, store_failed, work("p.db"));
-    // The project is small enough, the database is not: neither appears.
+    // There is room for the project, but not for the database: neither is created.
     assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--pto-out", work("left.pto")}), store_failed,
                              work("p.db"));
     assert_refused_when_full(20000, build_quick({"--no-store", "--points-out", work("left.txt")}), failed,
                              work("left.txt"));
-    // Enough for the index of the database's log, 32 KiB.
+    // There is room for the index of the database's log, 32 KiB.
     assert_refused_when_full(40000, build_quick({"--db", work("p.db"), "--points-out", work("left.txt")}), failed,
                              work("left.txt"));
     assert_refused_when_full(100, build_quick({"--no-store", "--pto-out", work("left.pto")}), failed, work("left.pto"));
@@ -157,7 +157,7 @@ Child start(const Words &words) {
     return child;
 }
 
-// Reads what the child says until `word` comes, or to the end when word is empty. False when a minute passes.
+// Reads the child's output until `word` appears, or to the end if word is empty. False after a minute.
 bool listen_for(Child &child, const std::string &word) {
     char buffer[4096];
     while (word.empty() || !contains(child.said, word)) {
@@ -179,7 +179,7 @@ int end_of(Child &child) {
     return !quiet ? -1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-// Interrupts a command when it says that it is at `stage`. Returns the seconds that it took to end.
+// Interrupts a command when it reports `stage`. Returns the seconds until it ended.
 double interrupt_at(const std::string &stage, const Words &words, int number = SIGINT) {
     Child child = start(words);
     if (!listen_for(child, stage)) {
@@ -197,7 +197,7 @@ double interrupt_at(const std::string &stage, const Words &words, int number = S
     return double(after.tv_sec - before.tv_sec) + 1e-9 * double(after.tv_nsec - before.tv_nsec);
 }
 
-// Some 15000 pairs: seconds of fitting.
+// About 15000 pairs: seconds of fitting.
 std::string make_many_points() {
     must_exit(done, {"simulate", "-o", work("many"), "--no-images", "--images", "6", "--points", "15000"});
     return work("many/pano.pto");
@@ -220,7 +220,8 @@ void test_interrupted_build(void **) {
         }
 }
 
-// More pictures than can be read, sampled and fitted before the signal comes; more pairs than these pictures hold.
+// More pictures than can be read, sampled and fitted before the signal arrives, and more pairs than these pictures
+// have.
 void test_interrupted_with_pictures(void **) {
     must_exit(done, {"simulate", "-o", work("many"), "--images", "12", "--size", "320x240"});
     const Disk before = disk();
@@ -234,7 +235,7 @@ void test_interrupted_with_pictures(void **) {
     }
 }
 
-// What is there is complete, and has its name.
+// Existing pictures are complete and have their final name.
 void assert_complete_pictures(const std::string &place, size_t fewer_than) {
     size_t count = 0;
     for (const fs::directory_entry &entry : fs::directory_iterator(place)) {
@@ -263,7 +264,7 @@ void test_interrupted_apply(void **) {
     }
 }
 
-// In the middle of a picture, on one thread and with one more that encodes.
+// During a picture, on one thread and with one more that encodes.
 void test_interrupted_in_a_picture(void **) {
     must_exit(done, build_quick({"--db", work("p.db")}));
     for (const char *name : {"a.png", "a.tif", "a.jpg"}) {
@@ -281,7 +282,7 @@ void test_interrupted_in_a_picture(void **) {
     }
 }
 
-// Says nothing without a terminal: the first picture tells that it is at work.
+// Without a terminal, simulate prints nothing: the first picture shows that it is at work.
 void test_interrupted_simulate(void **) {
     Child child = start({"simulate", "-o", work("out"), "--images", "60", "--size", "500x400"});
     for (int wait = 0; wait < 6000 && !fs::exists(work("out/img000.png")); ++wait) usleep(10000);
@@ -306,7 +307,7 @@ void test_full_standard_output(void **) {
     assert_int_equal(WEXITSTATUS(status), failed);
 }
 
-// `ulimit -f`: the system's signal for it does not end the process.
+// `ulimit -f`: the system's signal does not end the process.
 void test_file_size_limit(void **) {
     const pid_t child = fork();
     if (child == 0) {

@@ -1,5 +1,5 @@
-// `build` of reconstructions, and `apply --model`: exposures and falloff beside the truth of a simulated camera that
-// moves, and what is written for other programs.
+// `build` of reconstructions, and `apply --model`: exposures and falloff compared with the truth of a simulated moving
+// camera, and the files written for other programs.
 #include <deque>
 
 #include "cli/fitting/block_sampling.hpp"
@@ -24,7 +24,7 @@ Words build(const std::string &project, const Words &more = {}) {
     return Words{"build", work(project), "--images", work("pictures"), "--no-store", "--json"} + more;
 }
 
-// The largest error of exposures against the truth once their common offset and the exponent are aligned, EV.
+// The largest error of exposures after aligning their common offset and the exponent, EV.
 double exposure_error(const Json &result, const Json &truth) {
     std::vector<double> found, real;
     double means[2] = {};
@@ -71,7 +71,7 @@ void test_exposures_are_found(void **) {
     }
 }
 
-// Colours of the tracks in the place of pictures: asked for, and where none are there.
+// Colours of the tracks instead of pictures: on request, and if there are no pictures.
 void test_colours_stand_for_pictures(void **) {
     const Json &truth = shared().scene.truth;
     const Json asked = json_of(build("tracks.csv", {"--track-colors"}));
@@ -89,7 +89,7 @@ void test_colours_stand_for_pictures(void **) {
     assert_refused(usage, build("model", {"--track-colors"}), {"--track-colors", "tracks.csv", "COLMAP model"});
 }
 
-// One run and one thread, and blocks of pictures, give the same bytes.
+// Repeated runs give the same bytes.
 void test_is_deterministic(void **) {
     const std::string first = must_exit(done, build("model", {"--exposures-out", work("a.json")}));
     must_exit(done, build("model", {"--exposures-out", work("b.json")}));
@@ -97,7 +97,7 @@ void test_is_deterministic(void **) {
     for (const char *name : {"a.json", "b.json"}) fs::remove(work(name));
 }
 
-// Pictures in blocks of two, and all in one: the same links, and as many pairs.
+// Pictures in blocks of two, and all in one block: the same links, and about as many pairs.
 void test_blocks(void **) {
     std::ostringstream out, err;
     Streams streams{out, err};
@@ -121,7 +121,7 @@ void test_blocks(void **) {
     assert_true(pairs[1].size() > 0.95 * double(pairs[0].size()) && pairs[1].size() < 1.05 * double(pairs[0].size()));
 }
 
-// The colours of the points in half of the images, changed as by another light: by a factor of each point's own.
+// The colours of the points in half of the images, changed as by another light: each point by its own factor.
 void test_two_visits(void **) {
     std::istringstream lines(text_of(work("tracks.csv")));
     std::ostringstream changed;
@@ -153,10 +153,11 @@ void test_two_visits(void **) {
     for (const char *name : {"first.txt", "visits.csv"}) fs::remove(work(name));
 }
 
-// Places that do not show the same: the observations of every picture are of later tracks, of each by another number.
+// Matches that do not show the same: the observations of each picture belong to later tracks, with another offset per
+// picture.
 void test_wrong_matches(void **) {
     std::istringstream lines(text_of(work("tracks.csv")));
-    std::map<std::string, std::deque<std::string>> later;  // the tracks that were met before in each image
+    std::map<std::string, std::deque<std::string>> later;  // previous tracks in each image
     std::ostringstream changed;
     for (std::string line; std::getline(lines, line);) {
         const size_t name = line.find('\t'), track = line.find('\t', name + 1);
@@ -180,7 +181,7 @@ void test_wrong_matches(void **) {
     fs::remove(work("wrong.csv"));
 }
 
-// The parts of several machines: every picture once, and outputs as without.
+// Shards for several machines: every picture exactly once, with the same outputs as without shards.
 void test_shards(void **) {
     must_exit(done, build("model", {"--exposures-out", work("exposures.json")}));
     const Words apply = {"apply", "--model", work("exposures.json"), "-o"};
@@ -243,7 +244,7 @@ void test_file_of_exposures(void **) {
         assert_true(light[level].get<double>() >= light[level - 1].get<double>());
 }
 
-// Mean grey value of places that two pictures show, and its spread between them.
+// Mean absolute difference of grey values at places that two pictures show.
 double mean_difference(const std::string &folder) {
     const MovingScene &scene = shared().scene;
     std::vector<Picture> pictures;
@@ -263,7 +264,7 @@ double mean_difference(const std::string &folder) {
     return sum / count;
 }
 
-// Corrected copies have names, sizes and formats of the pictures, so that the model takes them.
+// Corrected copies have the names, sizes and formats of the pictures, so that they fit the model.
 void test_corrected_copies(void **) {
     write_exposures();
     const Disk before = disk();
@@ -275,11 +276,11 @@ void test_corrected_copies(void **) {
     }
     assert_true(mean_difference("corrected") < 0.6 * mean_difference("pictures"));
     fs::remove_all(work("corrected"));
-    const std::string changes = difference(before, disk());  // the originals above all
+    const std::string changes = difference(before, disk());  // in particular the originals
     if (!changes.empty()) fail_msg("on the disk:%s", changes.c_str());
 }
 
-// Folders in the images' names are kept; --images says where the pictures are by now.
+// Folders in image names are kept; --images gives the new place of the pictures.
 void test_folders_of_names(void **) {
     write_exposures();
     const std::string first = shared().scene.file(0);
@@ -295,7 +296,7 @@ void test_folders_of_names(void **) {
     for (const char *name : {"corrected", "moved"}) fs::remove_all(work(name));
 }
 
-// EXIF of the copies has the measured exposures, and XMP says so.
+// EXIF of the copies has the measured exposures, marked as such in XMP.
 void test_seeded_exif(void **) {
     write_exposures();
     must_exit(done, {"apply", "--model", work("exposures.json"), "--seed-exif", "--output-exposure", "keep", "-o",
@@ -319,7 +320,7 @@ void test_bad_files_of_exposures(void **) {
     const std::pair<const char *, const char *> changes[] = {
         {"\"schema\": 1", "\"schema\": 7"},        {"\"lens\": 0", "\"lens\": 5"},
         {"\"camera\": 0", "\"camera\": -1"},       {"\"width\": 400", "\"width\": 0"},
-        {"\"width\": 400", "\"width\": \"x\""},    {"\"light_of_level\"", "\"light_of_leve\""},  // not read: no refusal
+        {"\"width\": 400", "\"width\": \"x\""},    {"\"light_of_level\"", "\"light_of_leve\""},  // not read
         {"\"kind\": \"emor\"", "\"kind\": \"x\""}, {"lensprof exposures", "other"}};
     for (const auto &[part, by] : changes) {
         edit(work("exposures.json"), part, by);
@@ -339,7 +340,7 @@ void test_bad_files_of_exposures(void **) {
     }
 }
 
-// What does not go together is refused with the options' names.
+// Options that exclude each other are refused by name.
 void test_options(void **) {
     write_exposures();
     const std::string file = work("exposures.json");
@@ -358,7 +359,7 @@ void test_options(void **) {
                    {"--images", "reconstruction"});
 }
 
-// A picture that was resized since it was matched.
+// A picture resized after matching.
 void test_resized_picture(void **) {
     write_exposures();
     const std::string picture = work("pictures/" + shared().scene.file(3));

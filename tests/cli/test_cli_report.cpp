@@ -36,7 +36,7 @@ void test_fit(void **) {
         assert_jpeg(view["after"]);
         assert_true(view["before"] != view["after"]);
     }
-    // The curve is the result's; the pairs' own points lie on it.
+    // The curve is that of the result, and the pairs' own points lie on it.
     const Json &curve = page["falloffs"][0], &points = page["falloff_points"];
     assert_int_equal(page["falloffs"].size(), result["vignetting"]["k"].size());
     assert_true(points.size() >= 5);
@@ -47,7 +47,7 @@ void test_fit(void **) {
     }
     assert_int_equal(curve["m"].size(), 101);
     assert_true(page["responses"][0]["f"].back() == 1.0);
-    // Deterministic but for the name in the command, and nothing from a network.
+    // Deterministic except for the name in the command, and without network access.
     Json other = data_of(work("b.html"));
     assert_true(contains(page["command"], "lensprof build ") && contains(page["command"], "--seed 3"));
     other["command"] = page["command"];
@@ -57,7 +57,7 @@ void test_fit(void **) {
         assert_false(contains(text_of(work("a.html")), foreign));
 }
 
-// Pairs lie nearer the diagonal after correction, and residuals are about 0.
+// After correction, pairs are closer to the diagonal, and residuals are about 0.
 void test_residuals(void **) {
     must_exit(done, Words{"build", scene("pano.pto"), "--no-store", "--report", work("a.html")} + quick);
     const Json page = data_of(work("a.html")), &figures = page["residuals"];
@@ -84,7 +84,7 @@ void test_residuals(void **) {
     assert_int_equal(samples, ends);
 }
 
-// Names that would end the script, or are not UTF-8, are texts.
+// Names that would end the script, or are not UTF-8, are treated as text.
 void test_names(void **) {
     const std::string folder = copy_of("scene", "<!--<script>'x");
     const std::string out = work("r.html");
@@ -97,7 +97,7 @@ void test_names(void **) {
     assert_true(contains(page["command"], "'\\''x"));  // quoted for a shell
 }
 
-// Marks of the template in a title are text; the page is UTF-8 whatever the name is.
+// Marks of the template in a title are treated as text; the page is UTF-8 whatever the name.
 void test_titles(void **) {
     for (const char *name : {"@DATA@", "@SCRIPT@", "a\xff"}) {
         const std::string folder = copy_of("scene", name);
@@ -111,12 +111,12 @@ void test_titles(void **) {
     }
 }
 
-// A report is of what is stored, and has the warnings.
+// A report shows stored profiles, with their warnings.
 void test_stored(void **) {
     const Words build = {"build", scene("pano.pto"), "--camera", "C", "--lens", "L", "--db", work("a.db")};
     must_exit(done, build + Words{"--report", work("r.html")} + quick);
     assert_int_equal(data_of(work("r.html"))["result"]["profile"].get<int>(), 1);
-    // An older file is not taken for a report that was written.
+    // An older file is not listed as a written report.
     fs::create_directories(work("one"));
     fs::copy_file(scene("img000.png"), work("one/img000.png"));
     const Outcome outcome = run_words({"report", work("one"), "-o", work("r.html")});
@@ -152,7 +152,7 @@ void test_database(void **) {
     assert_int_equal(settings.size(), 3);
     for (const Json &setting : settings)
         assert_float_equal(setting["k"][0].get<double>(), -0.6 / setting["aperture"].get<double>(), 1e-9);
-    // One of them, by id and by name.
+    // One of the profiles, by id and by name.
     for (const Words &which : {Words{"--profile", "2"}, Words{"--lens", "Lens 50mm", "--aperture", "2.8"}}) {
         must_exit(done, Words{"report", "--db", db, "-o", out} + which);
         const Json one = data_of(out);
@@ -165,7 +165,7 @@ void test_database(void **) {
     assert_int_equal(data_of(out)["profiles"].get<int>(), 2);
 }
 
-// A grey RGB picture of 320 x 240 by value(x, y), 0..1.
+// A grey RGB picture of 320 x 240 from value(x, y), 0..1.
 template <class Value>
 void write_grey(const std::string &path, const Value &value) {
     Picture picture;

@@ -1,4 +1,4 @@
-// `lensprof response`: the response of made-up cameras from raw files and their JPEGs, against the truth.
+// `lensprof response`: the response of simulated cameras from raw files and their JPEGs, compared with the truth.
 #include "cli_runs.hpp"
 #include "response_scenes.hpp"
 
@@ -15,7 +15,7 @@ void needs_libraw() {
 
 std::string work(const std::string &name) { return in_folder(name); }
 
-// The JPEG as it would be embedded, and the file around it.
+// Writes the JPEG that would be embedded, and the raw file that contains it.
 std::string save_shot(const std::string &name, const Taken &taken, const JpegKind &kind = {92, 2, 2}) {
     const std::string jpeg = work("embedded.tmp.jpg"), file = work(name);
     write_jpeg_file(jpeg, taken.rendered, kind);
@@ -59,8 +59,8 @@ double error_of(const Json &json, const Shot &shot) {
 
 Words respond(const std::string &file) { return {"response", file, "--no-store", "--json"}; }
 
-// 30 cameras: whatever the command calls usable has ln gamma within .03, and within its standard error as often as that
-// means. Scenes that do not show enough are refused, and the error that is stated holds for them, too.
+// 30 cameras: if the command calls the result usable, ln gamma is within .03, and within its standard error as often as
+// expected. Scenes that show too little are refused; the stated error holds for them, too.
 void test_cameras(void **) {
     needs_libraw();
     const int runs = campaign_runs(30);
@@ -74,7 +74,7 @@ void test_cameras(void **) {
         const double error = error_of(json, shot), sigma = json["gamma"]["sigma"];
         fitted++, within += std::fabs(error) <= sigma, within_two += std::fabs(error) <= 2 * sigma;
         const Json &falloff = json["files"][0]["falloff"];
-        print_message("%2d %s: ln gamma off by %+.4f +- %.4f, corner %.3f, map %.2f levels\n", i,
+        print_message("%2d %s: ln gamma error %+.4f +- %.4f, corner %.3f, map %.2f levels\n", i,
                       json["usable"] ? "usable" : "refused", error, sigma, double(falloff["corner"]),
                       double(json["files"][0]["tones"]["pattern"]));
         if (!json["usable"]) continue;
@@ -91,7 +91,7 @@ void test_cameras(void **) {
     assert_true(within >= fitted * 6 / 10 && within_two >= fitted * 9 / 10);
 }
 
-// A picture of good light by a camera with an sRGB curve.
+// A well lit picture from a camera with an sRGB curve.
 Shot good_shot(uint32_t seed = 3) {
     Shot shot;
     shot.response = table_response(srgb);
@@ -106,7 +106,7 @@ void test_curve(void **) {
     const std::string file = save_shot("shot.dng", take(shot));
     const Json json = json_of(respond(file));
     assert_true(std::fabs(error_of(json, shot)) <= 0.01);
-    // Up to where white lies, which is the curve's own scale, from level to level.
+    // Compares the curve level by level, except for the position of white, which is the scale of the curve.
     double off = 0.0, mean = 0.0;
     lensprof_response found;
     const std::vector<double> values = json["response"]["values"][0];
@@ -123,7 +123,7 @@ void test_curve(void **) {
     assert_string_equal(again.dump().c_str(), once.dump().c_str());
 }
 
-// Turned as the camera was held, cut to another aspect by the crop, bent by the correction of distortion, larger.
+// Rotated as the camera was held, cropped to another aspect ratio, distortion corrected, enlarged.
 void test_geometry(void **) {
     needs_libraw();
     for (int i = 0; i < 5; i++) {
@@ -158,7 +158,7 @@ void test_local_tones_are_refused(void **) {
     assert_true(bool(json_of({"profile", "show", "1", "--db", work("a.db"), "--json"})["provenance"]["forced"]));
 }
 
-// What is stored is a response of the camera, with its error; a lookup for any lens of it finds it.
+// The stored profile is a response of the camera with its error, for any lens.
 void test_stored(void **) {
     needs_libraw();
     Shot shot = good_shot();
@@ -199,7 +199,7 @@ void test_several(void **) {
     assert_refused(usage, {"response", a, b, "--no-store"}, {"b.dng: comes from another camera"});
 }
 
-// The camera's JPEG beside the raw file, where that has none, and the one that is named.
+// The camera's JPEG next to a raw file without one, and a JPEG given by name.
 void test_jpeg_beside(void **) {
     needs_libraw();
     const Shot shot = good_shot();
@@ -223,7 +223,7 @@ void test_jpeg_beside(void **) {
     assert_refused(unreadable, {"response", work("IMG_1.dng"), "--jpeg", work("none.jpg"), "--no-store"}, {"none.jpg"});
 }
 
-// Black pictures, white ones, few greys, icons, cut files, and what is no raw file.
+// Black pictures, white ones, few grey levels, icons, cut files, and files that are not raw.
 void test_bad_input(void **) {
     needs_libraw();
     Shot shot = good_shot();
@@ -258,7 +258,7 @@ void test_bad_input(void **) {
     assert_refused(usage, {"response", work("shot.dng"), "--no-store", "--db", work("a.db")}, {"--no-store"});
 }
 
-// A sensor without colours and its grey JPEG; a colour sensor's black-and-white JPEG is a mixture that nobody knows.
+// A monochrome sensor with its grey JPEG; the black-and-white JPEG of a colour sensor is an unknown mixture.
 void test_monochrome(void **) {
     needs_libraw();
     Shot shot = good_shot();

@@ -1,4 +1,4 @@
-// What is stored serves later pictures: as the prior of the next fit, for one unit, between settings.
+// Stored profiles are used for later pictures: as the prior of the next fit, for one unit, between settings.
 #include <exiv2/exiv2.hpp>
 
 #include "cli_runs.hpp"
@@ -10,7 +10,7 @@ using namespace picture_files;
 
 namespace {
 
-// Two overlapping pictures of the simulated camera; another seed is another place.
+// Two overlapping pictures of the simulated camera; the seed determines the place.
 std::string pictures(const std::string &name, const char *seed, const char *falloff = "-0.4,0.1,-0.1") {
     must_exit(done, {"simulate", "-o", work(name), "--images", "2", "--size", "480x320", "--overlap", "0.5",
                      "--vignetting", falloff, "--ev", "1.5", "--exif", "--exif-rounding", "0.1", "--seed", seed});
@@ -53,7 +53,7 @@ void test_next_sequences(void **) {
     assert_true(contains(said, "prior     profile 3, used by the result"));
 }
 
-// Not even as what is in another profile, or under another name.
+// Pictures count once, even through another profile or under another name.
 void test_pictures_count_once(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a));
@@ -68,11 +68,11 @@ void test_pictures_count_once(void **) {
     const Json alone = json_of(build(a, {"--no-store"}));
     assert_true(contains(alone["prior"]["reason"].get<std::string>(), "profile 1 is from these pictures alone"));
     json_of(build(b));
-    must_exit(done, {"profile", "remove", "1", "--db", work("l.db")});  // the chain ends: nothing is known of it
+    must_exit(done, {"profile", "remove", "1", "--db", work("l.db")});  // the chain is broken: the origin is unknown
     assert_true(json_of(build(a, {"--no-store"}))["prior"]["used"].get<bool>());
 }
 
-// In another database, where they have other numbers, it is still known what is in which.
+// In another database, where ids differ, the origin of profiles is still known.
 void test_merged_profiles_count_once(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a));
@@ -87,10 +87,10 @@ void test_merged_profiles_count_once(void **) {
     assert_refused(usage, Words{"build", a} + again, {a, "profile 3 already includes these pictures", "--stored none"});
     assert_refused(usage, Words{"build", a, "--stored", "3", "--no-store"} + all, {"already includes these pictures"});
     const Json deep =
-        json_of(Words{"build", a, "--no-store", "--json"} + all);  // not asked for: it is said, and left out
+        json_of(Words{"build", a, "--no-store", "--json"} + all);  // not requested: it is left out, with a reason
     assert_true(deep["prior"]["profile"].is_null());
     assert_true(contains(deep["prior"]["reason"].get<std::string>(), "profile 3 already includes these pictures"));
-    // What is in a file has no numbers of ours.
+    // An exported file has no ids of the database.
     must_exit(done, Words{"profile", "export", "3", "-o", work("one.json")} + all);
     must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
     const Json alone = json_of({"profile", "show", "1", "--json", "--db", work("one.db")});
@@ -100,7 +100,7 @@ void test_merged_profiles_count_once(void **) {
     assert_true(contains(said, "1 was stored already"));
 }
 
-// Its falloff, that is: its response is that of these pictures, and stays the prior.
+// Its falloff is overruled; its response matches these pictures and stays the prior.
 void test_wrong_profile_is_overruled(void **) {
     json_of(build(pictures("a", "1", "-0.05,0,0")));
     const Outcome outcome = run_words(build(pictures("b", "2")));
@@ -114,8 +114,8 @@ void test_wrong_profile_is_overruled(void **) {
     assert_int_equal(shown(2)["provenance"]["images"], 4);
 }
 
-// Between two settings: the lens's profiles, predicted to the setting, and the camera's response. They are the prior,
-// but their pictures are not counted as of the result, and the same pictures are not their own prior.
+// Between two settings: the lens's profiles predicted for the setting, and the camera's response, form the prior. Their
+// pictures do not count as pictures of the result, and pictures are never their own prior.
 void test_composed_prior(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a, {"--aperture", "4"}));
@@ -124,7 +124,7 @@ void test_composed_prior(void **) {
     assert_true(json["prior"]["composed"].get<bool>());
     assert_true(json["prior"]["used"].get<bool>());
     assert_int_equal(json["prior"]["profile"], 1);
-    assert_int_equal(shown(3)["provenance"]["prior_id"], 1);  // the nearest: so that its pictures count once
+    assert_int_equal(shown(3)["provenance"]["prior_id"], 1);  // the nearest one, so that its pictures count once
     assert_int_equal(shown(3)["provenance"]["images"], 2);
     const Json again = json_of(build(a, {"--aperture", "4.2", "--no-store"}));
     assert_true(again["prior"]["profile"].is_null());
@@ -147,7 +147,7 @@ void test_no_prior_for_this(void **) {
     assert_refused(store_failed, build(b), {work("l.db")});
 }
 
-// Without a word from the user: what is stored, in any of the databases, is the prior.
+// By default, stored profiles in any of the databases are the prior.
 void test_stored_by_default(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2"), db = work("l.db");
     const Words one = {"--db", db, "--json", "--no-store"}, two = {"--db", work("own.db")};
@@ -161,12 +161,12 @@ void test_stored_by_default(void **) {
     const Json other = json_of(Words{"build", b, "--json"} + two + Words{"--db", db});
     assert_true(other["prior"]["used"].get<bool>() && other["prior"]["composed"].get<bool>());
     const Json row =
-        json_of(Words{"profile", "show", "1", "--json"} + two);  // numbers of one database mean nothing in another
+        json_of(Words{"profile", "show", "1", "--json"} + two);  // ids of one database mean nothing in another
     assert_true(row["provenance"]["prior_id"].is_null());
     assert_int_equal(row["provenance"]["images"], 2);
 }
 
-// The response of the camera is the prior for a lens that nobody has measured.
+// The camera's response is the prior, even for a lens without profiles.
 void test_response_of_the_camera(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2"), db = work("l.db");
     must_exit(done, {"build", a, "--db", db, "--lens", "Another lens", "--exif-sigma", "0.01"});
@@ -176,7 +176,7 @@ void test_response_of_the_camera(void **) {
     assert_true(json["gamma"]["from"] != "prior");
 }
 
-// So is one that a bracket refined: a table, whose error is that of its gamma.
+// The same with a response refined from a bracket: a table with the error of its gamma.
 void test_refined_response_of_the_camera(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2"), db = work("l.db");
     const Json first = json_of({"build", a, "--no-store", "--json"});
@@ -203,8 +203,7 @@ void test_refined_response_of_the_camera(void **) {
     assert_true(worst < 0.02);
 }
 
-// A falloff without covariance, as importers write it, settles gamma as far as it goes; so does one that was measured
-// at other settings.
+// An imported falloff without covariance determines gamma as well as it can; so does one measured at other settings.
 void test_imported_falloff_settles_gamma(void **) {
     const std::string a = pictures("a", "1"), db = work("lens.db");
     const Words fit = {"build", a, "--json", "--no-store", "--exif-sigma", "0"};
@@ -247,7 +246,7 @@ void write_exif(const std::string &file, const std::map<std::string, std::string
     image->writeMetadata();
 }
 
-// A profile of one unit serves this unit, before one of the model, and no other.
+// A profile of a unit is used for this unit, before one of the model, and for no other unit.
 void test_units(void **) {
     const std::string a = pictures("a", "1");
     const auto set_unit = [&](const char *body) {
@@ -270,7 +269,7 @@ void test_units(void **) {
     assert_refused(usage, Words{"build", a, "--unit", "exif"} + db, {"img000.png", "--unit"});
 }
 
-// Between two apertures the falloff is predicted, and it is said.
+// Between two apertures the falloff is predicted, and a note reports it.
 void test_apply_between_settings(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "1", "-0.2,0.05,-0.05");
     const Words db = {"--db", work("l.db"), "--distance", "inf"};
@@ -280,7 +279,7 @@ void test_apply_between_settings(void **) {
                          "--db",  work("l.db")};
     const Outcome outcome = run_words(apply);
     assert_int_equal(outcome.code, done);
-    // Once for both, for they are answered alike.
+    // A single note, since the lookup is the same for both.
     assert_true(contains(outcome.err, "img000.png and 1 more: falloff predicted from 2 profiles, response "));
     assert_true(contains(outcome.err, "; at most, M in the corner \u00b1 0."));
     assert_int_equal(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);

@@ -1,4 +1,4 @@
-// The size of a picture's sensor: by the database's table of cameras, before what EXIF says.
+// The size of a picture's sensor: from the database's table of cameras if possible, otherwise from EXIF.
 #include "cli_runs.hpp"
 
 #include <lensprof/store.h>
@@ -23,7 +23,7 @@ const Entry entries[] = {
     {"Fujifilm", "F810", "", "wide mode", 4.9},
 };
 
-// The table, and a lens at 50 mm f/2 for a sensor of 36 mm x 24 mm, k1 -0.4.
+// The table, and a lens at 50 mm f/2 measured on a 36 mm x 24 mm sensor, k1 -0.4.
 std::string make_database() {
     lensprof_store *store = nullptr;
     const std::string path = work("p.db");
@@ -94,7 +94,7 @@ void test_table(void **) {
     assert_close(crop_factor_in_files({work("bad.db")}, key_of("Canon", "EOS 600D"), {}), LENSPROF_UNKNOWN, 0);
 }
 
-// For keys of profiles that are made: what is given, the table, EXIF.
+// For keys of new profiles: first the option, then the table, then EXIF.
 void test_keys_of_profiles(void **) {
     StoreOptions o;
     o.dbs = {make_database()};
@@ -108,7 +108,8 @@ void test_keys_of_profiles(void **) {
     assert_close(override_key(key, {600, 400}, o, "a.jpg").crop_factor, 2.8, 0);
 }
 
-// Grey, by a camera whose sensor the lens's profile is too large for; lensprof writes no sensor's size into EXIF.
+// A grey picture from a camera with a smaller sensor than the lens's profile; lensprof does not write sensor sizes into
+// EXIF.
 double corner_of(const char *maker, const char *model, const Words &more) {
     constexpr uint32_t width = 60, height = 40;
     constexpr double grey = 0.3;
@@ -139,7 +140,7 @@ void test_apply(void **) {
     assert_close(corner_of("Canon", "Else", {"--camera", "EOS REBEL T3i"}), 1 - 0.4 * r2 / (1.6 * 1.6), 1e-3);
 }
 
-// The same without a picture: the table tells the sensor of the camera that is named, but not of which format it is.
+// The same without a picture: the table gives the sensor of the named camera, but not the format used.
 void test_query(void **) {
     make_database();
     const auto corner = [](const Words &more) {

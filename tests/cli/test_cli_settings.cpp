@@ -13,7 +13,7 @@ const Words quietly{"--no-store", "--stored", "none", "--json"};
 
 std::string numbered(size_t i) { return "img00" + std::to_string(i) + ".png"; }
 
-// The exposure stays, so that a smaller aperture takes longer.
+// The exposure is unchanged: a smaller aperture has a longer time.
 void state_aperture(const std::string &file, double f_number) {
     PictureMetadata metadata = read_metadata(file);
     metadata.exposure_time_s = *metadata.exposure_time_s * std::pow(f_number / *metadata.f_number, 2);
@@ -21,7 +21,7 @@ void state_aperture(const std::string &file, double f_number) {
     assert_true(write_metadata(file, metadata));
 }
 
-// Pictures of one scene in turn at two apertures.
+// Pictures of one scene, alternating between two apertures.
 std::string two_apertures(const char *overlap = "0.4") {
     const Words same = Words{"--images", "6", "--seed", "5", "--exif", "--overlap", overlap, "--noise", "1"};
     must_exit(done, Words{"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12"} + same);
@@ -68,15 +68,15 @@ void test_one_lens(void **) {
     assert_true(contains(one.err, "img001.png: lens, focal length, aperture or focus differ from"));
     assert_true(json["residual"]["heldout_median"].get<double>()
                 > 2.0 * each["residual"]["heldout_median"].get<double>());
-    // What the command line states holds for all pictures.
+    // Values on the command line hold for all pictures.
     assert_true(json_of(Words{"build", pto, "--aperture", "4"} + quietly, one.code)["settings"].empty());
-    // A method of one falloff.
+    // A method that fits one falloff only.
     const Outcome other = run_words(Words{"build", pto, "--method", "transfer-function"} + quietly);
     assert_true(contains(other.err, "2 lens settings"));
     assert_true(Json::parse(other.out)["settings"].empty());
 }
 
-// A profile for each, under its own aperture, which lookups find.
+// A profile for each, under its own aperture, so that lookups find it.
 void test_profiles(void **) {
     const std::string pto = two_apertures(), db = work("p.db");
     const Json json = json_of({"build", pto, "--db", db, "--json"});
@@ -91,7 +91,7 @@ void test_profiles(void **) {
     }
 }
 
-// The project with the result has both falloffs, and apply takes for each picture its own.
+// The resulting project has both falloffs, and apply uses the right one for each picture.
 void test_project_with_both(void **) {
     const std::string pto = two_apertures(), out = work("open/result.pto");
     const Json json = json_of(Words{"build", pto, "--pto-out", out} + quietly);
@@ -115,11 +115,11 @@ void test_project_with_both(void **) {
         print_message("%s: %.2f levels from the picture without falloff\n", numbered(i).c_str(), rms);
         assert_true(rms < 3.0);
     }
-    // Read again, each is estimated again.
+    // Read again, both are estimated again.
     assert_both_found(json_of(Words{"build", out, "--free", "all"} + quietly));
 }
 
-// A picture that does not state its aperture joins neither of two, wherever it stands, and no others through it.
+// A picture without an aperture joins neither of the two settings, at any position, and does not connect them.
 void test_an_aperture_that_is_not_known(void **) {
     for (size_t unknown : {0, 5}) {
         empty_work(nullptr);
@@ -136,7 +136,7 @@ void test_an_aperture_that_is_not_known(void **) {
     }
 }
 
-// Settings by the project's links alone, without EXIF.
+// Settings from the project's links alone, without EXIF.
 void test_links_of_a_project(void **) {
     const std::string copy = copy_of("scene");
     edit(copy + "/pano.pto", "Vb=0 Vc=0 Vd=0( .*img002)", "Vb0 Vc0 Vd0$1");
@@ -146,10 +146,10 @@ void test_links_of_a_project(void **) {
     assert_true(contains(json["settings"][1]["label"], "f/2.8, from img002.png"));
 }
 
-// A setting that its pictures do not show is named and not stored; the other one is.
+// A setting that its pictures do not determine is named and not stored; the other one is.
 void test_a_setting_that_is_not_shown(void **) {
     const std::string pto = two_apertures("0.75"), db = work("one.db");
-    // What is left of the stopped down pictures is their middle.
+    // Only the middle of the stopped down pictures remains.
     std::string text = text_of(pto);
     for (size_t i = 1; i < 6; i += 2) {
         const size_t name = text.find("n\"" + numbered(i));

@@ -1,5 +1,5 @@
-// What simulate can add to a sequence: objects that move, local tone mapping, exposures in the metadata. The camera is
-// linear, so that the model is written out here in two lines.
+// Optional effects of simulate: moving objects, local tone mapping, exposures in the metadata. The camera is linear, so
+// the model is two lines here.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -40,7 +40,7 @@ bool in_object(const Json &image, double x, double y) {
 struct SeenPair {
     size_t image[2];
     double x[2], y[2];
-    double mismatch;  // largest difference of the logarithms of radiance, both ends taken back through the camera
+    double mismatch;  // largest difference of the logarithms of radiance, both ends converted back through the camera
 };
 
 std::vector<SeenPair> pairs_of(const std::string &name, const std::string &file) {
@@ -77,8 +77,7 @@ double median_mismatch(const std::vector<SeenPair> &pairs) {
     return values[values.size() / 2];
 }
 
-// Pixels change inside the stated blocks and nowhere else; the blocks cover the share, and lie elsewhere in every
-// picture.
+// Pixels change only inside the stated blocks; the blocks cover the requested share and differ per picture.
 void test_objects_in_pictures(void **) {
     must_exit(done, simulate("plain", {}));
     must_exit(done, simulate("moved", {"--objects", "0.25"}));
@@ -103,10 +102,10 @@ void test_objects_in_pictures(void **) {
         assert_true(i == 0 || image["objects"] != truth["images"][0]["objects"]);
     }
     assert_close(double(inside) / (6.0 * width * height), 0.25, 0.03);
-    assert_true(double(changed) > 0.97 * double(inside));  // both white: the same
+    assert_true(double(changed) > 0.97 * double(inside));  // white on white does not change
 }
 
-// Pairs with no end on an object follow the model, those with one do not; noise-free pairs know no objects.
+// Pairs without an end on an object follow the model, pairs with one do not; noise-free pairs have no objects.
 void test_objects_in_pairs(void **) {
     must_exit(done, simulate("moved", {"--objects", "0.1", "--no-images", "--points", "2000", "--test-points", "500",
                                        "--format", "tiff16"}));
@@ -124,7 +123,7 @@ void test_objects_in_pairs(void **) {
     for (const SeenPair &pair : pairs_of("moved", "test_points.txt")) assert_close(pair.mismatch, 0, 0.01);
 }
 
-// Mean grey value about a pixel, weighted by a Gaussian whose sigma is a tenth of the width.
+// Mean grey value around a pixel, weighted by a Gaussian whose sigma is a tenth of the width.
 double surroundings(const std::vector<float> &plain, int x, int y) {
     double sum = 0, weights = 0;
     for (int v = 0; v < int(height); v += 4)
@@ -137,7 +136,7 @@ double surroundings(const std::vector<float> &plain, int x, int y) {
     return sum / weights;
 }
 
-// One gain for the three channels, set by the surroundings: up to +1 EV in the dark, -1 EV in the light.
+// One gain for the three channels, depending on the surroundings: up to +1 EV in the dark, -1 EV in the light.
 void test_local_tone_in_pictures(void **) {
     must_exit(done, simulate("plain", {}));
     must_exit(done, simulate("toned", {"--local-tone", "1"}));
@@ -162,7 +161,7 @@ void test_local_tone_in_pictures(void **) {
     assert_true(least < -0.2 && most > 0.5);
 }
 
-// The same point is rendered differently in two pictures; not so in the noise-free pairs, which score the response.
+// The same point is rendered differently in two pictures, but not in the noise-free pairs, which score the response.
 void test_local_tone_in_pairs(void **) {
     must_exit(done,
               simulate("toned", {"--local-tone", "1", "--no-images", "--points", "1000", "--test-points", "300"}));
@@ -170,15 +169,15 @@ void test_local_tone_in_pairs(void **) {
     for (const SeenPair &pair : pairs_of("toned", "test_points.txt")) assert_close(pair.mismatch, 0, 0.01);
 }
 
-// Differences of what pictures of every kind tell are the true ones, with several times and sensitivities.
+// Exposure differences in the metadata of every format are the true ones, with several times and sensitivities.
 void test_exif_tells_exposures(void **) {
-    must_exit(done, simulate("told", {"--exif", "--format", "png,png16,tiff,tiff16,tiff32,jpeg"}));
-    const Json truth = truth_of("told");
+    must_exit(done, simulate("exif", {"--exif", "--format", "png,png16,tiff,tiff16,tiff32,jpeg"}));
+    const Json truth = truth_of("exif");
     double zero = 0;
     std::vector<double> sensitivities;
     for (size_t i = 0; i < 6; ++i) {
         const Json &image = truth["images"][i];
-        const PictureMetadata m = read_metadata(work("told/" + image["file"].get<std::string>()));
+        const PictureMetadata m = read_metadata(work("exif/" + image["file"].get<std::string>()));
         assert_true(m.exif_ev.has_value() && m.exposure_time_s.has_value() && m.iso.has_value());
         assert_close(m.f_number.value_or(0), 2.8, 1e-9);
         assert_string_equal(m.key.camera_model, "Simulated Camera");
@@ -193,12 +192,12 @@ void test_exif_tells_exposures(void **) {
 }
 
 void test_exif_is_rounded(void **) {
-    must_exit(done, simulate("told", {"--exif", "--exif-rounding", "0.1", "--images", "40", "--size", "16x16"}));
-    const Json truth = truth_of("told");
+    must_exit(done, simulate("exif", {"--exif", "--exif-rounding", "0.1", "--images", "40", "--size", "16x16"}));
+    const Json truth = truth_of("exif");
     double sum = 0, square = 0;
     for (size_t i = 0; i < 40; ++i) {
         const Json &image = truth["images"][i];
-        const PictureMetadata m = read_metadata(work("told/" + image["file"].get<std::string>()));
+        const PictureMetadata m = read_metadata(work("exif/" + image["file"].get<std::string>()));
         assert_close(m.exif_ev.value_or(NAN), image["exif_ev"].get<double>(), 1e-8);
         const double error = image["exif_ev"].get<double>() - image["ev"].get<double>();
         sum += error, square += error * error;
@@ -206,15 +205,15 @@ void test_exif_is_rounded(void **) {
     assert_close(std::sqrt(square / 40 - sum * sum / 1600), 0.1, 0.04);
 }
 
-// At one manual exposure the pictures tell the same, and their exposures scatter by what is asked for.
+// With one manual exposure, all metadata are equal, and the true exposures scatter as requested.
 void test_exif_tells_one_manual_exposure(void **) {
-    must_exit(done, simulate("told", {"--exif", "--exif-manual", "--exif-scatter", "0.03", "--ev", "0", "--images",
+    must_exit(done, simulate("exif", {"--exif", "--exif-manual", "--exif-scatter", "0.03", "--ev", "0", "--images",
                                       "40", "--size", "16x16"}));
-    const Json truth = truth_of("told");
+    const Json truth = truth_of("exif");
     double sum = 0, square = 0;
     for (size_t i = 0; i < 40; ++i) {
         const Json &image = truth["images"][i];
-        const PictureMetadata m = read_metadata(work("told/" + image["file"].get<std::string>()));
+        const PictureMetadata m = read_metadata(work("exif/" + image["file"].get<std::string>()));
         assert_true(m.is_manual);
         assert_close(m.iso.value_or(0), 100, 0);
         assert_close(m.exif_ev.value_or(NAN), truth["images"][0]["exif_ev"].get<double>(), 1e-12);
@@ -226,7 +225,7 @@ void test_exif_tells_one_manual_exposure(void **) {
     assert_false(read_metadata(picture_of("auto", 0)).is_manual);
 }
 
-// Without --exif camera, lens and aperture are told, the exposure is not.
+// Without --exif, the metadata have camera, lens and aperture, but no exposure.
 void test_no_exposure_without_exif(void **) {
     must_exit(done, simulate("quiet", {"--images", "2"}));
     const PictureMetadata m = read_metadata(picture_of("quiet", 0));
@@ -242,7 +241,7 @@ void test_mean_exposure(void **) {
     for (const Json &image : truth["images"]) assert_close(image["ev"].get<double>(), -3, 0.5);
 }
 
-// 1000 pictures, of which each overlaps a few: pairs are found for all of them.
+// 1000 pictures, each overlapping a few others: pairs are found for all of them.
 void test_many_pictures(void **) {
     must_exit(done, {"simulate", "-o", work("many"), "--no-images", "--images", "1000", "--rows", "28", "--hfov", "4",
                      "--jitter", "0.1", "--ev", "0.5", "--mean-ev", "-1", "--points", "50000"});

@@ -1,5 +1,5 @@
-// simulate --moving: poses, exposures and light are as truth.json says. Projection and the way back through the camera
-// are written out here; the scene itself tells where its surfaces are.
+// simulate --moving: poses, exposures and light match truth.json. Projection and inversion of the camera are computed
+// here; the positions of surfaces come from the scene itself.
 #include <sched.h>
 
 #include <array>
@@ -24,12 +24,12 @@ Words simulate(const std::string &kind, const Words &more) {
 
 Json truth_of(const std::string &name) { return Json::parse(text_of(work(name + "/truth.json"))); }
 
-// Grey values of a picture, and what truth.json says of it.
+// Grey values of a picture, and its entry in truth.json.
 struct View {
     std::vector<double> samples;  // 0..1
     double ev, white_balance[3], centre[3], rotation[3][3], focal, principal[2];
 
-    // Place of a point of the scene in the frame; false where it is not in it.
+    // Position of a point of the scene in the frame; false if it is outside.
     bool project(const Vector3 &point, double xy[2]) const {
         const double way[3] = {point.x - centre[0], point.y - centre[1], point.z - centre[2]};
         double seen[3] = {};
@@ -69,7 +69,7 @@ double falloff_at(const Json &truth, const double xy[2]) {
     return 1 + r2 * (k[0].get<double>() + r2 * (k[1].get<double>() + r2 * k[2].get<double>()));
 }
 
-// Light of a grey value, by the table of the response.
+// Light of a grey value, from the table of the response.
 double light_of(const std::vector<double> &response, double value) {
     const size_t above = size_t(std::lower_bound(response.begin(), response.end(), value) - response.begin());
     if (above == 0) return 0;
@@ -78,7 +78,7 @@ double light_of(const std::vector<double> &response, double value) {
     return (double(above) - 1 + share) / (double(response.size()) - 1);
 }
 
-// Radiance at a place between pixels, the camera undone; 0 where a pixel about it is black or white.
+// Radiance at a position between pixels, with the camera inverted; 0 if a neighbouring pixel is black or white.
 void radiance_at(const Json &truth, const std::vector<double> &response, const View &view, const double xy[2],
                  double rgb[3]) {
     const double left = std::floor(xy[0]), top = std::floor(xy[1]);
@@ -111,7 +111,7 @@ public:
         for (size_t i = 0; i < images; ++i) views_.push_back(view_of(truth, i, kind));
     }
 
-    // Points on a grid of picture a that b sees too.
+    // Points on a grid of picture a that b also sees.
     std::vector<Match> matches(size_t a, size_t b) const {
         std::vector<Match> found;
         for (double y = 5; y < height - 5; y += 4)
@@ -159,7 +159,7 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-// Matte points look alike in all pictures, also where one shows them in a corner and the other in its middle.
+// Matte points look the same in all pictures, even if one shows them in a corner and another in its middle.
 void check_light(const std::string &kind) {
     must_exit(done, simulate(kind, {}));
     const Sequence sequence(kind);
@@ -199,7 +199,7 @@ double row_dot(const Json &rotation, size_t a, size_t b) {
     return sum;
 }
 
-// The usual content of truth.json and a proper camera beside it; no project.
+// The usual content of truth.json with a valid camera; no project.
 void test_truth(void **) {
     for (const char *kind : {"terrain", "room"}) {
         const std::string out = must_exit(done, simulate(kind, {"--no-images", "--images", "24"}));
@@ -227,7 +227,7 @@ void test_truth(void **) {
     }
 }
 
-// Within the limits that are asked for, about the mean.
+// Within the requested limits, around the mean.
 void test_limits_of_exposure(void **) {
     must_exit(done, simulate("room", {"--no-images", "--images", "24"}));
     const Json usual = truth_of("room")["images"];

@@ -1,4 +1,4 @@
-// The scenes of simulate, and what makes a sequence hard: parallax, sharpening, blown-out lights.
+// The scenes of simulate, and its difficult effects: parallax, sharpening, blown-out lights.
 #include <sched.h>
 
 #include <array>
@@ -41,8 +41,8 @@ double quantile(std::vector<double> values, double share) {
 
 struct Look {
     double texture;   // median |difference| of neighbours, share of the light
-    double contrast;  // of the 2nd and the 98th hundredth, EV
-    double edges;     // share of pixels beside a step of more than 30 %
+    double contrast;  // between the 2nd and the 98th percentile, EV
+    double edges;     // share of pixels next to a step of more than 30 %
 };
 
 Look look_of(const std::string &scene) {
@@ -64,7 +64,7 @@ Look look_of(const std::string &scene) {
             edges / double(steps.size())};
 }
 
-// Bounds are far apart between the scenes: a smooth one has a tenth of the texture of a rough one.
+// The bounds are far apart: a smooth scene has a tenth of the texture of a rough one.
 void test_scenes_differ(void **) {
     const Look sky = look_of("sky"), wall = look_of("wall"), foliage = look_of("foliage"),
                interior = look_of("interior");
@@ -87,7 +87,7 @@ void test_default_scene(void **) {
     assert_false(text_of(work("plain/img001.tif")) == text_of(work("other/img001.tif")));
 }
 
-// The share of the pixels that are white in a channel, over pictures of several exposures that keep their differences.
+// The share of pixels that are white in a channel, over pictures of several exposures whose differences are kept.
 void test_clip(void **) {
     for (const char *scene : {"landscape", "foliage", "sky"}) {
         must_exit(done, simulate("plain", {"--ev", "1", "--scene", scene}));
@@ -107,7 +107,7 @@ void test_clip(void **) {
     }
 }
 
-// Written out here: value + gain (value - Gaussian mean), one sum in two dimensions.
+// Computed here: value + gain (value - Gaussian mean), as a single two-dimensional sum.
 void test_sharpen(void **) {
     must_exit(done, simulate("plain", {"--scene", "interior", "--seed", "3"}));
     must_exit(done, simulate("sharp", {"--scene", "interior", "--seed", "3", "--sharpen", "0.8"}));
@@ -129,7 +129,7 @@ void test_sharpen(void **) {
     assert_close(truth_of("sharp")["sharpen"].get<double>(), 0.8, 0);
 }
 
-// The shift of the middle of block (x, y), px, that makes it most like a picture that was taken from elsewhere.
+// The shift in px of the middle of block (x, y) that best matches a picture taken from another position.
 std::array<int, 2> shift_of(const std::vector<float> &a, const std::vector<float> &b, size_t x, size_t y) {
     std::array<int, 2> best = {};
     double least = 1e9;
@@ -144,7 +144,7 @@ std::array<int, 2> shift_of(const std::vector<float> &a, const std::vector<float
     return best;
 }
 
-// The far stays, the near moves by the stated shift, what is between by half; no further than was asked for.
+// Distant objects stay, close ones move by the stated shift, others by half; nothing moves more than requested.
 void test_parallax(void **) {
     must_exit(done, simulate("still", {"--scene", "foliage", "--seed", "3"}));
     must_exit(done, simulate("moved", {"--scene", "foliage", "--seed", "3", "--parallax", "12"}));
@@ -169,7 +169,7 @@ void test_parallax(void **) {
     assert_close(truth_of("moved")["parallax"].get<double>(), 12, 0);
 }
 
-// Pairs see the parallax too, noise-free ones do not.
+// Pairs show the parallax too, noise-free ones do not.
 void test_parallax_in_pairs(void **) {
     const Words pairs = {"--scene", "foliage", "--no-images", "--points", "500", "--test-points", "200"};
     must_exit(done, simulate("still", pairs));

@@ -1,4 +1,4 @@
-// `lensprof profile export --split`: a folder with a file for each lens, and the size of JSON.
+// `lensprof profile export --split`: a folder with one file per lens, and the size of JSON.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -10,7 +10,7 @@ struct Stored {
     double crop_factor, aperture;
 };
 
-// Lenses whose names no file system takes as they are, or which differ by case alone.
+// Lenses with names that file systems cannot hold as they are, or that differ only by case.
 void make_db(const std::vector<Stored> &profiles) {
     Json all = Json::array();
     for (const Stored &one : profiles)
@@ -60,7 +60,7 @@ void test_a_file_for_each_lens(void **) {
     assert_int_equal(stored, kSeveral.size());
 }
 
-// A lens profile of Adobe is of one camera and sensor, a blob of one profile.
+// An Adobe lens profile holds one camera and sensor, a blob one profile.
 void test_formats_that_hold_less(void **) {
     make_db(kSeveral);
     must_exit(done, split("lcp", {"1", "2", "3", "4", "5"}));
@@ -90,7 +90,7 @@ void test_refusals(void **) {
     assert_refused(usage, split("json", {"--all", "--blob", work("x")}), {"--blob"});
 }
 
-// A profile whose curves follow from its kind takes less than 1 kB, another one its samples.
+// A profile with curves given by their kind takes less than 1 kB; others include their samples.
 void test_json_has_samples_of_tables_alone(void **) {
     make_db({{"A", 1, 2}});
     must_exit(done, {"profile", "export", "1", "-o", work("one.json"), "--db", work("p.db")});

@@ -8,7 +8,7 @@ using namespace picture_files;
 
 namespace {
 
-// A database of one imported lens with these falloffs.
+// A database with one imported lens and these falloffs.
 std::string make_db(const std::string &name, const std::string &lens, const std::vector<LensfunEntry> &entries) {
     save_text(work(name + ".xml"), lensfun_text(lens, entries));
     must_exit(done, {"profile", "import", "--db", work(name), work(name + ".xml")});
@@ -88,7 +88,7 @@ void test_check(void **) {
     assert_refused(usage, {"profile", "check", "--db", a, "1"}, {"1"});
 }
 
-// One bad row does not end a list: the others are listed, the row is named.
+// A damaged row does not end a list: the others are listed, the row is named.
 void test_list_with_a_damaged_row(void **) {
     const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4}, {50, 4, -0.2}, {50, 8, -0.1}});
     run_sql(a, "PRAGMA ignore_check_constraints = ON; UPDATE profiles SET aperture = -2.0 WHERE id = 2");

@@ -11,7 +11,7 @@ void simulate(const std::string &name, const Words &more) {
 
 std::string pto(const std::string &name) { return work(name + "/pano.pto"); }
 
-// In the place of img005 a picture of another scene.
+// Replaces img005 by a picture of another scene.
 void spoil(const std::string &name) {
     simulate(name, {"--seed", "3"});
     simulate(name + "-other", {"--seed", "99"});
@@ -36,10 +36,10 @@ void test_one_bad_picture_of_six(void **) {
         if (is_bad) assert_true(link["state"] != "verified");
         if (link["pairs"].get<int>() > 100) assert_true(link["state"] == "verified");
     }
-    // Text: the picture has no exposure.
+    // As text: the picture has no exposure.
     const std::string text = must_exit(done, {"build", pto("bad"), "--no-store", "--stored", "none"});
     assert_true(contains(text, "img005.png  left out") && contains(text, "\nlinks     4 verified, 1 contradicted\n"));
-    // The others are evened out, this one stays as it is.
+    // The other pictures are evened out, this one stays unchanged.
     assert_true(contains(text_of(result), "\n#-lensprof left_out 5\n"));
     const Outcome corrected = run_words({"apply", "--pto", result, "-o", even});
     assert_int_equal(corrected.code, done);
@@ -62,7 +62,8 @@ void test_the_reference_can_be_the_bad_one(void **) {
     assert_close(json["images"][reference]["ev"].get<double>(), 0.0, 0.0);
 }
 
-// Local tone mapping that is no camera's, but evens out: nothing is stored, the pictures can be corrected.
+// Local tone mapping that does not belong to the camera but allows a correction: nothing is stored, the pictures can be
+// corrected.
 void test_even_pictures_that_are_no_profile(void **) {
     simulate("tone", {"--local-tone", "0.6"});
     const std::string db = work("tone.db"), result = work("tone/result.pto");
@@ -86,7 +87,8 @@ void test_noise_is_neither(void **) {
     assert_true(json["usable"] == false && json["evens"] == false);
 }
 
-// One exposure, and a falloff that the camera has corrected: the response is that of the kind of camera, and says so.
+// One exposure, and a falloff corrected by the camera: the response is typical of the kind of camera, and a reason
+// reports it.
 void test_pictures_that_show_no_response(void **) {
     simulate("flat", {"--ev", "0", "--wb", "0", "--vignetting", "0,0,0"});
     const Json json = json_of({"build", pto("flat"), "--no-store", "--json"});
@@ -95,13 +97,13 @@ void test_pictures_that_show_no_response(void **) {
     assert_true(json["response"]["light_spread_ev"].get<double>() < 0.06);
     assert_close(json["gamma"]["sigma"].get<double>(), 0.264, 0.001);
     const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--seed", "7"});
-    assert_true(other["response"]["values"] == json["response"]["values"]);  // not of noise
+    assert_true(other["response"]["values"] == json["response"]["values"]);  // independent of noise
     simulate("shown", {});
     assert_true(json_of({"build", pto("shown"), "--no-store", "--json"})["response"]["from"] == "pictures");
 }
 
-// The falloff of such pictures is known all the same: stored, it is found at its setting. The response is not: it is
-// no prior of the next fit.
+// The falloff of such pictures is still known: it is stored and found for its setting. The response is not a prior of
+// the next fit.
 void test_a_falloff_without_a_response_is_found(void **) {
     const Words dim{"--ev", "0", "--wb", "0", "--vignetting=-.06,0,0"};
     const Words setting{"--db", work("even.db"), "--camera", "B", "--lens", "C", "--focal", "30", "--aperture", "4"};
@@ -118,7 +120,7 @@ void test_a_falloff_without_a_response_is_found(void **) {
         0.002);
 }
 
-// Nothing of the lens is asked for: there would be nothing in the profile.
+// No parameter of the lens is requested, so the profile would be empty.
 void test_nothing_to_store(void **) {
     simulate("nothing", {});
     const Outcome refused = run_words({"build", pto("nothing"), "--free", "ev,wb", "--db", work("nothing.db")});
@@ -127,7 +129,7 @@ void test_nothing_to_store(void **) {
     assert_false(fs::exists(work("nothing.db")));
 }
 
-// A sky with a few wires, whose project is off by some pixels, joins.
+// A sky with a few wires, with a project that is off by some pixels, is joined.
 void test_smooth_pictures_join(void **) {
     simulate("sky", {"--scene", "sky", "--misalign", "4", "--response", "srgb"});
     const Json json = json_of({"build", pto("sky"), "--no-store", "--json"});
@@ -136,7 +138,7 @@ void test_smooth_pictures_join(void **) {
     for (const Json &link : json["links"]) assert_true(link["state"] != "contradicted");
 }
 
-// Frames of a camera that stood still and of one exposure are even already; a bracket of them shows nothing.
+// Frames of a stationary camera with one exposure already match; a bracket of them shows nothing.
 void test_frames_of_one_exposure(void **) {
     simulate("still", {});
     fs::copy_file(work("still/img000.png"), work("still/copy.png"));
@@ -145,7 +147,8 @@ void test_frames_of_one_exposure(void **) {
     assert_refused(not_usable, Words{"bracket", "--no-store"} + frames, {"0.00 EV"});
 }
 
-// The light that a first fit finds joins the picture that it left out: exposures are true but for gamma, which is open.
+// The light found by a first fit joins the picture that was left out: exposures are true except for gamma, which is
+// open.
 void test_a_second_look_joins(void **) {
     must_exit(done, {"simulate", "-o", work("far"), "--size", "480x360", "--images", "4", "--scene", "foliage", "--ev",
                      "5", "--overlap", "0.35", "--noise", "1", "--seed", "3"});

@@ -1,5 +1,5 @@
-// HEIC, AVIF, WebP and JPEG XL as pictures: values, layouts, profiles, orientation, metadata. The encoders of the
-// libraries write without loss, so that what was written is the truth.
+// HEIC, AVIF, WebP and JPEG XL as pictures: values, layouts, profiles, orientation, metadata. The libraries encode
+// without loss, so the input is the ground truth.
 #include "coded_files.hpp"
 
 #include "cli/pictures/coded_kind.hpp"
@@ -16,7 +16,7 @@ namespace {
     skip();
 }
 
-// A colour profile that encoders look into: what libpng-made files of this program have.
+// A colour profile that encoders parse: that of PNG files written by this program.
 [[maybe_unused]] Bytes some_profile() { return make_profile(false, 300); }
 
 [[maybe_unused]] void assert_reads(const std::string &path, const Picture &expected, FileFormat format) {
@@ -47,7 +47,7 @@ namespace {
     assert_true(read_xmp_packet(path).find("Rating=\"4\"") != std::string::npos);
 }
 
-// Both go to a TIFF: pixels by the writer, EXIF by a copy.
+// Both are written to a TIFF: pixels by the writer, EXIF by a copy.
 [[maybe_unused]] void assert_copied(const std::string &path, uint16_t orientation, const Bytes &icc) {
     const Picture picture = read_picture(path);
     WriteOptions options;
@@ -87,7 +87,7 @@ void test_webp_metadata(void **) {
     }
 }
 
-// Two frames with their durations, in an extended file with the flag of an animation.
+// Two frames with their durations, in an extended file with the animation flag.
 void test_webp_animation(void **) {
     const Bytes still = webp_bytes(make_noise(16, 16, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
     Bytes frames(12, 0), frame;
@@ -104,7 +104,7 @@ void test_webp_animation(void **) {
     assert_failure(ExitCode::unreadable, "is a WebP animation", [] { read_header(in_folder("a.webp")); });
 }
 
-// libwebp's own program, which decodes at one go.
+// libwebp's own program, which decodes in one step.
 void test_webp_as_dwebp(void **) {
     needs(system("command -v dwebp >/dev/null 2>&1") == 0, "dwebp (package webp)");
     const std::string path = in_folder("a.webp"), png = in_folder("a.png");
@@ -133,7 +133,7 @@ void for_each_coding(const Test &test) {
 void test_heif_values(void **) {
     for_each_coding([](heif_compression_format coding, const std::string &path) {
         for (const unsigned bits : {8u, 10u, 12u}) {
-            if (bits == 10 && coding == heif_compression_AV1) continue;  // libheif 1.15 asks libaom for a wrong profile
+            if (bits == 10 && coding == heif_compression_AV1) continue;  // libheif 1.15 passes libaom a wrong profile
             const uint32_t sample = bits > 8 ? LENSPROF_SAMPLE_U16 : LENSPROF_SAMPLE_U8;
             Picture picture = make_noise(84, 62, sample, LENSPROF_LAYOUT_RGB);
             if (bits > 8) picture = of_bits(picture, bits);
@@ -157,7 +157,7 @@ void test_heif_layouts(void **) {
 void test_heif_metadata(void **) {
     for_each_coding([](heif_compression_format coding, const std::string &path) {
         const Picture picture = make_noise(83, 61, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
-        // EXIF's orientation gives way to the file's own
+        // the file's own orientation takes precedence over EXIF's
         write_heif(path, coding, picture, 8, {make_exif(6), make_xmp(), some_profile()});
         assert_metadata(path, 1);
         assert_true(read_header(path).icc == some_profile());
@@ -166,7 +166,7 @@ void test_heif_metadata(void **) {
     });
 }
 
-// What is displayed of a picture with EXIF's orientation: the pixel at (x, y).
+// The displayed pixel of a picture with EXIF's orientation: the pixel at (x, y).
 const uint8_t *displayed(const Picture &stored, uint16_t orientation, uint32_t x, uint32_t y) {
     const uint32_t w = stored.width, h = stored.height;
     const struct {
@@ -177,7 +177,7 @@ const uint8_t *displayed(const Picture &stored, uint16_t orientation, uint32_t x
     return stored.pixels.data() + place.y * stored.row_bytes + place.x * 3;
 }
 
-// Stored pixels come as they were before libheif turned them, and the orientation turns them as libheif does.
+// Stored pixels are those before libheif rotated them, and the orientation rotates them as libheif does.
 void test_heif_orientation(void **) {
     for_each_coding([](heif_compression_format coding, const std::string &path) {
         const Picture picture = make_noise(84, 62, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
@@ -204,7 +204,7 @@ void test_heif_orientation(void **) {
             heif_image_handle_release(handle);
             heif_context_free(context);
             if (orientation != 1 && orientation != 3 && orientation != 6 && orientation != 8) continue;
-            assert_int_equal(own, orientation);  // a rotation alone: which axis mirrors differs between editions
+            assert_int_equal(own, orientation);  // only for rotations: the mirror axis differs between editions
             assert_same_pixels(got, picture);
         }
     });
@@ -218,7 +218,7 @@ void test_heif_primary(void **) {
     });
 }
 
-// Two tiles below each other and three side by side, the last ones cut off, turned as a phone held upright does.
+// Two rows of three tiles, the last ones cut off, rotated as on a phone held upright.
 void test_heif_grid(void **) {
     needs(can_write_heif(heif_compression_HEVC), "an encoder of HEIC in libheif");
     constexpr uint32_t tile = 64, width = 170, height = 100;
@@ -323,7 +323,7 @@ void test_jxl_animation(void **) {
     assert_failure(ExitCode::unreadable, "is a JPEG XL animation", [] { read_header(in_folder("a.jxl")); });
 }
 
-// libjxl's own programs: a JPEG goes into a JPEG XL and counts as the camera's own.
+// libjxl's own programs: a JPEG recompressed as JPEG XL counts as the camera's own.
 void test_jxl_of_jpeg(void **) {
     needs(system("command -v cjxl >/dev/null 2>&1 && command -v djxl >/dev/null 2>&1") == 0,
           "cjxl (package libjxl-tools)");

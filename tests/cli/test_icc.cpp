@@ -1,4 +1,4 @@
-// What colour profiles say of the tone curve; damaged ones say nothing, and nothing beyond them is read.
+// The tone curve of colour profiles. Damaged profiles give none, and nothing beyond their end is read.
 #include "icc_files.hpp"
 
 #include "cli/pictures/icc.hpp"
@@ -9,7 +9,7 @@ using namespace lensprof;
 using namespace icc_files;
 
 ToneCurve told(const Bytes &profile) {
-    const std::vector<uint8_t> exact(profile.begin(), profile.end());  // a sanitizer sees what is read behind it
+    const std::vector<uint8_t> exact(profile.begin(), profile.end());  // a sanitizer detects reads beyond the end
     return tone_curve_of(exact.data(), exact.size());
 }
 
@@ -38,7 +38,7 @@ void test_curves(void **) {
         {function_curve(2, {1.0, 1.0, 0.0, 0.0}), ToneCurve::linear},
         {function_curve(2, {1.0, 0.9, 0.0, 0.1}), ToneCurve::other},
         {function_curve(3, {1.0, 1.0, 0.0, 1.0, 0.0}), ToneCurve::linear},            // as libjxl writes it
-        {function_curve(4, {2.4, 1.0, 0.0, 1.0, 1.5, 0.0, 0.0}), ToneCurve::linear},  // the straight part alone
+        {function_curve(4, {2.4, 1.0, 0.0, 1.0, 1.5, 0.0, 0.0}), ToneCurve::linear},  // only the linear part
         {function_curve(4, {1.0, 1.0, 0.0, 1.0, 0.0, 0.1, 0.0}), ToneCurve::other},
         {function_curve(5, {1.0}), ToneCurve::unknown},
         {function_curve(3, {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}), ToneCurve::other},  // sRGB

@@ -1,4 +1,4 @@
-// The standard errors that exposures by EXIF have for the fit.
+// The standard errors of EXIF exposures in the fit.
 #include <cstring>
 #include <sstream>
 
@@ -13,7 +13,7 @@ using namespace lensprof;
 
 namespace {
 
-// 1/100 s, f/8, ISO 100, by hand.
+// 1/100 s, f/8, ISO 100, manual.
 PictureMetadata manual() {
     PictureMetadata m = unknown_metadata();
     m.exposure_time_s = 0.01, m.f_number = 8.0, m.iso = 100.0, m.is_manual = true;
@@ -54,7 +54,7 @@ void test_automatic_exposures(void **) {
     assert_sigmas(sigmas({manual(), automatic, manual()}), {0.03, 0.1, 0.03});
 }
 
-// Of several exposures by hand the one of the most pictures; where as many have another, the first.
+// Of several manual exposures, that of the most pictures; with equal counts, the first.
 void test_the_largest_group(void **) {
     PictureMetadata longer = manual(), wider = manual(), faster = manual(), other = manual();
     longer.exposure_time_s = 0.02, wider.f_number = 5.6, faster.iso = 200.0;

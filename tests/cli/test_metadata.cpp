@@ -1,4 +1,4 @@
-// Metadata of picture files: what is read from files written through Exiv2, and what a copy keeps and leaves out.
+// Metadata of picture files: reading files written through Exiv2, and what a copy keeps and leaves out.
 #include <cstring>
 #include <thread>
 
@@ -106,7 +106,7 @@ void test_unit_and_sensor(void **) {
             LENSPROF_UNKNOWN, 0);
 }
 
-// Pixels of 3.9 um; EXIF of a picture of width x height, in one of own_width x own_height.
+// Crop factor for pixels of 3.9 um, from EXIF of a picture of width x height; EXIF states own_width x own_height.
 double crop_of_pitch(const char *width, const char *height, uint32_t own_width, uint32_t own_height,
                      const char *focal_in_35mm = nullptr) {
     const std::string path = in_folder("pitch.jpg");
@@ -130,17 +130,17 @@ double crop_of_pitch(const char *width, const char *height, uint32_t own_width, 
 void test_sensor_by_pitch(void **) {
     const double full = std::hypot(36, 24) / (std::hypot(2400, 1600) * 0.0039);  // 9.36 mm x 6.24 mm
     assert_close(crop_of_pitch("2400", "1600", 2400, 1600), full, 1e-9);
-    assert_close(crop_of_pitch("1600", "2400", 2400, 1600), full, 1e-9);        // turned
+    assert_close(crop_of_pitch("1600", "2400", 2400, 1600), full, 1e-9);        // rotated
     assert_close(crop_of_pitch("2400", "1600", 2400, 1600, "70"), full, 1e-9);  // 70/18 is 3.89, rounded
     assert_close(crop_of_pitch("2400", "1600", 2400, 1600, "27"), 1.5, 1e-9);   // contradiction
     assert_close(crop_of_pitch("2400", "1600", 1200, 800), LENSPROF_UNKNOWN, 0);
     assert_close(crop_of_pitch("2400", "1600", 1200, 800, "70"), 70 / 18.0, 1e-9);
-    assert_close(crop_of_pitch("2400", "1600", 2400, 1350), LENSPROF_UNKNOWN, 0);  // cut
-    assert_close(crop_of_pitch("1200", "800", 1200, 800), LENSPROF_UNKNOWN, 0);    // made smaller, and stated so
+    assert_close(crop_of_pitch("2400", "1600", 2400, 1350), LENSPROF_UNKNOWN, 0);  // cropped
+    assert_close(crop_of_pitch("1200", "800", 1200, 800), LENSPROF_UNKNOWN, 0);    // reduced, as EXIF states
     assert_close(crop_of_pitch("1200", "800", 1200, 800, "27"), 1.5, 1e-9);
 }
 
-// Nikon's numbers of AF-S Zoom-Nikkor 24-70mm f/2.8G ED.
+// Nikon's codes of the AF-S Zoom-Nikkor 24-70mm f/2.8G ED.
 void test_nikon_lens_of_numbers(void **) {
     const std::vector<std::pair<const char *, const char *>> numbers = {{"Exif.Image.Make", "NIKON CORPORATION"},
                                                                         {"Exif.Photo.LensModel", "24.0-70.0 mm f/2.8"},
@@ -189,7 +189,7 @@ void test_lens_of_maker_note(void **) {
     assert_true(olympus.key.lens[0] == '\0' || std::strstr(olympus.key.lens, "14-54mm"));
 }
 
-// Picture styles as the makers' notes have them.
+// Picture styles as in the maker notes.
 void test_style(void **) {
     assert_string_equal(read_exif({{"Exif.Image.Make", "Canon"}, {"Exif.CanonPr.PictureStyle", "130"}}).key.style,
                         "Portrait");
@@ -207,7 +207,7 @@ void test_exposure(void **) {
     assert_close(metadata.key.aperture, 8, 1e-12);
     assert_false(metadata.iso || metadata.exif_ev);
 
-    // Stated values win over APEX; zero and zero denominators are unknown.
+    // The plain tags take precedence over APEX; zero and zero denominators are unknown.
     metadata = read_exif({{"Exif.Photo.ExposureTime", "1/250"},
                           {"Exif.Photo.ShutterSpeedValue", "7/1"},
                           {"Exif.Photo.FNumber", "28/10"},
@@ -228,7 +228,8 @@ void test_exposure(void **) {
     assert_close(metadata.key.aperture, LENSPROF_UNKNOWN, 0);
 }
 
-// By either tag, whatever the other says; 0 and 2 are "not defined" and "normal program", mode 2 is bracketing.
+// Either tag is enough, whatever the other states; 0 and 2 are "not defined" and "normal program", mode 2 is
+// bracketing.
 void test_manual_exposure(void **) {
     using Tags = std::vector<std::pair<const char *, const char *>>;
     const char *program = "Exif.Photo.ExposureProgram", *mode = "Exif.Photo.ExposureMode";
@@ -259,7 +260,7 @@ void test_distance(void **) {
 
 // Copies.
 
-// A picture of the kind of `name`, with everything a camera and an editor put into it.
+// A picture of the format of `name`, with all metadata that cameras and editors write.
 void make_source(const std::string &name) {
     Picture picture = make_smooth(48, 32, LENSPROF_LAYOUT_RGB);
     picture.traits.orientation = 6;
@@ -315,7 +316,7 @@ void check_copy(const std::string &path, const char *mime_type) {
     }
 }
 
-// From every format to every format: the metadata arrive, pixels, profile and resolution stay.
+// From every format to every format: the metadata are copied; pixels, profile and resolution stay.
 void test_copy(void **) {
     const char *const mime_types[] = {"image/jpeg", "image/png", "image/tiff"};
     Picture picture = make_smooth(60, 40, LENSPROF_LAYOUT_RGB);
@@ -341,7 +342,7 @@ void test_copy(void **) {
     }
 }
 
-// Exiv2 rebuilds the TIFF: no kind of pixels, strips or extra samples may be harmed, nor the byte order.
+// Exiv2 rebuilds the TIFF: pixels, strips, extra samples and byte order of every kind must survive.
 void test_copy_to_any_tiff(void **) {
     make_source("s.jpg");
     for (const char *mode : {"wl", "wb"}) {
@@ -383,7 +384,7 @@ void test_copy_from_itself(void **) {
     }
 }
 
-// ExifTool edits what was written and copied, without -m, and finds nothing wrong with it.
+// ExifTool edits written and copied files without -m, and reports no errors.
 void test_exiftool(void **) {
     if (system("exiftool -ver >/dev/null 2>&1") != 0) {
         print_message("needs package libimage-exiftool-perl\n");
@@ -445,7 +446,7 @@ void test_copy_fails(void **) {
     assert_true(load(in_folder("s.jpg")) == whole);
     assert_int_equal(files_in_folder(), 2);
 
-    // More EXIF than a JPEG segment can hold.
+    // More EXIF than fits into a JPEG segment.
     write_picture(in_folder("a.tif"), make_smooth(8, 8, LENSPROF_LAYOUT_RGB));
     edit(in_folder("a.tif"), [](Exiv2::Image &image) {
         for (const char *key : {"Exif.Image.Artist", "Exif.Image.Copyright", "Exif.Image.ImageDescription",
@@ -460,7 +461,7 @@ void test_copy_fails(void **) {
     assert_false(fs::exists(in_folder("a.jpg")));
 }
 
-// Pictures are read by several threads at a time.
+// Several threads read pictures simultaneously.
 void test_threads(void **) {
     make_source("s.jpg");
     std::vector<std::thread> threads;

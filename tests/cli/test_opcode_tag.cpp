@@ -1,4 +1,4 @@
-// Opcode lists in TIFF and DNG files that libtiff wrote, read back with libtiff; and what exiftool says of them.
+// Opcode lists in TIFF and DNG files written by libtiff, read back with libtiff and with exiftool.
 #include "picture_files.hpp"
 
 #include <sys/resource.h>
@@ -44,7 +44,7 @@ void write_rows(TIFF *tiff, uint8_t seed) {
     assert_int_equal(TIFFWriteDirectory(tiff), 1);
 }
 
-// As DNG files are: a preview, and the raw image in the last of its SubIFDs.
+// As in DNG files: a preview, and the raw image in the last of its SubIFDs.
 std::string write_dng(const std::string &name, const char *mode, uint16_t children) {
     const std::string path = in_folder(name);
     TIFF *tiff = TIFFOpen(path.c_str(), mode);
@@ -82,7 +82,7 @@ std::string write_plain(const std::string &name, const char *mode, int pages = 1
     return path;
 }
 
-// libtiff's view: all rows of the directory that it is set to, and the tag.
+// libtiff's view: all rows of the current directory, and the tag.
 struct Seen {
     Bytes rows, list;
 };
@@ -103,7 +103,7 @@ Seen look(TIFF *tiff, uint16_t tag) {
 // Main directories in their order, or the SubIFDs of the first.
 std::vector<Seen> look_at(const std::string &path, uint16_t tag, bool children) {
     std::vector<Seen> all;
-    TIFFSetWarningHandler(nullptr);  // of tags that libtiff does not know
+    TIFFSetWarningHandler(nullptr);  // warnings about tags unknown to libtiff
     TIFF *tiff = TIFFOpen(path.c_str(), "r");
     assert_non_null(tiff);
     uint16_t count = 0;
@@ -121,7 +121,7 @@ std::vector<Seen> look_at(const std::string &path, uint16_t tag, bool children) 
     return all;
 }
 
-// All bytes of the old file but the 4 that lead to the directory are there still.
+// All bytes of the old file are unchanged, except the 4 that point to the directory.
 void assert_kept(const Bytes &before, const Bytes &after) {
     assert_true(after.size() > before.size());
     size_t first = before.size(), last = 0, changed = 0;
@@ -162,13 +162,13 @@ void test_raw_image_of_a_dng(void **) {
             }
 }
 
-// A list that is there is replaced, the other one stays; in place, and twice.
+// An existing list is replaced, the other one stays; in place, and twice.
 void test_replaced_in_place(void **) {
     const std::string path = write_dng("in.dng", "wb", 2);
     write_opcode_list(path, path, tag_opcode_list2, some_list(100));
     write_opcode_list(path, path, tag_opcode_list3, some_list(61));
     write_opcode_list(path, path, tag_opcode_list2, some_list(40));
-    const Bytes nothing = {0, 0, 0, 0};  // held in the directory itself
+    const Bytes nothing = {0, 0, 0, 0};  // stored in the directory itself
     const OpcodeLists lists = read_opcode_lists(path);
     assert_true(lists.list2 == some_list(40) && lists.list3 == some_list(61));
     assert_true(look_at(path, tag_opcode_list2, true).at(1).list == some_list(40));
@@ -178,7 +178,7 @@ void test_replaced_in_place(void **) {
     assert_int_equal(files_in_folder(), 1);
 }
 
-// Of a TIFF without a raw image the first page; those after it stay reachable.
+// A TIFF without a raw image: the first page; later pages stay reachable.
 void test_plain_tiff(void **) {
     for (const char *mode : {"wl", "wb"}) {
         const std::string in = write_plain("in.tif", mode, 3), out = in_folder("out.tif");
@@ -196,7 +196,7 @@ void test_plain_tiff(void **) {
 
 void assert_refused(const std::string &in, const char *why) {
     const std::string out = in_folder("out.dng");
-    save(out, {1, 2, 3});  // what was there before
+    save(out, {1, 2, 3});  // an existing file
     const size_t files = files_in_folder();
     int refused = 0;
     for (const bool writes : {false, true}) try {
@@ -224,7 +224,7 @@ void test_refused(void **) {
     assert_refused(in, "is not a TIFF");
     write_plain("in.dng", "w8");
     assert_refused(in, "is a BigTIFF");
-    save(in, {'I', 'I', 42, 0, 8, 0, 0, 0, 0, 0, 8, 0, 0, 0});  // the first directory follows itself
+    save(in, {'I', 'I', 42, 0, 8, 0, 0, 0, 0, 0, 8, 0, 0, 0});  // the first directory points to itself as the next
     assert_refused(in, "circular");
     save(in, {'I', 'I', 42, 0, 0, 0, 0, 0});
     assert_refused(in, "no image directory");
@@ -232,7 +232,7 @@ void test_refused(void **) {
     assert_refused(in, "is cut off");
 }
 
-// Cut anywhere a file is refused, or, where only pixels are missing, read; changed anywhere it is one of the two.
+// A file cut anywhere is refused, or read if only pixels are missing; a file changed anywhere is refused or read.
 void test_cuts_and_mutations(void **) {
     const Bytes whole = load(write_dng("in.dng", "wl", 3));
     const std::string path = in_folder("cut.dng"), out = in_folder("out.dng");
@@ -248,20 +248,20 @@ void test_cuts_and_mutations(void **) {
     };
     for (size_t size = 0; size < whole.size(); size += 61) {
         save(path, Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
-        assert_int_equal(try_one(true), 0);  // the raw image's directory is the last thing of the file
+        assert_int_equal(try_one(true), 0);  // the raw image's directory is at the end of the file
     }
     Bytes changed = whole;
     size_t good = 0;
     for (size_t at = 0; at < whole.size(); at += 1 + at / 400) {
         changed[at] ^= 0x91;
         save(path, changed);
-        good += try_one(at % 300 == 0) == 1;  // every write is made to last, which takes its time
+        good += try_one(at % 300 == 0) == 1;  // flushing every write to the disk would take too long
         changed[at] = whole[at];
     }
     assert_true(good > 100);
 }
 
-// What the library writes, under the names that exiftool has for it.
+// Lists written by the library, under exiftool's names for them.
 void test_exiftool(void **) {
     if (system("exiftool -ver >/dev/null 2>&1") != 0) {
         print_message("needs package libimage-exiftool-perl\n");
@@ -298,7 +298,7 @@ long peak_memory() {
     return used.ru_maxrss * 1024;
 }
 
-// 255 SubIFDs that are one directory of as many entries as there can be: 400 MB if all were held.
+// 255 SubIFDs that are the same directory, with the maximal number of entries: 400 MB if all were held.
 void test_shared_directory(void **) {
 #if defined(__SANITIZE_ADDRESS__)
     skip();  // the address sanitizer keeps freed memory

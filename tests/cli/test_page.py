@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Reports in a browser: headless Chromium opens pages that the program wrote.
+"""Reports in a browser: headless Chromium opens pages written by the program.
 
-usage: test_page.py LENSPROF    exit 0 if all is well, 77 if there is no Chromium
+usage: test_page.py LENSPROF    exit 0 if all tests pass, 77 if Chromium is missing
 
-A copy of each page gets a script that notes console messages, errors and violations of the content security policy,
-operates the page as a reader would, and leaves what it found in the document.
+A script in a copy of each page collects console messages, errors and violations of the content security policy,
+operates the page as a reader would, and stores its findings in the document.
 """
 
 import json
@@ -106,7 +106,7 @@ class Browser:
         return subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=120, check=False).stdout
 
     def check(self, page, width=1200, is_dark=False):
-        """What OPERATE found."""
+        """The findings of OPERATE."""
         text = page.read_text(encoding="utf-8")
         copy = page.with_name("checked-" + page.name)
         copy.write_text(text.replace("<link", LISTEN + "<link", 1).replace("</body>", OPERATE + "</body>"), encoding="utf-8")
@@ -125,7 +125,7 @@ DESKTOP, PHONE, DARK = (1200, False), (500, False), (1200, True)
 
 
 def check_page(browser, page, least_charts, ways):
-    """No message, nothing wider than the page, text that can be read."""
+    """No messages, nothing wider than the page, sufficient contrast."""
     for width, is_dark in ways:
         found = browser.check(page, width, is_dark)
         where = f"{page.name}, width {width}, {'dark' if is_dark else 'light'}: {found}"

@@ -16,7 +16,7 @@ double value_of(const Picture &picture, uint32_t x, uint32_t y, uint32_t c) {
                                                    : double(reinterpret_cast<const float *>(row)[i]);
 }
 
-// Whether all samples of held pixel (x, y) are the mean of the middle two of the 2 x 2 pixels from (u, v) on, but for
+// Whether all samples of reduced pixel (x, y) are the mean of the middle two of the 2 x 2 pixels from (u, v) on, within
 // rounding.
 bool is_middle_of(const Picture &full, const Picture &small, uint32_t x, uint32_t y, uint32_t u, uint32_t v,
                   double tolerance) {
@@ -31,7 +31,7 @@ bool is_middle_of(const Picture &full, const Picture &small, uint32_t x, uint32_
     return true;
 }
 
-// Every pixel of `small` must be the middle of a block of 2 x 2 pixels in its square of `full`.
+// Every pixel of `small` must be such a middle of a 2 x 2 block in its square of `full`.
 void assert_reduced(const Picture &full, const Picture &small, uint32_t step, double tolerance) {
     assert_int_equal(small.reduction, step);
     assert_int_equal(small.width, full.width / step);
@@ -46,7 +46,7 @@ void assert_reduced(const Picture &full, const Picture &small, uint32_t step, do
         for (uint32_t v = y * step; v < (y + 1) * step; v += 2)
             for (uint32_t u = x * step; u < (x + 1) * step; u += 2)
                 found = found || is_middle_of(full, small, x, y, u, v, tolerance);
-        if (!found) fail_msg("pixel %u, %u reduced by %u is no middle of a block of its square", x, y, step);
+        if (!found) fail_msg("pixel %u, %u reduced by %u is not the middle of a block of its square", x, y, step);
     }
 }
 
@@ -140,7 +140,7 @@ void test_tiff_keeps_not_finite(void **) {
 void test_jpeg_round_trip(void **) {
     for (uint32_t layout : {LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_RGB}) {
         Picture picture = make_smooth(133, 87, layout);
-        picture.icc = make_profile(layout == LENSPROF_LAYOUT_GREY, 200000);  // more than one segment holds
+        picture.icc = make_profile(layout == LENSPROF_LAYOUT_GREY, 200000);  // more than fits into one segment
         picture.traits.x_resolution = picture.traits.y_resolution = 300;
         picture.traits.resolution_unit = PictureTraits::Unit::inch;
         write_picture(in_folder("a.jpg"), picture);
@@ -154,7 +154,7 @@ void test_jpeg_round_trip(void **) {
     }
 }
 
-// Written again it has the quality, the subsampling and the kind of the file it came from; a wanted quality wins.
+// A rewritten file keeps quality, subsampling and coding of its source; an explicit quality takes precedence.
 void test_jpeg_keeps_coding(void **) {
     const Picture picture = make_smooth(64, 48, LENSPROF_LAYOUT_RGB);
     for (const JpegKind &kind : {JpegKind{60, 2, 2, false, false}, JpegKind{85, 2, 1, true, false}}) {
@@ -174,7 +174,7 @@ void test_jpeg_keeps_coding(void **) {
     assert_int_equal(read_picture(in_folder("b.jpg")).traits.quantisation[0][0], 1);
 }
 
-// More coefficients than are held in memory: the file is what libjpeg makes with all of them in memory.
+// More coefficients than are held in memory: the file equals libjpeg's with all of them in memory.
 void test_large_jpeg(void **) {
     const Picture noise = make_noise(1400, 1301, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB),
                   smooth = make_smooth(1404, 2000, LENSPROF_LAYOUT_RGB),
@@ -189,14 +189,14 @@ void test_large_jpeg(void **) {
                 write_jpeg_file(in_folder("b.jpg"), picture, {95, step, step, progressive, false, true});
                 write_picture(in_folder("a.jpg"), picture);
                 assert_true(load(in_folder("a.jpg")) == load(in_folder("b.jpg")));
-                if (step == 1 && kind != &noise)  // the test is about such pictures
+                if (step == 1 && kind != &noise)  // the test needs such pictures
                     assert_true(samples * 2 * lensprof_layout_channels(picture.layout) > jpeg_memory_bytes);
             }
 }
 
 // Tests: kinds of files.
 
-// Bits from the highest down, as PNG packs them.
+// Packs bits from the highest down, as PNG does.
 Bytes pack(const std::vector<int> &values, uint32_t width, int bits) {
     const size_t row_bytes = (width * unsigned(bits) + 7) / 8;
     Bytes packed(row_bytes * (values.size() / width), 0);
@@ -259,7 +259,7 @@ void test_png_grey_bits(void **) {
     }
 }
 
-// 16 bit samples are big-endian in the file; interlaced files come out in order.
+// 16 bit samples are big-endian in the file; interlaced rows are read in order.
 void test_png_deep_interlaced(void **) {
     const uint32_t width = 19, height = 14;
     Bytes bytes(width * height * 6);
@@ -316,7 +316,7 @@ void test_tiff_min_is_white(void **) {
     }
 }
 
-// JPEG inside TIFF is read as RGB, and not written again with losses.
+// JPEG in TIFF is read as RGB, and is not written again with losses.
 void test_tiff_jpeg(void **) {
     const Picture picture = make_smooth(96, 64, LENSPROF_LAYOUT_RGB);
     for (uint32_t tile : {0u, 32u}) {
@@ -385,8 +385,8 @@ void test_reduced_jpeg_kinds(void **) {
         }
 }
 
-// On a slope, patches of 5 x 5 reduced pixels have the mean of the middles of their squares: what each pixel is short
-// of its middle, its neighbours make up for.
+// On a slope, patches of 5 x 5 reduced pixels have the mean of their squares' middles: neighbours compensate for the
+// offset of each pixel.
 void test_reduced_is_not_shifted(void **) {
     for (uint32_t step : {4u, 6u, 8u, 14u})
         for (bool down : {false, true}) {
@@ -409,7 +409,7 @@ void test_reduced_is_not_shifted(void **) {
         }
 }
 
-// One wrong pixel in ten: less than one held pixel in ten is wrong, however small the picture.
+// One wrong pixel in ten: less than one reduced pixel in ten is wrong, at any reduction.
 void test_reduced_keeps_wrong_pixels_apart(void **) {
     Picture full = make_noise(640, 480, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY);
     uint64_t random = 3;
@@ -424,7 +424,7 @@ void test_reduced_keeps_wrong_pixels_apart(void **) {
     }
 }
 
-// A reduced picture says where it is in the frame; content counts, not the name.
+// A reduced picture has its place in the frame; content counts, not the name.
 void test_size(void **) {
     const Picture picture = make_smooth(90, 40, LENSPROF_LAYOUT_RGB);
     for (const char *name : {"a.png", "a.tif", "a.jpg"}) {

@@ -1,13 +1,13 @@
-// Small files that declare large frames: refused before memory is used for them. Good files that compress as far as
-// their format allows: read.
+// Small files that declare large frames are refused before memory is allocated for them. Valid files that compress as
+// far as their format allows are read.
 #include "program_runs.hpp"
 
 using namespace program_runs;
 
 namespace {
 
-// Peak memory of the program beyond that of its start, bytes. Sanitizers need more, and use memory of their own for
-// what is only claimed.
+// Limit of the program's peak memory beyond that at its start, bytes. Sanitizers need more, and count memory that is
+// only reserved.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr long most_memory = 200l << 20;
 constexpr bool claims_cost_memory = true;
@@ -37,7 +37,7 @@ void put_chunk(Bytes &bytes, const char *type, const Bytes &data) {
     put_big_endian(bytes, crc_of(bytes.data() + start, bytes.size() - start));
 }
 
-// A header and `data` bytes of pixels that are no Deflate stream.
+// A header and `data` bytes of pixels that are not a Deflate stream.
 Bytes make_png_bomb(uint32_t side, uint8_t bits, uint8_t colour, uint8_t interlace, size_t data) {
     Bytes bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, header;
     put_big_endian(header, side);
@@ -85,7 +85,7 @@ Bytes make_tiff_bomb(const TiffBomb &bomb, uint16_t compression) {
     return bytes;
 }
 
-// `apply` and `flat` refuse the file, whose text says `declared`.
+// `apply` and `flat` refuse the file with `declared` in the text.
 void assert_harmless(const std::string &name, const Bytes &bytes, const std::string &declared) {
     static const long start = run_program({"--version"}).peak;
     save(work(name), bytes);
@@ -120,7 +120,7 @@ void test_png_bombs(void **) {
 
 // Enough bytes for the frame, but not pixels.
 void test_padded_bombs(void **) {
-    if (claims_cost_memory) skip();  // sanitizers touch every page that is claimed
+    if (claims_cost_memory) skip();  // sanitizers touch every reserved page
     assert_harmless("a.png", make_png_bomb(37000, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_ADAM7, 9 << 20), "");
     for (const TiffBomb &bomb : {TiffBomb{30000, 30000, 8, 3, PLANARCONFIG_SEPARATE, 0, 0, 3 << 20},
                                  TiffBomb{32752, 32768, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 3 << 20}}) {
@@ -143,7 +143,7 @@ struct LowBits {
     }
 };
 
-// A lossless WebP of 14 bits each side, whose picture is junk.
+// A lossless WebP with sides of 14 bits and invalid pixels.
 Bytes make_webp_bomb(uint32_t side, size_t data) {
     LowBits picture;
     picture.put(0x2f, 8);
@@ -165,7 +165,7 @@ void test_webp_bombs(void **) {
     assert_harmless("a.webp", make_webp_bomb(16383, 4 << 20), "");
 }
 
-// A JPEG XL codestream: sizes of 30 bits, all else as usual, and junk (ISO/IEC 18181-1, annex D).
+// A JPEG XL codestream with sides of 30 bits, usual header fields and invalid pixels (ISO/IEC 18181-1, annex D).
 Bytes make_jxl_bomb(uint32_t side, size_t data) {
     LowBits bits;
     bits.put(0x0aff, 16);
@@ -175,7 +175,7 @@ Bytes make_jxl_bomb(uint32_t side, size_t data) {
     bits.put(0, 3);  // no ratio
     bits.put(3, 2);
     bits.put(side - 1, 30);
-    bits.put(3, 2);  // metadata as usual: 8 bit, sRGB; no weights of its own
+    bits.put(3, 2);  // usual metadata: 8 bit, sRGB; no custom weights
     bits.bytes.resize(bits.bytes.size() + data, 0x55);
     return bits.bytes;
 }
@@ -199,24 +199,24 @@ void test_tiff_bombs(void **) {
         const bool jpeg = compression == COMPRESSION_JPEG;
         const TiffBomb tiles{1048576, 1300, uint16_t(jpeg ? 8 : 16), 3, PLANARCONFIG_SEPARATE, 16384, 16384, 0};
         const TiffBomb strip{30000, 30000, 8, 3, PLANARCONFIG_SEPARATE, 0, 0, 100};
-        if (compression != COMPRESSION_OJPEG) {  // whose colour is YCbCr, which is refused before
+        if (compression != COMPRESSION_OJPEG) {  // its colour is YCbCr, which is refused earlier
             assert_harmless("tiles.tif", make_tiff_bomb(tiles, compression), beyond("1048576 x 1300 pixels", 0));
             assert_harmless("strip.tif", make_tiff_bomb(strip, compression), beyond("30000 x 30000 pixels", 100));
         }
         const TiffBomb tile{32752, 32768, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 100};
         assert_harmless("tile.tif", make_tiff_bomb(tile, compression), beyond("32752 x 32768 pixels", 100));
-        const TiffBomb chopped{40000, 40000, 8, 3, PLANARCONFIG_CONTIG, 0, 0, 100};  // into rows, by libtiff
+        const TiffBomb chopped{40000, 40000, 8, 3, PLANARCONFIG_CONTIG, 0, 0, 100};  // libtiff divides it into rows
         const Bytes bytes = make_tiff_bomb(chopped, compression);
         if (compression == COMPRESSION_NONE)
             assert_harmless("rows.tif", bytes, beyond("40000 x 40000 pixels", bytes.size()));
-        if (compression == COMPRESSION_NONE) continue;  // has the bytes
+        if (compression == COMPRESSION_NONE) continue;  // reported above
         const TiffBomb one{8, 8, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 100};
         assert_harmless("one.tif", make_tiff_bomb(one, compression), beyond("a tile of 32752 x 32768 pixels", 100));
     }
 }
 
-// A few bytes may be a large block of one grey: blocks without any, larger than the compression or memory allows, or
-// that hold something else are refused.
+// A few bytes can encode a large block of one grey. Refused are blocks without bytes, blocks larger than compression or
+// memory allow, and blocks with other content.
 void test_tiff_bombs_without_ratio(void **) {
     for (uint16_t compression : {COMPRESSION_WEBP, COMPRESSION_LERC}) {
         if (!TIFFIsCODECConfigured(compression)) continue;
@@ -236,7 +236,7 @@ void test_tiff_bombs_without_ratio(void **) {
     }
 }
 
-// Compressions of fewer bits a sample, and of other colours, than pictures here have.
+// Compressions of fewer bits per sample, or of other colours, than supported pictures have.
 void test_tiff_of_no_use(void **) {
     for (uint16_t compression : {COMPRESSION_CCITTRLE, COMPRESSION_CCITTFAX4, COMPRESSION_NEXT, COMPRESSION_THUNDERSCAN,
                                  COMPRESSION_JBIG, COMPRESSION_SGILOG, COMPRESSION_JXL}) {
@@ -247,7 +247,7 @@ void test_tiff_of_no_use(void **) {
     }
 }
 
-// A good file of one grey: it is read, reduced, and is all `grey`.
+// A valid file of one grey: it is read, reduced, and uniformly `grey`.
 void assert_read(const std::string &name, uint8_t grey) {
     ReadOptions options;
     options.max_side = 200;
@@ -257,7 +257,7 @@ void assert_read(const std::string &name, uint8_t grey) {
     fs::remove(work(name));
 }
 
-// Packed bytes for each byte of the file.
+// Uncompressed bytes per byte of the file.
 double ratio(const std::string &name, double packed) { return packed / double(fs::file_size(work(name))); }
 
 // Deflate's limit is 1032.
@@ -275,7 +275,7 @@ void test_constant_png(void **) {
             assert_true(ratio("a.png", double(packed.size())) > (bits == 1 ? 900 : 1000));
             assert_read("a.png", 0);
         }
-    Bytes palette(size_t(side) * side / 8, 0);  // 24 bits of a bit
+    Bytes palette(size_t(side) * side / 8, 0);  // 24 bits per bit
     PngKind kind{side, side, 1, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_ADAM7};
     kind.extra = [](png_structp png, png_infop info) {
         const png_color colours[] = {{7, 7, 7}, {8, 8, 8}};
@@ -313,7 +313,7 @@ void write_constant_tiff(const std::string &path, uint32_t side, uint16_t compre
         assert_true((tiled ? TIFFWriteEncodedTile(tiff, i, block.data(), size)
                            : TIFFWriteEncodedStrip(tiff, i, block.data(), size))
                     == size);
-        std::fill(block.begin(), block.end(), uint8_t(128));  // libtiff may scramble it
+        std::fill(block.begin(), block.end(), uint8_t(128));  // libtiff may modify it
     }
     TIFFClose(tiff);
 }
@@ -330,7 +330,7 @@ void test_constant_tiff(void **) {
         for (bool tiled : {false, true}) {
             const uint32_t rows = tiled ? tile : side;
             write_constant_tiff(work("a.tif"), side, kind.first, tiled, rows);
-            const double whole = tiled ? 4.0 * rows : side;  // tiles are stored whole
+            const double whole = tiled ? 4.0 * rows : side;  // tiles are stored completely
             if (ratio("a.tif", whole * whole) < kind.second)
                 fail_msg("compression %d: ratio %g", kind.first, ratio("a.tif", whole * whole));
             assert_read("a.tif", 128);
@@ -338,7 +338,7 @@ void test_constant_tiff(void **) {
     }
 }
 
-// Several strips that are one: the file is smaller than the pixels it holds without compression.
+// Several strips share the same bytes: the file is smaller than its pixels, without compression.
 void test_shared_strips(void **) {
     write_constant_tiff(work("a.tif"), 64, COMPRESSION_NONE, false, 16);
     Bytes bytes = load(work("a.tif"));

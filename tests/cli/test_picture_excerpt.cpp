@@ -1,4 +1,4 @@
-// Metadata edited in an excerpt of a picture file: the result is to the byte that of Exiv2 on the whole file.
+// Editing metadata in an excerpt of a picture file gives exactly the bytes of Exiv2 on the whole file.
 #include <cstring>
 
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
@@ -40,7 +40,7 @@ void add_much(Exiv2::Image &image) {
 
 void turn(Exiv2::Image &image) { image.exifData()["Exif.Image.Orientation"] = uint16_t(8); }
 
-// The picture's pixels as they were, and the file as Exiv2 makes it alone; the excerpt is a small one.
+// The pixels are unchanged, the file equals that of Exiv2 alone, and the excerpt is small.
 void check_edits(const std::string &name, size_t excerpt_max) {
     const std::string path = in_folder(name), other = in_folder("whole-" + name);
     const Bytes bytes = load(path);
@@ -54,7 +54,7 @@ void check_edits(const std::string &name, size_t excerpt_max) {
         edit(*excerpt, change);
         edit(*codec::whole_file(other), change);
         if (load(path) != load(other))
-            fail_msg("%s: edited by excerpt and as a whole it is not the same", name.c_str());
+            fail_msg("%s: editing the excerpt and the whole file gives different bytes", name.c_str());
         assert_same_pixels(before, read_picture(path));
         assert_true(before.icc == read_picture(path).icc);
     }
@@ -85,7 +85,7 @@ void test_jpeg(void **) {
         }
 }
 
-// One strip and many, of odd and even bytes, whose counts libtiff writes as 16 or 32 bits.
+// One strip and many, with odd and even sizes; libtiff writes their counts with 16 or 32 bits.
 void test_tiff(void **) {
     for (uint16_t compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE})
         for (uint32_t layout : {LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_RGB})
@@ -100,7 +100,7 @@ void test_tiff(void **) {
                 }
 }
 
-// Strips as other programs make them, in both byte orders; planes of their own.
+// Strips as written by other programs, in both byte orders; separate planes.
 void test_tiff_kinds(void **) {
     const Picture picture = make_noise(45, 38, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     for (const char *mode : {"wl", "wb"})
@@ -110,7 +110,7 @@ void test_tiff_kinds(void **) {
         }
 }
 
-// What is not laid out as this program does it is left to the whole file.
+// Files with another layout than this program writes are edited as a whole.
 void test_others(void **) {
     const Picture picture = make_noise(45, 38, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     TiffKind tiles{"wl", COMPRESSION_LZW};
@@ -129,7 +129,7 @@ void test_others(void **) {
     assert_same_pixels(picture, read_picture(in_folder("a.tif")));
 }
 
-// Any damage ends in no excerpt, or in one that gives a file or a Failure.
+// Any damage results in no excerpt, or in an excerpt that gives a file or a Failure.
 void test_damaged_files(void **) {
     const Picture picture = make_noise(45, 38, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     uint64_t state = 3;

@@ -1,4 +1,4 @@
-// Picture files: everything that can go wrong, and what is on the disk afterwards.
+// Picture files: all kinds of errors, and the files left on the disk.
 #include "picture_files.hpp"
 
 #include <csignal>
@@ -17,7 +17,7 @@ namespace {
 
 struct Sample {
     std::string name;
-    Picture picture;  // as it is read
+    Picture picture;  // the picture that it contains
     Bytes bytes;
 };
 
@@ -25,7 +25,7 @@ void add_sample(std::vector<Sample> &samples, const std::string &name) {
     samples.push_back({name, read_picture(in_folder(name)), load(in_folder(name))});
 }
 
-// One file of every way in which pixels are decoded.
+// One file for every way of decoding pixels.
 std::vector<Sample> make_samples() {
     std::vector<Sample> samples;
     const Picture smooth = make_smooth(61, 47, LENSPROF_LAYOUT_RGB);
@@ -88,7 +88,7 @@ void check_cut(const Sample &sample, const Bytes &bytes, size_t length) {
         options.max_side = max_side;
         try {
             const Picture picture = read_picture(path, options);
-            // Nothing may be missing: what was cut off was not needed.
+            // No pixel may be missing: the cut bytes were not needed.
             save(path, sample.bytes);
             assert_same_pixels(picture, read_picture(path, options));
             assert_true(bytes.size() - length <= 4 && sample.name.find(".tif") != std::string::npos);
@@ -107,7 +107,7 @@ void test_cut_files(void **) {
     }
 }
 
-// Many programs write the directory first; libtiff's own files end with it.
+// Many programs write the directory first; libtiff writes it at the end.
 void test_cut_tiff_pixels(void **) {
     for (const Picture &picture : {make_noise(40, 30, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB),
                                    make_noise(40, 30, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY)}) {
@@ -127,7 +127,7 @@ void test_cut_tiff_pixels(void **) {
     }
 }
 
-// Damage is either noticed or harmless to the process.
+// Damage is either detected or harmless to the process.
 void test_changed_bytes(void **) {
     uint64_t state = 11;
     for (const Sample &sample : make_samples()) {
@@ -150,7 +150,7 @@ void test_changed_bytes(void **) {
     }
 }
 
-// The number of a component's quantisation table is a byte of the file, of which 0 to 3 can be.
+// The number of a component's quantisation table is a byte of the file; only 0 to 3 are valid.
 void test_any_quantisation_table(void **) {
     write_jpeg_file(in_folder("a.jpg"), make_smooth(40, 30, LENSPROF_LAYOUT_RGB), JpegKind());
     Bytes bytes = load(in_folder("a.jpg"));
@@ -167,7 +167,7 @@ void test_any_quantisation_table(void **) {
         }
 }
 
-// An end marker in the middle of a JPEG strip: libtiff only warns, half of the pixels would be made up.
+// An end marker inside a JPEG strip: libtiff only warns, and would invent half of the pixels.
 void test_damaged_jpeg_in_tiff(void **) {
     TiffKind kind{"wl", COMPRESSION_JPEG};
     kind.rows_per_strip = 64;
@@ -205,7 +205,7 @@ void test_not_pictures(void **) {
     assert_failure(ExitCode::unreadable,
                    "text.jpg: cannot read metadata: ", [] { read_metadata(in_folder("text.jpg")); });
     assert_failure(ExitCode::unreadable, "is a folder", [] { read_metadata(in_folder(".")); });
-    assert_int_equal(mkfifo(in_folder("pipe.jpg").c_str(), 0600), 0);  // which nobody writes to
+    assert_int_equal(mkfifo(in_folder("pipe.jpg").c_str(), 0600), 0);  // without a writer
     assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read: not a regular file", read("pipe.jpg"));
     assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read", [] { read_metadata(in_folder("pipe.jpg")); });
 }
@@ -240,7 +240,7 @@ void test_unsupported_kinds(void **) {
     assert_failure(ExitCode::unreadable, "1 bit TIFF", read);
 }
 
-// A header that claims a frame of terabytes is refused before anything is reserved for it.
+// A header that declares a frame of terabytes is refused before memory is allocated for it.
 void test_too_large(void **) {
     Bytes bytes(30, 0);
     PngKind kind{10, 3, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, [](png_structp, png_infop) {}};
@@ -307,7 +307,7 @@ void test_unwritable_targets(void **) {
     assert_int_equal(files_in_folder(), 1);
 }
 
-// A failure leaves the older file; success keeps its permissions and the link that points to it.
+// On failure the older file stays; on success the permissions and the symbolic link to it are kept.
 void test_replacing(void **) {
     save(in_folder("old.png"), {1, 2, 3});
     chmod(in_folder("old.png").c_str(), 0640);
@@ -336,7 +336,7 @@ void test_long_name(void **) {
     assert_same_pixels(picture, read_picture(in_folder(name + ".png")));
 }
 
-// In a child process: no file may become longer than `limit`. 0 when all went as it must.
+// In a child process whose files may not grow beyond `limit`. 0 if everything went as expected.
 int write_on_full_disk(const std::string &name, const Picture &picture, const WriteOptions &options, rlim_t limit) {
     const pid_t child = fork();
     if (child == 0) {
@@ -382,7 +382,7 @@ void test_full_disk(void **) {
         assert_false(fs::exists(in_folder(name)));
         fs::remove(in_folder("whole" + std::string(name)));
     }
-    // The coefficients of a large JPEG, before anything of it is in the file itself.
+    // The coefficients of a large JPEG, before anything is written to the file itself.
     const Picture large = make_smooth(1404, 2000, LENSPROF_LAYOUT_RGB);
     for (rlim_t limit : {rlim_t(0), rlim_t(1) << 20, rlim_t(16) << 20})
         assert_int_equal(write_on_full_disk("a.jpg", large, options, limit), 0);

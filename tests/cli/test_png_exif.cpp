@@ -1,4 +1,4 @@
-// EXIF of PNG files: in the standard chunk, in a text chunk as Exiv2 writes it, in both.
+// EXIF of PNG files: in the standard chunk, in a text chunk as Exiv2 writes it, or in both.
 #include <cstring>
 #include <set>
 
@@ -25,7 +25,7 @@ size_t count_of(const Bytes &bytes, const std::string &part) {
     return count;
 }
 
-// Once, in the standard chunk: after a first writing and after further ones.
+// Once, in the standard chunk, after the first and after further writes.
 void test_png_chunk(void **) {
     PictureMetadata metadata = unknown_metadata();
     std::strcpy(metadata.key.camera_model, "Model");
@@ -42,7 +42,7 @@ void test_png_chunk(void **) {
     edit(in_folder("a.png"),
          [](Exiv2::Image &image) { image.exifData()["Exif.Photo.FNumber"] = Exiv2::URational(4, 1); });
     assert_int_equal(count_of(load(in_folder("a.png")), "Raw profile type exif"),
-                     1);  // of Exiv2: then read and replaced
+                     1);  // from Exiv2: read and replaced
     assert_true(write_metadata(in_folder("a.png"), metadata));
     assert_int_equal(count_of(load(in_folder("a.png")), "Raw profile type exif"), 0);
     assert_close(read_metadata(in_folder("a.png")).f_number.value_or(0), 4, 0);
@@ -63,7 +63,7 @@ Bytes chunks_of(const Bytes &png, const std::string &type) {
     return found;
 }
 
-// EXIF in the standard chunk and in a text chunk, whichever is first: the standard one counts, once.
+// EXIF in the standard chunk and in a text chunk, in either order: the standard one counts, and only one is kept.
 void test_png_with_both_chunks(void **) {
     constexpr long header = 8 + 25;
     PictureMetadata metadata = unknown_metadata();

@@ -1,5 +1,5 @@
-// Camera raw files: values against the formula and against LibRaw's own programs, falloffs that are recovered and
-// corrected, and every kind of file that cannot be read.
+// Camera raw files: values compared with the formula and with LibRaw's own programs, recovery and correction of
+// falloffs, and every kind of unreadable file.
 #include "cli/registration/registration.hpp"
 #include "raw_runs.hpp"
 
@@ -19,7 +19,7 @@ double falloff(double x, double y, uint32_t width, uint32_t height) {
     return 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
 }
 
-// A card of a known falloff on a mosaic; `gain` is the exposure.
+// A card with a known falloff on a mosaic; `gain` is the exposure.
 Dng card(uint32_t width, uint32_t height, uint16_t bits, Packing packing, double gain = 1.0) {
     Dng dng;
     dng.width = width, dng.height = height, dng.bits = bits, dng.packing = packing;
@@ -50,8 +50,7 @@ double linear(const Dng &dng, uint32_t x, uint32_t y) {
     return std::clamp((value - black) / (dng.white - black), 0.0, 1.0) * 65535.0;
 }
 
-// Every channel of every cell is the mean of its samples, within a rounding of each; 65535 where one is saturated, and
-// nowhere else.
+// Every channel of every cell is the mean of its samples within rounding; 65535 if one is saturated, and only then.
 void assert_cells(const Dng &dng, const std::string &path) {
     ReadOptions options;
     options.max_side = std::max(dng.width, dng.height) / 2;
@@ -85,7 +84,7 @@ void assert_cells(const Dng &dng, const std::string &path) {
     assert_true(saturated > 0);
 }
 
-// 12, 14 and 16 bits, packed in every way, each mosaic, black of each place, saturated corners.
+// 12, 14 and 16 bits, every packing and mosaic, a black level per site, saturated corners.
 void test_values(void **) {
     needs_libraw();
     const std::array<uint8_t, 4> patterns[] = {{0, 1, 1, 2}, {1, 0, 2, 1}, {1, 2, 0, 1}, {2, 1, 1, 0}};
@@ -95,12 +94,12 @@ void test_values(void **) {
             Dng dng = card(160, 120, bits, packing);
             dng.pattern = patterns[i % 4];
             for (size_t k = 0; k < 300; k++) dng.values[k * 7] = static_cast<uint16_t>(dng.white);
-            for (size_t k = 0; k < 300; k++) dng.values[10000 + k * 3] = static_cast<uint16_t>(k % 300);  // about black
+            for (size_t k = 0; k < 300; k++) dng.values[10000 + k * 3] = static_cast<uint16_t>(k % 300);  // near black
             assert_cells(dng, save_dng("v" + std::to_string(i++) + ".dng", dng));
         }
 }
 
-// The black level is that of the masked borders, whatever is stated, and they are no part of the picture.
+// The black level comes from the masked borders, whatever the tags state, and the borders are not part of the picture.
 void test_masked_borders(void **) {
     needs_libraw();
     const Dng inner = card(160, 120, 14, Packing::words);
@@ -134,7 +133,7 @@ Dng linear_card() {
     return dng;
 }
 
-// Of linear values nothing is interpolated.
+// Linear values are not interpolated.
 void test_linear_dng(void **) {
     needs_libraw();
     const Dng dng = linear_card();
@@ -148,7 +147,7 @@ void test_linear_dng(void **) {
     assert_int_equal(got[4], 65535);
 }
 
-// At full size the samples of the mosaic stay; the others are interpolated near to the truth.
+// At full size, the samples of the mosaic are unchanged; the others are interpolated close to the truth.
 void test_full_size(void **) {
     needs_libraw();
     const Dng dng = card(160, 120, 14, Packing::words);
@@ -163,11 +162,11 @@ void test_full_size(void **) {
             for (int c = 0; c < 3; c++)
                 worst = std::max(worst, std::fabs(pixel[c] / (65535.0 * light[c] * falloff(x, y, 160, 120)) - 1.0));
         }
-    print_message("interpolated: off by at most %.2f %%\n", 100.0 * worst);
-    assert_true(worst < 0.02);  // noise of 2 of 16383, and the border
+    print_message("interpolated: error at most %.2f %%\n", 100.0 * worst);
+    assert_true(worst < 0.02);  // noise of 2 of 16383, and interpolation at the border
 }
 
-// LibRaw interpolates X-Trans from 512 pixels on. Cells of 2 x 2 pixels may have no red or blue. Of one colour all
+// LibRaw interpolates X-Trans from 512 pixels on. Cells of 2 x 2 pixels may lack red or blue. For a uniform colour, all
 // pixels get it, at half and at full size.
 void test_xtrans(void **) {
     needs_libraw();
@@ -205,7 +204,8 @@ Picture read_ppm(const std::string &path) {
     return picture;
 }
 
-// dcraw_emu subtracts black of each channel and scales all by the white above the lowest one: what differs is known.
+// dcraw_emu subtracts black per channel and scales all channels by the white above the lowest black: a known
+// difference.
 void test_dcraw_emu(void **) {
     needs_libraw();
     if (system("command -v dcraw_emu >/dev/null 2>&1") != 0) {
@@ -228,7 +228,7 @@ void test_dcraw_emu(void **) {
         for (size_t i = 0; i < size_t(80) * 60 * 3; i++) {
             const auto a = reinterpret_cast<const uint16_t *>(own.pixels.data())[i];
             const auto b = reinterpret_cast<const uint16_t *>(theirs.pixels.data())[i];
-            double scale = 0;  // ours over theirs, of the channel
+            double scale = 0;  // ratio of both, per channel
             int count = 0;
             for (size_t place = 0; place < 4; place++)
                 if (dng.pattern[place] == i % 3) scale += (dng.white - least) / (dng.white - dng.black[place]), count++;
@@ -237,8 +237,8 @@ void test_dcraw_emu(void **) {
     }
 }
 
-// Response linear without a question, falloff within .001, stored as raw; a correction leaves the card flat, and an
-// opcode changes nothing but the list.
+// The response is linear, the falloff within .001, the profile stored as raw; a correction leaves the card flat, and an
+// opcode changes only the list.
 void test_card(void **) {
     needs_libraw();
     const std::string path = save_dng("card.dng", card(600, 400, 14, Packing::lossless));
@@ -262,7 +262,7 @@ void test_card(void **) {
     assert_true(load(work("tif/card.tif")) == load(work("tif4/card.tif")));
     const Picture before = read_picture(path), same = read_picture(work("dng/card.dng"));
     assert_true(before.pixels == same.pixels);
-    const Bytes original = load(path), copy = load(work("dng/card.dng"));  // the offset of the directory differs alone
+    const Bytes original = load(path), copy = load(work("dng/card.dng"));  // only the offset of the directory differs
     assert_true(copy.size() > original.size() && std::equal(original.begin() + 8, original.end(), copy.begin() + 8));
 
     assert_true(read_metadata(work("tif/card.tif")).key.processing == LENSPROF_PROCESSING_CORRECTED);
@@ -301,7 +301,7 @@ void test_build(void **) {
         contains(json_of({"profile", "show", "1", "--db", work("x.db"), "--json"}).dump(), "\"processing\":\"raw\""));
 }
 
-// The copies are linear TIFFs; of the JPEG of a raw file is said that it is left out.
+// The copies are linear TIFFs; the JPEG of a raw file is reported as left out.
 void test_calibrate(void **) {
     needs_libraw();
     if (!can_register()) skip();
@@ -358,7 +358,7 @@ void test_mixed_and_pairs(void **) {
     assert_true(fs::exists(work("out/a.dng")) && !fs::exists(work("out/a.tif")));
 }
 
-// Frames of a raw sequence become TIFF, all alike; a DNG is no place for that.
+// Frames of a raw sequence become TIFFs that match; they cannot be written as DNG.
 void test_align(void **) {
     needs_libraw();
     Words frames;
@@ -381,7 +381,7 @@ void test_align(void **) {
                    {"bright.dng", "img000.png"});
 }
 
-// The name does not count; nor does it make a raw file of something else.
+// The content counts, not the name, for raw files and for others.
 void test_content_counts(void **) {
     needs_libraw();
     const Dng dng = card(160, 120, 12, Packing::words);
@@ -394,7 +394,7 @@ void test_content_counts(void **) {
     assert_int_equal(read_size(work("b.nef")).width, 64);
 }
 
-// The JPEG in a raw file is read as if it stood alone.
+// The JPEG in a raw file is read like a separate file.
 void test_preview(void **) {
     needs_libraw();
     const Dng dng = card(160, 120, 14, Packing::words);
@@ -412,7 +412,7 @@ void test_preview(void **) {
     }
 }
 
-// Cut off anywhere, a file is refused and nothing is invented.
+// A file cut anywhere is refused, and no values are invented.
 void test_truncated(void **) {
     needs_libraw();
     for (Packing packing : {Packing::words, Packing::bits, Packing::lossless}) {
@@ -442,7 +442,7 @@ void test_bombs(void **) {
     assert_failure(ExitCode::unreadable, "black level", [] { read_picture(work("black.dng")); });
 }
 
-// Named for what they are, with and without LibRaw.
+// The message names the kind of file, with and without LibRaw.
 void test_kinds_are_named(void **) {
     const std::pair<std::string, const char *> kinds[] = {{"FUJIFILMCCD-RAW 0201", "Fujifilm RAF"},
                                                           {std::string("\0\0\0\x18"

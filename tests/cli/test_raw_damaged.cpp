@@ -1,4 +1,4 @@
-// Camera raw files that are damaged where LibRaw reports nothing: each is refused, whatever was in memory before.
+// Camera raw files with damage that LibRaw does not report: each is refused, whatever was in memory before.
 #include "raw_runs.hpp"
 
 #include <random>
@@ -20,7 +20,7 @@ Dng noise(uint16_t bits, Packing packing) {
 
 void write_bytes(const std::string &name, const Bytes &bytes) { save(work(name), bytes); }
 
-// Read alone and after another picture, reduced and whole.
+// Read alone and after another picture, reduced and at full size.
 void assert_damaged(const Bytes &bytes, const char *why) {
     write_bytes("damaged.dng", bytes);
     for (const uint32_t side : {0u, 80u}) {
@@ -32,7 +32,7 @@ void assert_damaged(const Bytes &bytes, const char *why) {
     }
 }
 
-// The JPEG stands at the end of the file: SOI, SOF3 with its height at byte 7, DHT, SOS.
+// The JPEG is at the end of the file: SOI, SOF3 with its height at byte 7, DHT, SOS.
 void test_lossless_jpeg(void **) {
     needs_libraw();
     const Dng dng = noise(14, Packing::lossless);
@@ -51,7 +51,7 @@ void test_lossless_jpeg(void **) {
     assert_damaged(changed(16, 1, 0xfe), "no valid header");  // no table
     assert_damaged(changed(8, 1, 60), "does not fill");       // half the height
     assert_damaged(changed(10, 1, 159), "does not fill");
-    assert_damaged(changed(2000, whole.size() - at - 2000, 0), "damaged");  // codes of zero, the shortest there are
+    assert_damaged(changed(2000, whole.size() - at - 2000, 0), "damaged");  // codes of zero, the shortest ones
 }
 
 void test_junk_of_a_large_size(void **) {
@@ -68,7 +68,7 @@ void test_junk_of_a_large_size(void **) {
     assert_true(contains(outcome.err, "damaged.dng"));
 }
 
-// Without DNGVersion a decoder is asked that pads with zeros.
+// Without DNGVersion, LibRaw uses a decoder that pads with zeros.
 void test_packed_rows_that_lack(void **) {
     needs_libraw();
     const struct {
@@ -80,7 +80,7 @@ void test_packed_rows_that_lack(void **) {
         const std::string name = std::string("x.") + camera.end;
         const Bytes whole = dng_bytes(dng);
         write_bytes(name, whole);
-        assert_true(read_picture(work(name)).width >= 156);  // LibRaw crops those of some cameras
+        assert_true(read_picture(work(name)).width >= 156);  // LibRaw crops pictures of some cameras
         for (const size_t lacks : {1u, 10u, 200u, 5000u}) {
             write_bytes(name, Bytes(whole.begin(), whole.end() - static_cast<ptrdiff_t>(lacks)));
             assert_failure(ExitCode::unreadable, "are cut off", [&] { read_picture(work(name)); });

@@ -1,4 +1,4 @@
-// COLMAP's databases and models, read: images, cameras, places and tracks, and files that are damaged.
+// Reading COLMAP's databases and models: images, cameras, positions and tracks, and damaged files.
 #include "cli/reconstruction/reconstruction_file.hpp"
 
 #include "reconstruction_checks.hpp"
@@ -89,7 +89,8 @@ void test_other_database(void **) {
     assert_unreadable(path, "no such table: cameras", [&] { return read_reconstruction(path, streams); });
 }
 
-// COLMAP's own mode leaves no trace where nobody has the database open, and shows all that is there where somebody has.
+// COLMAP's own journal mode: no trace is left if nobody has the database open, and all rows are visible if somebody
+// has.
 void test_logged_database(void **) {
     const std::string path = make_database("with ?#%.db", "PRAGMA journal_mode=WAL");
     assert_int_equal(files_in_folder(), 1);
@@ -135,7 +136,7 @@ void test_cut_models(void **) {
     for (const char *name : {"/cameras", "/images", "/points3D"}) {
         cut_everywhere(binary + name + ".bin", 3, [&] { return read_colmap_model(binary); });
         const Bytes whole = load(text + name + ".txt");
-        for (size_t bytes = 0; bytes < whole.size(); bytes++) {  // a number that is cut may be another number
+        for (size_t bytes = 0; bytes < whole.size(); bytes++) {  // a cut number may be another valid number
             save_anew(text + name + ".txt", Bytes(whole.begin(), whole.begin() + long(bytes)));
             try {
                 read_colmap_model(text);
@@ -202,7 +203,7 @@ void test_damaged_models(void **) {
     assert_failure(ExitCode::not_usable, model + ": no point is visible", [&] { read_colmap_model(model); });
 }
 
-// The shapes of a model's features are those of its database, where that has the features.
+// A model takes the shapes of its features from its database, if the database has them.
 void test_shapes_of_model(void **) {
     const std::string path = make_database("database.db"), model = in_folder("model");
     fs::create_directory(model);

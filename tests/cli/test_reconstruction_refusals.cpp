@@ -1,4 +1,4 @@
-// `build` of reconstructions that cannot be used: what is wrong is named, and nothing is written.
+// `build` of reconstructions that cannot be used: the message names the problem, and nothing is written.
 #include "cli_runs.hpp"
 #include "reconstruction_files.hpp"
 
@@ -19,7 +19,7 @@ Words build_of(const std::string &path) {
     return {"build", path, "--camera", "Example", "--lens", "Example", "--points-out", work("out.txt")};
 }
 
-// A database with the four pictures that it names, the first of them in the folder above.
+// A database that names four pictures, the first of them in the parent folder.
 std::string make_project(const std::string &more = {}) {
     fs::create_directory(work("project"));
     const std::string path = make_database("work/project/database.db", more);
@@ -42,7 +42,7 @@ void test_pictures(void **) {
     assert_refused(unreadable, build_of(path) + Words{"--images", work("none")}, {work("none")});
 }
 
-// A file that belongs to a reconstruction, but is not the one to give.
+// A file that is part of a reconstruction, but not the one to pass.
 void test_parts(void **) {
     fs::create_directories(work("parts"));
     const std::pair<const char *, const char *> parts[] = {{"images.bin", "give its folder"},
@@ -56,7 +56,7 @@ void test_parts(void **) {
     }
 }
 
-// By its own name, and by that of its folder.
+// By its own name, and by its folder's name.
 void test_databases(void **) {
     std::string path = make_project("DELETE FROM two_view_geometries");
     assert_refused(not_usable, build_of(path), {path, "no point is visible in two"});

@@ -1,4 +1,5 @@
-// OpenSfM, Bundler, AliceVision and OpenMVG, and the pictures of a reconstruction: places in px of the stored pictures.
+// OpenSfM, Bundler, AliceVision and OpenMVG, and the pictures of a reconstruction: positions in px of the stored
+// pictures.
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
 #include "cli/reconstruction/pictures.hpp"
@@ -10,7 +11,7 @@ using namespace reconstruction_checks;
 
 namespace {
 
-// Two images and a point that both see, and one that one sees.
+// Two images, a point that both see, and a point that only one sees.
 std::string tracks_of(int version) {
     const std::string size = version > 0 ? "\t0.01" : "", more = version > 1 ? "\t-1\t-1" : "";
     const std::string header = version > 0 ? "OPENSFM_TRACKS_VERSION_v" + std::to_string(version) + "\n" : "";
@@ -88,7 +89,7 @@ void test_damaged_opensfm(void **) {
         save_text(models, text);
         assert_unreadable(models, ";", read);
     }
-    // Members of other types are as if they were not there.
+    // Members of other types are ignored.
     for (const char *text : {"[]", "[1, null]", R"([{"cameras": [1], "shots": 3, "points": "x"}])",
                              R"([{"cameras": {"c": 1}, "shots": {"a.jpg": {"camera": 1, "rotation": {}}},
                                   "points": {"17": {"coordinates": ["x", [], null]}}}])"}) {
@@ -104,7 +105,7 @@ void test_cut_opensfm(void **) {
     cut_everywhere(models, 3, [&] { return read_opensfm(path); });
 }
 
-// Cameras at (1, 2, 3), (4, 5, 6), and one that was not placed.
+// Cameras at (1, 2, 3), (4, 5, 6), and one without a position.
 constexpr const char *bundle =
     "# Bundle file v0.3\n3 2\n"
     "700 0 0\n0 -1 0\n1 0 0\n0 0 1\n2 -1 -3\n"
@@ -246,15 +247,15 @@ void test_damaged_scenes(void **) {
         }
 }
 
-// Where a corner of the upright picture lies, in OpenSfM's places: left or right, top or bottom.
+// Position of a corner of the upright picture, in OpenSfM's terms: left or right, top or bottom.
 std::string corner_of(const char *corner, double width, double height) {
     const double side = std::max(width, height);
     const double x = corner[1] == 'L' ? 0.0 : width - 1.0, y = corner[0] == 'T' ? 0.0 : height - 1.0;
     return std::to_string((x + 0.5 - width / 2) / side) + "\t" + std::to_string((y + 0.5 - height / 2) / side);
 }
 
-// EXIF 2.3, tag 274: where the 0th row and the 0th column of the stored picture are seen. The stored picture's first
-// pixel and the last one of its first row, as they are seen.
+// EXIF 2.3, tag 274: where the 0th row and the 0th column of the stored picture are displayed. Checked are the
+// displayed positions of the first pixel and of the last pixel in the first row.
 void test_orientations(void **) {
     const char *const seen[8][2] = {{"TL", "TR"}, {"TR", "TL"}, {"BR", "BL"}, {"BL", "BR"},
                                     {"TL", "BL"}, {"TR", "BR"}, {"BR", "TR"}, {"BL", "TL"}};

@@ -1,4 +1,4 @@
-// Cameras and candidates of pictures without a project, from made-up matches.
+// Cameras and candidates of pictures without a project, from simulated matches.
 #include <cmath>
 #include <random>
 
@@ -32,7 +32,7 @@ lensprof_camera camera_at(double yaw, double pitch, double hfov) {
 
 bool is_seen(const double xy[2]) { return xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < kWidth && xy[1] < kHeight; }
 
-// All pictures that share enough, with matches that are off by `noise` px, and a share of wrong ones.
+// Links between all pictures that overlap enough, with matches that have `noise` px of error and a share of wrong ones.
 Scene scene_of(std::vector<lensprof_camera> cameras, double noise, double wrong, uint32_t seed) {
     Scene scene;
     std::mt19937 random(seed);
@@ -58,7 +58,7 @@ Scene scene_of(std::vector<lensprof_camera> cameras, double noise, double wrong,
     return scene;
 }
 
-// px, of a place in picture `from` as `to` sees it: the found cameras against the true ones.
+// Error in px of a position in picture `from` as seen by `to`, of the found cameras compared with the true ones.
 double largest_error(const Scene &scene, const FoundCameras &found) {
     double largest = 0.0;
     for (const PictureLink &link : scene.links)
@@ -75,7 +75,7 @@ double largest_error(const Scene &scene, const FoundCameras &found) {
     return largest;
 }
 
-// A row, two rows, and a ring that closes; nothing says the angle of view.
+// A row, two rows, and a closed ring; the angle of view is unknown.
 void test_a_camera_that_turned(void **) {
     for (uint32_t seed = 1; seed <= 3; seed++) {
         std::vector<lensprof_camera> row, rows, ring;
@@ -93,7 +93,7 @@ void test_a_camera_that_turned(void **) {
     }
 }
 
-// Metadata that are wrong by a tenth, and pictures on their side.
+// Metadata with an error of a tenth, and rotated pictures.
 void test_metadata_are_a_first_guess(void **) {
     std::vector<lensprof_camera> ring;
     for (int i = 0; i < 18; i++) ring.push_back(camera_at(20.0 * i, 0.0, 34.0));
@@ -103,12 +103,12 @@ void test_metadata_are_a_first_guess(void **) {
     const FoundCameras found = find_cameras(scene.optics, scene.links);
     assert_true(largest_error(scene, found) < 2.0);
     for (const lensprof_camera &c : found.cameras) {
-        assert_true(std::fabs(c.roll_deg - 90.0) < 1.0);  // upright
+        assert_true(std::fabs(c.roll_deg - 90.0) < 1.0);  // the camera is upright
         assert_true(std::fabs(c.pitch_deg) < 1.0);
     }
 }
 
-// A drone over the ground: the true place of every picture, seen from the first.
+// A drone over the ground: the position of every picture relative to the first.
 void test_a_camera_that_moved_over_a_plane(void **) {
     std::vector<lensprof_camera> cameras;
     for (int i = 0; i < 9; i++) {
@@ -131,7 +131,7 @@ void test_a_camera_that_moved_over_a_plane(void **) {
     assert_true(sum / double(found.link_residuals.size()) < 0.001);
 }
 
-// Pictures that look alike are candidates, and their number does not grow with the square.
+// Similar pictures are candidates, and the number of candidates does not grow with the square.
 void test_candidates(void **) {
     std::mt19937 random(3);
     std::normal_distribution<float> normal(0.0f, 1.0f);
@@ -153,7 +153,7 @@ void test_candidates(void **) {
             pictures.push_back(picture);
         }
     }
-    std::vector<Features> mixed;  // members are far apart
+    std::vector<Features> mixed;  // pictures of a group are far apart
     for (int member = 0; member < kMembers; member++)
         for (int group = 0; group < kGroups; group++) mixed.push_back(pictures[size_t(group * kMembers + member)]);
     const std::vector<PicturePair> pairs = candidate_pairs(mixed);

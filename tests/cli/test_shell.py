@@ -3,8 +3,8 @@
 
 usage: test_shell.py LENSPROF
 
-mandoc checks the pages; bash completes as if a user pressed tab; zsh and fish check the syntax. What is not installed
-is reported as skipped.
+mandoc checks the pages; bash completes as if a user pressed tab; zsh and fish check the syntax. Missing programs are
+reported as skipped.
 """
 
 import os
@@ -50,7 +50,7 @@ def is_there(program):
 
 
 def check_pages(lensprof, folder):
-    """Every command and verb has a page without a warning, and the page has every option of the help."""
+    """Every command and verb has a page without warnings, and the page has every option of the help."""
     output_of(lensprof, "man", "-o", folder)
     pages = sorted(folder.glob("*.1"))
     commands = re.findall(r"^  (\w+) ", output_of(lensprof, "help").partition("Commands:")[2], re.MULTILINE)

@@ -1,4 +1,4 @@
-// The reader of TIFF directories: what it reads in both byte orders, and what of a malformed file it refuses.
+// The reader of TIFF directories: what it reads in both byte orders, and which malformed files it refuses.
 #include "picture_files.hpp"
 
 #include <climits>
@@ -9,7 +9,7 @@ using namespace picture_files;
 
 namespace {
 
-// The bytes of a TIFF, in numbers of 2 and 4 bytes.
+// Writes the bytes of a TIFF as numbers of 2 and 4 bytes.
 class Writer {
 public:
     explicit Writer(bool big) {
@@ -33,7 +33,7 @@ private:
     TiffByteOrder order_;
 };
 
-// The header and a directory of one entry, after which there are 8 bytes: from 26 on, to 34.
+// The header and a directory with one entry, followed by 8 bytes from 26 to 34.
 Writer with_entry(bool big, uint32_t tag, uint32_t type, uint32_t count, uint32_t value) {
     Writer tiff(big);
     tiff.put(8, 4).put(1, 2).entry(tag, type, count, value).put(0, 4);
@@ -43,7 +43,7 @@ Writer with_entry(bool big, uint32_t tag, uint32_t type, uint32_t count, uint32_
 
 TiffReader reader_of(const Bytes &bytes) {
     return TiffReader(bytes.size(), [&bytes](uint64_t offset, uint8_t *to, size_t count) {
-        assert_true(offset <= bytes.size() && count <= bytes.size() - offset && count > 0);  // its promise
+        assert_true(offset <= bytes.size() && count <= bytes.size() - offset && count > 0);  // guaranteed by the reader
         std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), count, to);
     });
 }
@@ -52,7 +52,7 @@ void assert_defect(const Bytes &bytes, TiffDefect expected, const std::function<
     try {
         TiffReader reader = reader_of(bytes);
         use(reader);
-    } catch (const std::exception &error) {  // which a program's last handler catches, too
+    } catch (const std::exception &error) {  // which the program's last handler also catches
         const auto *unusable = dynamic_cast<const UnusableTiff *>(&error);
         assert_non_null(unusable);
         assert_int_equal(static_cast<int>(unusable->defect), static_cast<int>(expected));
@@ -73,7 +73,7 @@ void test_headers(void **) {
     assert_defect({'I', 'I', 42, 0, 0, 0, 0, 0}, TiffDefect::no_directory, read_first);
 }
 
-// Also where places and sizes are near 2^32, whose sums must not wrap.
+// Also with offsets and sizes near 2^32, whose sums must not wrap.
 void test_cut_off(void **) {
     for (bool big : {false, true}) {
         for (uint32_t offset : {7u, 8u, 9u, UINT_MAX - 1, UINT_MAX})
@@ -97,7 +97,7 @@ void test_cut_off(void **) {
     }
 }
 
-// A directory that follows itself or contains itself, and more SubIFDs than there can be.
+// A directory that refers to itself as the next or as a child, and too many SubIFDs.
 void test_circles(void **) {
     const auto walk = [](TiffReader &reader) {
         for (uint64_t pointer = 4; pointer;) {

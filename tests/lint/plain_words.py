@@ -28,6 +28,7 @@ SOURCES = (
     "src/formats/**/*",
     "src/store/**/*",
     "tests/*.?",
+    "tests/cli/*",
     "tests/fit/*",
     "tests/formats/*",
     "tests/fuzz/*.?pp",
