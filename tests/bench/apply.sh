@@ -4,7 +4,7 @@
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$root"
-opencv=/usr/include/opencv4 # of libopencv-core-dev, which has no file for pkg-config
+opencv=/usr/include/opencv4 # part of libopencv-core-dev, which has no pkg-config file
 pkg-config --exists opencv4 && opencv=$(pkg-config --variable=includedir opencv4)
 pkg-config --exists lensfun || { echo "apply.sh: lensfun is missing; make bench-apply installs it" >&2; exit 1; }
 [ -e "$opencv/opencv2/core.hpp" ] || { echo "apply.sh: opencv4 is missing; make bench-apply installs it" >&2; exit 1; }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures lensprof beside its peers; see run.sh."""
+"""Measures lensprof and its peers; see run.sh."""
 import argparse
 import json
 import os
@@ -25,18 +25,18 @@ PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "static", "scale"
 
 
 def parse():
-    p = argparse.ArgumentParser(description="Measures lensprof beside Hugin's vig_optimize.", prog="run.sh")
+    p = argparse.ArgumentParser(description="Measures lensprof compared with Hugin's vig_optimize.", prog="run.sh")
     p.add_argument("--quick", action="store_true", help="few cases, under three minutes")
     p.add_argument("--real", metavar="DIR", help="also real pictures: pano.pto, hugin.pto and brackets below DIR")
-    p.add_argument("--only", default=",".join(PARTS), help="parts, with commas: " + ", ".join(PARTS))
+    p.add_argument("--only", default=",".join(PARTS), help="parts, separated by commas: " + ", ".join(PARTS))
     p.add_argument("--match", metavar="TEXT", default="",
-                   help="only accuracy cases with TEXT in their row's name; verdicts: of one kind, or one, as smooth 17;"
-                        " reconstruction: sets, with commas: terrain, room, drone, and real ones")
+                   help="only accuracy cases with TEXT in the name of their row; verdicts: one kind, or one case such"
+                        " as smooth 17; reconstruction: sets, separated by commas: terrain, room, drone, and real ones")
     p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
-    p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="cases at a time (accuracy only)")
-    p.add_argument("--sequences", type=int, metavar="N", help="of the part knowledge; 60, quick 20")
+    p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="parallel cases (accuracy only)")
+    p.add_argument("--sequences", type=int, metavar="N", help="sequences of the part knowledge (default 60, quick 20)")
     p.add_argument("--tune", action="store_true",
-                   help="knowledge: the half of the lenses that constants are chosen on; verdicts: other seeds")
+                   help="knowledge: the half of the lenses used to choose constants; verdicts: other seeds")
     p.add_argument("--keep", action="store_true", help="keep the rendered pictures")
     options = p.parse_args()
     options.only = options.only.split(",")
@@ -50,13 +50,13 @@ def parse():
 def main():
     options, start = parse(), time.time()
     if not os.access(tools.LENSPROF, os.X_OK):
-        sys.exit("run.sh: %s: no such program; run `make` first" % tools.LENSPROF)
+        sys.exit("run.sh: %s: program not found; run `make` first" % tools.LENSPROF)
 
     def say(text):
         print("[%4d s] %s" % (time.time() - start, text), file=sys.stderr, flush=True)
 
     tools.WORK.mkdir(parents=True, exist_ok=True)
-    skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
+    skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize (package hugin-tools) is missing; only lensprof is measured"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
                "verdicts": {}, "radiance": {}, "knowledge": [], "photographs": [], "moving": [],
@@ -83,7 +83,7 @@ def main():
     if "flat" in options.only:
         results["flat"] = flat.run_all(options.quick, say)
     if "knowledge" in options.only:
-        import knowledge  # it needs the library, not only the program
+        import knowledge  # needs the library in addition to the program
         results["knowledge"] = knowledge.run_all(options.sequences or (20 if options.quick else 60), options.tune,
                                                  options.jobs, say)
     if "photographs" in options.only:

@@ -1,4 +1,4 @@
-"""The synthetic cases, rendered by `lensprof simulate`, and what every tool makes of them."""
+"""The synthetic cases, rendered by `lensprof simulate`, and the results of each tool for them."""
 import shutil
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
@@ -9,7 +9,7 @@ import tools
 
 EMOR = ["emor:2.05,-0.12,-0.49,0.27,-0.18", "emor:-0.92,-0.88,1.03,0.36,-0.28", "emor:3.21,-0.4,-0.81,-0.08,0.17"]
 POINT_RESPONSES = ["srgb", "gamma:2.2", "film", "linear", EMOR[0], EMOR[1]]
-PICTURE_RESPONSES = ["srgb", "film", EMOR[0]]  # of the seeds, where the group does not name one
+PICTURE_RESPONSES = ["srgb", "film", EMOR[0]]  # per seed, if the group does not name one
 SHARES, COUNTS = (0, 10, 30, 50), (50, 100, 200, 300, 500, 1000)
 POINT_SEEDS, PICTURE_SEEDS = 24, 3
 TEST_PAIRS = "2000"
@@ -43,7 +43,7 @@ PICTURES = [
 QUICK_PICTURES = ("sRGB", "30 % outlier pixels", "moving objects, 25 %", "JPEG", "fixed exposure", "2 images",
                   "28 in a strip, one exposure", "falloff of 4 stops")
 
-# (case, figure, what it should stay below in every run or None); report.py prints them side by side.
+# (case, figure, limit for every run or None); report.py prints them next to each other.
 TARGETS = [
     ("moving objects, 10 %", "ev_aligned", 0.01),
     ("moving objects, 25 %", "ev_aligned", 0.03),
@@ -52,7 +52,7 @@ TARGETS = [
     ("EXIF within 0.1 EV", "ev_raw", None),
 ]
 
-# No one response makes these pictures: the right answer is that the result is not usable.
+# No single response produces these pictures: the right answer is that the result is not usable.
 REFUSALS = [
     ("local tone mapping, 0.5 EV", "--local-tone 0.5"),
     ("local tone mapping, 1 EV", "--local-tone 1"),
@@ -63,16 +63,16 @@ REFUSALS = [
 @dataclass
 class Case:
     name: str
-    groups: list      # of the tables
+    groups: list      # in the tables
     seed: int
     response: str
-    arguments: list   # of `lensprof simulate`
+    arguments: list   # for `lensprof simulate`
     pictures: bool
-    peers: bool = True  # run beside them, and as the paper
+    peers: bool = True  # also run the peers and the paper's variant
 
 
 def point_cases(quick, _=""):
-    """Like d'Angelo's figure 1: error over the share of outliers (300 pairs) and over the number of pairs (10 %)."""
+    """As in d'Angelo's figure 1: error over the share of outliers (300 pairs) and over the number of pairs (10 %)."""
     jobs = [(300, share) for share in SHARES] + [(count, 10) for count in COUNTS if count != 300]
     for seed in range(1, (4 if quick else POINT_SEEDS) + 1):
         response = POINT_RESPONSES[(seed - 1) % len(POINT_RESPONSES)]
@@ -124,7 +124,7 @@ def calls(case, folder):
 
 
 def run_case(case, keep):
-    """-> one record for every tool."""
+    """-> one record per tool."""
     folder = tools.WORK / "cases" / case.name
     make(case, folder)
     truth = scorer.read_truth(folder / "truth.json", case.response)

@@ -1,4 +1,4 @@
-"""COLMAP (package colmap): pictures -> database.db and a model; and its database, written directly."""
+"""COLMAP (package colmap): runs it on pictures to get database.db and a model, and writes its database directly."""
 import os
 import re
 import shutil
@@ -29,7 +29,7 @@ SIMPLE_RADIAL, CALIBRATED = 2, 2
 
 
 def step(folder, command, *options, may_fail=False):
-    """One command of COLMAP -> usage; RuntimeError where it fails."""
+    """One command of COLMAP -> usage; RuntimeError if it fails."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     used = tools.measured([PROGRAM, command, *options], folder, folder / command, limit_s=LIMIT_S)
     if used["code"] and not may_fail:
@@ -38,7 +38,7 @@ def step(folder, command, *options, may_fail=False):
 
 
 def match(pictures, folder, features=()):
-    """-> database.db of the pictures of a folder, matched each with each, and the seconds that took. `features`: options."""
+    """-> database.db of a folder's pictures, each matched with each, and the seconds taken. `features`: options."""
     database = folder / "database.db"
     for end in ("", "-wal", "-shm"):
         database.with_name(database.name + end).unlink(missing_ok=True)
@@ -49,17 +49,17 @@ def match(pictures, folder, features=()):
 
 
 def rebuild(pictures, folder):
-    """-> the model with most images that the mapper makes of folder/database.db, or None, and its figures."""
+    """-> the mapper's model with most images for folder/database.db, or None, and its figures."""
     models = folder / "sparse"
     shutil.rmtree(models, ignore_errors=True)
     models.mkdir()
     step(folder, "mapper", "--database_path", folder / "database.db", "--image_path", pictures, "--output_path",
-         models, may_fail=True)  # as it does where no model comes of them
+         models, may_fail=True)  # the mapper fails if it finds no model
     return largest(folder)
 
 
 def largest(folder):
-    """-> the model with most images of folder/sparse, or None, and its figures."""
+    """-> the model with most images in folder/sparse, or None, and its figures."""
     found = [(analyzed(folder, model), model) for model in sorted((folder / "sparse").iterdir())]
     if not found:
         return None, {"registered": 0}
@@ -68,7 +68,7 @@ def largest(folder):
 
 
 def analyzed(folder, model):
-    """What `colmap model_analyzer` says of a model."""
+    """The figures that `colmap model_analyzer` prints for a model."""
     step(folder, "model_analyzer", "--path", model)
     text = "".join((folder / ("model_analyzer" + end)).read_text(errors="replace") for end in (".out", ".err"))
     found = {name: re.search(pattern, text) for name, pattern in FIGURES.items()}
@@ -76,7 +76,7 @@ def analyzed(folder, model):
 
 
 def matched(database):
-    """Pairs of pictures whose matches COLMAP has verified, and these matches."""
+    """Pairs of pictures with matches verified by COLMAP, and these matches."""
     opened = sqlite3.connect(database)
     pairs, matches = opened.execute("SELECT count(*), sum(rows) FROM two_view_geometries WHERE rows > 0").fetchone()
     opened.close()
@@ -84,8 +84,8 @@ def matched(database):
 
 
 def write_database(path, size, images, pairs):
-    """A database of one camera. images: (name, keypoints [n, 4] float32) in the order of their numbers, which begin at
-    1; pairs: (number, number, matches [n, 2] uint32), the smaller number first."""
+    """A database of one camera. images: (name, keypoints [n, 4] float32) in the order of their numbers, starting at 1;
+    pairs: (number, number, matches [n, 2] uint32), the smaller number first."""
     path.unlink(missing_ok=True)
     database = sqlite3.connect(path)
     database.executescript("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;" + SCHEMA)

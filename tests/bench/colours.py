@@ -1,7 +1,8 @@
-"""How far the colours of one point differ between the pictures that show it, before and after a correction.
+"""Differences between the colours of a point in the pictures that show it, before and after a correction.
 
-Variance: half the squared difference of a pair, mean over the channels, in levels of 255 squared; of all pairs the mean
-of the smallest 90 %, as the others may show different things. So `build` has it, too (colour_variance).
+Variance: half the squared difference of a pair, mean over the channels, in levels of 255 squared; the mean of the
+smallest 90 % of all pairs, because the others may show different things. `build` uses the same definition
+(colour_variance).
 """
 import json
 
@@ -29,7 +30,7 @@ def curve_of(response):
 
 
 class Exposures:
-    """What `build --exposures-out` wrote. ev: NaN of an image that is not joined."""
+    """The result of `build --exposures-out`. ev: NaN for an image that is not joined."""
 
     def __init__(self, path):
         with open(path) as file:
@@ -63,8 +64,8 @@ class Exposures:
 
 
 def affine_levels(pairs, images):
-    """The same after a gain and an offset of every image and channel in grey values, as trainers of radiance fields and
-    splats have them: robust least squares (Huber), mean gain 1, mean offset 0."""
+    """The same after a gain and an offset per image and channel in grey values, as in the training of radiance fields
+    and splats: robust least squares (Huber), mean gain 1, mean offset 0."""
     first, second = pairs.image.T
     corrected = np.empty_like(pairs.value)
     for c in range(3):
@@ -76,7 +77,7 @@ def affine_levels(pairs, images):
 
 def affine_of_channel(first, second, a, b, images):
     """Gains and offsets of every image for which gain a + offset agree best."""
-    scale = 100.0  # levels: an offset then weighs about as much as a gain
+    scale = 100.0  # levels: gives an offset about the weight of a gain
     design = np.zeros((len(a), 2 * images))
     rows = np.arange(len(a))
     design[rows, first], design[rows, images + first] = a / scale, 1.0
@@ -106,7 +107,7 @@ def variance(levels):
 
 
 def variances(pairs, exposures):
-    """{before, affine, and of every {name: Exposures}}, all on the pairs that all of them correct."""
+    """{before, affine, and one per {name: Exposures}}, all on the pairs that all of them correct."""
     joined = np.all([~np.isnan(e.ev) for e in exposures.values()], axis=0)
     pairs = pairs.select(joined[pairs.image].all(axis=1))
     result = {"pairs": len(pairs), "before": variance(255.0 * pairs.value),

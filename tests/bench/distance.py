@@ -1,16 +1,16 @@
-"""What a lookup makes of a focus distance that is not known, on the lenses that Lensfun has at several.
+"""Lookups without a focus distance, on the lenses that Lensfun has at several distances.
 
-Asked are lenses, focal lengths and apertures with rows at several distances whose curves are not all equal. Truth: M in
-the corner at the distances of photographs, USUAL, as far as the lens focuses (up to its nearest row), linear in 1/D
-between its rows; the farthest row stands for all beyond. Errors are root mean squares over these distances by their
-shares, and over the settings. Each setting is asked three times, without a distance:
+Queried are lenses, focal lengths and apertures with rows at several distances whose curves differ. Truth: M in the
+corner at the distances of photographs, USUAL, down to the lens's nearest row, linear in 1/D between its rows; the
+farthest row applies to everything beyond. Errors are root mean squares over these distances, weighted by their shares,
+and over the settings. Each setting is queried without a distance in these ways:
 
-there      all rows are in the database: the error is that of the distance alone
+there      all rows are in the database: the error comes from the distance alone
 left out   all rows of the focal length and aperture are removed
-one        of every focal length and aperture of the lens only the farthest row is there
+one        per focal length and aperture of the lens, only the farthest row is in the database
 one, left out: both
 
-LONE_DISTANCE_SIGMA of lookup_distance.c is what 68 of 100 errors of `one` are below, each lens counting alike.
+LONE_DISTANCE_SIGMA of lookup_distance.c is the limit for 68 of 100 errors of `one`, with equal weight per lens.
 """
 import collections
 
@@ -22,7 +22,7 @@ from report import header, row
 USUAL = ((np.inf, 10.0, 5.0, 3.0, 1.5, 0.7, 0.3), (0.25, 0.2, 0.19, 0.14, 0.11, 0.08, 0.03))  # as in lookup_distance.c
 ALL_RULES = ("usual", "weakest", "farthest")
 RULES = {"there": ALL_RULES, "left out": ALL_RULES, "one": ("usual",), "one, left out": ("usual",)}
-SAME_DISTANCE = 0.95  # of a distance: a row as near as this serves it
+SAME_DISTANCE = 0.95  # ratio of distances up to which a row counts as at this distance
 
 Answer = collections.namedtuple("Answer", "way rule share error sigma")
 
@@ -36,7 +36,7 @@ def corner(one):
 
 
 def groups_of(rows):
-    """Rows of each focal length and aperture, the nearest first."""
+    """Rows of each focal length and aperture, nearest first."""
     groups = collections.defaultdict(list)
     for one in rows:
         groups[one.setting[:2]].append(one)
@@ -48,9 +48,9 @@ def has_several(group):
 
 
 def truth(group):
-    """-> (shares, M in the corner) at the usual distances as far as the lens focuses."""
+    """-> (shares, M in the corner) at the usual distances that the lens can focus."""
     by_distance = {one.setting[2]: corner(one) for one in group}
-    near = 1.0 / np.array(sorted(by_distance, reverse=True))  # rising
+    near = 1.0 / np.array(sorted(by_distance, reverse=True))  # ascending
     values = np.array([by_distance[d] for d in sorted(by_distance, reverse=True)])
     distances, shares = (np.array(column) for column in USUAL)
     reached = distances >= SAME_DISTANCE * min(by_distance)
@@ -73,7 +73,7 @@ def ask(store, group, way):
 
 
 def without(store, removed, groups, way):
-    """Answers with some rows removed, which are then there again."""
+    """Lookups with some rows removed, which are restored afterwards."""
     answers = []
     try:
         with store.transaction():
@@ -103,7 +103,7 @@ def ask_lens(store, rows):
 
 
 def cells(answers):
-    """RMS, bias, and how often the truth is within 1 and 2 of the errors stated."""
+    """RMS, bias, and how often the truth is within 1 and 2 stated standard errors."""
     shares = np.concatenate([answer.share for answer in answers]) / len(answers)
     errors = np.concatenate([answer.error for answer in answers])
     stated = np.concatenate([np.full(len(answer.error), answer.sigma) for answer in answers])
@@ -112,7 +112,7 @@ def cells(answers):
 
 
 def lone_sigma(lenses):
-    """What 68 of 100 errors are below where one distance is known; lenses: answers of each."""
+    """The limit for 68 of 100 errors if one distance is known; lenses: answers per lens."""
     of = [[a for a in answers if (a.way, a.rule) == ("one", "usual")] for answers in lenses]
     shares = np.concatenate([a.share / len(answers) for answers in of for a in answers])
     errors = np.abs(np.concatenate([a.error for answers in of for a in answers]))
@@ -121,8 +121,8 @@ def lone_sigma(lenses):
 
 
 def document(halves):
-    """halves: {name: answers of each lens}"""
-    lines = ["", "Focus distance not known: error of M in the corner over the distances of photographs.", ""]
+    """halves: {name: answers per lens}"""
+    lines = ["", "Unknown focus distance: error of M in the corner over the distances of photographs.", ""]
     lines += header("lenses", "number", "rows", "rule", "settings", "RMS", "bias", "within 1 sigma", "2 sigma")
     for name, lenses in halves.items():
         for way, rules in RULES.items():
@@ -130,4 +130,4 @@ def document(halves):
                 of = [a for answers in lenses for a in answers if (a.way, a.rule) == (way, rule)]
                 lines.append(row(name, len(lenses), way, rule, len(of), *cells(of)))
     sigmas = ", ".join("%s %.4f" % (name, lone_sigma(lenses)) for name, lenses in halves.items())
-    return "\n".join(lines + ["", "68 of 100 errors where one distance is known: below " + sigmas]) + "\n"
+    return "\n".join(lines + ["", "If one distance is known, 68 of 100 errors are below: " + sigmas]) + "\n"

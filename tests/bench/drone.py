@@ -1,7 +1,8 @@
-"""A drone over flat, finely textured ground: thousands of pictures, and the database that COLMAP would make of them.
+"""A drone over flat, finely textured ground: thousands of pictures, and the database that COLMAP would write for them.
 
-Every picture is cut out of one texture that repeats, so that its points are known to the pixel; the keypoints of the
-database are off by KEYPOINT_PX. How time and memory of lensprof grow with the number of pictures.
+Every picture is a part of one repeating texture, so the true position of its points is known to the pixel; the
+keypoints of the database are off by KEYPOINT_PX. Measures how time and memory of lensprof grow with the number of
+pictures.
 """
 import json
 import pathlib
@@ -18,18 +19,18 @@ import tools
 ROWS, COLUMNS, QUICK_COLUMNS = 25, (20, 40, 80, 200), (20,)
 WIDTH, HEIGHT = 1000, 750
 STEP_X, STEP_Y, JITTER = 250, 300, 20  # px: each point is in ten pictures
-OBSERVATIONS, MARGIN = 600, 20  # of a picture; px from its rim
+OBSERVATIONS, MARGIN = 600, 20  # per picture; px from its rim
 KEYPOINT_PX, NOISE_LEVELS, QUALITY = 0.3, 1.0, 92
-EV, BALANCE = 0.75, 0.06  # uniform within
+EV, BALANCE = 0.75, 0.06  # uniform within +-
 K, CENTER = (-0.45, 0.12, -0.06), (0.01, -0.02)
-TILE, CELLS = 4096, ((16, 0.3), (64, 0.4), (256, 0.5), (1024, 0.4))  # px; standard deviation, stops
+TILE, CELLS = 4096, ((16, 0.3), (64, 0.4), (256, 0.5), (1024, 0.4))  # px; standard deviations in stops
 MEAN_LIGHT, CODES = 0.18, 1 << 14
 LEAST_MATCHES = 15
 LIMIT_S = 3600
 
 
 def repeating_noise(rng, cell):
-    """Smooth noise that repeats after TILE px."""
+    """Smooth noise with a period of TILE px."""
     import cv2
     grid, rim = rng.standard_normal((TILE // cell, TILE // cell)).astype(np.float32), 3
     wide = cv2.resize(np.pad(grid, rim, "wrap"), None, fx=cell, fy=cell, interpolation=cv2.INTER_CUBIC)
@@ -37,7 +38,7 @@ def repeating_noise(rng, cell):
 
 
 def ground(rng):
-    """Light of the ground, [rows, columns, 3], larger than a tile by a picture."""
+    """Light of the ground, [rows, columns, 3], larger than a tile by the size of a picture."""
     grey = sum(deviation * repeating_noise(rng, cell) for cell, deviation in CELLS)
     light = np.empty((TILE + HEIGHT, TILE + WIDTH, 3), np.float32)
     for c in range(3):
@@ -47,7 +48,7 @@ def ground(rng):
 
 
 class Flight:
-    """The truth: where the pictures are, and what the camera did. Pictures are numbered along the rows."""
+    """The truth: positions of the pictures, and the camera's exposures. Pictures are numbered along the rows."""
 
     def __init__(self, columns, seed=1):
         rng = np.random.default_rng(seed)
@@ -61,7 +62,7 @@ class Flight:
         self.truth = scorer.Model(rng.uniform(-EV, EV, len(row)), balance, np.array([K]), np.array(CENTER), curve)
 
     def first_columns(self, columns):
-        """The same flight, its rows cut short."""
+        """The same flight with shorter rows."""
         kept = self.column < columns
         part = object.__new__(Flight)
         part.row, part.column, part.columns, part.origin = self.row[kept], self.column[kept], columns, self.origin[kept]
@@ -100,7 +101,7 @@ def render(flight, folder):
 
 
 def observed(flight, rng):
-    """Of every picture the numbers of the points in it, ascending, and its keypoints (x y scale orientation)."""
+    """Per picture the numbers of its points, ascending, and its keypoints (x y scale orientation)."""
     extent = flight.origin.max(axis=0) + (WIDTH, HEIGHT)
     count = int(OBSERVATIONS * extent.prod() / ((WIDTH - 2 * MARGIN) * (HEIGHT - 2 * MARGIN)))
     points = rng.uniform(0.0, 1.0, (count, 2)) * extent

@@ -1,7 +1,7 @@
-"""The paper's figure 6 (Goldman & Chen 2005): the falloff by a white card beside that by overlapping pictures.
+"""The paper's figure 6 (Goldman & Chen 2005): falloff from a white card compared with that from overlapping pictures.
 
-One simulated lens each seed. The card: three 16 bit linear pictures, turned by 0, 90 and 180 degrees, under a light with
-a gradient, with the noise of the sequence. The sequence: what `lensprof simulate` renders, measured by `lensprof build`.
+One simulated lens per seed. The card: three 16 bit linear pictures, turned by 0, 90 and 180 degrees, under a light with
+a gradient, with the noise of the sequence. The sequence: rendered by `lensprof simulate`, measured by `lensprof build`.
 """
 import json
 import shutil

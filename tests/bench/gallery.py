@@ -1,6 +1,7 @@
-"""What should become of each set of real pictures, and whether it did: verdict, images joined, seams beside Hugin's.
+"""The expected result for each set of real pictures, and whether it was met: verdict, joined images, and seams compared
+with Hugin's.
 
-Seams are measured on places that no tool chose (seams.py), over links of which lensprof joined both images.
+Seams are measured at places that no tool chose (seams.py), on links of which lensprof joined both images.
 """
 import json
 import pathlib
@@ -14,20 +15,20 @@ import scorer
 import seams
 import tools
 
-HUGIN_SHARE = 1.1  # of vig_optimize's median seam; it seeds its sampling by the clock
+HUGIN_SHARE = 1.1  # of vig_optimize's median seam; it seeds its sampling from the clock
 
 
 @dataclass
 class Expected:
     usable: bool = None
     evens: bool = None
-    joined: int = None            # images
-    seam: float = None            # most, median over the links, levels
-    beside_hugin: float = None    # levels that may be added to HUGIN_SHARE of Hugin's median seam
-    unless_refused: bool = False  # the seam does not count where lensprof says that its result is not usable
+    joined: int = None            # number of images
+    seam: float = None            # upper limit of the median over the links, levels
+    beside_hugin: float = None    # levels allowed above HUGIN_SHARE of Hugin's median seam
+    unless_refused: bool = False  # the seam is not checked if lensprof reports that its result is not usable
 
 
-PROJECTS = {  # by the name of the folder; others have none
+PROJECTS = {  # by the name of the folder; other projects have no expectation
     "weir": Expected(evens=True, seam=3.0),
     "brighton_beach": Expected(beside_hugin=0.0, unless_refused=True),
     "grail": Expected(evens=True, joined=17),
@@ -37,21 +38,21 @@ PROJECTS = {  # by the name of the folder; others have none
     "ledge": Expected(evens=True, beside_hugin=0.2),
     "pier": Expected(evens=True, beside_hugin=0.2),
 }
-BRACKETS = {  # options, and what is expected
-    "memorial": (["--black", "20"], Expected(usable=True)),  # borders of pure blue: nothing in red and green
+BRACKETS = {  # options, and the expected result
+    "memorial": (["--black", "20"], Expected(usable=True)),  # pure blue borders: nothing in red and green
     "frobisher": ([], Expected(usable=True)),
 }
 PICTURES = {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
 
 
 def pictures_of(project):
-    """Its pictures, in the order of the images."""
+    """The project's pictures, in the order of the images."""
     names = re.findall(r'^i .*n"([^"]*)"', project.read_text(errors="replace"), re.M)
     return [project.parent / name for name in names]
 
 
 def freed(project, copy):
-    """A copy whose v lines ask for all that lensprof's `--free all` estimates; it may lie in another folder."""
+    """A copy whose v lines request everything that lensprof's `--free all` estimates; it may be in another folder."""
     lines = [line for line in project.read_text(errors="replace").splitlines() if not line.startswith("v")]
     lines = [re.sub(r'n"([^"]*)"', lambda m: 'n"%s"' % (project.parent / m.group(1)), line)
              if line.startswith("i ") else line for line in lines]
@@ -61,7 +62,7 @@ def freed(project, copy):
 
 
 def measure(project, used, model, hugin):
-    """Median and worst seam of a project before and after each tool; `used` and models are of the tools' runs."""
+    """Median and worst seam of a project before and after each tool; `used` and the models are from the runs."""
     sizes = tools.sizes_of_pto(project.read_text(errors="replace"))
     left_out = used.get("left_out", [])
     pairs = seams.seam_pairs(pictures_of(project))
@@ -78,7 +79,7 @@ def measure(project, used, model, hugin):
 
 
 def unmet(expected, used, record=None):
-    """What is not as expected, in words; record: of `measure`."""
+    """Unmet expectations, as texts; record: from `measure`."""
     said = {True: "yes", False: "no", None: "not stated"}
     found = ["%s: %s" % (key, said[used.get(key)]) for key in ("usable", "evens")
              if getattr(expected, key) not in (None, used.get(key))]
@@ -110,7 +111,7 @@ def run_bracket(name, files, options, expected, folder):
 
 
 def run_brackets(root, say):
-    """Every folder of pictures in a folder `brackets`; and its first picture beside a copy, which shows no response."""
+    """Every folder of pictures in a folder `brackets`; and its first picture with a copy, which shows no response."""
     records = []
     for parent in sorted(p for p in pathlib.Path(root).resolve().rglob("brackets") if p.is_dir()):
         for source in sorted(p for p in parent.iterdir() if p.is_dir()):

@@ -1,23 +1,23 @@
-"""What knowledge of the camera and of the lens is worth to a fit of overlapping pictures.
+"""How much prior knowledge of camera and lens improves a fit of overlapping pictures.
 
-Simulated cameras take sequences through Lensfun's lenses. Exposures vary by +-1 EV and nothing else tells them, so that
-pictures alone leave the exponent gamma open; what settles it is what is known beforehand:
+Simulated cameras take sequences through Lensfun's lenses. Exposures vary by +-1 EV and are unknown, so pictures alone
+leave the exponent gamma open; it is determined by what is known beforehand:
 
 nothing   the typical response of a kind of camera
 camera    a bracket of the camera, fitted and stored
 lens      Lensfun's profiles of the lens, without those of the setting, looked up
 both      the bracket and the profiles in one database, looked up
 
-Camera: a response drawn from the typical one of digital cameras by its covariance; curves that fall somewhere are drawn
-anew, with the same exponent. Lens: one of Lensfun's, and of its focal lengths and apertures one, all alike often; of the focus distances known
-there the one nearest to a distance drawn from USUAL, the shares of lensprof_store_lookup. Lookups are not told the
-distance, as EXIF mostly does not. Lenses are of the half that had no part in the constants of lookups (lookup.py).
-Pictures: those of `lensprof simulate`, 2000 pairs with noise and a tenth of outliers. Bracket: six frames 1 EV apart
-with the same noise; exposure times are off by 0.07 EV, and a common factor of the exposures in EV by 1.8 %, the
-repeatability of measured cameras (docs/model.md).
+Camera: a response drawn from the typical one of digital cameras by its covariance; falling curves are drawn again with
+the same exponent. Lens: one of Lensfun's, with one of its focal lengths and apertures, all equally often, and of the
+stored focus distances the one nearest to a distance drawn from USUAL, the shares of lensprof_store_lookup. Lookups do
+not get the distance, because EXIF mostly lacks it. Lenses are from the half that was not used to choose the constants
+of lookups (lookup.py). Pictures: from `lensprof simulate`, 2000 pairs with noise and a tenth of outliers. Bracket: six
+frames 1 EV apart with the same noise; exposure times are off by 0.07 EV, and a common factor of the exposures in EV by
+1.8 %, the repeatability of measured cameras (docs/model.md).
 
-Errors: |M - true M| in the corner; exponent: the slope of the exposures found on the true ones. A stated standard error
-holds where it is above the error: for M that of the corner, for the exponent that of ln gamma.
+Errors: |M - true M| in the corner; exponent: the slope of the recovered against the true exposures. A stated standard
+error holds if it is above the error: for M that of the corner, for the exponent that of ln gamma.
 """
 import os
 import pathlib
@@ -28,7 +28,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-import lookup  # first: it finds the library's Python package
+import lookup  # first, because it finds the library's Python package
 import scorer
 import tools
 import lensprof as lp
@@ -37,10 +37,10 @@ from distance import USUAL
 STATES = ("nothing", "camera", "lens", "both")
 # median error of M in the corner, share of exponents within .9 .. 1.1
 TARGETS = {"nothing": (0.05, 0.80), "camera": (0.03, 0.90), "lens": (0.02, 0.95), "both": (0.01, 0.98)}
-HOLDS = (0.63, 0.73)  # of the standard errors stated; 68 % meant
+HOLDS = (0.63, 0.73)  # share of errors within the stated standard errors; nominal 68 %
 KIND = lp.CameraKind.CAMERA
 PAIRS, OUTLIERS = 2000, 0.1
-FRAMES, POINTS, NOISE = 6, 300, 2.0  # of a bracket; noise in levels
+FRAMES, POINTS, NOISE = 6, 300, 2.0  # for a bracket; noise in levels
 TIME_SIGMA_EV, REPEATABILITY = 0.07, 0.018
 CORNER, DARK = 1.03, 0.05
 MAKER, MODEL = "Bench", "Bench %d"
@@ -51,12 +51,12 @@ class Undo(Exception):
 
 
 def exponent_of(response):
-    """q, which moves as ln gamma does (docs/model.md)."""
+    """q, which changes as ln gamma does (docs/model.md)."""
     return np.log(np.log(response.invert(208 / 255) / response.invert(48 / 255)))
 
 
 def exponent_slope(mean):
-    """dq by the EMoR coefficients, at a response."""
+    """Derivatives of q by the EMoR coefficients, at a response."""
     low, high = mean.invert(48 / 255), mean.invert(208 / 255)
     change = [[np.interp(x, np.linspace(0, 1, 1024), lp.emor_table(1 + n)) for n in range(25)] for x in (low, high)]
     by_log = [-np.array(c) / mean.eval_slope(x) / x for c, x in zip(change, (low, high))]
@@ -64,7 +64,8 @@ def exponent_slope(mean):
 
 
 def draw_response(random, mean, covariance):
-    """First its exponent, then shapes until one rises everywhere: what is drawn anew leaves the exponents' scatter."""
+    """Draws the exponent first, then shapes until one rises everywhere, so that
+    rejection does not change the scatter of exponents."""
     slope = exponent_slope(mean)
     along = covariance @ slope / (slope @ covariance @ slope)
     exponent = random.normal(0.0, np.sqrt(slope @ covariance @ slope))
@@ -73,16 +74,16 @@ def draw_response(random, mean, covariance):
         try:
             return lp.Response.from_emor(mean.emor + shape + along * (exponent - slope @ shape))
         except lp.Error:
-            pass  # it falls somewhere
+            pass  # falls somewhere
 
 
 def is_dark(row):
-    """Hardly any light in the farthest corner, for the centre that `lensprof simulate` takes: it refuses M below 0."""
+    """Almost no light in the farthest corner for the centre that `lensprof simulate` uses, which refuses M below 0."""
     return scorer.Model(None, None, np.array([row.k]), None, None).falloff(CORNER ** 2)[0] < DARK
 
 
 def draw_row(random, lenses):
-    """A row and its lens's rows: -> (row, rows)."""
+    """Draws a row and its lens's rows: -> (row, rows)."""
     row, rows = draw_any_row(random, lenses)
     return (row, rows) if not is_dark(row) else draw_row(random, lenses)
 
@@ -117,14 +118,14 @@ def frames(random, response):
 
 
 def bracket(random, response, model):
-    """The profile that is stored of the camera: without a lens, and without a falloff."""
+    """The stored profile of the camera: without a lens, and without a falloff."""
     images, pairs = frames(random, response)
     found = lp.fit_overlap(images, pairs, lp.FitOptions(free=lp.Free.RESPONSE, refine=True, camera_kind=KIND, threads=1))
     return found.profile(lp.ProfileKey(camera_maker=MAKER, camera_model=model), source="bracket")
 
 
 def known(store, row, rows, stored, model):
-    """{state: profile or None where the lookup is refused}. The database is as before."""
+    """{state: profile or None if the lookup is refused}. The database is unchanged afterwards."""
     key = row.key.copy()
     key.camera_maker, key.camera_model, key.distance_m = MAKER, model, lp.UNKNOWN
     key.processing = lp.Processing.JPEG
@@ -190,7 +191,7 @@ def run_case(number, folder, response, row, profiles):
 
 
 def cases(store, stored, is_tuning, count):
-    """Cameras and lenses, and what is known of each."""
+    """Cameras and lenses, and the prior knowledge of each."""
     mean, covariance, _ = lp.Response.typical(KIND)
     lenses = [rows for (lens, _, camera), rows in sorted(lookup.lenses(store, stored).items())
               if lens and not camera and all(one.is_test for one in rows) != is_tuning]

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""lookup.py [FOLDER]: how well falloffs are predicted between the settings that are stored, on Lensfun's database.
+"""lookup.py [FOLDER]: how well lookups predict falloffs between the stored settings, on Lensfun's database.
 
 Leave one out. All of FOLDER's .xml (the installed liblensfun-data-v1) is imported into a new database. Then, for every
 lens (with its crop factor and camera), focal length and aperture, the rows at all focus distances are removed in a
 transaction, their settings are looked up (lensprof_store_lookup), and the transaction is rolled back. Lensfun's rule
 (lensfun_rule.py) gets the same rows. Error: RMS of M's over r = 0, 1/32 .. 1, where M = 1 + k1 r^2 + k2 r^4 + k3 r^6.
-Rows with a doubt, which lookups leave out by default, are neither used nor asked for, by both. A lens with one focal
-length and aperture has nothing left and is not asked for.
+Doubtful rows, which lookups skip by default, are neither used nor queried, in both cases. A lens with a single focal
+length and aperture has no other rows and is not queried.
 
-Two halves: the axes and most constants of the prediction were chosen on the lenses whose CRC-32 of
-"maker|model|mount,mount|crop factor", as the file has these, is even; the test half are lenses with none of those.
+Two halves: the axes and most constants of the prediction were chosen on the lenses with an even CRC-32 of
+"maker|model|mount,mount|crop factor", as in the file; the test half contains none of those lenses.
 
-Then the same lenses are asked without a focus distance (distance.py).
+Then the same lenses are queried without a focus distance (distance.py).
 
 Exit code 1: on the test half the mean error is not at least a quarter below Lensfun's; 77: there is no data.
 """
@@ -36,14 +36,15 @@ import lensprof  # noqa: E402
 import distance  # noqa: E402
 
 TEST, CHOSEN, ALL = "test half", "other half", "all"
-TARGET = 0.75  # of Lensfun's mean error
+TARGET = 0.75  # ratio to Lensfun's mean error
 INSTALLED = "/usr/share/lensfun/version_1"
 RADII = np.linspace(0.0, 1.0, 33)
 REASON = re.compile(r".*?has no profile for this setting[^a-z]*(.*?)( \(LENSPROF_[A-Z_]*\))?$", re.S)
 POWERS = np.stack([RADII ** 2, RADII ** 4, RADII ** 6])
 
 Row = collections.namedtuple("Row", "id key setting k is_test")
-# ours, theirs, corner: errors, None where refused for `reason`; inner: at r = 0.5, over its standard error by the
+# ours, theirs, corner: errors, None if refused for `reason`; inner: error at r = 0.5 divided by its standard error from
+# the
 # profile's covariance; foreign: rows of another lens were used.
 Asked = collections.namedtuple("Asked", "ours theirs corner sigma inner foreign reason")
 
@@ -53,7 +54,7 @@ class Undo(Exception):
 
 
 def halves_of(text):
-    """For every falloff of a file, in its order: is its lens of the test half?"""
+    """For every falloff of a file, in order: whether its lens is in the test half."""
     for lens in ElementTree.fromstring(text).findall("lens"):
         mounts = ",".join(mount.text or "" for mount in lens.findall("mount"))
         name = "|".join((lens.findtext("maker") or "", lens.findtext("model") or "", mounts,
@@ -73,7 +74,7 @@ def fill(store, folder):
             except lensprof.Error as error:
                 sys.exit("lookup.py: %s: %s" % (file, error))
             if len(found) != len(tests):
-                sys.exit("lookup.py: %s has %d falloffs, of which %d were read" % (file, len(tests), len(found)))
+                sys.exit("lookup.py: %s has %d falloffs, but %d were read" % (file, len(tests), len(found)))
             entries += len(found)
             for (profile, usable), is_test in zip(found, tests):
                 if usable:
@@ -94,7 +95,7 @@ def lenses(store, stored):
 
 
 def our_answer(store, key):
-    """Profile, Lookup; None and why where it is refused."""
+    """Profile, Lookup; None and the reason if it is refused."""
     try:
         return store.lookup(key)
     except lensprof.Error as error:
@@ -104,7 +105,7 @@ def our_answer(store, key):
 
 
 def ask(store, one, others, span):
-    """One row that is not in the database now, of a lens that has `others` there."""
+    """One row that is currently removed from the database, of a lens with rows `others` in it."""
     profile, how = our_answer(store, one.key)
     ours = profile and np.array(profile.vignetting[0].k)
     theirs = lensfun_rule.predict([o.setting for o in others], [o.k for o in others], one.setting, span)
@@ -118,7 +119,7 @@ def ask(store, one, others, span):
 
 
 def leave_out(store, rows):
-    """Asks for every row of a lens, without those of its focal length and aperture."""
+    """Looks up every row of a lens with the rows of its focal length and aperture removed."""
     groups = collections.defaultdict(list)
     for one in rows:
         groups[one.setting[:2]].append(one)
@@ -138,7 +139,7 @@ def leave_out(store, rows):
 
 
 def errors_of_both(asked):
-    """Those that both answer, and their errors: lensprof's, Lensfun's."""
+    """Rows that both answer, and their errors: lensprof's, Lensfun's."""
     both = [a for a in asked if a.ours is not None and a.theirs is not None]
     return both, np.array([a.ours for a in both]), np.array([a.theirs for a in both])
 
@@ -166,7 +167,7 @@ def document(halves, counts):
     asked = halves[ALL]["asked"]
     reasons = collections.Counter(a.reason for a in asked if a.reason)
     lines = ["%d entries, %d of them unusable, %d stored with a doubt; %d stand alone. %d answers used rows of another"
-             " lens, crop factor or camera. Pairs are lensprof / Lensfun's rule."
+             " lens, crop factor or camera. Pairs of figures are lensprof / Lensfun's rule."
              % (*counts, sum(a.foreign for a in asked)), ""]
     lines += header("lenses", "number", "asked", "refused", "compared", "error of M, mean", "median", "90 %",
                     "ratio of means", "with what lensprof refuses at Lensfun's error", "corners within 1 sigma",
@@ -197,10 +198,10 @@ def main():
             of_distance[name] += [several] if several else []
         profiles, faults = store.check()
     if faults or profiles != len(stored):
-        sys.exit("lookup.py: the database is not as it was before the lookups: %d of %d profiles, %d faults"
+        sys.exit("lookup.py: the lookups changed the database: %d of %d profiles, %d faults"
                  % (profiles, len(stored), len(faults)))
     if not all(errors_of_both(half["asked"])[0] for half in halves.values()):
-        sys.exit("lookup.py: %s: too few lenses with several settings; both halves need some" % folder)
+        sys.exit("lookup.py: %s: too few lenses with several settings; each half needs some" % folder)
     text = document(halves, [*counts, alone])
     print(text + distance.document(of_distance), end="")
     if not ratio_of_means(halves[TEST]["asked"]) <= TARGET:

@@ -1,7 +1,7 @@
-"""From pictures alone: lensprof's own registration beside Hugin's chain (pto_gen, cpfind, cpclean, autooptimiser).
+"""From pictures alone: lensprof's registration compared with Hugin's chain (pto_gen, cpfind, cpclean, autooptimiser).
 
-Both projects are fitted by lensprof, so that the geometry alone differs; seams are measured on places that neither
-chose (seams.py). Pictures: a rendered sequence, and every folder of real ones.
+lensprof fits both projects, so only the geometry differs; seams are measured at places that neither chose (seams.py).
+Pictures: a rendered sequence, and every folder of real ones.
 """
 import json
 import pathlib
@@ -76,7 +76,7 @@ def pictures_in(folder):
 
 
 def moving(root):
-    """{name: files} of folders below root/reconstruction: pictures by a camera that moved."""
+    """{name: files} of folders below root/reconstruction: pictures of a moving camera."""
     sets = {}
     for folder in sorted(p for p in (pathlib.Path(root) / "reconstruction").glob("*") if p.is_dir()):
         own = folder / "images" if (folder / "images").is_dir() else folder
@@ -87,7 +87,7 @@ def moving(root):
 
 
 def exif_ev(files, folder):
-    """Exposures by the metadata, as Hugin's pto_gen reads them, EV; None where they do not differ."""
+    """Exposures from the metadata, as Hugin's pto_gen reads them, EV; None if they are all equal."""
     if not HAS_HUGIN or tools.measured(["pto_gen", "-o", "exif.pto", *files], folder, folder / "exif")["code"]:
         return None
     ev = -np.array([line["Eev"] for line in tools.parse_pto((folder / "exif.pto").read_text())])
@@ -95,7 +95,7 @@ def exif_ev(files, folder):
 
 
 def measure_moving(name, files, folder):
-    """Exposures from pictures alone compared with EXIF's, which the fit is not given."""
+    """Exposures from pictures alone compared with EXIF's, which the fit does not get."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     files = [str(f) for f in files]
@@ -124,11 +124,11 @@ def run_moving(root, say):
     for name, project in (real.projects_below(root) if root else {}).items():
         if name.endswith("brighton_beach"):
             sets[name] = pictures_in(project.parent)
-    return measure_all(sets, measure_moving, "moved-", "sets of a camera that moved", say)
+    return measure_all(sets, measure_moving, "moved-", "sets of a moving camera", say)
 
 
 def seam_of(model, names, left_out, pairs, files):
-    """Median over the links of which the tool joined both pictures; None where there is no model."""
+    """Median over the links of which the tool joined both pictures; None if there is no model."""
     place = {name: n for n, name in enumerate(names) if n not in left_out}
     number = np.array([place.get(pathlib.Path(f).name, -1) for f in files])
     kept = pairs.select((number[pairs.image] >= 0).all(axis=1))

@@ -1,10 +1,12 @@
-"""The method `radiance`: speed and accuracy on tracks beside the paper's own way, and beside `transfer` on pictures.
+"""The method `radiance`: speed and accuracy on tracks compared with the paper's algorithm, and with `transfer` on
+pictures.
 
-The peer is Goldman & Chen 2005, section 5, on NumPy as theirs was: squared distance, five EMoR modes with a Gaussian
-prior, falloff of three coefficients, one exposure an image; parameters and radiances by turns, radiances by equation 13
-as long as that lowers the objective and exactly otherwise, parameters by Nelder-Mead, curves that fall cost infinitely
-much. It gets LIMIT_S seconds; where it stood then is scored. Their radiances, too, were found by Nelder-Mead; here by
-Newton's method on all points at once, which is faster."""
+The peer is Goldman & Chen 2005, section 5, on NumPy: squared distance, five EMoR modes with a Gaussian prior, a falloff
+of three coefficients, one exposure per image. Parameters and radiances are optimised in turn: radiances by equation 13
+as long as that lowers the objective and exactly otherwise, parameters by Nelder-Mead; falling curves have infinite
+cost. After LIMIT_S seconds its current state is scored. The paper found radiances by Nelder-Mead, too; here Newton's
+method on all points simultaneously is used, which is faster.
+"""
 import os
 import shutil
 import subprocess
@@ -56,7 +58,7 @@ class Tracks:
             self.array[name] = getattr(self, name)
 
     def errors(self, ev, k):
-        """(exposure, rms EV; falloff, largest), the common exponent taken out."""
+        """(exposure, RMS EV; falloff, largest) after removing the common exponent."""
         exponent = max(float(self.true_ev @ ev / (self.true_ev @ self.true_ev)), 1e-3)
         deviation = ev / exponent - self.true_ev
         r2 = np.linspace(0.0, 1.0, 201) ** 2
@@ -72,7 +74,7 @@ class Peer:
     def __init__(self, lp, tracks, limit):
         self.tracks, self.limit = tracks, limit
         self.tables = np.array([lp.emor_table(mode) for mode in range(6)])
-        self.weight = (NOISE / 255) ** 2  # lambda: the prior against squared grey values
+        self.weight = (NOISE / 255) ** 2  # lambda: weight of the prior relative to squared grey values
         self.evaluations = 0
 
     def curve(self, p):
@@ -83,7 +85,7 @@ class Peer:
         return attenuation(p[:3], self.tracks.r2) * 2.0 ** ev[self.tracks.image]
 
     def total(self, values):
-        """Over the observations of each point."""
+        """Sums over the observations of each point."""
         return np.stack([np.bincount(self.tracks.point, values[:, c], POINTS) for c in range(3)], axis=1)
 
     def objective(self, p, light):
@@ -113,7 +115,7 @@ class Peer:
         return light
 
     def simplex(self, p, light, steps, most, end):
-        """Nelder and Mead's method from p."""
+        """Nelder and Mead's method starting at p."""
         points = np.vstack([p] + [p + step * np.eye(len(p))[i] for i, step in enumerate(steps)])
         values = np.array([self.objective(q, light) for q in points])
         for _ in range(most):
@@ -140,7 +142,7 @@ class Peer:
         return points[values.argmin()], values.min()
 
     def run(self):
-        """-> (seconds, ended by itself, exposures, falloff)."""
+        """-> (seconds, whether it converged, exposures, falloff)."""
         began = time.perf_counter()
         end = began + self.limit
         p = np.zeros(8 + IMAGES - 1)
@@ -187,7 +189,7 @@ def beside_the_paper(seed, limit, turns=5):
 
 
 def beside_transfer(name, options, seeds):
-    """The same pictures by both methods, and by `radiance` on the pairs of `transfer`."""
+    """The same pictures with both methods, and with `radiance` on the pairs of `transfer`."""
     records = []
     for seed in seeds:
         folder = tools.WORK / "radiance" / ("%s_%d" % ("".join(c if c.isalnum() else "_" for c in name), seed))

@@ -1,4 +1,4 @@
-"""Real pictures, which have no truth: what a model fitted to 80 % of the pairs makes of the other 20 %."""
+"""Real pictures without a truth: how well a model fitted to 80 % of the pairs predicts the other 20 %."""
 import pathlib
 import shutil
 from concurrent.futures import ThreadPoolExecutor
@@ -11,13 +11,13 @@ import tools
 
 FOLDS = 5
 NAMES = ("pano.pto", "hugin.pto")
-FREE_ALL = ["--free", "all"]  # whatever the v lines of a project ask for
+FREE_ALL = ["--free", "all"]  # whatever the v lines of a project request
 CLIP_LEVELS = 20.0
 DISAGREE_LEVELS, DISAGREE_PAIRS = 10.0, 10
 
 
 def projects_below(root):
-    """{name: path} of every project; the name is its folder's, or its own where a folder has two."""
+    """{name: path} of every project; the name is that of its folder, or its own if a folder has two."""
     root = pathlib.Path(root).resolve()
     found = sorted(p for p in root.rglob("*.pto") if p.name in NAMES)
     folders = [p.parent for p in found]
@@ -26,15 +26,15 @@ def projects_below(root):
 
 
 def figures(residual):
-    """RMS, median and RMS of residuals clipped at 20 levels, of [n, 2, 3]."""
+    """RMS, median and RMS of residuals clipped at 20 levels, for [n, 2, 3]."""
     size = np.abs(residual)
     return {"pairs": len(residual), "rms": scorer.rms(size), "median": float(np.median(size)),
             "clipped_rms": scorer.rms(np.minimum(size, CLIP_LEVELS))} if len(residual) else {"pairs": 0}
 
 
 def disagreeing(pairs, residuals):
-    """(rows, images): images that are misplaced in the project, or show something else, and their pairs.
-    The median residual of their pairs, 10 or more, is above 10 levels under every tool."""
+    """(rows, images): images that are misplaced in the project or show something else, and their pairs.
+    The median residual of their pairs, 10 or more, is above 10 levels with every tool."""
     bad, images = np.zeros(len(pairs), bool), []
     for image in np.unique(pairs.image):
         rows = (pairs.image == image).any(axis=1)
@@ -45,14 +45,14 @@ def disagreeing(pairs, residuals):
 
 
 def in_range(text):
-    """Lines of a point file whose grey values are all within 0..1: interpolation carries some of Hugin's beyond."""
+    """Lines of a point file with all grey values within 0..1; Hugin's interpolation exceeds this range for some."""
     lines = text.splitlines(keepends=True)
     return "".join(line for line in lines if all(0.0 <= float(v) <= 1.0 for v in line.split()[6:12]))
 
 
 def cross_validate(project, points, folder):
     """Both tools fit 80 % of the pairs (the same file) and are scored on the other 20 %, five times.
-    project: a copy whose v lines ask for everything."""
+    project: a copy whose v lines request everything."""
     text = pathlib.Path(project).read_text(errors="replace")
     lines = [line for line in pathlib.Path(points).read_text().splitlines() if line.strip()]
     pairs, sizes = scorer.read_points(points), tools.sizes_of_pto(text)

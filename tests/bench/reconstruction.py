@@ -1,5 +1,5 @@
-"""Exposures of reconstructions (COLMAP's database and model, OpenSfM's tracks): rendered pictures of a camera that moves,
-against the truth; real ones against EXIF, which the fit is not given; and what COLMAP makes of the corrected copies."""
+"""Exposures of reconstructions (COLMAP's database and model, OpenSfM's tracks): rendered pictures of a moving camera
+compared with the truth; real ones compared with EXIF, which the fit does not get; and COLMAP on corrected copies."""
 import json
 import pathlib
 import shutil
@@ -15,18 +15,18 @@ import scorer
 import tools
 
 WORK = tools.WORK / "reconstruction"
-# Seed 1 was used while the program was made.
+# Seed 1 was used during development.
 SIMULATED = (("terrain", 2, "film", "-0.5,0.2,-0.1"), ("terrain", 3, "gamma:1.8", "-0.25,-0.15,0.05"),
              ("room", 2, "srgb", "-0.6,0.3,-0.1"), ("room", 3, "emor:0.8,-0.3,0.1", "-0.1,-0.3,0.08"))
 CAMERA = "--images 24 --size 1200x900"
-FEWER_FEATURES = ["--SiftExtraction.max_num_features", 4000]  # of the rendered pictures, for time
+FEWER_FEATURES = ["--SiftExtraction.max_num_features", 4000]  # for the rendered pictures, to save time
 ONLY = ["--free", "ev,wb"]
 NO_EXIF = ["--exif-sigma", "0"]
 REBUILT = ("snowmiku", "lund")
 
 
 def build(project, pictures, log, extra=()):
-    """`build` -> usage and the object it printed, or None; exposures and pairs go to files named as the log."""
+    """`build` -> usage and the object it printed, or None; exposures and pairs go to files named after the log."""
     command = [tools.LENSPROF, "build", project, "--images", pictures, "--no-store", "--stored", "none", "--force", "--json",
                "--exposures-out", "%s.exposures.json" % log, "--points-out", "%s.points.txt" % log, *extra]
     used = tools.measured(command, log.parent, log)
@@ -38,7 +38,7 @@ def build(project, pictures, log, extra=()):
 
 
 def fit_ways(ways, pictures, folder, extra=()):
-    """{way: project} -> {way: (usage, object, object of exposures only)}; a fit that gives no result is left out."""
+    """{way: project} -> {way: (usage, object, object with exposures only)}; fits without a result are left out."""
     results = {}
     for way, project in ways.items():
         used, data = build(project, pictures, folder / way, extra)
@@ -49,7 +49,7 @@ def fit_ways(ways, pictures, folder, extra=()):
 
 
 def variances_of(folder, way):
-    """Of all pairs that were drawn; those of the fit itself are without what shines."""
+    """For all sampled pairs; the fit itself excludes glossy points."""
     exposures = {name: colours.Exposures(folder / (way + end + ".exposures.json"))
                  for name, end in (("exposures_only", "_only"), ("result", ""))}
     return colours.variances(scorer.read_points(folder / (way + "_only.points.txt")), exposures)
@@ -57,7 +57,8 @@ def variances_of(folder, way):
 
 def reconstruct(pictures, folder, features=(), matched=None):
     """COLMAP on a folder of pictures -> {way: project} and figures. `matched`: a folder with a database.db and a sparse
-    of these pictures that were made before."""
+made
+    earlier for these pictures."""
     if matched:
         shutil.copyfile(matched / "database.db", folder / "database.db")
         shutil.copytree(matched / "sparse", folder / "sparse")
@@ -86,7 +87,7 @@ def measure_simulated(kind, seed, response, vignetting):
     subprocess.run([tools.LENSPROF, "simulate", "-o", pictures, "--moving", kind, "--seed", str(seed), "--response", response,
                     "--vignetting=" + vignetting, *CAMERA.split()], check=True, stdout=subprocess.DEVNULL)
     truth = pictures / "truth.json"
-    truth.rename(folder / "truth.json")  # COLMAP reads all files of the folder
+    truth.rename(folder / "truth.json")  # COLMAP reads all files in the folder
     truth = scorer.read_truth(folder / "truth.json", response)
     ways, figures = reconstruct(pictures, folder, FEWER_FEATURES)
     records = []
@@ -99,7 +100,7 @@ def measure_simulated(kind, seed, response, vignetting):
 
 
 def stated_ev(files):
-    """Exposures by EXIF, log2(t ISO / 100 / N^2); None where a picture does not say, or there is no exiftool."""
+    """Exposures from EXIF, log2(t ISO / 100 / N^2); None if a picture lacks it, or without exiftool."""
     if not shutil.which("exiftool"):
         return None
     text = subprocess.run(["exiftool", "-n", "-json", "-ExposureTime", "-ISO", "-FNumber", *map(str, files)],
@@ -113,7 +114,7 @@ def stated_ev(files):
 
 
 def beside_exif(known, names, data):
-    """{r, slope, off_ev} of exposures found beside those of {name: EV}, over the images that are joined."""
+    """{r, slope, off_ev} of recovered exposures compared with {name: EV}, over the joined images."""
     pairs = [(known[name], image["ev"]) for name, image in zip(names, data["images"]) if image["ev"] is not None]
     stated, found = np.array(pairs).T
     return {"joined": len(pairs), "r": float(np.corrcoef(stated, found)[0, 1]),
@@ -134,7 +135,7 @@ def copied(files, folder):
 
 
 def measure_real(name, files):
-    """A set of real pictures -> records, one a way, and COLMAP's figures."""
+    """A set of real pictures -> records, one per way, and COLMAP's figures."""
     folder = WORK / name
     pictures = copied(files, folder)
     stated = stated_ev(files)
@@ -155,7 +156,7 @@ def measure_real(name, files):
 
 
 def measure_rebuilt(name, before):
-    """COLMAP once more, on the copies that were corrected by the result of the database."""
+    """COLMAP again, on the copies corrected with the result from the database."""
     folder, again = WORK / name, WORK / (name + "-corrected")
     shutil.rmtree(again, ignore_errors=True)
     again.mkdir()
@@ -169,12 +170,12 @@ def measure_rebuilt(name, before):
 
 
 def opensfm_folders(root):
-    """Folders below root/reconstruction with the tracks of OpenSfM's example."""
+    """Folders below root/reconstruction with tracks in OpenSfM's format."""
     return sorted(tracks.parent for tracks in (pathlib.Path(root) / "reconstruction").glob("*/tracks_example.csv"))
 
 
 def measure_tracks(source):
-    """By the pictures and by the colours in tracks.csv alone."""
+    """With the pictures, and with the colours in tracks.csv alone."""
     folder = WORK / (source.name + "-tracks")
     files = photographs.pictures_in(source / "images")
     pictures = copied(files, folder)
@@ -221,7 +222,7 @@ def run_real(root, match, say):
 
 
 def run_all(root, quick, match, keep, say):
-    """`match`: of the sets those whose names hold one of these texts, with commas; the pictures from above are `drone`."""
+    """`match`: only sets whose names contain one of these comma-separated texts; the aerial pictures are `drone`."""
     result = {"simulated": [], "real": [], "rebuilt": [], "tracks": [], "scale": [], "skipped": []}
     cameras = [camera for camera in SIMULATED if chosen(set_name(*camera), match)]
     if colmap.PROGRAM:

@@ -1,28 +1,28 @@
 """The tables of the part `reconstruction`."""
 from report import header, number, row
 
-READING_SIMULATED = """Rendered pictures of a camera that moves (`simulate --moving`), matched by COLMAP 3.8, fitted by its
-database and by its model. Errors: the largest one, exposures with offset and exponent taken out, M with the exponent
-taken out. Exposures only: `--free ev,wb`."""
+READING_SIMULATED = """Rendered pictures of a moving camera (`simulate --moving`), matched by COLMAP 3.8, fitted from
+its database and from its model. Errors are the largest ones: exposures with offset and exponent removed, M with the
+exponent removed. Exposures only: `--free ev,wb`."""
 
-READING_VARIANCE = """Variance of colours: half the squared difference between two pictures at one point, levels of 255
-squared, mean of the smallest 90 %. Affine: a gain and an offset per picture and channel in grey values, fitted to the
-same pairs by robust least squares, as trainers of radiance fields have it; it has six numbers a picture, exposures
-three. Exposures only: `--free ev,wb`,
-which has the mean response of EMoR, and what `build` states itself (colour_variance), with the typical one."""
+READING_VARIANCE = """Variance of colours: half the squared difference between two pictures at one point, in levels
+of 255 squared, mean of the smallest 90 %. Affine: a gain and an offset per picture and channel in grey values,
+fitted to the same pairs by robust least squares, as in the training of radiance fields; it has six numbers per
+picture, exposures have three. Exposures only: `--free ev,wb`, which uses the mean response of EMoR. "With the
+typical response" is what `build` itself reports (`colour_variance`)."""
 
-READING_REAL = """EXIF is withheld (`--exif-sigma 0`). Exposures beside those of EXIF: correlation r, slope, standard
-deviation of the difference; in brackets those of exposures only (`--free ev,wb`)."""
+READING_REAL = """EXIF is withheld (`--exif-sigma 0`). Exposures are compared with those of EXIF: correlation r,
+slope, standard deviation of the difference. Values in brackets are for exposures only (`--free ev,wb`)."""
 
-READING_SCALE = """A drone over flat ground: pictures of 1000 x 750 (JPEG) and a database as COLMAP writes it, 600 keypoints a
-picture, each point in about ten. `build database.db --no-store --exposures-out`; `apply --model` of the smallest set.
-Fits: all of them, until no more points are left out as shining."""
+READING_SCALE = """A drone over flat ground: pictures of 1000 x 750 (JPEG) and a database as COLMAP writes it, 600
+keypoints per picture, each point in about ten pictures. `build database.db --no-store --exposures-out`; `apply
+--model` on the smallest set. Fits: all fits until no more points are left out as glossy."""
 
 WAYS = {"database": "database.db", "model": "model"}
 
 
 def variance_cells(record):
-    """Beside exposures only: the smaller of the two variances."""
+    """For exposures only, the smaller of the two variances is the reference."""
     of, stated = record["variance"], record["stated_variance"] or {}
     only = [of["exposures_only"], stated.get("exposures_only", of["exposures_only"])]
     return [number(v) for v in (of["before"], of["affine"], *only, of["result"], of["result"] / max(min(only), 1e-9))]
@@ -67,8 +67,8 @@ def real(records):
 def tracks(records):
     if not records:
         return []
-    lines = ["### Colours in tracks.csv", "", "Exposures by the pictures and by the colours of OpenSfM's tracks alone"
-             " (`--track-colors`); r and slope beside EXIF, which is withheld.", ""]
+    lines = ["### Colours in tracks.csv", "", "Exposures from the pictures and from the colours of OpenSfM's tracks"
+             " alone (`--track-colors`); r and slope compared with EXIF, which is withheld.", ""]
     lines += header("pictures", "number", "pairs: pictures", "tracks", "r: pictures", "tracks", "slope: pictures", "tracks",
                     "largest difference, EV")
     for r in records:
@@ -81,8 +81,8 @@ def tracks(records):
 def rebuilt(records):
     if not records:
         return []
-    lines = ["### A model rebuilt", "", "COLMAP on the pictures, and on the copies by `apply --model`: what `colmap model_analyzer`"
-             " says of the largest model; pairs of pictures and matches that were verified.", ""]
+    lines = ["### A model rebuilt", "", "COLMAP on the pictures and on the copies by `apply --model`: output of"
+             " `colmap model_analyzer` for the largest model, and verified pairs of pictures and matches.", ""]
     lines += header("set", "pictures", "pairs", "matches", "registered", "points", "observations", "track length",
                     "reprojection error, px", "apply, s")
     for r in records:

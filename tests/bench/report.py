@@ -12,36 +12,37 @@ FIGURES = [("ev_raw", "exposure, raw, EV"), ("ev_aligned", "exposure, EV"), ("wb
 TARGET_FIGURES = {"ev_raw": "exposure, raw", "ev_aligned": "exposure", "ev_spread": "spread of exposures"}
 COSTS = [("cpu_s", "CPU, s"), ("peak_mb", "peak, MB")]
 
-READING = """Errors are against the truth, medians over runs (seeds and responses); the tools get the same seeds.
-Raw: as the tool states it. Otherwise aligned: the exponent that pictures alone leave open is taken out.
-Clean residual: RMS of the symmetric transfer error, in levels of 255, on 2000 noise-free pairs that no tool has
-seen; "lensprof is better" counts the cases in which lensprof's is smaller. Failure: clean residual above 5 levels, or
-no result. Refused: lensprof says that its result is not usable; it is scored all the same. Response falls: somewhere on
-the 1024 samples of the curve as stated; vig_optimize's curve is scored after the clipping that Hugin applies to it.
-vig_optimize seeds its own sampling by the clock, so its columns `-s 0 -p 2000` and `defaults` vary from run to run;
-everything else but times repeats exactly. CPU times of the accuracy tables were taken with {jobs} cases at a time."""
+READING = """Errors are differences from the truth, medians over runs (seeds and responses); all tools get the same
+seeds. Raw: as the tool states it. All other figures are aligned: the exponent that pictures alone leave open is
+removed. Clean residual: RMS of the symmetric transfer error, in levels of 255, on 2000 noise-free pairs that no tool
+has seen; "lensprof is better" counts the cases in which lensprof's is smaller. Failure: clean residual above 5
+levels, or no result. Refused: lensprof reports that its result is not usable; it is scored nevertheless. Response
+falls: somewhere on the 1024 samples of the curve as stated; vig_optimize's curve is scored after the clipping that
+Hugin applies to it. vig_optimize seeds its own sampling from the clock, so its columns `-s 0 -p 2000` and `defaults`
+vary from run to run. Everything else except times repeats exactly. CPU times in the accuracy tables were measured
+with {jobs} cases in parallel."""
 
-READING_REAL = """Five-fold cross validation: both tools fit the same 80 % of the pairs; residual of the other 20 %, in
-levels of 255. Agreeing: without the pairs of images that mostly disagree (the median residual of an image's pairs is
-above 10 levels under both tools: the project has it in the wrong place); the fits had them all. Everything is estimated,
-whatever the v lines of a project ask for. Pairs drawn by vig_optimize are other ones in every run; those with grey
-values outside 0..1 are left out for both tools."""
+READING_REAL = """Five-fold cross validation: both tools fit the same 80 % of the pairs. The table shows the residual
+of the other 20 %, in levels of 255. The columns "agreeing" leave out the pairs of images that mostly disagree,
+because the project has them in the wrong place (the median residual of the image's pairs is above 10 levels with
+both tools); the fits included them. Everything is estimated, whatever the v lines of a project request. Pairs drawn
+by vig_optimize differ in every run; those with grey values outside 0..1 are left out for both tools."""
 
-READING_GALLERY = """Verdict, and seams beside those of vig_optimize -s 0 -p 2000. Seam of a link: median over its places
-of the difference between a picture and what the other one predicts of it, levels of 255; below: of all links the median
-(and the worst). Places come from features of the pictures, not from a project or a tool. Links measured are those of
-which lensprof joined both images."""
+READING_GALLERY = """Verdict, and seams compared with those of vig_optimize -s 0 -p 2000. Seam of a link: median over
+its places of the difference between a picture and its prediction from the other one, in levels of 255. The table
+shows the median over all links (and the worst). Places come from features of the pictures, not from a project or a
+tool. Only links of which lensprof joined both images are measured."""
 
 READING_VERDICTS = """Rendered sequences, every option drawn from the seed. Good ones (smooth: sky and walls; hard:
-parallax, sharpening, white areas, moving objects) should be accepted, bad ones (noise, negatives, local tone mapping,
-pictures in each other's places) refused. Failed: accepted with a clean residual above 5 levels, over the images that
-were joined. Exposures (beside the reference) and M in the corner: share of errors, nothing taken out, within the stated
-standard error, over the accepted good sequences. In brackets the target. A case again:
+parallax, sharpening, white areas, moving objects) should be accepted, bad ones (noise, negatives, local tone
+mapping, misplaced pictures) refused. Failed: accepted with a clean residual above 5 levels, over the joined images.
+Exposures (relative to the reference) and M in the corner: share of errors within the stated standard error, without
+alignment, over the accepted good sequences. Targets are in brackets. To repeat a case:
 `run.sh --only verdicts --match "smooth 17"{tune}`."""
 
 
 def number(value):
-    """Three digits that count, four places at most."""
+    """Three significant digits, at most four decimal places."""
     if value is None or not math.isfinite(value):
         return "–"
     if abs(value) < 0.01:
@@ -89,7 +90,7 @@ def ratio(ours, theirs):
 
 
 def wins(ours, theirs):
-    """`k of n`: cases in which our clean residual is smaller."""
+    """`k of n`: cases in which lensprof's clean residual is smaller."""
     other = {r["case"]: r.get("clean_rms", math.inf) for r in theirs or []}
     won = count(ours, lambda r: r.get("clean_rms", math.inf) < other.get(r["case"], -math.inf))
     return "%d of %d" % (won, len(other)) if other else "–"
@@ -127,7 +128,7 @@ def residual_table(records):
 
 
 def beside_table(records):
-    """lensprof / Hugin on the same pairs: every other error."""
+    """lensprof / Hugin on the same pairs: all other errors."""
     keys = [(k, title) for k, title in FIGURES if k != "clean_rms"]
     lines = header("case", *(title for _, title in keys), "response falls", "refused", "CPU, s")
     for group in groups_of(records):
@@ -141,7 +142,7 @@ def beside_table(records):
 
 
 def summary_table(records, costs):
-    """One line a tool, over all cases."""
+    """One line per tool, over all cases."""
     lines = header("tool", "runs", *(title for _, title in FIGURES), "largest clean residual", "failures",
                    "failures not refused", "refused", "response falls", "lensprof is better",
                    *(title for _, title in costs))
@@ -165,7 +166,7 @@ def accuracy(title, note, records, costs):
 
 
 def targets(records):
-    """Figures that single cases are about; a target is met by a run that stays at or below it."""
+    """Figures specific to single cases; a run meets a target if it is at or below it."""
     lines = []
     for group, key, target in cases.TARGETS:
         of = split([r for r in records if group in r["groups"]])
@@ -178,7 +179,7 @@ def targets(records):
                          number(median(of.get("hugin", []), key)), refusals(ours)))
     if not lines:
         return []
-    return ["What single cases are about, EV; largest: of lensprof's runs.", "",
+    return ["Figures specific to single cases, in EV; largest: of the lensprof runs.", "",
             *header("case", "figure", "target", "lensprof", "largest", "met by", "vig_optimize, same points",
                     "refused"),
             *lines, ""]
@@ -187,8 +188,8 @@ def targets(records):
 def refused(records):
     if not records:
         return []
-    lines = ["## To be refused", "", "No one response makes these pictures: local tone mapping renders a point by its"
-             " surroundings, in every picture others.", ""]
+    lines = ["## To be refused", "", "No single response produces these pictures: local tone mapping renders a point"
+             " according to its surroundings, which differ from picture to picture.", ""]
     lines += header("case", "runs", "refused", "exposure, raw, EV", "falloff, raw, max", "clean residual, levels")
     for group in groups_of(records):
         of = split(records, group)["lensprof"]
@@ -198,7 +199,7 @@ def refused(records):
 
 
 def verdicts(results):
-    """Both errors of the verdict, and the sequences that show them."""
+    """Both errors of the verdict, and the sequences concerned."""
     if not results or not (results["records"] or results["skipped"]):
         return []
     from verdicts import BAD, GOOD, LIMITS, NEED_OPENCV, is_missed
@@ -232,7 +233,7 @@ def verdict_row(kind, of, good, limits):
 
 
 def held(z):
-    """Share of errors within their standard error, beside the target."""
+    """Share of errors within their standard error, with the target."""
     from verdicts import HOLDS
     if not z:
         return "–"
@@ -244,10 +245,10 @@ def held(z):
 def flat(records):
     if not records:
         return []
-    lines = ["## By a card and by a sequence", "", "Goldman & Chen 2005, figure 6, simulated: largest difference of M from the"
-             " truth over the half diagonal, raw, noise of 2 levels. Card: three linear pictures of 640 x 480, turned by 90"
-             " degrees, under a light with a gradient (`flat`). Sequence: six overlapping pictures of the same lens with EXIF"
-             " exposures (`build`).", ""]
+    lines = ["## By a card and by a sequence", "", "Goldman & Chen 2005, figure 6, simulated: largest difference of M"
+             " from the truth over the half diagonal, raw, noise of 2 levels. Card: three linear pictures of 640 x 480,"
+             " turned by 90 degrees, under a light with a gradient (`flat`). Sequence: six overlapping pictures of the"
+             " same lens with EXIF exposures (`build`). Card beside sequence: largest difference between the two.", ""]
     lines += header("seed", "falloff", "card", "sequence", "card beside sequence")
     for r in records:
         lines.append(row(r["seed"], r["lens"], *(number(r.get(key)) for key in ("card", "sequence", "apart"))))
@@ -258,7 +259,7 @@ def flat(records):
 def scale(records):
     if not records:
         return []
-    lines = ["## Scale", "", "Mosaics of a narrow lens, 100 pairs an image (10 % outliers), given as a point file; one"
+    lines = ["## Scale", "", "Mosaics of a narrow lens, 100 pairs per image (10 % outliers), given as a point file; one"
              " turn.", ""]
     lines += header("images", "pairs", "solver, s", "process, s", "peak, MB", "usable", "exposure, EV",
                     "clean residual", "simulate, s")
@@ -273,9 +274,9 @@ def scale(records):
 def static(records):
     if not records:
         return []
-    lines = ["## Camera that stands still", "", "Four frames, exposures unknown, aligned to the brightest (Kim & Pollefeys"
-             " 2004, section 3.1): RMS difference summed over the channels, levels of 255, median over the seeds. The"
-             " true curve leaves rounding and noise; Debevec (OpenCV) is given the true exposures.", ""]
+    lines = ["## Stationary camera", "", "Four frames, exposures unknown, aligned to the brightest (Kim & Pollefeys"
+             " 2004, section 3.1): RMS difference summed over the channels, levels of 255, median over the seeds."
+             " With the true curve, only rounding and noise remain. Debevec (OpenCV) is given the true exposures.", ""]
     tools = [key for key in ("truth", "transfer", "transfer-function", "debevec") if key in records[0]]
     lines += header("curve", "noise", "runs", *tools)
     for curve, noise in sorted({(r["curve"], r["noise"]) for r in records}):
@@ -288,7 +289,8 @@ def static(records):
 def speed(results):
     if not results:
         return []
-    lines = ["## Speed", "", "Solver alone: the pairs are given (10 % outliers). lensprof's on all cores, vig_optimize's on its one.", ""]
+    lines = ["## Speed", "", "Solver alone, with given pairs (10 % outliers). lensprof uses all cores, vig_optimize its"
+             " single one.", ""]
     lines += header("case", "turns", "tool", "solver, s", "CPU of the process, s", "lensprof's solver / CPU",
                     "lensprof's CPU / CPU", "clean residual")
     for r in results["solver"]:
@@ -352,7 +354,7 @@ def verdict_cells(used):
 
 
 def gallery(records):
-    """Real projects beside what is expected of them."""
+    """Real projects and whether their expectations are met."""
     if not records:
         return []
     lines = ["### Gallery", ""]
@@ -373,7 +375,7 @@ def gallery(records):
 def brackets(records):
     if not records:
         return []
-    lines = ["### Brackets", "", "`lensprof bracket` with exposures by EXIF where there are any.", ""]
+    lines = ["### Brackets", "", "`lensprof bracket` with exposures from EXIF, if available.", ""]
     lines += header("set", "options", "pictures", "usable", "reason", "left out", "residual before", "held out",
                     "expected")
     for r in records:
@@ -389,14 +391,14 @@ def radiance(results):
         return []
     names = {"lensprof": "lensprof", "lensprof-5": "lensprof, 5 modes, squared", "paper": "alternation, Nelder-Mead"}
     lines = ["## The method `radiance`", "", "12 images x 2000 points of 2 to 5 observations, three channels, noise of 2"
-             " levels, sRGB response unknown; medians over seeds. The paper's way stands in tests/bench/radiance.py.", ""]
+             " levels, sRGB response unknown; medians over seeds. The paper's algorithm: tests/bench/radiance.py.", ""]
     lines += header("who", "s", "settled", "exposure, EV", "falloff, max")
     for name, label in names.items():
         records = [r[name] for r in results["paper"]]
         settled = "%d of %d" % (count(records, lambda r: r["settled"]), len(records))
         lines.append(row(label, *(number(median(records, key)) if key else settled for key in
                                   ("seconds", None, "ev_aligned", "falloff_aligned"))))
-    lines += ["", "Beside `transfer`, from pictures.", ""]
+    lines += ["", "Compared with `transfer`, from pictures.", ""]
     lines += header("case", "method", "runs", "exposure, EV", "falloff, max", "response, levels", "clean residual",
                     "solver, s", "usable")
     for case, method in dict.fromkeys((r["case"], r["method"]) for r in results["transfer"]):
@@ -408,7 +410,7 @@ def radiance(results):
 
 
 def knowledge(records):
-    """What is known beforehand, and what it leaves of the errors; a target that is not met is marked."""
+    """Prior knowledge, and the remaining errors; unmet targets are marked."""
     if not records:
         return []
     from knowledge import HOLDS, PAIRS, STATES, TARGETS, TIME_SIGMA_EV
@@ -419,11 +421,11 @@ def knowledge(records):
     def beside(value, shown, target, met):
         return "%s (%s%s)" % (shown % value, target, "" if met else "; **not met**")
 
-    lines = ["## What is known beforehand", "", "Simulated digital cameras before Lensfun's lenses, 6 images, %d pairs,"
-             " exposures within 1 EV and unknown. Error of M in the corner, and of the exponent (slope of the exposures found"
-             " on the true ones), as stated. Camera: its bracket, EXIF within %g EV. Lens: Lensfun's profiles of it, without"
-             " those of the setting. Refused: the lookup found nothing near the setting. In brackets the target. Errors"
-             " stated should hold 68 %%." % (PAIRS, TIME_SIGMA_EV), ""]
+    lines = ["## What is known beforehand", "", "Simulated digital cameras with Lensfun's lenses, 6 images, %d pairs,"
+             " exposures within 1 EV and unknown. Errors of M in the corner and of the exponent (slope of the recovered"
+             " against the true exposures), as stated. Camera: its bracket, EXIF within %g EV. Lens: Lensfun's profiles"
+             " of it, without those of the setting. Refused: no profile is near enough to the setting. Targets are in"
+             " brackets. Stated errors should hold for 68 %%." % (PAIRS, TIME_SIGMA_EV), ""]
     lines += header("known", "fits", "lookups refused", "error of M, median", "90 %", "exponents within .9 to 1.1",
                     "scatter of ln γ", "stated", "error of M holds", "error of γ holds", "not usable", "overruled")
     for state in STATES:
@@ -449,11 +451,12 @@ def knowledge(records):
 
 
 def photographs(records):
-    """Registration from pictures alone, of both tools."""
+    """Registration from pictures alone, by both tools."""
     if not records:
         return []
-    lines = ["## From photographs", "", "From pictures to the fit; times of Hugin are of pto_gen, cpfind, cpclean and autooptimiser, without"
-             " the fit. Seam: median over the links, levels of 255, after lensprof's fit on each geometry.", ""]
+    lines = ["## From photographs", "", "From pictures to the fit; Hugin's times are for pto_gen, cpfind, cpclean and"
+             " autooptimiser, without the fit. Seam: median over the links, levels of 255, after lensprof's fit on each"
+             " geometry.", ""]
     lines += header("pictures", "number", "lensprof joined", "Hugin joined", "lensprof wall, s", "Hugin wall, s", "wall ratio", "CPU ratio",
                     "lensprof seam", "Hugin seam", "verdict: usable, evens")
     for r in records:
@@ -466,11 +469,11 @@ def photographs(records):
 
 
 def moving(records):
-    """Pictures by a camera that moved: exposures compared with EXIF's, which the fit was not given."""
+    """Pictures of a moving camera: exposures compared with EXIF's, which the fit did not get."""
     if not records:
         return []
-    lines = ["## A camera that moved", "", "Exposures from pictures alone (`build FOLDER --exif-sigma 0`) compared with those of EXIF: correlation, slope,"
-             " standard deviation of the difference.", ""]
+    lines = ["## A camera that moved", "", "Exposures from pictures alone (`build FOLDER --exif-sigma 0`) compared with"
+             " those of EXIF: correlation, slope, standard deviation of the difference.", ""]
     lines += header("pictures", "number", "joined", "EXIF spans, EV", "correlation", "slope", "difference, EV", "wall, s",
                     "verdict: usable, evens")
     for r in records:
@@ -494,7 +497,7 @@ def document(results):
     lines += accuracy("Pairs given: 6 images, as in figure 1 of d'Angelo 2007", "Noise of 2 levels.", results["points"],
                       COSTS[:1])
     lines += accuracy("From pictures", "6 pictures of 800 x 600, 50 degrees wide, 40 % overlap, exposures within 1 EV,"
-                      " noise of 2 levels, unless the case says otherwise.", results["pictures"], COSTS)
+                      " noise of 2 levels, unless the case states otherwise.", results["pictures"], COSTS)
     lines += targets(results["pictures"]) + refused(results["refusals"]) + verdicts(results["verdicts"])
     lines += flat(results["flat"])
     lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])

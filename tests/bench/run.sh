@@ -1,21 +1,21 @@
 #!/bin/bash
-# The benchmark: accuracy, speed and robustness of build/lensprof beside Hugin's vig_optimize.
-# Tables in Markdown go to standard output and build/bench/benchmarks.md, every figure to build/bench/results.json.
+# The benchmark: accuracy, speed and robustness of build/lensprof compared with Hugin's vig_optimize.
+# Markdown tables go to standard output and build/bench/benchmarks.md, all figures to build/bench/results.json.
 #
 #   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
 #                      [--sequences N] [--tune]
-#                      PARTS, with commas: points, pictures, refusals, verdicts, flat, static, scale, speed, radiance,
-#                      knowledge, photographs (also of --real DIR), reconstruction (with colmap; also DIR/reconstruction),
-#                      real (pano.pto and hugin.pto below DIR, and folders of DIR/brackets)
-#   tests/bench/run.sh --only reconstruction --match terrain,drone   of its sets these: terrain, room, drone, and with
-#                      --real DIR the folders of DIR/reconstruction; COLMAP's database.db and sparse in one are taken as they are
+#                      PARTS, separated by commas: points, pictures, refusals, verdicts, flat, static, scale, speed,
+#                      radiance, knowledge, photographs (also of --real DIR), reconstruction (with colmap; also
+#                      DIR/reconstruction), real (pano.pto and hugin.pto below DIR, and folders of DIR/brackets)
+#   tests/bench/run.sh --only reconstruction --match terrain,drone   only these sets: terrain, room, drone, and with
+#                      --real DIR the folders of DIR/reconstruction; existing database.db and sparse are used
 #   tests/bench/run.sh --only verdicts --match "smooth 17"   one rendered sequence again, or all of a kind; --keep keeps
 #                      its pictures in build/bench/verdicts
-#   tests/bench/run.sh --self-test      the scorer against known errors; needs no program; exit 77: NumPy is missing
-#   tests/bench/run.sh --lookup [DIR]   lookups between stored settings beside Lensfun's, also to build/bench/lookup.md;
-#                                       exit 1: worse than its target; 77: NumPy or Lensfun's data is missing
+#   tests/bench/run.sh --self-test      tests the scorer; needs no program; exit 77: NumPy is missing
+#   tests/bench/run.sh --lookup [DIR]   lookups between stored settings compared with Lensfun's rule, also written to
+#                                       build/bench/lookup.md; exit 1: target missed; 77: no NumPy or Lensfun data
 #
-# LENSPROF=program measures another program than build/lensprof.
+# LENSPROF=program measures another program instead of build/lensprof.
 set -eu -o pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 for python in /usr/bin/python3 python3 ""; do

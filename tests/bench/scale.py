@@ -1,5 +1,5 @@
-"""How time and memory of lensprof grow with the number of images: mosaics of a narrow lens, 100 pairs an image, given
-as a point file. One turn a size; no peer (vig_optimize takes minutes from 61 images on, see the table of speed)."""
+"""How time and memory of lensprof grow with the number of images: mosaics of a narrow lens, 100 pairs per image, given
+as a point file. One turn per size, without a peer (vig_optimize takes minutes from 61 images on, see Speed)."""
 import shutil
 import subprocess
 import time

@@ -1,10 +1,10 @@
-"""The camera model as the scorer sees it, and the errors of a recovered one. Knows no tool.
+"""The scorer's own camera model, and the errors of a recovered model. Independent of the tools.
 
     B = f( L M(r) 2^ev w ),   M = 1 + k1 r^2 + k2 r^4 + k3 r^6,   r = |p - c| / half diagonal,   w_green = 1
 
 Gauge. With an unknown response, exposures are known up to a common factor and an exponent G (2^ev, w and M to the power
-G, f(x) becomes f(x^(1/G))). Errors are given raw, and aligned: with G, the slope of the recovered on the true
-exposures, taken out. Where exposures do not vary, G is the slope of the recovered on the true inverse response, both
+G, f(x) becomes f(x^(1/G))). Errors are given raw, and aligned: after removing G, the slope of the recovered against the
+true exposures. If exposures do not vary, G is the slope of the recovered against the true inverse response, both
 logarithmic.
 """
 import json
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FAILURE_LEVELS = 5.0  # clean residual above which a result is of no use
+FAILURE_LEVELS = 5.0  # a result with a larger clean residual is useless
 METRICS = ("ev_raw", "ev_aligned", "wb_raw", "wb_aligned", "falloff_raw", "falloff_aligned", "center", "response_raw",
            "response_aligned", "clean_rms", "clean_median")
 
@@ -34,7 +34,7 @@ class Curve:
 
 
 class Gamma:
-    """f(x) = x^(1/gamma), which no table of 1024 samples follows near black."""
+    """f(x) = x^(1/gamma), which no table of 1024 samples represents near black."""
 
     def __init__(self, gamma):
         self.gamma = gamma
@@ -50,13 +50,13 @@ class Gamma:
 class Model:
     ev: np.ndarray           # [n]
     white_balance: np.ndarray  # [n, 3]
-    k: np.ndarray            # [1 or 3, 3]: of all channels, or of each
+    k: np.ndarray            # [1 or 3, 3]: for all channels, or per channel
     center: np.ndarray       # [2], half diagonals
     curve: object
-    monotone: bool = True    # of the curve as the tool stated it, all samples
+    monotone: bool = True    # of the curve as stated by the tool, all samples
 
     def falloff(self, r2):
-        """M of every channel: [..., 3], never below 1e-6."""
+        """M per channel: [..., 3], never below 1e-6."""
         k, r2 = np.broadcast_to(self.k, (3, 3)), np.asarray(r2)[..., None]
         return np.maximum(1.0 + r2 * (k[:, 0] + r2 * (k[:, 1] + r2 * k[:, 2])), 1e-6)
 
@@ -81,7 +81,7 @@ def read_points(path):
 
 
 def read_truth(path, response="table"):
-    """truth.json of `lensprof simulate`; `response` is what --response was."""
+    """truth.json of `lensprof simulate`; `response` is the value of --response."""
     with open(path) as file:
         truth = json.load(file)
     curve = Gamma(float(response[6:])) if response.startswith("gamma:") else Curve(truth["response"]["values"][0])
@@ -89,7 +89,7 @@ def read_truth(path, response="table"):
 
 
 def model_of_json(data, curve, monotone=True):
-    """An image that does not join the others, whose numbers are null, is one without a correction."""
+    """An image that is not joined has null numbers and counts as uncorrected."""
     def known(values, otherwise):
         return [otherwise if v is None else v for v in values]
 
@@ -115,7 +115,7 @@ def transfer(model, pairs, sizes):
 
 
 def identity(images):
-    """No correction at all: its transfer residual is B1 - B2."""
+    """No correction: its transfer residual is B1 - B2."""
     return Model(np.zeros(images), np.ones((images, 3)), np.zeros((1, 3)), np.zeros(2), Curve([0.0, 1.0]))
 
 
@@ -124,7 +124,7 @@ def log_light(curve, b):
 
 
 def gauge_exponent(truth, model):
-    """G, and 1 where it cannot be told or is absurd."""
+    """G, or 1 if it is undetermined or absurd."""
     deviation = truth.ev - truth.ev.mean()
     if np.ptp(truth.ev) > 0.05:
         exponent = deviation @ (model.ev - model.ev.mean()) / (deviation @ deviation)
@@ -143,7 +143,7 @@ def response_error(truth, model, exponent):
 
 
 def errors(truth, model, exponent, centred):
-    """(exposure rms EV, white balance rms EV, falloff largest error, response rms levels) with an exponent taken out.
+    """(exposure RMS EV, white balance RMS EV, falloff largest error, response RMS levels) after removing an exponent.
     Exposures are relative to image 0, or `centred`: to their mean."""
     ev = (model.ev - model.ev[0]) / exponent - (truth.ev - truth.ev[0])
     if centred:
@@ -156,8 +156,9 @@ def errors(truth, model, exponent, centred):
 
 
 def score(truth, model, pairs, sizes):
-    """All errors of a recovered model. pairs: noise-free correspondences that no tool has seen. ev_spread: from the
-    lowest to the highest error of an exposure as stated; where exposures are all alike, their spread."""
+    """All errors of a recovered model. pairs: noise-free correspondences that no tool has seen. ev_spread: difference
+between
+    the highest and the lowest exposure error, as stated; if exposures are all equal, their spread."""
     exponent = gauge_exponent(truth, model)
     result = {"exponent": exponent}
     for tag, values in (("raw", errors(truth, model, 1.0, False)), ("aligned", errors(truth, model, exponent, True))):
@@ -167,14 +168,15 @@ def score(truth, model, pairs, sizes):
                   clean_median=float(np.median(np.abs(residual))), monotone=bool(model.monotone),
                   ev_spread=float(np.ptp(model.ev - truth.ev)))
     if len(truth.ev) < 3:
-        result["ev_aligned"] = None  # one difference of exposures: zero by construction
+        result["ev_aligned"] = None  # a single exposure difference: zero by construction
     result["failed"] = not result["clean_rms"] <= FAILURE_LEVELS
     return result
 
 
 def largest_errors(truth, data):
-    """{joined, ev, falloff}: largest errors of the object that `build --json` prints, over the images that are joined,
-    offset and exponent of the exposures taken out; its images are in the order of the truth's."""
+    """{joined, ev, falloff}: largest errors of the object printed by `build --json`, over the joined images, after
+removing
+    offset and exponent of the exposures; its images are in the order of the truth."""
     joined = np.array([i["ev"] is not None for i in data["images"]])
     found = model_of_json(data, Curve(data["response"]["values"][0]))
     known, model = (Model(m.ev[joined], m.white_balance[joined], m.k, m.center, m.curve) for m in (truth, found))

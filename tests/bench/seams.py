@@ -1,7 +1,7 @@
-"""Seams of real pictures, measured apart from any tool's registration: grey values at the same places of two pictures.
+"""Seams of real pictures, independent of any tool's registration: grey values at corresponding places of two pictures.
 
 Places come from SIFT features and a robust homography per pair of images (OpenCV, package python3-opencv). A
-homography holds for a plane or a turning camera; elsewhere only places near matched features are taken.
+homography is exact for planes and rotating cameras; otherwise only places near matched features are used.
 """
 import itertools
 
@@ -9,17 +9,17 @@ import numpy as np
 
 import scorer
 
-LONGEST_SIDE = 1000   # px that pictures are reduced to
-RATIO = 0.8           # of the distances to the nearest and the next feature
-FEWEST_MATCHES = 15   # inliers of a homography
-NEAR_PX = 25          # from an inlier, px of the reduced picture
+LONGEST_SIDE = 1000   # px, pictures are reduced to this
+RATIO = 0.8           # between the distances to the nearest and the second nearest feature
+FEWEST_MATCHES = 15   # inliers for a valid homography
+NEAR_PX = 25          # px of the reduced picture from an inlier
 STEP_PX = 4
 DARK, BRIGHT = 5.0, 250.0
 MOST_OF_EDGE = 2000   # places
 
 
 def reduced(cv2, path):
-    """The picture in RGB and px of the full frame a px."""
+    """The picture in RGB, and the number of full-frame px per px."""
     picture = cv2.imread(str(path), cv2.IMREAD_COLOR)
     if picture is None:
         raise OSError("%s: cannot be read" % path)
@@ -29,7 +29,7 @@ def reduced(cv2, path):
 
 
 def features(cv2, picture):
-    """SIFT on grey levels whose local contrast is evened out, so that exposure does not matter."""
+    """SIFT on grey levels with equalised local contrast, which makes exposure irrelevant."""
     grey = cv2.createCLAHE(4.0, (8, 8)).apply(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY))
     points, descriptors = cv2.SIFT_create(contrastThreshold=0.01).detectAndCompute(grey, None)
     if descriptors is None:
@@ -42,7 +42,7 @@ def homography(cv2, a, b):
     """(H from a to b, inlier places in a), or None."""
     if min(len(a[1]), len(b[1])) < 4:
         return None
-    cv2.setRNGSeed(1)  # the trees are drawn
+    cv2.setRNGSeed(1)  # the search trees are random
     matches = cv2.FlannBasedMatcher({"algorithm": 1, "trees": 4}, {"checks": 64}).knnMatch(a[1], b[1], k=2)
     good = [m[0] for m in matches if len(m) == 2 and m[0].distance < RATIO * m[1].distance]
     if len(good) < FEWEST_MATCHES:
@@ -55,7 +55,8 @@ def homography(cv2, a, b):
 
 
 def places(cv2, first, second, found, inliers):
-    """(xy in both [n, 2 sides, 2], values [n, 2 sides, 3] of 0..255) where both are quiet, neither black nor white."""
+    """(xy in both [n, 2 sides, 2], values [n, 2 sides, 3] of 0..255) at places that are quiet in both, and neither
+    black nor white."""
     height, width = first.shape[:2]
     warped = cv2.warpPerspective(second, found, (width, height), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
                                  borderValue=(0, 0, 0))
@@ -101,7 +102,7 @@ def seam_pairs(files):
 
 
 def seams(model, pairs, sizes):
-    """Median over the places of each link of |B1 - B2 as transferred|, levels of 255: {(i, j): levels}."""
+    """Median over the places of each link of |B1 - transferred B2|, levels of 255: {(i, j): levels}."""
     size = np.abs(scorer.transfer(model, pairs, sizes)).mean(axis=(1, 2))
     links = {tuple(link) for link in pairs.image.tolist()}
     return {link: float(np.median(size[(pairs.image == link).all(axis=1)])) for link in sorted(links)}

@@ -1,5 +1,5 @@
-"""Time and memory. The tools take turns within one run, so that other load on the machine meets all of them alike;
-a ratio is taken within a turn and its median over the turns is stated."""
+"""Time and memory. The tools take turns within one run, so that other load on the machine affects all of them equally.
+Ratios are computed per turn; their median over the turns is stated."""
 import shutil
 import statistics
 import subprocess
@@ -7,7 +7,7 @@ import subprocess
 import scorer
 import tools
 
-# Name, options of simulate, turns at most, whether a quick run has it.
+# Name, options of simulate, maximum number of turns, whether a quick run includes it.
 SOLVER = [("6 images, 300 pairs", "--images 6 --points 300", 9, True),
           ("20 images, 5000 pairs", "--images 20 --rows 2 --points 5000", 9, True),
           ("61 images, 300 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 300", 3, True),
@@ -35,7 +35,7 @@ def megabytes(folder):
 
 
 def solver_runs(folder):
-    """{tool: call}: the pairs are given, no picture is opened. vig_optimize solves on one thread."""
+    """{tool: call}: with given pairs, so no picture is opened. vig_optimize solves on one thread."""
     project, points = str(folder / "pano.pto"), str(folder / "points.txt")
     yield "lensprof", lambda: tools.run_lensprof(project, str(folder / "lensprof"), ["--points", points])
     if tools.VIG_OPTIMIZE:
@@ -43,8 +43,9 @@ def solver_runs(folder):
 
 
 def command_runs(folder):
-    """{tool: call}: the whole command from the pictures, with the threads that the tool takes by itself. Large pictures
-    meet vig_optimize -s 3 alone: without reduction it holds every one of them as floating point numbers."""
+    """{tool: call}: the whole command from the pictures, with each tool's default number of threads. Large pictures are
+    compared with vig_optimize -s 3 only: without reduction it holds all of them in memory as floating point
+numbers."""
     project = str(folder / "pano.pto")
     yield "lensprof", lambda: tools.run_lensprof(project, str(folder / "lensprof"))
     if tools.VIG_OPTIMIZE:
@@ -54,7 +55,7 @@ def command_runs(folder):
 
 
 def measure(name, options, runs, turns):
-    """-> one record for every tool: the figures of every turn, medians, ratios of lensprof to the tool."""
+    """-> one record per tool: the figures of every turn, medians, ratios of lensprof to the tool."""
     folder = render(name, options)
     truth, pairs = scorer.read_truth(folder / "truth.json", "srgb"), scorer.read_points(folder / "test_points.txt")
     sizes, calls, taken = tools.sizes_of_pto((folder / "pano.pto").read_text()), dict(runs(folder)), {}
@@ -75,7 +76,7 @@ def measure(name, options, runs, turns):
         if tool == "lensprof":
             record["identical"] = len({u.get("timeless") for u in used}) == 1
         records.append(record)
-    for record in records:  # solver: against the peer's whole process, which does not state its solver's time
+    for record in records:  # solver: compared with the peer's whole process, as it reports no solver time
         for key, own in (("wall_s", "wall_s"), ("cpu_s", "cpu_s"), ("peak_mb", "peak_mb"), ("solve_to_cpu", "solve_s")):
             ours, theirs = records[0].get(own + "_turns"), record.get(key.replace("solve_to_cpu", "cpu_s") + "_turns")
             if ours and theirs:

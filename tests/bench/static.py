@@ -1,7 +1,8 @@
-"""The experiment of Kim & Pollefeys 2004, section 3.1: frames of a camera that stands still, exposures unknown, aligned to the
-brightest. Error: root mean square difference to it, summed over the channels, on pixels without a sample at 0 or 255. Beside:
-the true response and exposures (rounding alone is left), and OpenCV's Debevec, given the true exposures, where cv2 is
-installed. Own scenes and curves: the paper's 20 curves of DoRF cannot be had freely."""
+"""The experiment of Kim & Pollefeys 2004, section 3.1: frames of a stationary camera, exposures unknown, aligned to the
+brightest. Error: RMS difference from it, summed over the channels, on pixels without a sample at 0 or 255. Compared
+with
+the true response and exposures (only rounding remains), and with OpenCV's Debevec, given the true exposures, if cv2 is
+installed. Own scenes and curves, because the paper's 20 curves of DoRF are not freely available."""
 import json
 import shutil
 import struct
@@ -36,7 +37,7 @@ def write_png(path, picture):
 
 
 def unfiltered(kind, line, above):
-    """One row of a PNG, 3 bytes a pixel."""
+    """One row of a PNG, 3 bytes per pixel."""
     if kind == 0 or kind == 2:
         return line + (above if kind == 2 else np.uint8(0))
     out = np.zeros((WIDTH + 1, 3), int)
@@ -82,7 +83,7 @@ def make(curve, seed, noise):
 
 
 def error(frames, aligned):
-    """Of the frames, aligned to the first, beside the first."""
+    """Error of the frames aligned to the first, compared with the first."""
     total = count = 0
     for source, after in zip(frames[1:], aligned[1:]):
         good = ((source > 0) & (source < 255) & (frames[0] > 0) & (frames[0] < 255)).all(2)

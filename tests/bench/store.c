@@ -1,7 +1,7 @@
-/* The store with many profiles: how long it takes to put them, to look one up and to predict one. Lenses have raw
- * profiles; half of the cameras have BRACKETS profiles of their JPEG, too, without a lens.
+/* The store with many profiles: time to put them, to look one up and to predict one. Lenses have raw profiles; half of
+ * the cameras also have BRACKETS profiles of their JPEG, without a lens.
  *
- *   store FILE [PROFILES] [FOCALS]     FILE is made anew; FOCALS x 5 profiles a lens. Prints a table in Markdown. */
+ *   store FILE [PROFILES] [FOCALS]     FILE is created; FOCALS x 5 profiles per lens. Prints a Markdown table. */
 #include <lensprof/lensprof.h>
 
 #include <math.h>
@@ -15,12 +15,12 @@
 #define BRACKETS 2
 #define LOOKUPS 4000
 
-/* What is asked for. */
+/* Kinds of queries. */
 typedef enum question {
-    STORED,        /* raw, a setting that is stored */
-    PREDICTED,     /* raw, 2 mm beside it */
-    JPEG_TYPICAL,  /* the same of a JPEG, of a camera without a response */
-    JPEG_MEASURED, /* of a camera with BRACKETS responses */
+    STORED,        /* raw, a stored setting */
+    PREDICTED,     /* raw, 2 mm from a stored setting */
+    JPEG_TYPICAL,  /* the same for a JPEG, from a camera without a response */
+    JPEG_MEASURED, /* from a camera with BRACKETS responses */
     QUESTIONS
 } question;
 
@@ -87,7 +87,7 @@ static int is_less(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-/* Is the answer what the question is about? */
+/* Whether the answer is of the queried kind. */
 static int is_as_asked(const lensprof_lookup *how, question what) {
     static const uint32_t from[QUESTIONS] = {LENSPROF_RESPONSE_FROM_PROFILE, LENSPROF_RESPONSE_FROM_RAW,
                                              LENSPROF_RESPONSE_FROM_KIND, LENSPROF_RESPONSE_FROM_CAMERA};

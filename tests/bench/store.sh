@@ -1,5 +1,6 @@
 #!/bin/bash
-# Builds and runs the benchmark of the store (store.c) with the library of build/; then the import of the installed Lensfun data.
+# Builds and runs the benchmark of the store (store.c) with the library of build/, then imports the installed Lensfun
+# data.
 # The table goes to standard output and build/bench/store.md.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)

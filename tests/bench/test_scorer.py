@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The scorer itself: truth scores zero, the ambiguity of response and exposure is taken out and nothing else is."""
+"""Tests of the scorer: truth scores zero, and only the ambiguity between response and exposure is removed."""
 import json
 import pathlib
 import random
@@ -47,7 +47,7 @@ def camera(power=1.0, kind=Powered):
 
 
 def scene_pairs(model, count=400):
-    """Pairs of a made-up scene by the image formation itself, one number at a time: independent of scorer.transfer."""
+    """Pairs of a synthetic scene from the image formation, one number at a time, independent of scorer.transfer."""
     rng = np.random.default_rng(8)
     image, xy, value = [], [], []
     while len(image) < count:
@@ -87,7 +87,7 @@ class Scorer(unittest.TestCase):
             for name, least in (("ev", 0.05), ("wb", 0.01), ("falloff", 0.03), ("response", 3.0)):
                 self.assertGreater(result[name + "_raw"], least, name)
                 self.assertLess(result[name + "_aligned"], 0.05 if name == "response" else 1e-9, name)
-            self.assertLess(result["clean_rms"], 1e-3)  # of interpolating the moved curve
+            self.assertLess(result["clean_rms"], 1e-3)  # error of interpolating the moved curve
 
     def test_exponent_comes_from_the_response_when_exposures_do_not_vary(self):
         self.truth.ev[:] = 0.3
@@ -152,7 +152,7 @@ class Files(unittest.TestCase):
         self.assertEqual([i["Vb"] for i in lines], [-0.25] * 3)
         self.assertEqual([i["Eev"] for i in lines], [-0.15, 0.25, 0.25])
         self.assertEqual([i["v"] for i in lines], [50.0] * 3)
-        self.assertEqual(lines[0]["r"], 0.0)  # not the file's name
+        self.assertEqual(lines[0]["r"], 0.0)  # not from the file's name
 
     def test_pairs_drawn(self):
         text = "extracting good points\nSelected 181 points\nVignetting Optimization\nIteration: 0, error: 14.76\n"
@@ -187,7 +187,7 @@ class Files(unittest.TestCase):
         self.assertEqual(real.in_range(kept[0] + line % "-0.0004" + kept[1] + line % "1.001"), "".join(kept))
 
     def test_an_image_that_joins_no_other(self):
-        """Its numbers are null; it counts as one without a correction, and is named."""
+        """Its numbers are null; it counts as uncorrected, and is named."""
         image = {"ev": 0.5, "white_balance": [1.1, 1.0, 0.9]}
         alone = [{"ev": None, "white_balance": w, "joined": False} for w in (None, [None] * 3)]
         data = {"usable": False, "evens": True, "reason": "r", "reason_code": "c", "pairs": 7, "seconds": {"solve": 1.0},
@@ -198,7 +198,7 @@ class Files(unittest.TestCase):
         self.assertEqual(model.ev.tolist(), [0.5, 0.0, 0.0])
         self.assertEqual(model.white_balance.tolist(), [[1.1, 1.0, 0.9], [1.0] * 3, [1.0] * 3])
         self.assertEqual((used["left_out"], used["unverified"], used["evens"]), ([1, 2], [[0, 1]], True))
-        data["images"] = [image]  # what older programs print
+        data["images"] = [image]  # output of older programs
         del data["evens"], data["links"]
         used = tools.of_json(json.loads(json.dumps(data)))
         self.assertEqual((used["left_out"], used["unverified"], used["evens"]), ([], [], None))
@@ -248,7 +248,7 @@ class Tables(unittest.TestCase):
 
 @unittest.skipUnless(tools.OPENCV, tools.NO_OPENCV)
 class Seams(unittest.TestCase):
-    """Two pictures of one made-up wall, the second turned, shifted and of half the exposure."""
+    """Two pictures of a synthetic wall, the second rotated, shifted and with half the exposure."""
     SIZES = np.array([[420, 320]] * 2)
     EV = -1.0
 
@@ -298,7 +298,7 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(report_on.keys(), tune.keys())
         self.assertFalse([name for name in tune if tune[name] == report_on[name]])
         quick = {s.name: s.arguments for s in verdicts.sequences(True, False)}
-        self.assertEqual(quick, {name: report_on[name] for name in quick})  # a case of one is a case of the other
+        self.assertEqual(quick, {name: report_on[name] for name in quick})  # the quick cases are a subset
 
     def test_misplaced_pictures_change_places(self):
         lines = "".join('i w%d h3 n"img%03d.png"\n' % (n, n) for n in range(5))
@@ -311,10 +311,10 @@ class Verdicts(unittest.TestCase):
             names = re.findall(r'n"img(\d+).png"', text)
             self.assertEqual(sorted(map(int, names)), list(range(5)))
             self.assertEqual(names, sorted(names, reverse=True))
-            self.assertEqual(re.sub('n".*"', "", text), re.sub('n".*"', "", lines))  # all else stays
+            self.assertEqual(re.sub('n".*"', "", text), re.sub('n".*"', "", lines))  # everything else stays
 
     def test_errors_over_stated_errors(self):
-        """Image 1 is the reference, image 2 does not join, image 3 is held."""
+        """Image 1 is the reference, image 2 is not joined, image 3 is held."""
         truth = scorer.identity(5)
         truth.ev, truth.k = np.array([0.5, 1.0, 7.0, 0.0, -1.0]), np.array([[-0.3, 0.0, 0.0]])
         images = [{"ev": ev, "ev_sigma": sigma} for ev, sigma in ((-0.4, 0.2), (0, 0), (None, None), (9, 0), (-2.3, 0.1))]
@@ -367,7 +367,7 @@ class Gallery(unittest.TestCase):
 
 
 class LensfunRule(unittest.TestCase):
-    """The peer of lookup.py, against weights by hand."""
+    """The peer of lookup.py, compared with weights computed by hand."""
     KNOWN = [(20.0, 4.0, np.inf), (40.0, 4.0, 1000.0), (40.0, 2.0, 0.5)]
     K = [(-0.8, 0.1, 0.0), (-0.4, 0.3, 0.2), (-1.6, 0.5, 0.4)]
 
@@ -388,7 +388,7 @@ class LensfunRule(unittest.TestCase):
 
 
 class Colours(unittest.TestCase):
-    """Of pairs of a known camera: its own exposures leave nothing, and gains and offsets are found."""
+    """On pairs of a known camera, the true exposures leave no difference, and gains and offsets are found."""
 
     def exposures(self, model, folder):
         path = pathlib.Path(folder, "exposures.json")
@@ -411,7 +411,7 @@ class Colours(unittest.TestCase):
         self.assertEqual(found["pairs"], len(pairs))
         self.assertLess(found["result"], 1e-3)
         self.assertGreater(found["before"], 10.0)
-        self.assertGreater(found["affine"], 0.1)  # no gain of grey values is a falloff
+        self.assertGreater(found["affine"], 0.1)  # a gain of grey values cannot represent a falloff
         self.assertGreater(wrong["result"], 0.1)
 
     def test_an_image_that_is_not_joined(self):
@@ -425,7 +425,7 @@ class Colours(unittest.TestCase):
     def test_variance_by_hand(self):
         levels = np.zeros((10, 2, 3))
         levels[:, 1] = [2.0, 0.0, 4.0]
-        levels[3, 1] = 200.0  # of ten the worst, which is not counted
+        levels[3, 1] = 200.0  # the worst of ten, which is not counted
         self.assertAlmostEqual(colours.variance(levels), 0.5 * (4.0 + 16.0) / 3.0)
 
     def test_gains_and_offsets(self):

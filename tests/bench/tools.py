@@ -49,7 +49,7 @@ def monotone(values):
 
 
 def run_lensprof(project, log, extra=()):
-    """-> (usage, model or None). usage gains what of_json says and `timeless`: the output without its times."""
+    """-> (usage, model or None). usage also gets the items of of_json and `timeless`: the output without its times."""
     command = [LENSPROF, "build", project, "--no-store", "--json", *extra]
     used = measured(command, pathlib.Path(project).parent, log, 1)
     text = used.pop("out")
@@ -62,7 +62,7 @@ def run_lensprof(project, log, extra=()):
 
 
 def of_json(data):
-    """The verdict and figures of the object that `build` and `bracket` print. evens: None of older programs."""
+    """The verdict and figures of the object that `build` and `bracket` print. evens: None for older programs."""
     residual = data["residual"]
     return {"usable": data["usable"], "evens": data.get("evens"), "reason": data["reason"],
             "reason_code": data.get("reason_code", ""), "solve_s": data["seconds"]["solve"], "pairs": data["pairs"],
@@ -88,7 +88,7 @@ def run_hugin(project, log, extra=(), threads=1):
 
 
 def pairs_drawn(text):
-    """{"pairs": n} from the output of vig_optimize; {} where they were given."""
+    """{"pairs": n} from the output of vig_optimize; {} if they were given."""
     found = re.search(r"Selected (\d+) points", text)
     return {"pairs": int(found.group(1))} if found else {}
 
@@ -109,7 +109,7 @@ def parse_pto(text):
             if not link:
                 return value
             image = int(value)
-        raise ValueError("i line %d: links of %s run in a circle" % (image, name))
+        raise ValueError("i line %d: circular links of %s" % (image, name))
 
     return [{name: resolve(i, name) for name in line} for i, line in enumerate(lines)]
 
@@ -131,8 +131,9 @@ def emor_table():
 
 
 def model_of_pto(text):
-    """Hugin writes -log2 of the exposure factor, centres in px and five EMoR coefficients. It uses the curve only after
-    making it monotone (ResponseTransform, enforceMonotonicity); whether it had to is kept in `monotone`."""
+    """Hugin writes -log2 of the exposure factor, centres in px and five EMoR coefficients. It makes the curve monotone
+before
+    using it (ResponseTransform, enforceMonotonicity); `monotone` is False if that was necessary."""
     lines = parse_pto(text)
     lens = lines[0]
     curve = emor_table()[0] + sum(lens["R" + c] * emor_table()[1 + n] for n, c in enumerate("abcde"))
@@ -143,7 +144,7 @@ def model_of_pto(text):
 
 
 def version_line():
-    """CPU, date and versions: what a figure must not be quoted without."""
+    """CPU, date and versions, without which no figure must be quoted."""
     def first(command, pattern):
         try:
             text = subprocess.run(command, capture_output=True, text=True, check=False)

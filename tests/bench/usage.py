@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""usage.py FILE SECONDS COMMAND...: runs a command, killed after SECONDS, and writes what it used to FILE.
+"""usage.py FILE SECONDS COMMAND...: runs a command, kills it after SECONDS, and writes its resource usage to FILE.
 
-A process of its own because a child's peak memory counts from the fork: it must not inherit NumPy's.
+A separate process, because a child's peak memory counts from the fork: it must not inherit NumPy's.
 """
 import json
 import os

@@ -1,7 +1,7 @@
 """Both errors of the verdict on rendered sequences: good ones that are refused, bad ones that are accepted.
 
-Good: smooth scenes and hard ones, every option drawn from the seed. Bad: noise, negatives, tone mapping and pictures in
-the wrong places. `--tune` takes other seeds than the figures that are reported.
+Good: smooth and hard scenes, every option drawn from the seed. Bad: noise, negatives, tone mapping and misplaced
+pictures. `--tune` uses other seeds than the reported figures.
 """
 import json
 import random
@@ -22,9 +22,9 @@ EMOR = ("emor:2.05,-0.12,-0.49,0.27,-0.18", "emor:-0.92,-0.88,1.03,0.36,-0.28")
 RESPONSES = ("srgb", "film", "gamma:2.2", *EMOR)
 FALLOFFS = ("-0.33,0.06,-0.16", "-0.15,0.02,-0.05", "-0.6,0.3,-0.12", "-0.8,0.5,-0.2")
 TEST_PAIRS = "2000"
-COUNT_GOOD, COUNT_BAD, QUICK = 100, 50, 6  # sequences a kind
-LIMITS = {True: 0.01, False: 0.02}  # share of good ones refused, of bad ones accepted without a word
-HOLDS = (0.63, 0.73)  # of stated standard errors
+COUNT_GOOD, COUNT_BAD, QUICK = 100, 50, 6  # sequences per kind
+LIMITS = {True: 0.01, False: 0.02}  # share of good ones refused, of bad ones accepted without a warning
+HOLDS = (0.63, 0.73)  # share within the stated standard errors
 
 
 @dataclass
@@ -87,8 +87,8 @@ def sequences(quick, tune):
 
 
 def spoil(kind, folder, r):
-    """Makes a rendered sequence one that no camera took, or whose project is wrong."""
-    if kind == "misplaced":  # the row backwards: what overlaps in the project does not in the pictures
+    """Turns a rendered sequence into one that no camera took, or whose project is wrong."""
+    if kind == "misplaced":  # reversed row: pictures that overlap in the project do not overlap
         text = (folder / "pano.pto").read_text()
         names = re.findall(r'n"(img[^"]*)"', text)
         turned = dict(zip(names, names[::-1]))
@@ -138,8 +138,8 @@ def measure(sequence, tune, keep):
 
 
 def standardised(data, truth):
-    """Errors over their stated standard errors, as stated, nothing taken out: {"ev": of every joined image's exposure
-    beside the reference, "corner": of M(1) of the first curve}. What is held or not determined states none."""
+    """Errors divided by their stated standard errors, without alignment: {"ev": exposure of every joined image relative
+    to the reference, "corner": M(1) of the first curve}. Held or undetermined values are left out."""
     reference, z = data["reference"], {"ev": [], "corner": []}
     for image, ev in zip(data["images"], truth.ev):
         if image["ev"] is not None and image.get("joined", True) and image["ev_sigma"]:
@@ -147,7 +147,7 @@ def standardised(data, truth):
     if not data["covariance"]:  # there was no fit
         return z
     k, covariance = data["vignetting"]["k"], np.array(data["covariance"])
-    first = len(covariance) - 2 - 3 * len(k)  # the centre is last, the curves' k before it
+    first = len(covariance) - 2 - 3 * len(k)  # the centre is last, before it the curves' k
     sigma = float(np.sqrt(max(0.0, covariance[first:first + 3, first:first + 3].sum())))
     if sigma > 0.0:
         z["corner"].append((1.0 + sum(k[0]) - float(truth.falloff(1.0)[0])) / sigma)
@@ -155,14 +155,14 @@ def standardised(data, truth):
 
 
 def is_missed(record):
-    """In a word what is wrong with the verdict, or None."""
+    """What is wrong with the verdict, in one word, or None."""
     if record["kind"] in GOOD:
         return "refused" if not record["usable"] else "failed" if record["failed"] else None
     return "accepted" if record["usable"] and not record["reason"] else None
 
 
 def run_all(quick, tune, jobs, keep, say, match=""):
-    """match: a kind, or one case, as "smooth 17"."""
+    """match: a kind, or a single case such as "smooth 17"."""
     skipped = [] if tools.OPENCV else [kind for kind in NEED_OPENCV if not match or match.startswith(kind)]
     if skipped:
         say("SKIPPED: verdicts: %s: %s" % (", ".join(skipped), tools.NO_OPENCV))
