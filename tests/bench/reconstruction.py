@@ -57,8 +57,7 @@ def variances_of(folder, way):
 
 def reconstruct(pictures, folder, features=(), matched=None):
     """COLMAP on a folder of pictures -> {way: project} and figures. `matched`: a folder with a database.db and a sparse
-made
-    earlier for these pictures."""
+    made earlier for these pictures."""
     if matched:
         shutil.copyfile(matched / "database.db", folder / "database.db")
         shutil.copytree(matched / "sparse", folder / "sparse")

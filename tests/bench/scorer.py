@@ -157,8 +157,7 @@ def errors(truth, model, exponent, centred):
 
 def score(truth, model, pairs, sizes):
     """All errors of a recovered model. pairs: noise-free correspondences that no tool has seen. ev_spread: difference
-between
-    the highest and the lowest exposure error, as stated; if exposures are all equal, their spread."""
+    between the highest and the lowest exposure error, as stated; if exposures are all equal, their spread."""
     exponent = gauge_exponent(truth, model)
     result = {"exponent": exponent}
     for tag, values in (("raw", errors(truth, model, 1.0, False)), ("aligned", errors(truth, model, exponent, True))):
@@ -175,8 +174,7 @@ between
 
 def largest_errors(truth, data):
     """{joined, ev, falloff}: largest errors of the object printed by `build --json`, over the joined images, after
-removing
-    offset and exponent of the exposures; its images are in the order of the truth."""
+    removing offset and exponent of the exposures; its images are in the order of the truth."""
     joined = np.array([i["ev"] is not None for i in data["images"]])
     found = model_of_json(data, Curve(data["response"]["values"][0]))
     known, model = (Model(m.ev[joined], m.white_balance[joined], m.k, m.center, m.curve) for m in (truth, found))

@@ -44,8 +44,7 @@ def solver_runs(folder):
 
 def command_runs(folder):
     """{tool: call}: the whole command from the pictures, with each tool's default number of threads. Large pictures are
-    compared with vig_optimize -s 3 only: without reduction it holds all of them in memory as floating point
-numbers."""
+    compared with vig_optimize -s 3 only: without reduction it holds all of them in memory as floating point numbers."""
     project = str(folder / "pano.pto")
     yield "lensprof", lambda: tools.run_lensprof(project, str(folder / "lensprof"))
     if tools.VIG_OPTIMIZE:

@@ -132,8 +132,7 @@ def emor_table():
 
 def model_of_pto(text):
     """Hugin writes -log2 of the exposure factor, centres in px and five EMoR coefficients. It makes the curve monotone
-before
-    using it (ResponseTransform, enforceMonotonicity); `monotone` is False if that was necessary."""
+    before using it (ResponseTransform, enforceMonotonicity); `monotone` is False if that was necessary."""
     lines = parse_pto(text)
     lens = lines[0]
     curve = emor_table()[0] + sum(lens["R" + c] * emor_table()[1 + n] for n, c in enumerate("abcde"))

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Builds the manual in a folder of its own: mkdocs in strict mode, Doxygen without warnings, and pages that must exist.
+# Builds the manual in a separate folder: mkdocs in strict mode, Doxygen without warnings, and pages that must exist.
 # usage: build_manual.sh SOURCE_DIR; skipped if mkdocs with Material or Doxygen is missing (packages-docs.txt)
 set -euo pipefail
 cd "$1"
@@ -17,6 +17,6 @@ mkdocs build --quiet --strict --site-dir "$work/site" 2> "$work/log" || {
 for page in index tutorials/photographer explanation/lookup reference/schema bindings/python/README glossary; do
     [ -f "$work/site/$page.html" ] || [ -f "$work/site/${page%README}index.html" ] || { echo "no page $page"; exit 1; }
 done
-# The filter takes the plain comments of the headers: a function and a member with their words.
+# The filter must turn the plain comments of the headers into text of functions and members.
 grep -q "Prepares a plan in" "$work/docs-api/apply_8h.html" || { echo "apply.h is not documented"; exit 1; }
-! grep -l "@verbatim\|@endverbatim" "$work"/docs-api/*.html || { echo "formulas are not shown"; exit 1; }
+! grep -l "@verbatim\|@endverbatim" "$work"/docs-api/*.html || { echo "formulas are not rendered"; exit 1; }

@@ -5,18 +5,18 @@ usage: run_tutorials.py --build DIR [--python PYTHON] [--update] PAGE.md...
        run_tutorials.py --self-check
 
 - A block ```LANGUAGE title="NAME" is a file: it is written before the commands run.
-- In a ```console block a line "$ COMMAND" is run by bash; a command that ends in a backslash goes on in the next line.
-  The lines after it are its output, standard error included. One shell runs all commands of a page.
-- A comment in the line before a block changes what happens to it:
+- In a ```console block a line "$ COMMAND" is run by bash; a command that ends in a backslash continues in the next
+  line. The lines after it are its output, standard error included. One shell runs all commands of a page.
+- A comment in the line before a block changes its treatment:
     <!-- not run: REASON -->      the commands are skipped, or the file is not written
     <!-- needs: PROGRAM... -->    they are skipped if a program is missing; python:NAME is a Python module, /PATH a file
-    <!-- exit: CODE -->           the last command ends with this code; without it every command must end with 0
+    <!-- exit: CODE -->           the last command must end with this code; by default every command must end with 0
 - The folder `lensprof` is the source tree; the program, the library and the Python package are on the path. A page that
   mentions pkg-config or find_package gets an installed copy.
 
-Outputs are compared loosely: blanks do not matter; numbers may differ by 15 % or 0.15, whichever is more; numbers of
-seconds and hexadecimal ones are not compared; "..." on a line of its own matches any lines. --update writes the outputs into the page where
-they differ by more.
+Outputs are compared loosely: blanks are ignored; numbers may differ by 15 % or 0.15, whichever is more; numbers of
+seconds and hexadecimal numbers are ignored; "..." on a separate line matches any lines. --update writes outputs that
+differ by more into the page.
 """
 
 import argparse
@@ -29,7 +29,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SHOWN_FOLDER = "/home/you/tutorial"  # what pages show instead of the folder that a page runs in
+SHOWN_FOLDER = "/home/you/tutorial"  # shown on pages instead of the folder in which a page runs
 SKIPPED = 77
 BLOCK = re.compile(r"(?:^<!-- *(?P<note>[^\n]*?) *-->\n)?^```(?P<language>\w+)(?P<more>[^\n]*)\n(?P<text>.*?)^```$",
                    re.MULTILINE | re.DOTALL)
@@ -39,16 +39,16 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?=(?P<seconds> s\b)?)")
 
 class Command:
     def __init__(self, line, first, last):
-        self.line, self.first, self.last = line, first, last  # its output is lines first..last of the page
+        self.line, self.first, self.last = line, first, last  # its output is in lines first..last of the page
         self.code, self.output = 0, []
 
 
 def commands_of(text, first_line):
-    """The commands of a console block that begins in line first_line of the page."""
+    """The commands of a console block that starts in line first_line of the page."""
     found, lines, i = [], text.splitlines(), 0
     while i < len(lines):
         if not lines[i].startswith("$ "):
-            raise SystemExit(f"line {first_line + i}: {lines[i]!r} is the output of no command")
+            raise SystemExit(f"line {first_line + i}: {lines[i]!r} is output without a command")
         line = lines[i][2:]
         i += 1
         while line.endswith("\\"):
@@ -112,7 +112,7 @@ def lines_agree(wanted, found):
 
 
 def agree(wanted, found):
-    """Whether two lists of lines are the same output, loosely."""
+    """Whether two lists of lines are the same output, compared loosely."""
     if not wanted:
         return not found
     if wanted[0].strip() == "...":
@@ -121,7 +121,7 @@ def agree(wanted, found):
 
 
 def environment(build, python, work, text):
-    """Programs first on the path, and the databases of nobody."""
+    """The environment: built programs first on the path, and no user databases."""
     programs = work.parent / "bin"
     programs.mkdir()
     (programs / "python3").symlink_to(python)
@@ -142,7 +142,7 @@ def environment(build, python, work, text):
 
 
 def run(page, work, values):
-    """Runs the commands and keeps their outputs; returns what went wrong."""
+    """Runs the commands and keeps their outputs; returns the faults."""
     for name, text in page.files.items():
         (work / name).parent.mkdir(parents=True, exist_ok=True)
         (work / name).write_text(text)
@@ -169,7 +169,7 @@ def differences(page):
 
 
 def shortened(wanted, found):
-    """The output, shortened at its begin or end as the page has it."""
+    """The output, shortened at its start or end as on the page."""
     kept = len(wanted) - 1
     if kept > 0 and wanted[0].strip() == "...":
         return wanted[:1] + found[-kept:]
@@ -208,7 +208,7 @@ def check(path, build, python, update):
         print(f"{path.name}: {len(different)} outputs written")
         return 0
     for command in different:
-        print(f"{path}:{command.first + 1}: the output of\n$ {command.line}\nis not that of the page:",
+        print(f"{path}:{command.first + 1}: the output of\n$ {command.line}\ndiffers from the page:",
               *command.output, sep="\n")
     if different:
         print("`make docs-update` writes the outputs into the pages")

@@ -7,7 +7,7 @@
 typedef struct random_case {
     const uint32_t *plan;
     uint32_t plan_bytes;
-    const uint32_t *in, *wanted; /* samples of a row */
+    const uint32_t *in, *wanted; /* samples of a row, and their expected values */
     uint32_t sample, layout, width, x0, y0;
 } random_case;
 

@@ -1,4 +1,4 @@
-/* check_cases - on the board: every case within a level of double precision. */
+/* check_cases - on the board: every case is within one level of double precision. */
 #include <string.h>
 
 #include <lensprof/fixed.h>
@@ -20,7 +20,7 @@ static uint32_t sample_at(const void *data, uint32_t sample, uint32_t i) {
 
 static uint32_t samples, same;
 
-/* The worst difference in a case, levels; beyond a sample's range when it cannot be applied. */
+/* The largest difference in a case, in levels; out of range if the case cannot be applied. */
 static uint32_t check(const random_case *c) {
     static uint16_t out[512];
     const lensprof_fixed_plan *plan;

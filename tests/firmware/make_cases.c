@@ -1,5 +1,5 @@
-/* make_cases - writes random cases of applying in integers as C, for a board that has no floating point: plans prepared
- * here, pixels, and what they shall become in double precision. */
+/* make_cases - writes random cases for integer plans as C, for a board without floating point: plans prepared here,
+ * pixels, and the expected results in double precision. */
 #define PIXELS 40
 #include "unit/fixed_cases.h"
 

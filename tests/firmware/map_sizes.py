@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Bytes of flash that the library and what it links take, by a map of the GNU linker, and RAM by what a demonstration
-printed ("plan: bytes N", "apply: stack N").
+"""Bytes of flash that the library and its dependencies take, from a map of the GNU linker, and RAM as printed by a
+demonstration ("plan: bytes N", "apply: stack N").
 
 usage: map_sizes.py MAP OUTPUT CODE_CEILING RAM_CEILING TITLE
        map_sizes.py --self-check
 
-Counted are the core's objects and the C, math and compiler libraries' - not the demonstration's own program, start-up
-and data. Exit 1 beyond a ceiling, or when the EMoR tables are linked.
+Included are the core's objects and the C, math and compiler libraries, but not the demonstration's own program,
+start-up code and data. Exit 1 if a ceiling is exceeded, or if the EMoR tables are linked.
 """
 
 import re
@@ -18,7 +18,7 @@ LIBRARY = re.compile(r"(libcore|libm|libc|libgcc|libc_nano|libm_nano)\.a\((.+)\)
 
 
 def flash_of(text):
-    """{"library: object" or library: bytes} of what is in flash."""
+    """{"library: object" or library: bytes} of everything in flash."""
     text = text[text.index("Linker script and memory map") :]
     text = re.sub(r"^( \.\S+)\n +(0x)", r"\1 \2", text, flags=re.M)
     sizes, output = {}, ""
@@ -69,7 +69,7 @@ def main():
     print(f"{sys.argv[5]}: code and tables {flash} of {sys.argv[3]} bytes; plan {plan} + stack {stack} = {ram} of {sys.argv[4]} bytes")
     emor = any("emor" in name for name in sizes)
     if emor:
-        print("the EMoR tables are linked, which applying does not need")
+        print("the EMoR tables are linked, but applying does not need them")
     nothing = not flash or not stack or "core: row_scalar.o" not in sizes and "core: fixed.o" not in sizes
     return int(flash > int(sys.argv[3]) or ram > int(sys.argv[4]) or emor or nothing)
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""The deepest stack of a function, by the compiler's call graph (gcc -fcallgraph-info=su).
+"""The deepest stack of a function, from the compiler's call graph (gcc -fcallgraph-info=su).
 
-usage: stack_depth.py LIMIT FUNCTION INDIRECT FILE.ci...   INDIRECT: what is called by pointer ("-": nothing)
+usage: stack_depth.py LIMIT FUNCTION INDIRECT FILE.ci...   INDIRECT: called through a pointer ("-": nothing)
        stack_depth.py --self-check
 
-Functions of the C and compiler libraries are not in the graph and count as OUTSIDE bytes. Exit 1 beyond the limit, at
-recursion, and where a frame's size is not known.
+Functions of the C and compiler libraries are not in the graph and count as OUTSIDE bytes. Exit 1 beyond the limit, for
+recursion, and if a frame's size is unknown.
 """
 
 import re
@@ -30,7 +30,7 @@ class Graph:
                 self.calls.setdefault(source, set()).add(target)
 
     def deepest(self, name, above=()):
-        """Bytes, and the path."""
+        """Stack bytes, and the call path."""
         if name == "__indirect_call":
             if self.indirect == "-":
                 sys.exit(f"{above[-1]} calls by pointer")

@@ -1,5 +1,6 @@
 #!/bin/bash
-# The core on a 64-bit ARM: the NEON kernel gives the scalar one's bytes, and all of apply.h and fixed.h what they give here.
+# The core on a 64-bit ARM: the NEON kernel gives the same bytes as the scalar one, and all results of apply.h and
+# fixed.h are the same as here.
 # usage: test_aarch64.sh SOURCE_DIR WORK_DIR
 set -euo pipefail
 source_dir=$1 work=$2 cc=aarch64-linux-gnu-gcc
@@ -13,7 +14,8 @@ for source in src/core/*.c src/core/kernels/{best,row_scalar,row_neon}.c; do
     $cc "${flags[@]}" -DLENSPROF_KERNELS -c "$source" -o "$work/$(basename "$source" .c).o"
 done
 aarch64-linux-gnu-objdump -d "$work/row_neon.o" | grep -c 'v[0-9]*\.4s' | sed 's/$/ instructions on four lanes/'
-# Every instruction is interpreted: of the kernels' rows a third, and all of them where LENSPROF_PERCENT says 100.
+# Every instruction is interpreted, so only a third of the kernels' rows is tested, or all of them if LENSPROF_PERCENT
+# is 100.
 export LENSPROF_PERCENT="${LENSPROF_PERCENT:-33}"
 for test in test_kernels test_apply test_fixed; do
     $cc "${flags[@]}" -static "tests/unit/$test.c" "$work"/*.o -lm -o "$work/$test"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# The example of docs/firmware.md as it stands there: its commands, its program, on this machine.
+# The example of docs/firmware.md exactly as on the page: its commands and its program, on this machine.
 # usage: test_docs.sh SOURCE_DIR WORK_DIR C_COMPILER FIND_PROFILE LENSPROF
 set -euo pipefail
 source_dir=$1 work=$2
@@ -17,6 +17,6 @@ lines=$(wc -l < camera.c)
 "$3" -std=c11 -Wall -Wextra -Werror -ffp-contract=off -I"$source_dir/include" -I"$source_dir/src" -I. -o camera camera.c \
     "$source_dir"/src/core/*.c "$source_dir"/src/core/kernels/{best,row_scalar}.c -lm
 ./camera | tee out
-# The profile leaves 60 % of the light in the corner: 90 / 0.6 = 150 there, less at the edge, 90 in the middle.
+# The profile has M = 0.6 in the corner: 90 / 0.6 = 150 there, less at the edge, 90 in the middle.
 grep -q '^row 0: left 150, middle 10[0-9]$' out
 grep -q '^row 240: left 12[0-9], middle 90$' out

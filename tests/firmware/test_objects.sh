@@ -1,6 +1,6 @@
 #!/bin/bash
-# The core for a Cortex-M: no promotion to double in pixels, no function but the listed ones, stack within what apply.h and
-# fixed.h state.
+# The core for a Cortex-M: no promotion to double in pixel code, only the listed functions, stack within the limits of
+# apply.h and fixed.h.
 # usage: test_objects.sh SOURCE_DIR WORK_DIR
 set -euo pipefail
 source_dir=$1 work=$2

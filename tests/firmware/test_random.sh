@@ -1,5 +1,5 @@
 #!/bin/bash
-# Random profiles, prepared here, applied in integers on a Cortex-M0, against double precision.
+# Random profiles, prepared here and applied in integers on a Cortex-M0, compared with double precision.
 # usage: test_random.sh SOURCE_DIR WORK_DIR MAKE_CASES
 set -euo pipefail
 source_dir=$1 work=$2 tests=$1/tests/firmware

@@ -1,12 +1,12 @@
 #!/bin/bash
-# What the apply path takes of a camera's memory, by the linker's map, against its ceilings.
+# Memory of a camera that the apply path takes, from the linker's map, compared with its ceilings.
 # usage: test_size.sh SOURCE_DIR WORK_DIR C_COMPILER
 set -euo pipefail
 source_dir=$1 work=$2
 . "$source_dir/tests/firmware/need.sh"
 need arm-none-eabi-gcc arm-none-eabi-size qemu-system-arm make python3
 mkdir -p "$work"
-# measure BOARD OPT PROGRAM CODE_CEILING RAM_CEILING: bytes of flash, of plan and stack
+# measure BOARD OPT PROGRAM CODE_CEILING RAM_CEILING: bytes of flash, plan and stack
 measure() {
     local out=$work/$1$2
     mkdir -p "$out"
@@ -18,6 +18,6 @@ measure() {
 cc=$3
 measure mps2-an386 -Os correct_float 24576 8192
 measure mps2-an500 -Os correct_float 24576 8192
-measure mps2-an386 -O2 correct_float 28672 8192 # for speed
+measure mps2-an386 -O2 correct_float 28672 8192 # optimised for speed
 measure microbit -Os correct_fixed 8192 1024
-measure microbit -Os correct_fixed_here 28672 4096 # with floating point in software, to prepare the plan
+measure microbit -Os correct_fixed_here 28672 4096 # with software floating point, to prepare the plan

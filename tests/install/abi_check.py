@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""The binary interface against the committed baseline, by abidiff (package abigail-tools).
+"""The binary interface compared with the committed baseline, by abidiff (package abigail-tools).
 
-usage: abi_check.py [--cc CC] check        exit 1 where functions or layouts differ from abi-baseline.xml
-       abi_check.py [--cc CC] write        make abi-baseline.xml anew (`make abi-baseline`)
+usage: abi_check.py [--cc CC] check        exit 1 if functions or layouts differ from abi-baseline.xml
+       abi_check.py [--cc CC] write        writes abi-baseline.xml (`make abi-baseline`)
        abi_check.py [--cc CC] self-check   planted changes must be found
 
-The library itself is not compared: its debug information would cost minutes of compiling. A shared object with an empty
-function for every prototype of the headers has the same exports and the same types; that the library exports just these
-functions is what lint_exports checks. Exit 77 (skipped) without abigail-tools, or where the baseline's processor is not.
+The library itself is not compared, because compiling its debug information would take minutes. Instead, a shared object
+with an empty function for every prototype of the headers has the same exports and types; lint_exports checks that the
+library exports exactly these functions. Exit 77 (skipped) without abigail-tools, or on another processor than the
+baseline's.
 """
 
 import argparse
@@ -26,7 +27,7 @@ PROTOTYPE = re.compile(r"^LENSPROF_API\s+(?:LENSPROF_MUST_USE\s+)?([^;{}]*?\blen
 
 
 def stub_source(include):
-    """A function for every prototype; what they return is of no matter."""
+    """A function for every prototype; the return values do not matter."""
     lines = ['#include <lensprof/lensprof.h>', '#pragma GCC diagnostic ignored "-Wreturn-type"']
     for header in sorted((include / "lensprof").glob("*.h")):
         text = re.sub(r"/\*.*?\*/", "", header.read_text(encoding="utf-8"), flags=re.DOTALL)
@@ -51,7 +52,7 @@ def describe(cc, include, folder):
 
 
 def differences(cc, include):
-    """What abidiff says of the headers against the baseline; empty when nothing differs."""
+    """The report of abidiff on the headers and the baseline; empty if nothing differs."""
     with tempfile.TemporaryDirectory() as name:
         found = describe(cc, include, pathlib.Path(name))
         done = subprocess.run(["abidiff", "--harmless", str(BASELINE), str(found)], stdout=subprocess.PIPE,
@@ -61,7 +62,7 @@ def differences(cc, include):
     return done.stdout if done.returncode else ""
 
 
-# What a careless change may do: (header, text, text in its place).
+# Examples of careless changes: (header, text, replacement).
 PLANTED = (
     ("store.h", "    uint32_t rows; ", "    uint64_t rows; "),
     ("profile.h", "    double focal_mm; ", "    double focal; "),
@@ -95,10 +96,10 @@ def main():
     parser.add_argument("action", choices=["check", "write", "self-check"])
     options = parser.parse_args()
     if not (shutil.which("abidiff") and shutil.which("abidw")):
-        print("skipped: no abidiff; install the package abigail-tools (make test-deps)")
+        print("skipped: needs abidiff; install the package abigail-tools (make test-deps)")
         return 77
     if platform.machine() != "x86_64":
-        print("skipped: the baseline is of x86_64")
+        print("skipped: the baseline is for x86_64")
         return 77
     if options.action == "self-check":
         return self_check(options.cc)
@@ -107,10 +108,10 @@ def main():
             shutil.copy(describe(options.cc, INCLUDE, pathlib.Path(name)), BASELINE)
         return 0
     found = differences(options.cc, INCLUDE)
-    print(found or "abi_check: as the baseline")
+    print(found or "abi_check: no difference from the baseline")
     if found:
-        print("Old programs must keep running: members only at the end of structs that grow, nothing removed. Where they do,"
-              " run `make abi-baseline` and commit the baseline.")
+        print("Old programs must keep running: members only at the end of structs that grow, nothing removed. If the"
+              " change keeps this rule, run `make abi-baseline` and commit the baseline.")
     return 1 if found else 0
 
 

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Runs a program, which must succeed and print a line for every pattern.
-# usage: check_output.sh PATTERN... -- PROGRAM [ARGUMENT...]     NEW_FILE as an argument: a path where nothing is yet
+# Runs a program, which must succeed and print a matching line for every pattern.
+# usage: check_output.sh PATTERN... -- PROGRAM [ARGUMENT...]     NEW_FILE as an argument: a path that does not exist yet
 set -uo pipefail
 patterns=()
 while [ "$1" != -- ]; do patterns+=("$1"); shift; done

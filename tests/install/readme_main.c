@@ -1,5 +1,5 @@
 
-/* What test_readme.sh adds to README's example: 80 % of the light in the corner, of which 100 becomes 125. */
+/* The code that test_readme.sh adds to README's example: 80 % of the light in the corner, where 100 becomes 125. */
 #include <stdio.h>
 
 #define SIDE 41
@@ -14,5 +14,5 @@ int main(void) {
     const int corner = pixels[0][SIDE - 1][1], middle = pixels[SIDE / 2][SIDE / 2][1];
     printf("%s: corner %d, middle %d\n", lensprof_status_name(status), corner, middle);
     if (status != LENSPROF_OK || corner < 123 || corner > 125 || middle != 100) return 1;
-    return correct(&profile, pixels, 0, SIDE) == LENSPROF_OK; /* refused, and nothing leaks */
+    return correct(&profile, pixels, 0, SIDE) == LENSPROF_OK; /* refused, without a leak */
 }

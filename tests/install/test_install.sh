@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs the build into a folder of its own and uses it from there, as a stranger would.
+# Installs the build into a separate folder and uses it from there, as from outside the tree.
 # usage: test_install.sh SOURCE_DIR BUILD_DIR C_COMPILER CXX_COMPILER
 set -euo pipefail
 source_dir=$1 build_dir=$2
@@ -13,14 +13,14 @@ failures=0
 
 say() { echo "== $*"; }
 wrong() { echo "WRONG: $*"; failures=$((failures + 1)); }
-# Runs a command; its output is shown only when it fails.
+# Runs a command; its output is shown only if it fails.
 quiet() { "$@" > "$work/log" 2>&1 || { cat "$work/log"; wrong "$*"; return 1; }; }
 
 say "install"
 quiet cmake --install "$build_dir" --prefix "$prefix"
 lib_dir=$(dirname "$(find "$prefix" -name liblensprof.so)")
 for header in "$source_dir"/include/lensprof/*.h; do
-    cmp -s "$header" "$prefix/include/lensprof/$(basename "$header")" || wrong "$(basename "$header") is not installed as it is"
+    cmp -s "$header" "$prefix/include/lensprof/$(basename "$header")" || wrong "$(basename "$header") was changed"
 done
 [ -f "$lib_dir/liblensprof-core.a" ] || wrong "liblensprof-core.a is not installed"
 if grep -rl "$build_dir" "$prefix/include" "$lib_dir/cmake" "$lib_dir/pkgconfig"; then wrong "these files name the build folder"; fi
@@ -33,7 +33,7 @@ used=$(ldd "$prefix/bin/lensprof" | sed -n 's/.*liblensprof.so.0.2 => \(.*\) (.*
 
 say "pkg-config"
 export PKG_CONFIG_PATH=$lib_dir/pkgconfig
-[ "$(pkg-config --modversion lensprof)" = "$version" ] || wrong "pkg-config tells another version"
+[ "$(pkg-config --modversion lensprof)" = "$version" ] || wrong "pkg-config reports another version"
 for variable in prefix libdir includedir; do
     value=$(pkg-config --variable=$variable lensprof)
     case $(realpath -m "$value") in
@@ -65,7 +65,7 @@ if quiet cmake -S "$here/consumer_core" -B "$work/consumer_core" -DCMAKE_PREFIX_
     if ldd "$work/consumer_core/consumer_core" | grep liblensprof; then wrong "the core needs the shared library"; fi
 fi
 if cmake -S "$here/consumer" -B "$work/nowhere" -DCMAKE_PREFIX_PATH="$work" > /dev/null 2>&1; then
-    wrong "find_package found lensprof where it is not: the test proves nothing"
+    wrong "find_package found lensprof outside the prefix, which makes the test meaningless"
 fi
 if quiet cmake -S "$source_dir/examples" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" && quiet cmake --build "$work/examples"; then
     "$work/examples/find_profile" "$work/x.db" | grep -q "found profile 1" || wrong "find_profile from the installed library"
@@ -73,7 +73,7 @@ fi
 
 say "moved to another place"
 mv "$prefix" "$work/moved"
-[ "$(env -i "$work/moved/bin/lensprof" version)" = "lensprof $version" ] || wrong "the program does not run from where it is moved"
+[ "$(env -i "$work/moved/bin/lensprof" version)" = "lensprof $version" ] || wrong "the program does not run when moved"
 
 [ $failures = 0 ] || { echo "$failures failures"; exit 1; }
 echo "installed library and program work"

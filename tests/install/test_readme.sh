@@ -1,5 +1,5 @@
 #!/bin/bash
-# README's C example as it stands there: compiled, linked, and run on a picture.
+# README's C example exactly as printed there: compiled, linked, and run on a picture.
 # usage: test_readme.sh SOURCE_DIR LIBRARY C_COMPILER
 set -euo pipefail
 source_dir=$1 library=$2

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Budgets of size: functions of 60 lines, files of 500. Warnings for the reader; they never fail a build.
+"""Budgets of size: functions of 60 lines, files of 500. Only warnings; they never fail a build.
 
-usage: budgets.py SOURCE_DIR     print what is over budget; exit 0
-       budgets.py --self-check   exit 1 when a planted function or file is not found
+usage: budgets.py SOURCE_DIR     print what exceeds its budget; exit 0
+       budgets.py --self-check   exit 1 if a planted function or file is not found
 """
 
 import pathlib
@@ -23,7 +23,7 @@ CONTAINER = re.compile(r'\b(namespace|class|struct|union|enum)\b[^()=]*$|\bexter
 
 
 def blank(text):
-    """Comments and the insides of literals without their text; lines stay."""
+    """Comments and literals without their text; line numbers stay the same."""
     pattern = re.compile(
         r'//[^\n]*|/\*.*?\*/|R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-zA-Z])\'(?:\\.|[^\'\\\n])*\'', re.DOTALL
     )
@@ -38,9 +38,9 @@ def blank(text):
 
 
 def functions(text):
-    """(name, first line, lines) of every function, as far as braces tell."""
+    """(name, first line, lines) of every function, as far as braces show."""
     text, found, depth, start, line, head_line = blank(text), [], 0, 0, 1, None
-    opened = None  # (name, line, depth) of the function that is open
+    opened = None  # (name, line, depth) of the current function
     for i, c in enumerate(text):
         if c == "\n":
             line += 1
@@ -70,7 +70,7 @@ def over_budget(root):
             continue
         text = path.read_text(encoding="utf-8", errors="replace")
         if text.count("\n") > FILE_LINES:
-            warnings.append(f"{name}: {text.count(chr(10))} lines; a file should hold one idea in {FILE_LINES}")
+            warnings.append(f"{name}: {text.count(chr(10))} lines; a file should have at most {FILE_LINES} lines")
         if path.suffix in {".c", ".h", ".cpp", ".hpp"}:
             warnings += [
                 f"{name}:{first}: {function} has {lines} lines; {FUNCTION_LINES} fit on a screen"
@@ -107,7 +107,7 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     warnings = over_budget(pathlib.Path(sys.argv[1]))
-    print("\n".join("warning: " + w for w in warnings) or "budgets: nothing is over")
+    print("\n".join("warning: " + w for w in warnings) or "budgets: all within budget")
     return 0
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Calls between the object files of a layer have an order: no file calls one that, over others or not, calls it.
+"""Calls between the object files of a layer have an order: no file calls another that calls it, directly or indirectly.
 
 usage: circle_rules.py [--nm NM] FOLDER               list the circles of the objects below FOLDER; exit 1 for any
-       circle_rules.py [--nm NM] [--cc CC] self-check compile a circle and a chain; exit 1 when they are not told apart
+       circle_rules.py [--nm NM] [--cc CC] self-check compile a circle and a chain; exit 1 if they are not distinguished
 """
 
 import argparse
@@ -13,7 +13,7 @@ import tempfile
 
 
 def symbols(nm, file):
-    """Global names that an object defines, and those that it refers to."""
+    """Global names that an object defines, and global names that it refers to."""
     defined, referred = set(), set()
     for line in subprocess.run([nm, "-g", file], check=True, capture_output=True, text=True).stdout.splitlines():
         fields = line.split()
@@ -23,7 +23,7 @@ def symbols(nm, file):
 
 
 def calls_of(nm, folder):
-    """For each object below the folder, the others that it refers to."""
+    """For each object below the folder, the other objects that it refers to."""
     tables = {str(file.relative_to(folder)): symbols(nm, file) for file in sorted(folder.rglob("*.o"))}
     owner = {name: file for file, (defined, _) in tables.items() for name in defined}
     return {file: sorted({owner[name] for name in referred if name in owner} - {file})
@@ -31,7 +31,7 @@ def calls_of(nm, folder):
 
 
 def circles(calls):
-    """One text for each call that closes a circle, found depth first."""
+    """One text per call that closes a circle, found depth first."""
     done, path, found = set(), [], []
 
     def visit(file):
@@ -71,7 +71,7 @@ def self_check(nm, cc):
                 (folder / name).write_text(text + "\n")
                 subprocess.run([cc, "-c", folder / name, "-o", folder / f"{name}.o"], check=True)
             if check(nm, folder) != expected:
-                print("a circle was " + ("not found" if expected else "found where there is none"))
+                print("a circle was " + ("not found" if expected else "found without one"))
                 return 1
     return 0
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs clang or clang-tidy over every source of compile_commands.json in src/, as many at once as there are cores.
+"""Runs clang or clang-tidy on every source of compile_commands.json in src/, one process per core.
 
 usage: each_source.py BUILD_DIR clang|clang-tidy [PART]    only sources whose path contains PART; exit 1 on any finding
 """
@@ -12,7 +12,7 @@ import shlex
 import subprocess
 import sys
 
-# Kernels are compiled with options of an instruction set that only GCC needs; tables have no code.
+# Kernels are compiled with instruction set options that only GCC needs; tables have no code.
 LEFT_OUT = ("/kernels/row_", "_table.c")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# format.sh CLANG_FORMAT: every C and C++ file is as .clang-format says. 77, which skips the test, without version 14 or git.
+# format.sh CLANG_FORMAT: every C and C++ file follows .clang-format. Exit 77 (skipped) without version 14 or git.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 clang_format=${1:-clang-format}

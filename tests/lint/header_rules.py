@@ -4,11 +4,11 @@
 usage: header_rules.py [--cc CC] [--cxx CXX] CHECK
 
   alone INCLUDE_DIR     every header compiles by itself, twice in a row, without a warning
-  numbers INCLUDE_DIR   enumerators and numeric macros = enumerators.txt, by text and by the compiler
-  list INCLUDE_DIR      print what enumerators.txt should be
+  numbers INCLUDE_DIR   enumerators and numeric macros = enumerators.txt, in the text and for the compiler
+  list INCLUDE_DIR      print the content that enumerators.txt should have
   self-check            every check must find a planted violation
 
-Prints violations; exit 1 when there are any.
+Prints violations; exit 1 if there are any.
 """
 
 import argparse
@@ -24,7 +24,7 @@ NUMBER = r"\(?-?(?:0[xX][0-9a-fA-F]+|\d+(?:\.\d+)?)[uUlL]*\)?"
 
 
 def compile_text(compiler, options, include, text, suffix):
-    """What the compiler says; empty when it is content."""
+    """The compiler's messages; empty if it accepts the source."""
     with tempfile.TemporaryDirectory() as folder:
         source = pathlib.Path(folder) / ("alone" + suffix)
         source.write_text(text)
@@ -55,7 +55,7 @@ def check_alone(cc, cxx, include):
 
 
 def numbers_of(include):
-    """[(name, value as written)] in the order of the headers, and what is wrong with how they are written."""
+    """[(name, value as written)] in the order of the headers, and faults in how they are written."""
     found, violations = [], []
     for header in headers_of(include):
         text = re.sub(r"/\*.*?\*/", " ", header.read_text(encoding="utf-8"), flags=re.DOTALL)
@@ -77,14 +77,14 @@ def check_numbers(cc, include, listed):
     written = dict(found)
     for name, value in listed.items():
         if name not in written:
-            violations.append(f"{name}: is gone; programs in use have it as {value}")
+            violations.append(f"{name}: is gone; existing programs use it as {value}")
         elif written[name] != value:
             violations.append(f"{name}: was {value} and is now {written[name]}; numbers are pinned for ever")
     violations += [
         f"{name}: is new; add the line '{name} {value}' to {LIST.name}" for name, value in found if name not in listed
     ]
     if not violations:
-        # The text may be hidden by #if: the compiler has the last word on whole numbers.
+        # The text may be hidden by #if, so the compiler checks integers again.
         asserts = "".join(
             f'_Static_assert((int64_t){name} == {value}, "{name}");\n'
             for name, value in listed.items()

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Layer rules, by the #include lines: who may use what (docs/architecture.md, section 2).
+"""Layer rules, from the #include lines: which headers each layer may use (docs/architecture.md, section 2).
 
-usage: include_rules.py SOURCE_DIR       list violations; exit 1 when there are any
-       include_rules.py --draw SOURCE_DIR   print the rooms of every layer, whom each includes, and how many floors they make
-       include_rules.py --self-check     plant violations in made-up trees; exit 1 when one is not found
+usage: include_rules.py SOURCE_DIR       list violations; exit 1 if there are any
+       include_rules.py --draw SOURCE_DIR   print the rooms of every layer, the rooms that each includes, and their
+floors
+       include_rules.py --self-check     plant violations in temporary trees; exit 1 if one is not found
 """
 
 import pathlib
@@ -60,8 +61,8 @@ WHOLE_API = FORMATS_API | STORE_API | {"lensprof.h"}
 
 
 class Layer:
-    """api: public headers; other: headers in angle brackets; private: folders under src beside its own; never: standard
-    headers that are left out."""
+    """api: public headers; other: headers in angle brackets; private: folders under src in addition to its own; never:
+    excluded standard headers."""
 
     def __init__(self, api, other, private=(), never=frozenset()):
         self.api, self.other, self.private, self.never = api, other, private, never
@@ -101,7 +102,7 @@ ROOMS = {
     "src/cli": ["program", "report", "pictures", "page", "registration", "reconstruction", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
-# Headers that one room alone may use.
+# Headers that only a single room may use.
 ROOM_HEADERS = {
     "src/cli/registration": {"Eigen/*", "opencv2/*"},
     "src/cli/reconstruction": {"sqlite3.h"},
@@ -109,7 +110,7 @@ ROOM_HEADERS = {
     "src/cli/pictures": {"OpenEXR/*", "jxl/*", "libheif/*", "libraw/*", "webp/*"},
 }
 
-# What each public header may include, beside <stddef.h> and <stdint.h>: nothing above its own layer.
+# Headers that each public header may include in addition to <stddef.h> and <stdint.h>: nothing above its own layer.
 PUBLIC = {
     "base.h": set(),
     "model.h": CORE_API,
@@ -158,8 +159,8 @@ def check_room(layer_name, folder, target):
 
 
 def check_quoted(root, path, layer_name, header):
-    """A quoted header is named from src, and must be the layer's own or of a folder that it may see. Outside src it is
-    named from its folder."""
+    """A quoted header is named from src, and must be in the layer's own folder or in one that it may see. Outside src
+    it is named from its folder."""
     if ".." in header.split("/"):
         return "leads out of its folder by '..'; name it from src"
     if not layer_name.startswith("src/"):
@@ -201,7 +202,7 @@ def check_public(path, angle, quoted):
 
 
 def check_tree(root):
-    """Violations as texts, and the number of files looked at."""
+    """Violations as texts, and the number of files checked."""
     violations, files = [], 0
     for path in sorted(p for top in ("src", "include", "examples", "bindings") for p in (root / top).rglob("*")):
         folder = path.parent.relative_to(root).as_posix()

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# lint.sh BUILD_DIR: formatting, warnings of clang, cppcheck and clang-tidy over all sources (`make lint`). Goes on after a
-# finding; exit 1 when there was any. BUILD_DIR has compile_commands.json. CLANG_TIDY_FILES=pattern: only these for clang-tidy.
+# lint.sh BUILD_DIR: formatting, warnings of clang, cppcheck and clang-tidy over all sources (`make lint`). Continues
+# after a finding; exit 1 if there was any. BUILD_DIR has compile_commands.json. CLANG_TIDY_FILES=pattern: only these
+# for clang-tidy.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 build=$1
@@ -20,7 +21,7 @@ checked() {
     return $failed
 }
 
-# The commands of the build without what only GCC knows; each file alone, by all cores.
+# The commands of the build without options that only GCC knows; each file separately, on all cores.
 compiled() { python3 -B tests/lint/each_source.py "$build" clang; }
 tidy() { python3 -B tests/lint/each_source.py "$build" clang-tidy "${CLANG_TIDY_FILES:-}"; }
 

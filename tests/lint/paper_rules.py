@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""paper_rules.py ROOT: the files that docs/papers.md names exist, and the functions named behind them occur in them.
-paper_rules.py --self-check: what is missing is found."""
+"""paper_rules.py ROOT: the files named in docs/papers.md exist, and contain the functions named after them.
+paper_rules.py --self-check: missing files and functions are found."""
 import pathlib
 import re
 import sys
@@ -10,7 +10,7 @@ PLACE = re.compile(r"`([\w/]+\.(?:c|h|cpp|hpp|py))`(?::((?:,? `\w+`)+))?")  # `f
 
 
 def missing(root):
-    """Texts of what is not there."""
+    """Texts about missing files and functions."""
     for number, line in enumerate((root / "docs/papers.md").read_text(encoding="utf-8").splitlines(), 1):
         for name, functions in PLACE.findall(line):
             file = root / name

@@ -1,21 +1,21 @@
-"""The command's own words for files: std::filesystem only through src/cli/program/paths.cpp, whose calls do not throw.
+"""File access of the command: std::filesystem only through src/cli/program/paths.cpp, whose calls do not throw.
 
-path_rules.py SOURCE_DIR     lists every call elsewhere in src/cli that looks at the disk and can throw
-path_rules.py --self-check   plants violations; exit 1 when one is not found
+path_rules.py SOURCE_DIR     lists every call elsewhere in src/cli that accesses the disk and can throw
+path_rules.py --self-check   plants violations; exit 1 if one is not found
 """
 
 import pathlib
 import re
 import sys
 
-# A call of std::filesystem that looks at the disk, or a method of a directory's entry.
+# A call of std::filesystem that accesses the disk, or a method of a directory entry.
 CALL = re.compile(
     r"(?:filesystem::|fs::)(absolute|canonical|copy\w*|create_\w+|current_path|equivalent|exists|file_size|"
     r"hard_link_count|is_\w+|last_write_time|permissions|proximate|read_symlink|relative|remove\w*|rename|resize_file|"
     r"space|status|symlink_status|temp_directory_path|weakly_canonical|(?:recursive_)?directory_iterator\s+\w+)"
     r"\s*\(([^;]*)|entry->(is_\w+|exists|file_size|refresh)\(\)"
 )
-CODE = re.compile(r"\b(error|ignored|none)\b")  # an error code among the arguments: the overload that does not throw
+CODE = re.compile(r"\b(error|ignored|none)\b")  # an error code selects the overload that does not throw
 
 
 def violations_in(text):

@@ -2,11 +2,11 @@
 """Plain technical English: the words of CONTRIBUTING.md, short sentences in README.md, short lines in Markdown.
 
 usage: plain_words.py SOURCE_DIR      list violations; exit 1 if there are any
-       plain_words.py --self-check    plant violations in a made-up tree; exit 1 if one is not found
+       plain_words.py --self-check    plant violations in a temporary tree; exit 1 if one is not found
 
 The table below "Words" in CONTRIBUTING.md has one row per rule: phrases to avoid, each in backquotes, and what to write
-instead. X in a phrase stands for any word. Checked are the prose of Markdown files, and the comments and string
-literals of the sources. Code, whether fenced or in backquotes, is not prose.
+instead. X in a phrase matches any word. Checked are the prose of Markdown files, and the comments and string literals
+of the sources. Code, whether fenced or in backquotes, is not prose.
 """
 
 import pathlib
@@ -16,7 +16,7 @@ import tempfile
 
 import text_rules
 
-# What is checked, as globs below the project.
+# Files to check, as globs relative to the project.
 PROSE = ("*.md", "bindings/**/*.md", "docs/**/*.md", "examples/**/*.md", "src/**/*.md")
 SOURCES = (
     "include/lensprof/*.h",
@@ -29,6 +29,10 @@ SOURCES = (
     "src/store/**/*",
     "tests/*.?",
     "tests/bench/*",
+    "tests/docs/*",
+    "tests/firmware/**/*",
+    "tests/install/**/*",
+    "tests/python/*",
     "tests/cli/*",
     "tests/fit/*",
     "tests/formats/*",

@@ -1,7 +1,8 @@
-"""Slices of campaigns: a pattern that selects or skips tests matches one, since cmocka passes a program of no tests.
+"""Slices of campaigns: a pattern that selects or skips tests must match at least one, because cmocka accepts a program
+without tests.
 
 slice_rules.py SOURCE_DIR     lists every LENSPROF_TEST and LENSPROF_SKIP of tests/*/CMakeLists.txt without a test
-slice_rules.py --self-check   plants violations; exit 1 when one is not found
+slice_rules.py --self-check   plants violations; exit 1 if one is not found
 """
 
 import fnmatch
@@ -77,7 +78,7 @@ def main():
     count = len(list(patterns_in(root)))
     if not count:
         found = ["no slice found: has lensprof_campaign another name?"]
-    print("\n".join(found) or f"slice_rules: {count} patterns, each of a test")
+    print("\n".join(found) or f"slice_rules: {count} patterns, each matches a test")
     return 1 if found else 0
 
 

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
-"""Layer rules, by what the compiled code refers to and what the shared library exports.
+"""Layer rules, from the symbols that the compiled code refers to and that the shared library exports.
 
 usage: symbol_rules.py [--nm NM] [--cc CC] CHECK
 
-  core ARCHIVE                         the core needs nothing but the listed functions, and has no writable data
-  apply OBJECTS_FOLDER                 what applies a profile needs even less, its pixels least: for a camera's processor too
+  core ARCHIVE                         the core needs only the listed functions, and has no writable data
+  apply OBJECTS_FOLDER                 code that applies a profile needs even less, pixel code least: for processors of
+                                       cameras, too
   layer NAME ARCHIVE OBJECTS_FOLDER [BELOW]
-                                       falloff, fit, formats or store refer to themselves, the core, the layer with its
-                                       objects in BELOW and their library only
+                                       falloff, fit, formats or store refer only to themselves, the core, the layer with
+                                       its objects in BELOW and their library
   exports LIBRARY HEADERS              exported symbols = exported_symbols.txt = LENSPROF_API of the headers
   self-check                           every check must find a planted violation
 
-Prints violations; exit 1 when there are any.
+Prints violations; exit 1 if there are any.
 """
 
 import argparse
@@ -25,7 +26,7 @@ LIST = pathlib.Path(__file__).with_name("exported_symbols.txt")
 
 LIBM = """acos asin atan atan2 cbrt ceil copysign cos cosh exp exp2 expm1 fabs floor fma fmax fmin fmod frexp hypot ldexp
 log log10 log1p log2 lrint lround modf nearbyint pow remainder rint round scalbn sin sinh sqrt tan tanh trunc""".split()
-# sincos: what gcc makes of sin and cos of one number. _GLOBAL_OFFSET_TABLE_: of position-independent code.
+# sincos: gcc combines sin and cos of one number. _GLOBAL_OFFSET_TABLE_: from position-independent code.
 CORE_MAY_NEED = {
     *LIBM,
     *(name + "f" for name in LIBM),
@@ -39,8 +40,8 @@ CORE_MAY_NEED = {
 }
 WRITABLE = re.compile(r"^(\.t?data|\.t?bss|\*COM\*)(\.(?!rel\.ro).*)?$")  # tables of pointers are in .data.rel.ro
 
-# What fit, formats and store must leave to the program: files, output, environment, time of day, randomness; threads too,
-# but for those that the fit layer starts and ends within a call.
+# Functions that fit, formats and store must leave to the program: files, output, environment, time of day, randomness;
+# also threads, except those that the fit layer starts and ends within a call.
 OUTSIDE = re.compile(
     r"""^_*(
     f?(open|open64|close|read|write|printf|puts|putc|getc|scanf|seek|tell|flush) | fdopen | freopen(64)? | fopen(64)?
@@ -94,18 +95,18 @@ def check_core(nm, archive):
     return violations
 
 
-# What applies a profile, without the rest of the core. The first set prepares plans: a stated handful of functions.
+# Objects that apply a profile, without the rest of the core. The first set prepares plans and may use a few functions.
 APPLY_PATH = {"apply", "base", "best", "blob", "fixed", "fixed_open", "fixed_plan", "fixed_table",
               "gain_grid", "image", "options", "plan", "plan_curves", "profile", "response",
               "row_avx2", "row_avx512", "row_neon", "row_scalar", "row_sse41", "vignetting"}
-# log: what newlib makes of log2.
+# log: newlib implements log2 with it.
 APPLY_MAY_NEED = {"exp2", "fabs", "floor", "fmax", "hypot", "ldexp", "log", "log2", "pow", "sqrt", "copysign",
                   "memcmp", "memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_"}
 OF_COMPILER = re.compile(r"^__(aeabi|gnu)_\w+$|^__(clz|ctz|popcount)[sd]i2$")
-# What an ARM compiler calls for numbers that the processor does not have.
+# Functions that an ARM compiler calls for numbers that the processor lacks.
 OF_DOUBLE = re.compile(r"^__aeabi_(c?d[a-z]\w*|\w+2d)$")
 OF_FLOAT = re.compile(r"^__aeabi_(c?[df][a-z]\w*|\w+2[df])$")
-# Pixels: no function but these; no double precision in the row kernel, no floating point in fixed.
+# Pixel code: no functions but these; no double precision in the row kernel, no floating point in fixed.
 PIXELS = {"row_scalar": OF_DOUBLE, "fixed": OF_FLOAT}
 PIXELS_MAY_NEED = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_", "lensprof_sample_type_bytes", "lp_tile_validate",
                    "lp_log2_table", "lp_exp2_table"}
@@ -117,7 +118,7 @@ def check_apply(nm, folder):
         return [f"{folder}: does not hold what applies a profile"]
     needed, _ = nm.needed_and_made([path for name, path in paths.items() if name in APPLY_PATH])
     _, core = nm.needed_and_made(paths.values())
-    # The EMoR tables belong to making responses; a linker leaves them out (tests/firmware).
+    # The EMoR tables are for constructing responses; a linker leaves them out (tests/firmware).
     violations = [
         f"{folder}: what applies a profile refers to {name}"
         for name in sorted(needed - APPLY_MAY_NEED - (core & {"lp_emor_table"}))
@@ -147,7 +148,7 @@ def check_layer(nm, name, archive, folder, below=None):
                 f"{name}: refers to {symbol}; files, output, environment, clock and threads belong to the program"
             )
         elif OF_LIBRARIES.match(symbol) and not LIBRARY_OF[name].match(symbol):
-            violations.append(f"{name}: refers to {symbol}, of a layer or library that it must not know")
+            violations.append(f"{name}: refers to {symbol} of a layer or library that it must not use")
     return violations
 
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Texts of the library are for every program: they name no option and no command of the command line program.
+"""Texts of the library suit every program: they do not mention options and commands of the command line program.
 
-usage: text_rules.py SOURCE_DIR       list violations; exit 1 when there are any
-       text_rules.py --self-check     plant violations in a made-up tree; exit 1 when one is not found
+usage: text_rules.py SOURCE_DIR       list violations; exit 1 if there are any
+       text_rules.py --self-check     plant violations in a temporary tree; exit 1 if one is not found
 
 String literals of src/{core,falloff,fit,formats,store} must not have a word that begins with "--", `lensprof` with the
-name of one of its commands, or "option of the command". A program says by the code of a reason (docs/reasons.md), or
-by the status and the item of an error, what it has to offer.
+name of one of its commands, or "option of the command". A program offers its options based on the code of a reason
+(docs/reasons.md), or on the status and the item of an error.
 """
 
 import pathlib
@@ -16,7 +16,7 @@ import tempfile
 
 LAYERS = ("core", "falloff", "fit", "formats", "store")
 SOURCES = {".c", ".h", ".cpp", ".hpp"}
-# A comment, a character, or a run of string literals, which the compiler joins.
+# A comment, a character, or a sequence of string literals, which the compiler joins.
 TOKEN = re.compile(
     r"""(?P<comment>//[^\n]*|/\*.*?\*/) | '(?:[^'\\\n]|\\.)+' | (?P<text>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)""",
     re.VERBOSE | re.DOTALL,
@@ -32,7 +32,7 @@ def commands_of(root):
 
 
 def texts_of(text):
-    """(line, kind, text) of every comment and every run of string literals, joined; the names of includes are neither."""
+    """(line, kind, text) of every comment and every joined sequence of string literals, except names of includes."""
     text = re.sub(r"^[ \t]*#[ \t]*include[^\n]*", "", text, flags=re.MULTILINE)
     for match in TOKEN.finditer(text):
         line = text.count("\n", 0, match.start()) + 1
@@ -43,7 +43,7 @@ def texts_of(text):
 
 
 def literals_of(text):
-    """(line, text) of every run of string literals."""
+    """(line, text) of every sequence of string literals."""
     return ((line, literal) for line, kind, literal in texts_of(text) if kind == "text")
 
 
@@ -61,7 +61,7 @@ def check(root):
                 for rule in (OPTION, of_program, OF_COMMAND):
                     found = rule.search(text)
                     if found:
-                        violations.append(f"{path.relative_to(root)}:{line}: names {found[0]!r}, which is the program's")
+                        violations.append(f"{path.relative_to(root)}:{line}: names {found[0]!r} of the program")
     return violations
 
 

@@ -1,4 +1,4 @@
-"""What the tests share: a rendered scene with a known camera, and short cuts."""
+"""Common parts of the tests: a rendered scene with a known camera, and shortcuts."""
 import contextlib
 
 import numpy as np
@@ -30,7 +30,7 @@ def exposures():
 
 
 def true_profile():
-    """A response that is no power function, and a falloff of half the light in the corners."""
+    """A response that is not a power function, and M = 0.5 in the corners."""
     return lp.Profile(response=lp.Response.from_emor([0.8, -0.4]), vignetting=lp.Vignetting(k=FALLOFF))
 
 
@@ -71,7 +71,7 @@ def fit_images():
 
 
 def simple_pairs(count=400, gain=1.5):
-    """Pairs of two linear pictures of which the second got `gain` times the light."""
+    """Pairs of two linear pictures; the second got `gain` times the light."""
     random = np.random.default_rng(3)
     pairs = np.zeros(count, dtype=lp.PAIR_DTYPE)
     pairs["image"] = (0, 1)
@@ -86,5 +86,5 @@ def two_images():
 
 
 def linear_options(**fields):
-    """A fit of exposures only, over the linear response."""
+    """A fit of exposures only, with the linear response."""
     return lp.FitOptions(**{"response": lp.Response.linear(), "free": lp.Free(0), **fields})

@@ -1,7 +1,7 @@
-"""The tables of lensprof._abi against the C compiler (abi_dump), the headers and the shared library.
+"""The tables of lensprof._abi compared with the C compiler (abi_dump), the headers and the shared library.
 
-The tables are generated (make_abi.py, test_make_abi.py). Here other eyes look at them: the compiler at sizes, offsets
-and values, a count of the headers' lines at what might be missing.
+The tables are generated (make_abi.py, test_make_abi.py). Here they are checked independently: sizes, offsets and values
+by the compiler, completeness by counting lines of the headers.
 """
 import ctypes
 import os
@@ -23,7 +23,7 @@ def header_text():
 
 
 def compiled():
-    """What abi_dump prints: {struct: (size, alignment)}, {struct: {field: (offset, size)}}, {constant: value}."""
+    """The output of abi_dump: {struct: (size, alignment)}, {struct: {field: (offset, size)}}, {constant: value}."""
     output = subprocess.run([os.environ["LENSPROF_ABI_DUMP"]], check=True, capture_output=True, text=True).stdout
     structs, fields, values = {}, {}, {}
     for kind, name, *rest in map(str.split, output.splitlines()):
@@ -47,7 +47,7 @@ class Tables(unittest.TestCase):
 
     def test_nothing_of_the_headers_is_missing(self):
         self.assertEqual(self.count(r"^LENSPROF_API "), len(_abi.FUNCTIONS))
-        self.assertEqual(self.count(r"^typedef enum "), len(set(_abi.ENUMS) - {"LENSPROF_FREE_"}))  # that is of macros
+        self.assertEqual(self.count(r"^typedef enum "), len(set(_abi.ENUMS) - {"LENSPROF_FREE_"}))  # in a macro
         self.assertEqual(self.count(r"^typedef struct \w+ \{"), len(self.structs))
         self.assertEqual(self.count(r"^typedef struct (\w+) \1;"), len(_abi.OPAQUE))
         self.assertEqual(self.count(r"^typedef [\w *]+\(\*"), len(_abi.CALLBACKS))

@@ -1,4 +1,4 @@
-"""Applying a profile to arrays: values by the formula, memory, and what is refused."""
+"""Applying a profile to arrays: values according to the formula, memory, and refused input."""
 import gc
 import threading
 import unittest
@@ -24,7 +24,7 @@ def falloff(height, width):
 
 
 def corrected(grey, gain=1.0):
-    """Goldman & Chen 2005, equation 16, with f(x) = sqrt(x), of grey values 0..1."""
+    """Goldman & Chen 2005, equation 16, with f(x) = sqrt(x), for grey values 0..1."""
     m = falloff(*grey.shape[:2])
     return np.clip(grey**GAMMA / (m[..., None] if grey.ndim == 3 else m) * gain, 0, 1) ** (1 / GAMMA)
 
@@ -268,7 +268,7 @@ class Memory(unittest.TestCase):
             np.testing.assert_array_equal(array, expected)
 
     def test_slices(self):
-        """Parts of a larger array in all directions of rows: written in its memory, and nothing beside them."""
+        """Parts of a larger array with rows in all directions: written in place, and nothing outside them."""
         for rows in (slice(5, 35), slice(34, 4, -1), slice(0, 60, 2), slice(59, 0, -2)):
             parent = picture(np.uint8, (60, 100, 3))
             before, part = parent.copy(), parent[rows, 30:70]
@@ -288,7 +288,7 @@ class Memory(unittest.TestCase):
         self.assertEqual(np.count_nonzero(parent.any(axis=(1, 2))), 30)
 
     def test_single_rows_columns_and_samples(self):
-        """NumPy gives axes of length 1 any stride."""
+        """NumPy gives axes of length 1 arbitrary strides."""
         for shape in ((1, 40), (30, 1), (1, 1), (30, 40)):
             parent = picture(np.uint8, (60, 80, 3))
             part = parent[::2, ::2, 1:2][:shape[0], :shape[1]]

@@ -1,4 +1,4 @@
-"""Fitting pairs, and the whole way from overlapping arrays to corrected ones."""
+"""Fitting pairs, and the complete way from overlapping arrays to corrected ones."""
 import gc
 import os
 import signal
@@ -16,7 +16,7 @@ from support import (EXPOSURES, RED, fit_images, linear_options, pictures, refus
 
 
 def overlap_rms(pairs):
-    """How far the two pictures of every pair are apart, levels of 255."""
+    """RMS difference between the two pictures of every pair, levels of 255."""
     return 255 * np.sqrt(np.mean((pairs["value"][:, 0] - pairs["value"][:, 1]) ** 2))
 
 
@@ -26,7 +26,7 @@ class WholeWay(unittest.TestCase):
         cls.pictures = pictures()
         cls.pairs = lp.sample_overlap(sample_images(cls.pictures))
         cls.result = lp.fit_overlap(fit_images(), cls.pairs)
-        # f and M are only known up to a common exponent: compare after the gamma that brings the responses together.
+        # f and M are known up to a common exponent: compare after removing the gamma between the responses.
         grey = np.linspace(0.1, 0.9, 50)
         found, true = np.log(cls.result.response.invert(grey)), np.log(true_profile().response[0].invert(grey))
         cls.gamma = (found @ true) / (true @ true)
@@ -170,7 +170,7 @@ class Fits(unittest.TestCase):
 
 
 class Tracks(unittest.TestCase):
-    """The radiance method, on the pairs of two images as tracks."""
+    """The radiance method, with the pairs of two images as tracks."""
 
     def observations(self, gain=1.5):
         pairs = simple_pairs(gain=gain)

@@ -11,7 +11,7 @@ LENS = lp.Vignetting(k=(-0.4, 0.1, -0.05), center=(0.02, -0.01))
 
 
 def card(turn_deg=0.0, ev=0.0, seed=1, channels=3):
-    """A card under a light that is brighter on the right, photographed by a linear camera."""
+    """A card, lit more strongly on the right, photographed with a linear camera."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
     half = np.hypot(WIDTH, HEIGHT) / 2
     dx, dy = (x - (WIDTH - 1) / 2) / half, (y - (HEIGHT - 1) / 2) / half

@@ -17,7 +17,7 @@ PACKAGE = pathlib.Path(lp.__file__).parent
 
 
 def run_python(code, **environment):
-    """A fresh interpreter with these variables beside the present ones; None removes one."""
+    """A new interpreter with these environment variables in addition to the current ones; None removes one."""
     wanted = {**os.environ, **environment}
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
                           env={name: value for name, value in wanted.items() if value is not None})

@@ -1,4 +1,4 @@
-"""The generator of lensprof._abi and abi_dump.c: headers made up for the purpose, and the committed files are fresh."""
+"""The generator of lensprof._abi and abi_dump.c: synthetic headers, and the committed files are up to date."""
 import ctypes
 import os
 import pathlib
@@ -23,7 +23,7 @@ BASE = "#include <stddef.h>\n#include <stdint.h>\n" + VERSION
 
 
 def from_header(text):
-    """(text of _abi.py, its module, text of abi_dump.c) for a made-up header."""
+    """(text of _abi.py, its module, text of abi_dump.c) for a synthetic header."""
     with tempfile.TemporaryDirectory() as folder:
         include = pathlib.Path(folder, "lensprof")
         include.mkdir()

@@ -1,4 +1,4 @@
-"""Responses, falloffs, exposures and cameras against their formulas in NumPy."""
+"""Responses, falloffs, exposures and cameras compared with their formulas in NumPy."""
 import copy
 import gc
 import math

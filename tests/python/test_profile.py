@@ -106,7 +106,7 @@ class Profiles(unittest.TestCase):
         profile = lp.Profile(response=curves, vignetting=lp.Vignetting(k=(-0.1, 0, 0)))
         self.assertEqual((profile.responses, profile.vignettings), (3, 1))
         self.assertEqual(profile.response, tuple(curves))
-        profile.response = profile.response[::-1]  # from its own memory
+        profile.response = profile.response[::-1]  # aliases its own memory
         self.assertEqual(profile.response, tuple(curves[::-1]))
         profile.response = curves[0]
         self.assertEqual(profile.response, (curves[0],))
@@ -147,7 +147,7 @@ class Profiles(unittest.TestCase):
 
 
 def blob_of(profile, covariance=False):
-    """The blob as docs/blob.md has it, written by other means than the library's."""
+    """The blob according to docs/blob.md, written independently of the library."""
     key, provenance, grid = profile.key, profile.provenance, profile.grid
     texts = [text.encode() for text in (key.camera_maker, key.camera_model, key.lens, provenance.method,
                                         provenance.software)]
@@ -193,7 +193,7 @@ class Blobs(unittest.TestCase):
 
     def test_round_trip(self):
         for profile in samples():
-            profile.provenance.source = "stays behind"
+            profile.provenance.source = "stays here"
             back = lp.Profile.unpack(np.frombuffer(profile.pack(covariance=True), np.uint8))
             back.validate()
             self.assertEqual(back.pack(covariance=True), profile.pack(covariance=True))

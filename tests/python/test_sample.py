@@ -98,7 +98,7 @@ class Sampling(unittest.TestCase):
         for i, array in enumerate(arrays):
             own = pairs["image"][:, 0] == i
             difference = pairs["value"][own, 0] * 255 - array[row[own], column[own]]
-            self.assertLess(np.median(np.abs(difference)), 2)  # patches of 5 x 5 px against one noisy pixel
+            self.assertLess(np.median(np.abs(difference)), 2)  # patches of 5 x 5 px compared with one noisy pixel
 
     def test_options(self):
         images = sample_images(pictures())
@@ -110,7 +110,7 @@ class Sampling(unittest.TestCase):
         self.assertGreater(len(paper), 100)
 
     def test_a_known_camera(self):
-        """Linear pictures 40 times apart join by their light alone; the pairs hold their own values."""
+        """Linear pictures 40 times apart in light join by their light alone; the pairs hold their own values."""
         bright, dark = [array.astype(np.float32) / 255 * 0.9 for array in pictures()[:2]]
         dark /= 40
         images = [lp.SampleImage(array, camera, black=1e-4) for array, camera in zip((bright, dark), cameras())]
@@ -144,7 +144,7 @@ class Sampling(unittest.TestCase):
         arrays, mask = pictures(), np.zeros((HEIGHT * 2, WIDTH), dtype=bool)
         mask[::-2, :][:, : WIDTH // 2] = True
         images = sample_images(arrays)
-        images[0].mask = mask[::-2]  # rows backwards and apart: the left half
+        images[0].mask = mask[::-2]  # rows reversed and with gaps: the left half
         pairs = lp.sample_overlap(images)
         used = np.concatenate([pairs["xy"][pairs["image"][:, side] == 0, side, 0] for side in (0, 1)])
         self.assertGreater(len(used), 100)

@@ -73,7 +73,7 @@ class Stores(unittest.TestCase):
         del junk
 
     def test_list_while_another_adds(self):
-        """Rows that appear between counting and fetching are fetched too."""
+        """Rows added between counting and fetching are fetched, too."""
         self.make(sample_profile("a"))
         with lp.Store(self.path) as store, lp.Store(self.path, lp.StoreMode.WRITE) as other:
             from lensprof import _library

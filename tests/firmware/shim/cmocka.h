@@ -1,5 +1,5 @@
-/* As much of cmocka as the core's tests use, for processors that there is no package of it for: the first assertion
- * that does not hold ends the program. */
+/* The part of cmocka that the core's tests use, for processors without a package of it. The first failed assertion ends
+ * the program. */
 #ifndef LENSPROF_TESTS_SHIM_CMOCKA_H
 #define LENSPROF_TESTS_SHIM_CMOCKA_H
 

@@ -1,4 +1,4 @@
-/* Links every layer of the installed library from C, and checks that header and library are of one version. */
+/* Links every layer of the installed library from C, and checks that header and library have the same version. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
-/* A call for every struct that grows, with that struct in any size and everything else as the headers have it.
+/* A call for every struct that grows, with that struct in any size and everything else as in the headers.
  *
- * Public headers alone: the program growth.c is compiled with the headers of one version and runs against the library
- * of another, and tests/unit/test_growth.c tries sizes. Every call that gives OK checks what it got. */
+ * Uses public headers only: the program growth.c is compiled with the headers of one version and runs with the library
+ * of another, and tests/unit/test_growth.c varies sizes. Every call that returns OK checks its result. */
 #ifndef LENSPROF_TESTS_GROWTH_CALLS_H
 #define LENSPROF_TESTS_GROWTH_CALLS_H
 
@@ -18,7 +18,7 @@
 #define HEIGHT 120
 
 static const double true_ev[IMAGES] = {0.0, 0.8, -0.6, 0.3}, true_k1 = -0.3;
-static int wrong_results; /* calls that gave OK and another result than they should */
+static int wrong_results; /* calls that returned OK with a wrong result */
 static const char *store_path;
 
 static void expect(int holds, const char *what) {
@@ -34,7 +34,7 @@ static double draw(uint32_t *state) {
     return (*state >> 8) / 16777216.0;
 }
 
-/* What stands beside the struct in question. */
+/* The other structs of a call. */
 typedef struct setting {
     lensprof_fit_image images[IMAGES];
     lensprof_fit_options fit;
@@ -84,7 +84,7 @@ static void prepare_fit(void) {
     }
 }
 
-/* An even card, seen through the falloff. */
+/* A card seen through the falloff. */
 static void prepare_card(void) {
     lensprof_flat_options_init(&here.flat);
     lensprof_flat_image_init(&here.card);
@@ -105,7 +105,7 @@ static void prepare_card(void) {
     here.card_result.image_quality = &here.card_quality;
 }
 
-/* Two pictures of one scene, turned by 10 degrees. */
+/* Two pictures of one scene, 10 degrees apart. */
 static void prepare_samples(void) {
     lensprof_sample_options_init(&here.sample);
     here.sample.pairs = 100;
@@ -231,7 +231,7 @@ static lensprof_status call_sample_options(void *given, lensprof_error *error) {
     return sample(options, here.samples, error);
 }
 
-/* An array of two: the second one is a struct_size further. */
+/* An array of two elements: the second one is a struct_size further. */
 static lensprof_status call_sample_images(void *given, lensprof_error *error) {
     lensprof_sample_image *first = given;
     lensprof_sample_image *second = (void *)((char *)given + first->struct_size);
@@ -417,11 +417,11 @@ static void init_flat_result(void *given, size_t size, uint32_t i) {
 
 typedef struct growing {
     const char *name;
-    size_t size, first; /* by these headers, and in 0.2.0 where addresses have 64 bits */
-    uint32_t count;     /* of elements, where it is an array */
+    size_t size, first; /* in these headers, and in 0.2.0 with 64 bit addresses */
+    uint32_t count;     /* number of elements, if it is an array */
     void (*init)(void *given, size_t size, uint32_t i);
     lensprof_status (*call)(void *given, lensprof_error *error);
-    int has_text, is_output; /* errors have a text; all that it holds is written by the library */
+    int has_text, is_output; /* errors have a text, and all members are written by the library */
 } growing;
 
 static const growing structs[] = {
@@ -445,7 +445,7 @@ static const growing structs[] = {
 };
 #define STRUCTS (sizeof structs / sizeof *structs)
 
-/* An array of initialised structs of `size` bytes each, and nothing behind them; free() it. */
+/* An array of initialised structs of `size` bytes each, and nothing after them; free() it. */
 static void *new_structs(const growing *g, size_t size) {
     char *given = malloc(size * g->count);
     if (!given) exit(1);

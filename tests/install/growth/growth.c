@@ -1,10 +1,10 @@
-/* growth - calls everything that takes a struct that grows. Compiled with the headers of one version, it runs against
+/* growth - calls every function that takes a struct that grows. Compiled with the headers of one version, it runs with
  * the library of another.
  *
- *   growth ok DATABASE       every call gives OK and the right result, though the library may be newer
- *   growth refused DATABASE  every call gives STRUCT_SIZE, with a text, and changes nothing: the library is older
+ *   growth ok DATABASE       every call returns OK and the right result, although the library may be newer
+ *   growth refused DATABASE  every call returns STRUCT_SIZE with a text and changes nothing: the library is older
  *
- * DATABASE is made and removed. Prints a line for each struct; exit 1 where one is wrong. */
+ * DATABASE is created and removed. Prints a line per struct; exit 1 if one is wrong. */
 #include "calls.h"
 
 static int is_right(const growing *g, int refused) {

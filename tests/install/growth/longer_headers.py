@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes public headers whose growing structs are longer than they are: what a later version will look like.
+"""Writes public headers with longer growing structs, as a later version will have.
 
 usage: longer_headers.py INCLUDE_DIR NEW_INCLUDE_DIR
 
-Every struct whose first member is `uint32_t struct_size`, and every *_image_quality, gets `double longer[4];` at its end.
-Files whose text would not change are left alone, so that nothing is compiled again.
+Every struct whose first member is `uint32_t struct_size`, and every *_image_quality, gets `double longer[4];` at its
+end.
+Unchanged files are not rewritten, so that nothing is compiled again.
 """
 
 import pathlib
