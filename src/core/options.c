@@ -181,5 +181,5 @@ lensprof_status lp_options_validate(const lensprof_apply_options *given, lenspro
     if (status != LENSPROF_OK) return status;
     status = lp_options_model(own, model);
     if (status == LENSPROF_OK) return validate_responses(own->output_response, own->output_responses, error);
-    return lp_fail(error, status, own->blob ? "blob invalid, or beside curves" : "grid or output is invalid");
+    return lp_fail(error, status, own->blob ? "invalid blob, or blob and curves" : "grid or output is invalid");
 }

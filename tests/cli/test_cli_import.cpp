@@ -51,7 +51,7 @@ void test_query_between(void **) {
     const Json near = json_of(query + Words{"--focal", "35", "--aperture", "3.4", "--json"});
     assert_true(near["lookup"]["reason_codes"] == Json::array({"lookup_usual_distance"}));
     const std::string said = must_exit(done, query + Words{"--focal", "35", "--aperture", "3.4"});
-    assert_true(contains(said, "predicted from") && contains(said, "the mean falloff over usual distances is taken"));
+    assert_true(contains(said, "predicted from") && contains(said, "the mean falloff over usual distances is used"));
     assert_true(contains(said, "Lensfun database, CC BY-SA 3.0"));
     assert_refused(not_found, query + Words{"--focal", "35", "--aperture", "32"}, {"aperture is beyond"});
     assert_refused(not_found,
@@ -59,14 +59,14 @@ void test_query_between(void **) {
                     "3.4", "--crop-factor", "1"},
                    {"smaller sensors only"});
     const std::string range = must_exit(done, query + Words{"--focal", "35"});
-    assert_true(contains(range, "profiles match: the aperture is not known, and the lens has several; give it"));
+    assert_true(contains(range, "profiles match: the aperture is unknown, and the lens has several; specify it"));
     assert_true(contains(range, "\naperture  f/2.8-") && contains(range, "\ncorner    M 0."));
     const Json known = json_of(query + Words{"--json"})["range"];
     assert_true(known["focal_mm"].size() == 2 && known["corner"][0].get<double>() < known["corner"][1].get<double>());
     assert_true(known["lenses"].size() == 1 && known["processings"] == Json::array({"raw"}));
     assert_refused(not_found,
                    {"query", "--db", work("l.db"), "--lens", "Nothing 50mm", "--focal", "50", "--aperture", "2"},
-                   {"no profile of a lens of this name"});
+                   {"no profile of a lens with this name"});
     assert_refused(usage, query + Words{"--unknown-distance", "nearest"}, {"--unknown-distance"});
 }
 

@@ -224,7 +224,7 @@ void test_several_databases(void **) {
     const Json exact = json_of(apply + Words{"--json", "--processing", "raw", "--db", a, "--db", b});
     assert_true(exact["pictures"][0]["lookup"]["exact"].get<bool>());
     assert_true(exact["pictures"][0]["lookup"]["sigma"].is_null());  // the profile states none
-    assert_refused(not_found, apply + Words{"--db", a}, {a, "no profile of a lens of this name"});
+    assert_refused(not_found, apply + Words{"--db", a}, {a, "no profile of a lens with this name"});
     assert_refused(not_found, apply + Words{"--db", a, "--db", work("none.db")}, {"none.db"});
     assert_refused(usage, apply + Words{"--db", ""}, {"--db"});
     const std::string said = must_exit(done, {"query", "--lens", "Lens 50mm", "--focal", "50", "--aperture", "2.1",

@@ -22,6 +22,7 @@ SOURCES = (
     "include/lensprof/*.h",
     "bindings/python/lensprof/*.py",
     "src/cli/**/*.?pp",
+    "src/core/*",
     "src/core/kernels/*",
     "src/falloff/*",
     "src/fit/**/*",

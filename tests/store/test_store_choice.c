@@ -114,9 +114,10 @@ static void test_built_in_lens(void **state) {
         assert_int_equal(how.rows, 2);
     }
     assert_close(how.name_score, 0.6, 0.0);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_BUILT_IN, "built in: Canon PowerShot S110 & compatibles"));
+    assert_true(
+        has_reason(&how, LENSPROF_REASON_LOOKUP_BUILT_IN, "built-in lens is used: Canon PowerShot S110 & compatibles"));
     assert_int_equal(ask(store, "EOS 5D", "Canon 85mm f/2", 50, 2.0, 0), LENSPROF_ERROR_NOT_FOUND); /* another lens */
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "no profile of a lens of this name"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "no profile of a lens with this name"));
     lensprof_store_close(store);
 }
 
@@ -136,10 +137,9 @@ static void test_outside_is_said(void **state) {
                                     {"", "A 50mm", "", 4.0, 1, -0.3, RAW}};
     lensprof_store *store = store_of(*state, entries, 3);
     assert_ok(ask(store, "", "A 50mm", 50, 5.0, 0));
-    assert_true(
-        has_reason(&how, LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE, "the aperture is outside those that are stored"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE, "the aperture is outside the stored range"));
     assert_ok(ask(store, "", "A 50mm", 50, 3.2, 0));
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, "the sensor's size is not known"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, "the sensor size is unknown"));
     assert_int_equal(how.reason_code[1], LENSPROF_REASON_NONE);
     lensprof_store_close(store);
 }

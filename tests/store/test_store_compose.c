@@ -299,7 +299,7 @@ static void test_corrected(void **state) {
     put_rendered(store, "EOS 5D", 2.2, 0.02, "");
     const lensprof_profile_key key = key_of("EOS 5D", CORRECTED, 2.0);
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_CORRECTED, "the camera has corrected"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_CORRECTED, "the camera corrects"));
     options.force_falloff = 1;
     assert_ok(ask_with(store, &key, &options));
     assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_CAMERA); /* the rendering is the same */
@@ -359,7 +359,7 @@ static void test_response_alone(void **state) {
     assert_int_equal(how.rows, 0);
     assert_int_equal(how.response_rows, 1);
     assert_int_equal(how.response_id[0], id);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "of this name"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "with this name"));
     assert_int_equal(answered.covariance_size, 3);
     assert_close(answered.response[0].emor[0], 0.5, 0.0);
     assert_close(answered.vignetting[0].k[0], 0.0, 0.0);
@@ -437,7 +437,7 @@ static void test_open_settings_widen_the_error(void **state) {
     assert_ok(ask_for(store, &key));
     assert_true(how.distance_sigma == 0.0 && how.sensor_sigma > 0.2); /* on a smaller sensor M would be .73 */
     assert_true(how.sigma > how.sensor_sigma);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, "not known"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, "unknown"));
     lensprof_store_close(store);
 }
 

@@ -123,8 +123,8 @@ static void test_refusals(void **state) {
                  {24, 16, "aperture is beyond", LENSPROF_REASON_LOOKUP_APERTURE_BEYOND},
                  {14, 2.8, "focal length is beyond", LENSPROF_REASON_LOOKUP_FOCAL_BEYOND},
                  {200, 2.8, "focal length is beyond", LENSPROF_REASON_LOOKUP_FOCAL_BEYOND},
-                 {LENSPROF_UNKNOWN, 2.8, "focal length is not known", LENSPROF_REASON_LOOKUP_FOCAL_MISSING},
-                 {35, LENSPROF_UNKNOWN, "aperture is not known", LENSPROF_REASON_LOOKUP_APERTURE_MISSING}};
+                 {LENSPROF_UNKNOWN, 2.8, "focal length is unknown", LENSPROF_REASON_LOOKUP_FOCAL_MISSING},
+                 {35, LENSPROF_UNKNOWN, "aperture is unknown", LENSPROF_REASON_LOOKUP_APERTURE_MISSING}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         scribble(&answered);
         assert_int_equal(ask(store, zoom, cases[i].focal, cases[i].aperture, INFINITY), LENSPROF_ERROR_NOT_FOUND);
@@ -134,7 +134,7 @@ static void test_refusals(void **state) {
         assert_int_equal(((unsigned char *)&answered)[7], 0x5A);
     }
     assert_int_equal(ask(store, "Another lens", 35, 2.8, INFINITY), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "no profile of a lens of this name"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "no profile of a lens with this name"));
     assert_int_equal(ask(store, zoom, 35, 2.8, 0.1), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_TOO_FAR, "too far"));
     lensprof_store_close(store);
@@ -239,7 +239,7 @@ static void test_unknown_sensor(void **state) {
     assert_int_equal(how.rows, 4);
     assert_true(answered.vignetting[0].k[0] > -0.2);
     assert_true(how.sigma < 0.1);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, "the sensor's size is not known"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, "the sensor size is unknown"));
     key.crop_factor = 1.51;
     key.aperture = 2.0;
     assert_ok(ask_with(store, &key, &options));
@@ -260,16 +260,16 @@ static void test_left_out_is_said(void **state) {
     lensprof_profile_key key = zoom_profile("Lens 50mm", 50, 2.0, INFINITY)->key;
     key.processing = LENSPROF_PROCESSING_CORRECTED;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_CORRECTED, "the camera has corrected the falloff"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_CORRECTED, "the camera corrects the falloff"));
     p = zoom_profile("Lens 28mm", 28, 2.0, INFINITY);
     p->key.processing = LENSPROF_PROCESSING_CORRECTED;
     put_at(store, p);
     assert_int_equal(ask(store, "Lens 28mm", 28, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, "the camera has corrected"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, "whose falloff the camera corrected"));
     assert_int_equal(ask(store, "Lens 35mm", 35, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_DOUBTFUL, "doubtful"));
     assert_int_equal(ask(store, "Lens 85mm", 85, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "of this name"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "with this name"));
     lensprof_store_close(store);
 }
 

@@ -214,7 +214,7 @@ static void test_fixed_lenses(void **state) {
     assert_ok(ask(store, "Canon", "PowerShot G7", "", 7.5, 2.8)); /* its only lens */
     assert_int_equal(how.exact, 1);
     assert_int_equal(ask(store, "Canon", "EOS 5D", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SEVERAL_LENSES, "several lenses; give the lens"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SEVERAL_LENSES, "several lenses; specify the lens"));
     assert_ok(ask(store, "Canon", "EOS 5D", "Canon EF 50mm", 51, 2)); /* a lens with its own name: not rounded */
     assert_int_equal(how.exact, 0);
     assert_int_equal(ask(store, "Canon", "", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);
@@ -242,7 +242,7 @@ static void test_fixed_lenses_by_the_table_of_cameras(void **state) {
     assert_ok(ask(store, "SONY", "DSC-RX100M4", "24-70mm F1.8-2.8", 8.8, 1.8));
     assert_int_equal(how.id[0], id);
     assert_close(how.name_score, 0.6, 0.0);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_BUILT_IN, "built in"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_BUILT_IN, "built-in"));
     assert_ok(ask(store, "SONY", "DSC-RX100M4", "", 8.8, 1.8));
     assert_int_equal(how.id[0], id);
     assert_int_equal(ask(store, "SONY", "DSC-RX100M3", "24-70mm F1.8-2.8", 8.8, 1.8), LENSPROF_ERROR_NOT_FOUND);
