@@ -121,6 +121,7 @@ void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panora
                     + (pictures.list.empty() ? "" : ", calibrate_sheet.jpg")
                     + (panoramas.list.empty() ? "" : ", panorama_*.pto, panorama_*.jpg"))
         << "\n";
+    if (!o.report.empty()) out << one_line("report    " + o.report) << "\n";
 }
 
 }  // namespace lensprof
