@@ -33,9 +33,14 @@ complete_words lensprof --ver
 complete_words lensprof completion ''
 complete_words lensprof man bui
 complete_words lensprof apply my
+complete_words lensprof build --loss = ro
+complete_words lensprof build --loss =
+complete_words lensprof build --report = pi
+complete_words lensprof help profile sho
+complete_words lensprof man profile mer
 """
 WANTED = ["build", "show", "--report", "robust huber squared", "pictures", "pictures", "--chart --chart-out --channel", "--version",
-          "bash zsh fish", "build", "my photo.jpg"]
+          "bash zsh fish", "build", "my photo.jpg", "robust", "robust huber squared", "pictures", "show", "merge"]
 
 
 def output_of(*words, cwd=None):

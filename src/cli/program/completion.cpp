@@ -36,17 +36,21 @@ std::string zsh_text(const std::string &text) {
     return escaped;
 }
 
+// The values of a positional that are words; of `help` and `man`, all commands.
+std::vector<std::string> choices_of(const CommandDescription &program, const OptionDescription &positional) {
+    if (positional.names[0] != "COMMAND") return positional.choices;
+    std::vector<std::string> names;
+    for (const CommandDescription &named : program.commands) names.push_back(named.name());
+    return names;
+}
+
 // The words that may follow a command: verbs, choices of its arguments, and options.
 std::vector<std::string> following_words(const CommandDescription &program, const CommandDescription &command) {
     std::vector<std::string> words;
     for (const CommandDescription &verb : command.commands) words.push_back(verb.name());
     for (const OptionDescription &option : command.options) {
-        if (!option.is_positional)
-            words.insert(words.end(), option.names.begin(), option.names.end());
-        else if (option.names[0] == "COMMAND")  // of help and man
-            for (const CommandDescription &named : program.commands) words.push_back(named.name());
-        else
-            words.insert(words.end(), option.choices.begin(), option.choices.end());
+        const std::vector<std::string> more = option.is_positional ? choices_of(program, option) : option.names;
+        words.insert(words.end(), more.begin(), more.end());
     }
     return words;
 }
@@ -89,19 +93,23 @@ std::string bash_completion(const CommandDescription &program) {
            + "  esac\n"
              "}\n"
              "_lensprof() {\n"
-             "  local command='' word i words='' values='' files='' takes=''\n"
+             "  local command='' topic='' word i words='' values='' files='' takes=''\n"
              "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"
+             "  if [[ $current == = ]]; then current=\n"  // bash splits --option=value
+             "  elif [[ $previous == = ]]; then previous=${COMP_WORDS[COMP_CWORD-2]}; fi\n"
              "  _lensprof_words ''\n"
              "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
              "    word=${COMP_WORDS[i]}\n"
-             "    [[ $word != -* && \" $words \" == *\" $word \"* && $command != help && $command != man ]] || continue\n"
-             "    command=${command:+$command }$word\n"
-             "    _lensprof_words \"$command\"\n"
+             "    [[ $word != -* && \" $words \" == *\" $word \"* ]] || continue\n"
+             "    if [[ $command == help || $command == man ]]; then topic=${topic:+$topic }$word\n"
+             "    else command=${command:+$command }$word; fi\n"
+             "    _lensprof_words \"${topic:-$command}\"\n"
              "  done\n"
              "  case \"$command $previous\" in\n"
            + bash_values(program)
            + "  esac\n"
              "  [[ $takes ]] && words=$values\n"
+             "  [[ $topic ]] && files=\n"
              "  [[ $current == -* && ! $takes ]] && files=\n"
              "  [[ $current != -* && ! $takes ]] && words=$(printf '%s\\n' $words | grep -v '^-')\n"
              "  mapfile -t COMPREPLY < <(compgen ${files:+-f} -W \"$words\" -- \"$current\")\n"
@@ -132,8 +140,12 @@ std::string zsh_completion(const CommandDescription &program) {
             continue;
         }
         text += "      _arguments -s";
+        std::vector<std::string> choices;  // of a positional
         for (const OptionDescription &option : command->options) {
-            if (option.is_positional) continue;
+            if (option.is_positional) {
+                choices = choices_of(program, option);
+                continue;
+            }
             for (const std::string &name : option.names) {
                 std::string entry = (option.is_repeated ? "*" : "") + name;
                 if (!option.type.empty() && name.size() > 2) entry += "=";
@@ -145,7 +157,8 @@ std::string zsh_completion(const CommandDescription &program) {
                 text += " \\\n        " + shell_quoted(entry);
             }
         }
-        text += " \\\n        '*:file:_files' ;;\n";
+        text += " \\\n        "
+                + shell_quoted(choices.empty() ? "*:file:_files" : "*:value:(" + joined(choices, " ") + ")") + " ;;\n";
     }
     return text + "  esac\n}\n_lensprof \"$@\"\n";
 }
@@ -169,7 +182,13 @@ std::string fish_completion(const CommandDescription &program) {
             text += "complete -c lensprof -f -n " + shell_quoted(condition) + " -a " + shell_quoted(verb.name())
                     + " -d " + shell_quoted(first_line(verb.brief)) + "\n";
         for (const OptionDescription &option : command->options) {
-            if (option.is_positional) continue;
+            if (option.is_positional) {
+                const std::vector<std::string> choices = choices_of(program, option);
+                if (!choices.empty())
+                    text += "complete -c lensprof -f -n " + shell_quoted(condition) + " -a "
+                            + shell_quoted(joined(choices, " ")) + "\n";
+                continue;
+            }
             text += "complete -c lensprof -n " + shell_quoted(condition);
             for (const std::string &name : option.names)
                 text += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
