@@ -43,18 +43,18 @@ Descent levenberg_marquardt(const DescentLimits &limits, Model model, ObjectiveA
     Descent descent;
     double damping = limits.first_damping;
     for (; descent.steps < limits.steps && !descent.converged && damping < limits.damping; descent.steps++) {
-        const QuadraticModel here = model();
+        const QuadraticModel current = model();
         bool better = false;
         for (; !better && damping < limits.damping; damping *= better ? 0.1 : 10.0) {
-            Eigen::MatrixXd damped = here.hessian;
+            Eigen::MatrixXd damped = current.hessian;
             damped.diagonal() *= 1.0 + damping;
             damped.diagonal().array() += 1e-12;  // an unknown that nothing depends on stays
-            const Eigen::VectorXd change = solve_symmetric(damped, here.gradient);
-            const double gain = here.objective - objective_after(change);
+            const Eigen::VectorXd change = solve_symmetric(damped, current.gradient);
+            const double gain = current.objective - objective_after(change);
             better = gain >= 0.0;
-            if (!better && std::abs(gain) > limits.gain * here.objective) continue;
+            if (!better && std::abs(gain) > limits.gain * current.objective) continue;
             if (better) accept(change);
-            descent.converged = gain <= limits.gain * here.objective;
+            descent.converged = gain <= limits.gain * current.objective;
             if (descent.converged) break;
         }
     }

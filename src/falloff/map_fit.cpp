@@ -73,12 +73,13 @@ public:
     }
 
     std::array<double, 3> k(uint32_t channel) const {
-        const Eigen::Index at = 4 * channel;
-        return {terms_[at + 1] / terms_[at], terms_[at + 2] / terms_[at], terms_[at + 3] / terms_[at]};
+        const Eigen::Index first = 4 * channel;
+        return {terms_[first + 1] / terms_[first], terms_[first + 2] / terms_[first],
+                terms_[first + 3] / terms_[first]};
     }
     const Channel &channel(uint32_t index) const { return channels_[index]; }
     // What M = 1 is, of the channel's largest value.
-    double one(uint32_t channel) const { return terms_[4 * channel]; }
+    double unit_value(uint32_t channel) const { return terms_[4 * channel]; }
     double center_of(int axis) const { return terms_[center() + axis]; }
 
 private:
@@ -157,7 +158,7 @@ Range values_within(double from, double to, double first, double step, uint32_t 
 
 // The value of a channel that means 1, and the value below which it is unknown.
 struct Scale {
-    double one, lowest;
+    double unit_value, lowest;
 };
 
 // What the falloff leaves at a node: the plane through the values within half a node's spacing, which is not drawn
@@ -175,9 +176,9 @@ double left_at(const FalloffMap &map, const lensprof_vignetting &falloff, uint32
             const double px = map.x0 + i * map.dx, py = map.y0 + j * map.dy;
             if (value < scale.lowest) continue;
             const double r2 = lensprof_vignetting_r2(&falloff, map.width, map.height, px, py, nullptr);
-            const Eigen::Vector3d at(1.0, (px - x) / step_x, (py - y) / step_y);
-            normal += at * at.transpose();
-            right += at * (value / scale.one / lensprof_vignetting_eval(&falloff, r2, nullptr));
+            const Eigen::Vector3d basis(1.0, (px - x) / step_x, (py - y) / step_y);
+            normal += basis * basis.transpose();
+            right += basis * (value / scale.unit_value / lensprof_vignetting_eval(&falloff, r2, nullptr));
         }
     const double count = normal(0, 0);
     if (count == 0.0) return 1.0;
@@ -192,8 +193,8 @@ void set_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profil
     lensprof_gain_grid &grid = profile.grid;
     const uint32_t longer = std::max(map.width, map.height);
     const auto nodes = [&](uint32_t side, uint32_t values) {
-        const uint32_t even = static_cast<uint32_t>(std::lround(double(kGridNodes - 1) * side / longer)) + 1;
-        return std::clamp<uint32_t>(std::min(even, values), 2, LENSPROF_GRID_SIDE);
+        const uint32_t intervals = static_cast<uint32_t>(std::lround(double(kGridNodes - 1) * side / longer)) + 1;
+        return std::clamp<uint32_t>(std::min(intervals, values), 2, LENSPROF_GRID_SIDE);
     };
     grid.columns = nodes(map.width, map.columns), grid.rows = nodes(map.height, map.rows);
     grid.channels = map.channels;
@@ -201,7 +202,7 @@ void set_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profil
     float *node = grid.attenuation;
     for (uint32_t c = 0; c < grid.channels; c++) {
         const double largest = fit.channel(c).largest;
-        const Scale scale{fit.one(c) * largest, kLowestFalloff * largest};
+        const Scale scale{fit.unit_value(c) * largest, kLowestFalloff * largest};
         for (uint32_t j = 0; j < grid.rows; j++)
             for (uint32_t i = 0; i < grid.columns; i++)
                 *node++ = static_cast<float>(
@@ -221,14 +222,14 @@ void refine_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &pro
             std::vector<double> sum(nodes), weight(nodes);
             for (const Sample &s : fit.channel(c).samples) {
                 const double model =
-                    fit.one(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
+                    fit.unit_value(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
                 const lp_grid_cell x = lp_grid_cell_at(s.x, map.width, grid.columns),
                                    y = lp_grid_cell_at(s.y, map.height, grid.rows);
                 for (uint32_t k = 0; k < 4; k++) {
                     const double share =
                         (k & 1 ? x.fraction : 1.0 - x.fraction) * (k & 2 ? y.fraction : 1.0 - y.fraction);
-                    const size_t at = size_t(y.node + (k >> 1)) * grid.columns + x.node + (k & 1);
-                    sum[at] += share * s.value / model, weight[at] += share;
+                    const size_t node = size_t(y.node + (k >> 1)) * grid.columns + x.node + (k & 1);
+                    sum[node] += share * s.value / model, weight[node] += share;
                 }
             }
             for (size_t i = 0; i < nodes; i++) {
@@ -247,7 +248,7 @@ double worst_error(const FalloffMap &map, const MapFit &fit, const lensprof_prof
     for (uint32_t c = 0; c < map.channels; c++) {
         for (const Sample &s : fit.channel(c).samples) {
             const double model =
-                fit.one(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
+                fit.unit_value(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
             worst = std::max(worst, std::fabs(model / s.value - 1.0));
         }
     }
@@ -287,7 +288,7 @@ double fit_map(const FalloffMap &map, lensprof_profile &profile) {
         lensprof_vignetting &v = profile.vignetting[c];
         const std::array<double, 3> k = fit.k(c);
         v = {{k[0], k[1], k[2]}, {fit.center_of(0), fit.center_of(1)}};
-        if (!(fit.one(c) > 0.0) || lensprof_vignetting_validate(&v) != LENSPROF_OK)
+        if (!(fit.unit_value(c) > 0.0) || lensprof_vignetting_validate(&v) != LENSPROF_OK)
             fail("no radial falloff approximates the map; check that it shows one frame, and its sense");
     }
     lensprof_gain_grid_init(&profile.grid);

@@ -9,7 +9,7 @@
 namespace lensprof {
 
 PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
-                      PowerSample (*sample_at)(const void *of, int i), const void *of) {
+                      PowerSample (*sample_at)(const void *context, int i), const void *context) {
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostPowers, kMostPowers>;
     Matrix normal = Matrix::Zero(count, count);
     PowerTerms terms = PowerTerms::Zero(count), right(count), row(count);
@@ -19,7 +19,7 @@ PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
     for (int round = 0; round <= refinements; round++) {
         right.setZero();
         for (int i = 0; i < samples; i++) {
-            const PowerSample s = sample_at(of, i);
+            const PowerSample s = sample_at(context, i);
             for (int n = 0; n < count; n++) row[n] = std::pow(s.r2, power[n]);
             if (round == 0) normal += s.weight * row * row.transpose();
             right += s.weight * row * (round == 0 ? s.value : s.value - row.dot(terms));

@@ -28,12 +28,12 @@ using PowerTerms = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMo
 // c for the powers p[count], 1 <= count <= kMostPowers, of the samples sample_at(of, 0), ..., sample_at(of, samples -
 // 1).
 PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
-                      PowerSample (*sample_at)(const void *of, int i), const void *of);
+                      PowerSample (*sample_at)(const void *context, int i), const void *context);
 
 // The same, of samples sample_at(i).
 template <class SampleAt>
 PowerTerms fit_powers(const int *power, int count, int samples, int refinements, const SampleAt &sample_at) {
-    const auto call = [](const void *of, int i) { return (*static_cast<const SampleAt *>(of))(i); };
+    const auto call = [](const void *context, int i) { return (*static_cast<const SampleAt *>(context))(i); };
     return fit_powers(power, count, samples, refinements, call, &sample_at);
 }
 

@@ -62,10 +62,10 @@ double longest_of(const lp_falloff_node *nodes, uint32_t count) {
 }
 
 // The smallest f-number at this focal length or a longer one; beyond the longest that is known, at that.
-double widest_at(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &at, double focal_mm,
+double widest_at(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &target, double focal_mm,
                  double longest) {
     const double from = 0.999 * std::fmin(focal_mm, longest);
-    double widest = at.focal_mm >= from ? at.aperture : INFINITY;
+    double widest = target.focal_mm >= from ? target.aperture : INFINITY;
     for (uint32_t i = 0; i < count; i++)
         if (nodes[i].focal_mm >= from && nodes[i].aperture < widest) widest = nodes[i].aperture;
     return widest;
@@ -96,29 +96,30 @@ struct Neighbours {
 };
 
 // The setting asked for; points[count] receives the nodes, of which the LP_NEIGHBOURS nearest come first, in order.
-Point sort_by_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &at, Point *points) {
+Point sort_by_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &target, Point *points) {
     const double longest = longest_of(nodes, count);
-    const Point here = point_of(at, widest_at(nodes, count, at, at.focal_mm, longest));
+    const Point position = point_of(target, widest_at(nodes, count, target, target.focal_mm, longest));
     double focal_mm = -1.0, widest = 0.0;
     for (uint32_t i = 0; i < count; i++) {
-        if (nodes[i].focal_mm != focal_mm) widest = widest_at(nodes, count, at, focal_mm = nodes[i].focal_mm, longest);
+        if (nodes[i].focal_mm != focal_mm)
+            widest = widest_at(nodes, count, target, focal_mm = nodes[i].focal_mm, longest);
         points[i] = point_of(nodes[i], widest);
-        points[i].d = distance(points[i], here);
+        points[i].d = distance(points[i], position);
         points[i].node = i;
     }
     std::partial_sort(points, points + std::min<uint32_t>(count, LP_NEIGHBOURS), points + count, IsNearer());
-    return here;
+    return position;
 }
 
 // Keeps a curve near those of the neighbours.
-void restrain(const Neighbours &near, int curve, double k[3]) {
-    double low[LP_FALLOFF_RADII], high[LP_FALLOFF_RADII], values[LP_FALLOFF_RADII], own[LP_FALLOFF_RADII];
+void restrain(const Neighbours &neighbours, int curve, double k[3]) {
+    double low[LP_FALLOFF_RADII], high[LP_FALLOFF_RADII], values[LP_FALLOFF_RADII], samples[LP_FALLOFF_RADII];
     bool changed = false;
-    for (uint32_t i = 0; i < near.used; i++) {
-        lp_sample_falloff(near.node(i).k[curve], own);
+    for (uint32_t i = 0; i < neighbours.used; i++) {
+        lp_sample_falloff(neighbours.node(i).k[curve], samples);
         for (int j = 0; j < LP_FALLOFF_RADII; j++) {
-            if (!i || own[j] < low[j]) low[j] = own[j];
-            if (!i || own[j] > high[j]) high[j] = own[j];
+            if (!i || samples[j] < low[j]) low[j] = samples[j];
+            if (!i || samples[j] > high[j]) high[j] = samples[j];
         }
     }
     lp_sample_falloff(k, values);
@@ -131,59 +132,60 @@ void restrain(const Neighbours &near, int curve, double k[3]) {
 }
 
 // The neighbours' mean and their weighted differences from it, trends taken out first and put back here.
-void combine(const Neighbours &near, const Point &here, const Vector &weight, double k[3][3]) {
+void combine(const Neighbours &neighbours, const Point &position, const Vector &weight, double k[3][3]) {
     for (int c = 0; c < 3; c++) {
         for (int n = 0; n < 3; n++) {
             const auto trend = [n](const Point &p) { return n ? 0.0 : kTrend * p.t * p.t; };
             double mean = 0.0, sum = 0.0;
-            for (uint32_t i = 0; i < near.used; i++) mean += (near.node(i).k[c][n] + trend(near.points[i])) / near.used;
-            for (uint32_t i = 0; i < near.used; i++)
-                sum += weight[i] * (near.node(i).k[c][n] + trend(near.points[i]) - mean);
-            k[c][n] = mean + sum - trend(here);
+            for (uint32_t i = 0; i < neighbours.used; i++)
+                mean += (neighbours.node(i).k[c][n] + trend(neighbours.points[i])) / neighbours.used;
+            for (uint32_t i = 0; i < neighbours.used; i++)
+                sum += weight[i] * (neighbours.node(i).k[c][n] + trend(neighbours.points[i]) - mean);
+            k[c][n] = mean + sum - trend(position);
         }
-        restrain(near, c, k[c]);
+        restrain(neighbours, c, k[c]);
     }
 }
 
 // Range of the neighbours' corners, beyond which a prediction does not go (restrain).
-double corner_span(const Neighbours &near) {
+double corner_span(const Neighbours &neighbours) {
     double low = INFINITY, high = -INFINITY;
-    for (uint32_t i = 0; i < near.used; i++)
-        for (const auto &k : near.node(i).k) low = std::fmin(low, corner(k)), high = std::fmax(high, corner(k));
+    for (uint32_t i = 0; i < neighbours.used; i++)
+        for (const auto &k : neighbours.node(i).k) low = std::fmin(low, corner(k)), high = std::fmax(high, corner(k));
     return high - low;
 }
 
 // Variance of the process by what the neighbours' corners show.
-double process_variance(const Neighbours &near, const Eigen::LLT<Matrix> &factor) {
-    Vector y(near.used);
-    for (uint32_t i = 0; i < near.used; i++) {
-        y[i] = kTrend * near.points[i].t * near.points[i].t;
-        for (const auto &k : near.node(i).k) y[i] += corner(k) / 3.0;
+double process_variance(const Neighbours &neighbours, const Eigen::LLT<Matrix> &factor) {
+    Vector y(neighbours.used);
+    for (uint32_t i = 0; i < neighbours.used; i++) {
+        y[i] = kTrend * neighbours.points[i].t * neighbours.points[i].t;
+        for (const auto &k : neighbours.node(i).k) y[i] += corner(k) / 3.0;
     }
-    y.array() -= y.sum() / near.used;
+    y.array() -= y.sum() / neighbours.used;
     const double shown = y.dot(Vector(factor.solve(y)));
-    return (kPriorNodes * kPriorSigma * kPriorSigma + shown) / (kPriorNodes + near.used - 1.0);
+    return (kPriorNodes * kPriorSigma * kPriorSigma + shown) / (kPriorNodes + neighbours.used - 1.0);
 }
 
-void krige(const Neighbours &near, const Point &here, lp_falloff_prediction &prediction) {
-    Matrix a(near.used, near.used);
-    Vector b(near.used);
-    for (uint32_t i = 0; i < near.used; i++) {
-        for (uint32_t j = 0; j <= i; j++) a(i, j) = a(j, i) = covariance(near.points[i], near.points[j]);
-        a(i, i) += kOwnNoise + near.node(i).variance / (kPriorSigma * kPriorSigma);
-        b[i] = covariance(near.points[i], here);
+void krige(const Neighbours &neighbours, const Point &position, lp_falloff_prediction &prediction) {
+    Matrix a(neighbours.used, neighbours.used);
+    Vector b(neighbours.used);
+    for (uint32_t i = 0; i < neighbours.used; i++) {
+        for (uint32_t j = 0; j <= i; j++) a(i, j) = a(j, i) = covariance(neighbours.points[i], neighbours.points[j]);
+        a(i, i) += kOwnNoise + neighbours.node(i).variance / (kPriorSigma * kPriorSigma);
+        b[i] = covariance(neighbours.points[i], position);
     }
     const Eigen::LLT<Matrix> factor(a);  // positive definite by kOwnNoise
     const Vector weight = factor.solve(b);
-    for (uint32_t i = 0; i < near.used; i++) {
-        prediction.row[i].node = near.points[i].node;
+    for (uint32_t i = 0; i < neighbours.used; i++) {
+        prediction.row[i].node = neighbours.points[i].node;
         prediction.row[i].weight = weight[i];
     }
-    combine(near, here, weight, prediction.k);
+    combine(neighbours, position, weight, prediction.k);
     const double left = 1.0 + kAnyLevel + kOwnNoise - weight.dot(b);
-    const double sigma = std::sqrt(process_variance(near, factor) * std::fmax(left, kOwnNoise));
-    prediction.sigma = std::fmin(sigma, corner_span(near) + kPriorSigma);
-    prediction.used = near.used;
+    const double sigma = std::sqrt(process_variance(neighbours, factor) * std::fmax(left, kOwnNoise));
+    prediction.sigma = std::fmin(sigma, corner_span(neighbours) + kPriorSigma);
+    prediction.used = neighbours.used;
 }
 
 }  // namespace
@@ -228,19 +230,20 @@ void lp_falloff_covariance(double sigma, double covariance[9]) {
     for (int i = 0; i < 9; i++) covariance[i] = kScatter[i] / corner_variance * sigma * sigma;
 }
 
-int lp_predict_falloff(const lp_falloff_nodes *nodes, const lp_falloff_node *at, lp_falloff_prediction *prediction) {
+int lp_predict_falloff(const lp_falloff_nodes *nodes, const lp_falloff_node *target,
+                       lp_falloff_prediction *prediction) {
     *prediction = {};
     prediction->nearest = INFINITY;
     const uint32_t count = nodes->count, used = std::min<uint32_t>(count, LP_NEIGHBOURS);
     const std::unique_ptr<Point[]> points(new (std::nothrow) Point[count]);
     if (!points) return -1;
-    const Point here = sort_by_distance(nodes->node, count, *at, points.get());
+    const Point position = sort_by_distance(nodes->node, count, *target, points.get());
     prediction->nearest = points[0].d;
     if (points[0].d > LP_FALLOFF_REACH) return 0;
     for (uint32_t i = 0; i < used; i++) {
         lp_falloff_node &node = nodes->node[points[i].node];
         if (node.variance == LP_VARIANCE_UNREAD && !nodes->read_variance(nodes->user, &node)) return -1;
     }
-    krige({nodes->node, points.get(), used}, here, *prediction);
+    krige({nodes->node, points.get(), used}, position, *prediction);
     return 1;
 }

@@ -57,7 +57,7 @@ uint32_t lp_drop_repeated(lp_falloff_node *nodes, uint32_t count, uint32_t *orde
  * of the smallest leave-one-out error over half of the lenses of Lensfun's database, checked on the other half
  * (docs/database.md). A prediction leaves the range of its neighbours' curves by no more than half of that range and
  * 0.02, and stays above half of the lowest. */
-int lp_predict_falloff(const lp_falloff_nodes *nodes, const lp_falloff_node *at, lp_falloff_prediction *prediction);
+int lp_predict_falloff(const lp_falloff_nodes *nodes, const lp_falloff_node *target, lp_falloff_prediction *prediction);
 
 /* The curves with M(r) = sum over r^2, r^4, r^6 nearest to values[LP_FALLOFF_RADII] at r = i / (LP_FALLOFF_RADII - 1),
  * weighted by area. */
