@@ -124,8 +124,8 @@ lensprof_status lensprof_alsc_read(const void *data, size_t size, double ct, uin
     }
     return at_boundary(error, [&] {
         double error_found = 0.0;
-        change_profile(profile, [&](lensprof_profile &own) {
-            error_found = read_alsc(view_of(data, size), ct, {columns, rows, width, height}, own);
+        change_profile(profile, [&](lensprof_profile &target) {
+            error_found = read_alsc(view_of(data, size), ct, {columns, rows, width, height}, target);
         });
         if (worst) *worst = error_found;
     });

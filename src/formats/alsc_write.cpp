@@ -38,7 +38,7 @@ void write_calibration(JsonWriter &json, const char *name, double ct, const Shap
     json.open('[');
     json.open('{');
     json.name("ct");
-    json.whole(std::llround(ct));
+    json.integer(std::llround(ct));
     json.name("table");
     write_table(json, shape, gain);
     json.close('}');
@@ -75,7 +75,7 @@ std::string alsc_text(const lensprof_profile &profile, double ct, const Shape &s
     json.line();
     write_setting(json, "omega", 1.3);
     json.name("n_iter");
-    json.whole(100);
+    json.integer(100);
     write_setting(json, "luminance_strength", 1.0);
     write_tables(json, attenuations_of(profile, shape.width, shape.height, shape.columns, shape.rows, 3), ct, shape);
     json.line();

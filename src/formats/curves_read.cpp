@@ -29,14 +29,14 @@ bool is_separator(char c) { return is_blank(c) || c == ',' || c == ';' || c == '
 
 std::vector<std::string_view> split(std::string_view line) {
     std::vector<std::string_view> words;
-    for (size_t at = 0; at < line.size();) {
-        if (is_separator(line[at])) {
-            at++;
+    for (size_t position = 0; position < line.size();) {
+        if (is_separator(line[position])) {
+            position++;
             continue;
         }
-        const size_t begin = at;
-        while (at < line.size() && !is_separator(line[at])) at++;
-        words.push_back(line.substr(begin, at - begin));
+        const size_t begin = position;
+        while (position < line.size() && !is_separator(line[position])) position++;
+        words.push_back(line.substr(begin, position - begin));
     }
     return words;
 }

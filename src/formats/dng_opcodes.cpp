@@ -33,54 +33,54 @@ constexpr const char *kNames[] = {nullptr,
 // Numbers of a range of bytes, which are checked to be there.
 class BigEndian {
 public:
-    BigEndian(const uint8_t *bytes, size_t size) : at_(bytes), left_(size) {}
+    BigEndian(const uint8_t *bytes, size_t size) : data_(bytes), left_(size) {}
 
     size_t left() const { return left_; }
 
-    uint32_t u32(const char *what) { return static_cast<uint32_t>(take(4, what)); }
+    uint32_t u32(const char *item) { return static_cast<uint32_t>(take(4, item)); }
 
-    double f64(const char *what) {
-        const uint64_t bits = take(8, what);
+    double f64(const char *item) {
+        const uint64_t bits = take(8, item);
         double value;
         std::memcpy(&value, &bits, sizeof value);
-        return finite(value, what);
+        return finite(value, item);
     }
 
-    float f32(const char *what) {
-        const uint32_t bits = u32(what);
+    float f32(const char *item) {
+        const uint32_t bits = u32(item);
         float value;
         std::memcpy(&value, &bits, sizeof value);
-        return static_cast<float>(finite(value, what));
+        return static_cast<float>(finite(value, item));
     }
 
-    BigEndian part(size_t size, const char *what) {
-        demand(size, what);
-        BigEndian result(at_, size);
-        at_ += size, left_ -= size;
+    BigEndian part(size_t size, const char *item) {
+        demand(size, item);
+        BigEndian result(data_, size);
+        data_ += size, left_ -= size;
         return result;
     }
 
 private:
-    void demand(size_t size, const char *what) const {
+    void demand(size_t size, const char *item) const {
         if (size > left_)
-            throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::string("ends within ") + what + "; give the whole list"};
+            throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::string("ends within ") + item + "; give the whole list"};
     }
 
-    uint64_t take(size_t size, const char *what) {
-        demand(size, what);
+    uint64_t take(size_t size, const char *item) {
+        demand(size, item);
         uint64_t value = 0;
-        for (size_t i = 0; i < size; i++) value = value << 8 | at_[i];
-        at_ += size, left_ -= size;
+        for (size_t i = 0; i < size; i++) value = value << 8 | data_[i];
+        data_ += size, left_ -= size;
         return value;
     }
 
-    static double finite(double value, const char *what) {
+    static double finite(double value, const char *item) {
         if (!std::isfinite(value))
-            throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::string(what) + " is not finite; correct it"};
+            throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::string(item) + " is not finite; correct it"};
         return value;
     }
 
-    const uint8_t *at_;
+    const uint8_t *data_;
     size_t left_;
 };
 
@@ -207,11 +207,12 @@ double map_gain(const GainMap &map, const PixelFrame &frame, double x, double y,
     const Between down = between(y, frame.height, map.origin[0], map.spacing[0], map.rows),
                   across = between(x, frame.width, map.origin[1], map.spacing[1], map.columns);
     const uint32_t used = std::min(plane, map.map_planes - 1);
-    const auto at = [&](size_t row, size_t column) -> double {
+    const auto node_value = [&](size_t row, size_t column) -> double {
         return map.gains[(row * map.columns + column) * map.map_planes + used];
     };
     const auto along = [&](size_t row) {
-        return at(row, across.low) + across.share * (at(row, across.high) - at(row, across.low));
+        return node_value(row, across.low)
+               + across.share * (node_value(row, across.high) - node_value(row, across.low));
     };
     return along(down.low) + down.share * (along(down.high) - along(down.low));
 }

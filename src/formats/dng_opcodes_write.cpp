@@ -108,23 +108,24 @@ GainMap whole_map(PixelFrame frame, uint32_t planes) {
 void fill_gains(const lensprof_profile &profile, PixelFrame frame, uint32_t first, GainMap &map) {
     std::vector<double> exact(size_t(map.rows) * map.columns);
     map.gains.resize(exact.size() * map.map_planes);
-    const auto at = [&](uint32_t row, uint32_t column) -> double & {
+    const auto entry = [&](uint32_t row, uint32_t column) -> double & {
         return exact[size_t(row) * map.columns + column];
     };
     for (uint32_t plane = 0; plane < map.map_planes; plane++) {
         for (uint32_t j = 0; j < map.rows; j++)
             for (uint32_t i = 0; i < map.columns; i++) {
                 const double x = i * map.spacing[1] * frame.width - 0.5, y = j * map.spacing[0] * frame.height - 0.5;
-                at(j, i) =
+                entry(j, i) =
                     1.0 / lensprof_profile_falloff(&profile, first + plane, frame.width, frame.height, x, y, nullptr);
             }
         for (uint32_t j = 0; j < map.rows; j++)
             for (uint32_t i = 0; i < map.columns; i++) {
                 const uint32_t jj = std::clamp(j, 1u, map.rows - 2), ii = std::clamp(i, 1u, map.columns - 2);
-                const double bend = at(jj - 1, i) - 2.0 * at(jj, i) + at(jj + 1, i)  // of the nearest inner point
-                                    + at(j, ii - 1) - 2.0 * at(j, ii) + at(j, ii + 1);
+                const double bend = entry(jj - 1, i) - 2.0 * entry(jj, i)
+                                    + entry(jj + 1, i)  // of the nearest inner point
+                                    + entry(j, ii - 1) - 2.0 * entry(j, ii) + entry(j, ii + 1);
                 map.gains[(size_t(j) * map.columns + i) * map.map_planes + plane] =
-                    static_cast<float>(std::max(at(j, i) - bend / 16.0, at(j, i) / 2.0));
+                    static_cast<float>(std::max(entry(j, i) - bend / 16.0, entry(j, i) / 2.0));
             }
     }
 }

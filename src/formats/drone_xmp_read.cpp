@@ -62,7 +62,7 @@ public:
     bool has(const Space &space) const;
 
     // A list's numbers, from rdf:li or between commas or blanks. Throws SYNTAX.
-    std::vector<double> numbers(const Space &space, std::string_view name, size_t most) const;
+    std::vector<double> numbers(const Space &space, std::string_view name, size_t max_count) const;
 
 private:
     std::vector<std::string> texts(const Space &space, std::string_view name) const;
@@ -104,7 +104,7 @@ std::vector<std::string> Packet::texts(const Space &space, std::string_view name
     return found;
 }
 
-std::vector<double> Packet::numbers(const Space &space, std::string_view name, size_t most) const {
+std::vector<double> Packet::numbers(const Space &space, std::string_view name, size_t max_count) const {
     std::vector<double> values;
     for (const std::string &text : texts(space, name)) {
         std::string_view rest = text;
@@ -117,9 +117,9 @@ std::vector<double> Packet::numbers(const Space &space, std::string_view name, s
                 double value = 0.0;
                 if (!read_number(word, value) || std::fabs(value) > 1e100)
                     fail(first(), std::string(name) + " has " + in_quotes(word) + ", not a number; correct it");
-                if (values.size() == most)
+                if (values.size() == max_count)
                     fail(first(),
-                         std::string(name) + " has over " + std::to_string(most)
+                         std::string(name) + " has over " + std::to_string(max_count)
                              + " numbers; give the packet as written by the camera",
                          LENSPROF_ERROR_SIZE);
                 values.push_back(value);
@@ -233,11 +233,11 @@ bool DroneXmpReader::is_of_sentera() const {
 
 // Properties under the maker's own name come first; no terms if nothing is found.
 Written DroneXmpReader::read_radial() const {
-    Written own{packet_.numbers(kDji, "VignettingData", kMostTerms),
-                packet_.numbers(kDji, "CalibratedOpticalCenterX", 1), "CalibratedOpticalCenter"};
+    Written written{packet_.numbers(kDji, "VignettingData", kMostTerms),
+                    packet_.numbers(kDji, "CalibratedOpticalCenterX", 1), "CalibratedOpticalCenter"};
     const std::vector<double> below = packet_.numbers(kDji, "CalibratedOpticalCenterY", 1);
-    own.center.insert(own.center.end(), below.begin(), below.end());
-    if (!own.terms.empty()) return own;
+    written.center.insert(written.center.end(), below.begin(), below.end());
+    if (!written.terms.empty()) return written;
     for (const Space &space : {kSentera, kCamera}) {
         Written found{packet_.numbers(space, "VignettingPolynomial", kMostTerms),
                       packet_.numbers(space, "VignettingCenter", 2), "VignettingCenter"};

@@ -16,9 +16,9 @@ namespace {
 constexpr double kSameCurve = 1e-6;  // between samples and the curve of their kind: blobs hold singles
 constexpr size_t kMostSamples = 65536;
 
-void check(lensprof_status status, const JsonValue &value, const char *what) {
+void check(lensprof_status status, const JsonValue &value, const char *item) {
     if (status != LENSPROF_OK)
-        value.fail(std::string("is ") + what + " (" + lensprof_status_name(status) + "); correct it", status);
+        value.fail(std::string("is ") + item + " (" + lensprof_status_name(status) + "); correct it", status);
 }
 
 // A text of an object; empty where it is missing or null.
@@ -95,8 +95,8 @@ void read_vignetting(const JsonValue &object, lensprof_profile &profile) {
 }
 
 void read_grid(const JsonValue &object, lensprof_gain_grid &grid) {
-    grid.columns = static_cast<uint32_t>(object.required("columns").whole(2, LENSPROF_GRID_SIDE));
-    grid.rows = static_cast<uint32_t>(object.required("rows").whole(2, LENSPROF_GRID_SIDE));
+    grid.columns = static_cast<uint32_t>(object.required("columns").integer(2, LENSPROF_GRID_SIDE));
+    grid.rows = static_cast<uint32_t>(object.required("rows").integer(2, LENSPROF_GRID_SIDE));
     const JsonValue channels = object.required("attenuation");
     grid.channels = count_of_curves(channels);
     float *node = grid.attenuation;
@@ -193,22 +193,22 @@ void read_provenance(const JsonValue &object, const char *source, lensprof_prove
         put_name(provenance.source, sizeof provenance.source, source);
     read_text(object, "doubt", provenance.doubt);
     if (const JsonValue created = object["created_unix_s"])
-        provenance.created_unix_s = created.whole(INT64_MIN, INT64_MAX);
+        provenance.created_unix_s = created.integer(INT64_MIN, INT64_MAX);
     if (const JsonValue images = object["images"])
-        provenance.images = static_cast<uint32_t>(images.whole(0, UINT32_MAX));
-    if (const JsonValue pairs = object["pairs"]) provenance.pairs = static_cast<uint32_t>(pairs.whole(0, UINT32_MAX));
+        provenance.images = static_cast<uint32_t>(images.integer(0, UINT32_MAX));
+    if (const JsonValue pairs = object["pairs"]) provenance.pairs = static_cast<uint32_t>(pairs.integer(0, UINT32_MAX));
     if (const JsonValue rms = object["heldout_rms"]) provenance.heldout_rms = rms.number_within(0.0, 255.0);
     if (const JsonValue share = object["inlier_share"]) provenance.inlier_share = share.number_within(0.0, 1.0);
     if (const JsonValue sigma = object["gamma_sigma"]) provenance.gamma_sigma = sigma.number_within(0.0, 1e9);
     if (!object.has("prior_id") && !object.has("forced")) return split_method(provenance);
-    if (const JsonValue prior = object["prior_id"]) provenance.prior_id = prior.whole(1, INT64_MAX);
+    if (const JsonValue prior = object["prior_id"]) provenance.prior_id = prior.integer(1, INT64_MAX);
     if (const JsonValue forced = object["forced"]) provenance.forced = forced.boolean();
 }
 
 void check_schema(const JsonValue &object) {
     const JsonValue schema = object["schema"];
     if (!schema) return;
-    if (schema.whole(INT64_MIN, INT64_MAX) != kJsonSchema)
+    if (schema.integer(INT64_MIN, INT64_MAX) != kJsonSchema)
         schema.fail("is not 1, the only one supported; use a newer lensprof", LENSPROF_ERROR_UNSUPPORTED);
 }
 

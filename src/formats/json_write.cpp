@@ -59,9 +59,9 @@ void write_grid(JsonWriter &json, const lensprof_gain_grid &grid) {
     if (!grid.columns) return json.word("null");
     json.open('{');
     json.name("columns");
-    json.whole(grid.columns);
+    json.integer(grid.columns);
     json.name("rows");
-    json.whole(grid.rows);
+    json.integer(grid.rows);
     json.name("attenuation");
     json.open('[');
     const float *node = grid.attenuation;
@@ -146,17 +146,17 @@ void write_provenance(JsonWriter &json, const lensprof_provenance &provenance) {
     write_text(json, "software", provenance.software);
     write_text(json, "source", provenance.source);
     json.name("created_unix_s");
-    json.whole(provenance.created_unix_s);
+    json.integer(provenance.created_unix_s);
     json.name("images");
-    json.whole(provenance.images);
+    json.integer(provenance.images);
     json.name("pairs");
-    json.whole(provenance.pairs);
+    json.integer(provenance.pairs);
     write_known(json, "heldout_rms", provenance.heldout_rms);
     write_known(json, "inlier_share", provenance.inlier_share);
     write_text(json, "doubt", provenance.doubt);
     json.name("prior_id");
     if (provenance.prior_id)
-        json.whole(provenance.prior_id);
+        json.integer(provenance.prior_id);
     else
         json.word("null");
     json.name("forced");
@@ -167,7 +167,7 @@ void write_provenance(JsonWriter &json, const lensprof_provenance &provenance) {
 
 void write_schema(JsonWriter &json) {
     json.name("schema");
-    json.whole(kJsonSchema);
+    json.integer(kJsonSchema);
 }
 
 std::string profiles_text(const lensprof_profile *const *profiles, uint32_t count) {

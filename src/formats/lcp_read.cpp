@@ -51,9 +51,9 @@ double LcpFalloff::attenuation(double r) const {
 
 // N = 2^(Av / 2), which Adobe writes with six decimals: an N of two decimals that is written so is meant.
 double f_number(double av) {
-    const double n = std::exp2(av / 2.0), near = std::round(n * 100.0) / 100.0;
+    const double n = std::exp2(av / 2.0), rounded = std::round(n * 100.0) / 100.0;
     const double slack = av == std::round(av * 1e6) / 1e6 ? 1e-6 : 1e-12;
-    return near > 0.0 && std::fabs(2.0 * std::log2(near) - av) <= slack ? near : n;
+    return rounded > 0.0 && std::fabs(2.0 * std::log2(rounded) - av) <= slack ? rounded : n;
 }
 
 class LcpReader {
@@ -80,9 +80,9 @@ private:
     }
 
     double read(const RdfResource &from, const char *name, const std::string &text, double low, double high,
-                double otherwise) const;
-    double number(const RdfResource &from, const char *name, double low, double high, double otherwise) const {
-        return read(from, name, from.text(name), low, high, otherwise);
+                double fallback) const;
+    double number(const RdfResource &from, const char *name, double low, double high, double fallback) const {
+        return read(from, name, from.text(name), low, high, fallback);
     }
     std::string common(const RdfResource &entry, const char *name);
     double common_number(const RdfResource &entry, const char *name, double high) {
@@ -99,10 +99,10 @@ private:
     std::map<std::string, std::string, std::less<>> of_first_;  // its texts that were asked for
 };
 
-// A number of [low, high], or `otherwise` where the property is missing.
+// A number of [low, high], or `fallback` where the property is missing.
 double LcpReader::read(const RdfResource &from, const char *name, const std::string &text, double low, double high,
-                       double otherwise) const {
-    if (text.empty()) return otherwise;
+                       double fallback) const {
+    if (text.empty()) return fallback;
     double value = 0.0;
     if (!read_number(text, value) || value < low || value > high)
         fail(from.node(), std::string(name) + " is " + in_quotes(text) + ", not a number of " + number_text(low)
@@ -112,8 +112,8 @@ double LcpReader::read(const RdfResource &from, const char *name, const std::str
 
 // Values that all entries share may be present only in the first one.
 std::string LcpReader::common(const RdfResource &entry, const char *name) {
-    const std::string own = entry.text(name);
-    if (!own.empty()) return own;
+    const std::string text = entry.text(name);
+    if (!text.empty()) return text;
     const auto found = of_first_.find(name);
     if (found != of_first_.end()) return found->second;
     return of_first_[name] = RdfResource(items_.front()).text(name);

@@ -46,7 +46,7 @@ private:
 
     void add_camera(const pugi::xml_node &camera);
     void check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const;
-    double number(const pugi::xml_node &node, std::string_view text, const char *what, double low, double high) const;
+    double number(const pugi::xml_node &node, std::string_view text, const char *item, double low, double high) const;
     double attribute(const pugi::xml_node &node, const char *name, double low, double high) const;
     double aspect_ratio(const pugi::xml_node &node, std::string_view text) const;
     void begin_lens(const pugi::xml_node &lens);
@@ -73,14 +73,14 @@ void LensfunReader::check_text(const pugi::xml_node &node, const std::string &te
 }
 
 // The text as a number of (low, high]; low itself only where it is negative.
-double LensfunReader::number(const pugi::xml_node &node, std::string_view text, const char *what, double low,
+double LensfunReader::number(const pugi::xml_node &node, std::string_view text, const char *item, double low,
                              double high) const {
     const std::string word = one_line(text);
     double value = 0.0;
     if (!read_number(word, value))
-        fail(node, std::string(what) + " is " + in_quotes(word) + ", not a finite number; correct it");
+        fail(node, std::string(item) + " is " + in_quotes(word) + ", not a finite number; correct it");
     if (!(value > low || (low < 0.0 && value == low)) || value > high)
-        fail(node, std::string(what) + " is " + in_quotes(word) + (low < 0.0 ? ", beyond " : ", not above 0 and up to ")
+        fail(node, std::string(item) + " is " + in_quotes(word) + (low < 0.0 ? ", beyond " : ", not above 0 and up to ")
                        + number_text(high) + "; correct it");
     return value;
 }

@@ -50,8 +50,8 @@ void append_entry(WrittenLens &lens, const lensprof_profile &profile, uint32_t i
     demand_of_profile(lens.center[0] == center[0] && lens.center[1] == center[1], index,
                       "its centre differs from that of an earlier profile of " + in_quotes(key.lens)
                           + ", but Lensfun has one per lens; fit without a centre");
-    const bool far = key.distance_m == LENSPROF_UNKNOWN || std::isinf(key.distance_m);
-    const Setting setting{key.focal_mm, key.aperture, far ? kLensfunInfinityM : key.distance_m};
+    const bool is_infinity = key.distance_m == LENSPROF_UNKNOWN || std::isinf(key.distance_m);
+    const Setting setting{key.focal_mm, key.aperture, is_infinity ? kLensfunInfinityM : key.distance_m};
     demand_of_profile(lens.settings.insert(setting).second, index,
                       "lens " + in_quotes(key.lens) + ": same setting as an earlier profile; leave one out");
     pugi::xml_node entry = append_element(lens.calibration, "vignetting");

@@ -53,9 +53,9 @@ struct Matrix {
     }
 
     static bool is_little_endian() {
-        const uint16_t one = 1;
+        const uint16_t probe = 1;
         unsigned char first;
-        std::memcpy(&first, &one, 1);
+        std::memcpy(&first, &probe, 1);
         return first == 1;
     }
 };
@@ -271,7 +271,7 @@ lensprof_status lensprof_radical_vignetting_read(const void *data, size_t size, 
     return at_boundary(error, [&] {
         double error_found = 0.0;
         change_profile(profile,
-                       [&](lensprof_profile &own) { error_found = read_vignetting(view_of(data, size), own); });
+                       [&](lensprof_profile &target) { error_found = read_vignetting(view_of(data, size), target); });
         if (worst) *worst = error_found;
     });
 }

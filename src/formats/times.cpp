@@ -9,10 +9,10 @@
 namespace lensprof {
 namespace {
 
-double read_field(std::string_view word, const char *what, size_t line) {
+double read_field(std::string_view word, const char *item, size_t line) {
     double value;
     if (!read_number(word, value))
-        fail_at_line(line, std::string(what) + " is " + in_quotes(word) + ", not a finite number; correct it");
+        fail_at_line(line, std::string(item) + " is " + in_quotes(word) + ", not a finite number; correct it");
     return value;
 }
 
@@ -50,8 +50,8 @@ uint32_t walk(std::string_view text, Use use) {
 }
 
 void check_frame(const lensprof_frame_time &frame, uint32_t index) {
-    const auto demand = [&](bool holds, const char *what, lensprof_status status) {
-        if (!holds) throw failure_at(LENSPROF_ITEM_FRAME, index, what, status);
+    const auto demand = [&](bool holds, const char *message, lensprof_status status) {
+        if (!holds) throw failure_at(LENSPROF_ITEM_FRAME, index, message, status);
     };
     const size_t length = strnlen(frame.id, sizeof frame.id);
     demand(length > 0 && length < sizeof frame.id, "its name is empty or not terminated; set id",

@@ -144,17 +144,18 @@ lensprof_status lensprof_export(const lensprof_profile *const *profiles, uint32_
         set_error(error, "lensprof_export: profiles, options or data is NULL; pass profiles, options and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    lensprof_export_options own;
-    lensprof_export_options_init(&own);
-    if (const char *wrong = lp_sized_take(&own, options, kFirstExport)) {
+    lensprof_export_options local_options;
+    lensprof_export_options_init(&local_options);
+    if (const char *wrong = lp_sized_take(&local_options, options, kFirstExport)) {
         set_error(error, wrong);
         return LENSPROF_ERROR_STRUCT_SIZE;
     }
-    const lensprof_status status = check_output(profile_count, own, error);
+    const lensprof_status status = check_output(profile_count, local_options, error);
     if (status != LENSPROF_OK) return status;
     const Output out = {data, capacity, count, error};
-    if (lensprof_format_get_info(own.format)->is_many) return write_many(profiles, profile_count, own, out);
+    if (lensprof_format_get_info(local_options.format)->is_many)
+        return write_many(profiles, profile_count, local_options, out);
     const lensprof_status valid = check_profile(profiles[0], error);
     if (valid != LENSPROF_OK) return valid;
-    return write_one(*profiles[0], own, out);
+    return write_one(*profiles[0], local_options, out);
 }

@@ -34,15 +34,17 @@ struct Part {
 // Takes the falloff of an entry, its doubt, and the texts of its key that are not known yet.
 lensprof_status take_falloff(void *user, const lensprof_import_entry *entry) {
     Part &part = *static_cast<Part *>(user);
-    lensprof_profile &own = part.profile;
+    lensprof_profile &profile = part.profile;
     const lensprof_profile &found = *entry->profile;
     part.usable = entry->usable;
-    own.vignettings = found.vignettings;
-    std::copy_n(found.vignetting, 3, own.vignetting);
-    own.grid = found.grid;
-    std::copy_n(found.provenance.doubt, sizeof own.provenance.doubt, own.provenance.doubt);
-    if (!*own.key.camera_maker) std::copy_n(found.key.camera_maker, sizeof own.key.camera_maker, own.key.camera_maker);
-    if (!*own.key.camera_model) std::copy_n(found.key.camera_model, sizeof own.key.camera_model, own.key.camera_model);
+    profile.vignettings = found.vignettings;
+    std::copy_n(found.vignetting, 3, profile.vignetting);
+    profile.grid = found.grid;
+    std::copy_n(found.provenance.doubt, sizeof profile.provenance.doubt, profile.provenance.doubt);
+    if (!*profile.key.camera_maker)
+        std::copy_n(found.key.camera_maker, sizeof profile.key.camera_maker, profile.key.camera_maker);
+    if (!*profile.key.camera_model)
+        std::copy_n(found.key.camera_model, sizeof profile.key.camera_model, profile.key.camera_model);
     return LENSPROF_OK;
 }
 

@@ -40,11 +40,11 @@ std::vector<double> irradiances_of(const lensprof_response &response, size_t cou
     return values;
 }
 
-void check_response(const lensprof_response &response, const std::string &what) {
+void check_response(const lensprof_response &response, const std::string &item) {
     const lensprof_status status = lensprof_response_validate(&response);
     if (status != LENSPROF_OK)
         throw FormatFailure{
-            status, what + " is invalid (" + lensprof_status_name(status) + "); see lensprof_response_validate"};
+            status, item + " is invalid (" + lensprof_status_name(status) + "); see lensprof_response_validate"};
 }
 
 }  // namespace lensprof

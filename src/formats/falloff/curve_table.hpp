@@ -25,6 +25,6 @@ lensprof_response response_of_irradiances(const std::vector<double> &irradiances
 std::vector<double> irradiances_of(const lensprof_response &response, size_t count);
 
 // Throws, with the status of lensprof_response_validate, if it is not a response. what: "response 1".
-void check_response(const lensprof_response &response, const std::string &what);
+void check_response(const lensprof_response &response, const std::string &item);
 
 }  // namespace lensprof

@@ -31,9 +31,9 @@ std::array<double, 3> mean_curve(const lensprof_profile &profile) {
     std::array<double, 3> mean{};
     for (int n = 0; n < 3; n++) {
         const double first = profile.vignetting[0].k[n];
-        double beyond = 0.0;
-        for (uint32_t c = 1; c < profile.vignettings; c++) beyond += profile.vignetting[c].k[n] - first;
-        mean[n] = first + beyond / profile.vignettings;
+        double excess = 0.0;
+        for (uint32_t c = 1; c < profile.vignettings; c++) excess += profile.vignetting[c].k[n] - first;
+        mean[n] = first + excess / profile.vignettings;
     }
     return mean;
 }

@@ -29,21 +29,21 @@ void walk_outwards(const lensprof_vignetting &vignetting, Use use) {
 }
 
 std::string why_unusable(const lensprof_vignetting &vignetting) {
-    double at = -1.0, lowest = kLowestFalloff;
+    double radius = -1.0, lowest = kLowestFalloff;
     walk_outwards(vignetting, [&](double r, double m) {
-        if (m < kLowestFalloff && at < 0.0) at = r;
+        if (m < kLowestFalloff && radius < 0.0) radius = r;
         lowest = std::min(lowest, m);
         return false;
     });
     if (std::fabs(vignetting.center[0]) > 1.0 || std::fabs(vignetting.center[1]) > 1.0)
         return "the centre is outside the frame";
-    if (at < 0.0) return "a coefficient is too large";
-    if (lowest >= 0.0) return with_numbers("M falls below 0.001 at r = %.2f", at);
+    if (radius < 0.0) return "a coefficient is too large";
+    if (lowest >= 0.0) return with_numbers("M falls below 0.001 at r = %.2f", radius);
     walk_outwards(vignetting, [&](double r, double m) {
-        at = r;
+        radius = r;
         return m < 0.0;
     });
-    return with_numbers("M is negative at r = %.2f", at);
+    return with_numbers("M is negative at r = %.2f", radius);
 }
 
 }  // namespace
@@ -52,13 +52,13 @@ FalloffDoubt find_doubt(const lensprof_vignetting &vignetting) {
     if (lensprof_vignetting_validate(&vignetting) != LENSPROF_OK) return {false, why_unusable(vignetting)};
     const double *k = vignetting.k;
     if (k[0] == -0.3 && k[1] == 0.0 && k[2] == 0.0) return {true, "start values of a fit that failed"};
-    double lowest = 1.0, from = 1.0, to = 1.0, at = 0.0;
+    double lowest = 1.0, from = 1.0, to = 1.0, radius = 0.0;
     walk_outwards(vignetting, [&](double r, double m) {
         lowest = std::min(lowest, m);
-        if (m - lowest > to - from) from = lowest, to = m, at = r;
+        if (m - lowest > to - from) from = lowest, to = m, radius = r;
         return false;
     });
-    if (to - from > kRise) return {true, with_numbers("M rises from %.3g to %.3g at r = %.2f", from, to, at)};
+    if (to - from > kRise) return {true, with_numbers("M rises from %.3g to %.3g at r = %.2f", from, to, radius)};
     return {true, ""};
 }
 

@@ -15,8 +15,8 @@ namespace {
 constexpr uint32_t kMostSide = 65536;
 constexpr uint32_t kKeptSide = 1024;  // larger maps are averaged down first: more resolution does not help a profile
 
-[[noreturn]] void fail_at(uint32_t i, uint32_t j, const char *what, lensprof_status status) {
-    throw FormatFailure{status, "value at column " + std::to_string(i) + ", row " + std::to_string(j) + " " + what};
+[[noreturn]] void fail_at(uint32_t i, uint32_t j, const char *message, lensprof_status status) {
+    throw FormatFailure{status, "value at column " + std::to_string(i) + ", row " + std::to_string(j) + " " + message};
 }
 
 // Attenuation of a value, 0 where it is not known.
@@ -50,9 +50,10 @@ void fill(const MapValues &form, const float *values, Block side, FalloffMap &ma
         if ((j + 1) % side.rows || row >= map.rows) continue;
         for (uint32_t i = 0; i < map.columns; i++)
             for (uint32_t c = 0; c < form.channels; c++) {
-                const size_t at = size_t(i) * form.channels + c;
-                if (count[at]) map.attenuation[(size_t(c) * map.rows + row) * map.columns + i] = sum[at] / count[at];
-                sum[at] = 0.0, count[at] = 0;
+                const size_t index = size_t(i) * form.channels + c;
+                if (count[index])
+                    map.attenuation[(size_t(c) * map.rows + row) * map.columns + i] = sum[index] / count[index];
+                sum[index] = 0.0, count[index] = 0;
             }
     }
 }
@@ -124,8 +125,9 @@ lensprof_status lensprof_map_read(const lensprof_map *map, uint32_t width, uint3
     return at_boundary(error, [&] {
         const MapValues form{map->columns, map->rows, map->channels, map->sense == LENSPROF_MAP_GAIN, {0, 1, 2}};
         double error_found = 0.0;
-        change_profile(profile,
-                       [&](lensprof_profile &own) { error_found = fit_values(form, map->values, width, height, own); });
+        change_profile(profile, [&](lensprof_profile &target) {
+            error_found = fit_values(form, map->values, width, height, target);
+        });
         if (worst) *worst = error_found;
     });
 }

@@ -37,12 +37,12 @@ void check_profile(const lensprof_profile &profile);
 // Changes the caller's profile, of any version, by `change`; not at all where that throws.
 template <class Change>
 void change_profile(lensprof_profile *profile, Change change) {
-    const auto own = std::make_unique<lensprof_profile>();
-    lensprof_profile_init(own.get());
-    lensprof_status status = lensprof_profile_copy(own.get(), profile);
+    const auto local = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(local.get());
+    lensprof_status status = lensprof_profile_copy(local.get(), profile);
     if (status == LENSPROF_OK) {
-        change(*own);
-        status = lensprof_profile_copy(profile, own.get());
+        change(*local);
+        status = lensprof_profile_copy(profile, local.get());
     }
     if (status != LENSPROF_OK)
         throw FormatFailure{status,

@@ -120,7 +120,7 @@ lensprof_pto parse_pto(std::string text);
 
 inline bool has_image(const lensprof_pto *pto, uint32_t index) { return pto && index < pto->images.size(); }
 
-// ARGUMENT with a text for a call about an image that the project does not have, or with NULL for `what`.
-lensprof_status fail_at_image(const lensprof_pto *pto, uint32_t index, const char *what, lensprof_error *error);
+// ARGUMENT with a text for a call about an image that the project does not have, or with NULL for `message`.
+lensprof_status fail_at_image(const lensprof_pto *pto, uint32_t index, const char *message, lensprof_error *error);
 
 }  // namespace lensprof

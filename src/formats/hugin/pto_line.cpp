@@ -67,20 +67,20 @@ size_t find_pto_parameter(std::string_view name) {
 
 std::vector<PtoToken> split_pto_line(std::string_view line, size_t number) {
     std::vector<PtoToken> tokens;
-    size_t at = 1;
-    while (at < line.size()) {
-        if (is_blank(line[at])) {
-            at++;
+    size_t position = 1;
+    while (position < line.size()) {
+        if (is_blank(line[position])) {
+            position++;
             continue;
         }
-        size_t end = at;
+        size_t end = position;
         bool quote = false;
         for (; end < line.size() && (quote || !is_blank(line[end])); end++) quote ^= line[end] == '"';
         if (quote) fail_at_line(number, "unterminated quote; add the closing \"");
-        std::string_view word = line.substr(at, end - at);
+        std::string_view word = line.substr(position, end - position);
         size_t length = name_length(word);
-        tokens.push_back({word.substr(0, length), word.substr(length), at + length});
-        at = end;
+        tokens.push_back({word.substr(0, length), word.substr(length), position + length});
+        position = end;
     }
     return tokens;
 }

@@ -313,10 +313,10 @@ uint32_t lensprof_pto_image_count(const lensprof_pto *pto) {
 
 namespace lensprof {
 
-lensprof_status fail_at_image(const lensprof_pto *pto, uint32_t index, const char *what, lensprof_error *error) {
+lensprof_status fail_at_image(const lensprof_pto *pto, uint32_t index, const char *message, lensprof_error *error) {
     char text[sizeof error->text];
     if (has_image(pto, index) || !pto)
-        std::snprintf(text, sizeof text, "pto or %s is NULL; pass both", what);
+        std::snprintf(text, sizeof text, "pto or %s is NULL; pass both", message);
     else
         std::snprintf(text, sizeof text, "image %u: the project has %zu images; count from 0", index,
                       pto->images.size());

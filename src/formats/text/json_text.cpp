@@ -23,8 +23,8 @@ public:
     JsonNodes(JsonText &all, std::string_view text) : all_(all), text_(text) {}
 
     bool null() override { return add(JsonText::kNull), true; }
-    bool boolean(bool value) override { return add(JsonText::kBoolean).whole = value, true; }
-    bool number_integer(int64_t value) override { return add(JsonText::kWhole).whole = value, true; }
+    bool boolean(bool value) override { return add(JsonText::kBoolean).integer = value, true; }
+    bool number_integer(int64_t value) override { return add(JsonText::kInteger).integer = value, true; }
     bool number_unsigned(uint64_t value) override {
         if (value <= uint64_t{INT64_MAX}) return number_integer(static_cast<int64_t>(value));
         return add(JsonText::kNumber).number = static_cast<double>(value), true;
@@ -126,7 +126,7 @@ bool JsonValue::is_array() const { return *this && owner_->nodes_[index_].kind =
 bool JsonValue::is_text() const { return *this && owner_->nodes_[index_].kind == JsonText::kString; }
 bool JsonValue::is_number() const {
     return *this
-           && (owner_->nodes_[index_].kind == JsonText::kNumber || owner_->nodes_[index_].kind == JsonText::kWhole);
+           && (owner_->nodes_[index_].kind == JsonText::kNumber || owner_->nodes_[index_].kind == JsonText::kInteger);
 }
 
 JsonValue JsonValue::first() const {
@@ -165,7 +165,7 @@ JsonValue JsonValue::required(std::string_view name) const {
 double JsonValue::number() const {
     if (!is_number()) fail("is not a number; correct it");
     const JsonText::Node &node = owner_->nodes_[index_];
-    return node.kind == JsonText::kWhole ? static_cast<double>(node.whole) : node.number;
+    return node.kind == JsonText::kInteger ? static_cast<double>(node.integer) : node.number;
 }
 
 double JsonValue::number_within(double low, double high) const {
@@ -176,9 +176,9 @@ double JsonValue::number_within(double low, double high) const {
     return value;
 }
 
-int64_t JsonValue::whole(int64_t low, int64_t high) const {
-    if (!is_number() || owner_->nodes_[index_].kind != JsonText::kWhole) fail("is not an integer; correct it");
-    const int64_t value = owner_->nodes_[index_].whole;
+int64_t JsonValue::integer(int64_t low, int64_t high) const {
+    if (!is_number() || owner_->nodes_[index_].kind != JsonText::kInteger) fail("is not an integer; correct it");
+    const int64_t value = owner_->nodes_[index_].integer;
     if (value < low || value > high)
         fail("is " + std::to_string(value) + ", not within " + std::to_string(low) + " to " + std::to_string(high)
              + "; correct it");
@@ -187,7 +187,7 @@ int64_t JsonValue::whole(int64_t low, int64_t high) const {
 
 bool JsonValue::boolean() const {
     if (!*this || owner_->nodes_[index_].kind != JsonText::kBoolean) fail("is not true or false; correct it");
-    return owner_->nodes_[index_].whole != 0;
+    return owner_->nodes_[index_].integer != 0;
 }
 
 std::string_view JsonValue::text() const {
@@ -209,26 +209,26 @@ std::vector<double> JsonValue::numbers(size_t low, size_t high) const {
 
 std::string JsonValue::path() const {
     std::string path;
-    for (uint32_t at = index_; at != 0 && at != kMissing;) {
-        const JsonText::Node &node = owner_->nodes_[at], &parent = owner_->nodes_[node.parent];
+    for (uint32_t index = index_; index != 0 && index != kMissing;) {
+        const JsonText::Node &node = owner_->nodes_[index], &parent = owner_->nodes_[node.parent];
         std::string step;
         if (parent.kind == JsonText::kObject) {
             const std::string name = in_quotes(owner_->text_at(node.name));
             step = (node.parent ? "." : "") + name.substr(1, name.size() - 2);
         } else {
             size_t number = 0;
-            for (uint32_t i = parent.first; i != at; i = owner_->nodes_[i].next) number++;
+            for (uint32_t i = parent.first; i != index; i = owner_->nodes_[i].next) number++;
             step = "[" + std::to_string(number) + "]";
         }
         path.insert(0, step);
-        at = node.parent;
+        index = node.parent;
     }
     return path;
 }
 
-void JsonValue::fail(const std::string &what, lensprof_status status) const {
-    const std::string where = path();
-    throw FormatFailure{status, (where.empty() ? "the JSON" : where) + (what[0] == ':' ? "" : " ") + what};
+void JsonValue::fail(const std::string &message, lensprof_status status) const {
+    const std::string position = path();
+    throw FormatFailure{status, (position.empty() ? "the JSON" : position) + (message[0] == ':' ? "" : " ") + message};
 }
 
 void JsonWriter::separate() {
@@ -264,7 +264,7 @@ void JsonWriter::number(double value) {
     if (digits.find_first_of(".e") == std::string_view::npos) all_ += ".0";
 }
 
-void JsonWriter::whole(int64_t value) {
+void JsonWriter::integer(int64_t value) {
     separate();
     all_ += std::to_string(value);
 }

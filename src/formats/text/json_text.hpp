@@ -39,13 +39,13 @@ public:
     // Each throws SYNTAX, with the path, for another kind of value.
     double number() const;
     double number_within(double low, double high) const;
-    int64_t whole(int64_t low, int64_t high) const;
+    int64_t integer(int64_t low, int64_t high) const;
     bool boolean() const;
     std::string_view text() const;
     std::vector<double> numbers(size_t low, size_t high) const;  // an array of so many numbers
 
-    // "profiles[2].vignetting.k: what"; `what` alone at the outermost value.
-    [[noreturn]] void fail(const std::string &what, lensprof_status status = LENSPROF_ERROR_SYNTAX) const;
+    // "profiles[2].vignetting.k: message"; `message` alone at the outermost value.
+    [[noreturn]] void fail(const std::string &message, lensprof_status status = LENSPROF_ERROR_SYNTAX) const;
     std::string path() const;
 
 private:
@@ -71,7 +71,7 @@ private:
     enum Kind : uint32_t {
         kNull,
         kBoolean,
-        kWhole,
+        kInteger,
         kNumber,
         kString,
         kArray,
@@ -83,7 +83,7 @@ private:
         uint32_t parent, next, name;  // nodes; 0 = none, which is the outermost one. name: of a member, in texts_
         union {
             double number;
-            int64_t whole;
+            int64_t integer;
             uint32_t first, text;
         };
     };
@@ -101,7 +101,7 @@ public:
     void close(char bracket);  // '}' or ']'
     void name(const char *name);
     void number(double value);  // with a point or an exponent; null unless finite
-    void whole(int64_t value);
+    void integer(int64_t value);
     void text(const char *value);  // bytes that are not UTF-8 as U+FFFD
     void word(const char *value);  // true, false, null
     void numbers(const double *values, size_t count);

@@ -18,9 +18,9 @@ std::string_view namespace_of(const pugi::xml_node &node, std::string_view quali
     const size_t colon = qualified.rfind(':');
     const std::string declaration =
         colon == std::string_view::npos ? "xmlns" : "xmlns:" + std::string(qualified.substr(0, colon));
-    pugi::xml_node at = node;
-    for (int level = 0; at && level < kMostLevels; level++, at = at.parent())
-        if (const pugi::xml_attribute found = at.attribute(declaration.c_str())) return found.value();
+    pugi::xml_node ancestor = node;
+    for (int level = 0; ancestor && level < kMostLevels; level++, ancestor = ancestor.parent())
+        if (const pugi::xml_attribute found = ancestor.attribute(declaration.c_str())) return found.value();
     return {};
 }
 
@@ -43,7 +43,7 @@ std::vector<pugi::xml_node> rdf_items(const pugi::xml_node &node) {
 }
 
 pugi::xml_node RdfResource::property(std::string_view name) const {
-    if (const pugi::xml_node own = local_child(node_, name)) return own;
+    if (const pugi::xml_node child = local_child(node_, name)) return child;
     return local_child(local_child(node_, "Description"), name);
 }
 

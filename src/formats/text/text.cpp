@@ -69,21 +69,21 @@ bool read_whole(std::string_view text, double low, double high, double &value) {
 }
 
 size_t find_not_utf8(std::string_view text) {
-    size_t at = 0;
+    size_t position = 0;
     const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-    while (at < text.size()) {
-        const unsigned lead = byte(at);
+    while (position < text.size()) {
+        const unsigned lead = byte(position);
         const size_t more = lead < 0x80 ? 0 : lead < 0xC2 ? 4 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : lead < 0xF5 ? 3 : 4;
-        if (more == 4) return at;
+        if (more == 4) return position;
         for (size_t i = 1; i <= more; i++)
-            if ((byte(at + i) & 0xC0) != 0x80) return at;
-        const unsigned next = byte(at + 1);  // overlong forms, surrogates, beyond U+10FFFF
+            if ((byte(position + i) & 0xC0) != 0x80) return position;
+        const unsigned next = byte(position + 1);  // overlong forms, surrogates, beyond U+10FFFF
         if ((lead == 0xE0 && next < 0xA0) || (lead == 0xED && next > 0x9F) || (lead == 0xF0 && next < 0x90)
             || (lead == 0xF4 && next > 0x8F))
-            return at;
-        at += 1 + more;
+            return position;
+        position += 1 + more;
     }
-    return at;
+    return position;
 }
 
 void put_text(char *field, size_t capacity, std::string_view text) {

@@ -61,7 +61,9 @@ size_t XmlText::line_at(size_t offset) const {
 
 void XmlText::check_key_text(const pugi::xml_node &node, const std::string &label, const std::string &text,
                              size_t capacity) const {
-    const auto fail = [&](const std::string &why) { fail_at_line(line_of(node), label + in_quotes(text) + why); };
+    const auto fail = [&](const std::string &message) {
+        fail_at_line(line_of(node), label + in_quotes(text) + message);
+    };
     if (text.size() >= capacity) fail(" is longer than " + std::to_string(capacity - 1) + " bytes; shorten it");
     if (find_not_utf8(text) < text.size())  // by a character reference
         fail(" has invalid characters; remove them");
