@@ -123,15 +123,15 @@ void LensfunReader::begin_lens(const pugi::xml_node &lens) {
 
 // Crop factor and centre, which the calibration of a newer database may give for itself.
 void LensfunReader::begin_calibration(const pugi::xml_node &lens, const pugi::xml_node &calibration) {
-    const pugi::xml_attribute own_crop = calibration.attribute("cropfactor"),
-                              own_aspect = calibration.attribute("aspect-ratio");
+    const pugi::xml_attribute crop_attribute = calibration.attribute("cropfactor"),
+                              aspect_attribute = calibration.attribute("aspect-ratio");
     const pugi::xml_node crop = lens.child("cropfactor"), aspect = lens.child("aspect-ratio");
-    if (!own_crop && !crop) fail(lens, "no <cropfactor>; add it");
-    profile_->key.crop_factor = own_crop ? number(calibration, own_crop.value(), "cropfactor", 0.0, 1e4)
-                                         : number(crop, crop.child_value(), "cropfactor", 0.0, 1e4);
-    read_center(lens, own_aspect ? aspect_ratio(calibration, own_aspect.value())
-                      : aspect   ? aspect_ratio(aspect, aspect.child_value())
-                                 : kLensfunAspectRatio);
+    if (!crop_attribute && !crop) fail(lens, "no <cropfactor>; add it");
+    profile_->key.crop_factor = crop_attribute ? number(calibration, crop_attribute.value(), "cropfactor", 0.0, 1e4)
+                                               : number(crop, crop.child_value(), "cropfactor", 0.0, 1e4);
+    read_center(lens, aspect_attribute ? aspect_ratio(calibration, aspect_attribute.value())
+                      : aspect         ? aspect_ratio(aspect, aspect.child_value())
+                                       : kLensfunAspectRatio);
 }
 
 void LensfunReader::read_center(const pugi::xml_node &lens, double aspect) {

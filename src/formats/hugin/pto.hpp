@@ -82,7 +82,7 @@ struct PtoImage {
     size_t begin, length;  // of the line in the text, without line end
     std::array<double, kPtoParameters> value;
     std::array<uint32_t, kPtoParameters> root;  // image at the end of the link, itself when not linked
-    std::bitset<kPtoParameters> asked;          // on `v` lines, for links that end here
+    std::bitset<kPtoParameters> is_variable;    // on `v` lines, for links that end here
     uint32_t vignetting_mode;                   // Vm: 1 radial, 2 flat field, 4 divide
     std::string name;
     std::string renamed;  // the line with another name in it; empty when that of the text holds

@@ -202,14 +202,14 @@ void read_variables(const Line &line, lensprof_pto &pto) {
                              + " with a number, " + image_range(pto) + " exist",
                          LENSPROF_ERROR_VARIABLE);
         const PtoImage &image = pto.images[static_cast<size_t>(number)];
-        pto.images[image.root[parameter]].asked.set(parameter);
+        pto.images[image.root[parameter]].is_variable.set(parameter);
     }
 }
 
 void share_variables(lensprof_pto &pto) {
     for (PtoImage &image : pto.images) {
         for (size_t i = 0; i < kPtoParameters; i++)
-            if (pto.images[image.root[i]].asked[i]) image.result.free |= kPtoParameterInfo[i].free;
+            if (pto.images[image.root[i]].is_variable[i]) image.result.free |= kPtoParameterInfo[i].free;
     }
 }
 
