@@ -101,7 +101,7 @@ static void test_reader_keeps_the_mode(void **state) {
     make_database(here, 3);
     run_sql(here->path, "PRAGMA journal_mode = DELETE");
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE);
-    store->settled = false;
+    store->journal_ready = false;
     assert_int_equal(sqlite3_open(here->path, &reader), SQLITE_OK);
     assert_int_equal(sqlite3_prepare_v2(reader, "SELECT id FROM profiles", -1, &statement, NULL), SQLITE_OK);
     assert_int_equal(sqlite3_step(statement), SQLITE_ROW);

@@ -95,7 +95,7 @@ static void test_reasons_are_whole(void **state) {
         expected[0] = '\0';
         for (uint32_t i = 0; i < COUNT; i++) {
             const char *name = codes[i] == LENSPROF_REASON_LOOKUP_BY_WORDS ? lens : NULL;
-            lp_mind(&lookup, codes[i], name);
+            lp_add_lookup_reason(&lookup, codes[i], name);
             assert_int_equal(lookup.reason_code[i], codes[i]);
             const char *tails[] = {name, NULL};
             for (int t = name ? 0 : 1; t < 2; t++) {

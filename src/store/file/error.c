@@ -20,15 +20,16 @@ static const char *path_tail(const char *path) {
     return path;
 }
 
-lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *what, const char *next,
+lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *problem, const char *next,
                               lensprof_error *error) {
     const char *tail = path_tail(path);
-    if (error) snprintf(error->text, sizeof error->text, "%s%s: %s; %s", tail == path ? "" : "...", tail, what, next);
+    if (error)
+        snprintf(error->text, sizeof error->text, "%s%s: %s; %s", tail == path ? "" : "...", tail, problem, next);
     return status;
 }
 
-lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error) {
-    if (error) snprintf(error->text, sizeof error->text, "profile database: %s", what);
+lensprof_status lp_store_fail_argument(const char *problem, lensprof_error *error) {
+    if (error) snprintf(error->text, sizeof error->text, "profile database: %s", problem);
     return LENSPROF_ERROR_ARGUMENT;
 }
 
@@ -115,7 +116,7 @@ static lensprof_status status_of(int rc, const char *path, sqlite3 *db) {
 
 static const struct sentence {
     lensprof_status status;
-    const char *what, *next;
+    const char *problem, *next;
 } sentences[] = {
     {LENSPROF_ERROR_STORE, "cannot be used", "check the file and its folder"},
     {LENSPROF_ERROR_NOT_FOUND, "no such file or folder", "check the path"},
@@ -140,17 +141,17 @@ lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lenspro
     const struct sentence *sentence = sentences;
     for (size_t i = 0; i < sizeof sentences / sizeof *sentences; i++)
         if (sentences[i].status == status) sentence = &sentences[i];
-    char what[100];
-    snprintf(what, sizeof what, "%s (%.60s)", sentence->what, db ? sqlite3_errmsg(db) : sqlite3_errstr(rc));
-    return lp_store_fail(path, status, what, sentence->next, error);
+    char problem[100];
+    snprintf(problem, sizeof problem, "%s (%.60s)", sentence->problem, db ? sqlite3_errmsg(db) : sqlite3_errstr(rc));
+    return lp_store_fail(path, status, problem, sentence->next, error);
 }
 
-lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *what, lensprof_error *error) {
+lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *problem, lensprof_error *error) {
     char text[100];
     if (sqlite3_errcode(store->db) == SQLITE_NOMEM) /* a column could not be fetched */
         return lp_store_fail_sql(store->path, store->db, SQLITE_NOMEM, error);
-    snprintf(text, sizeof text, "profile %lld is damaged (%.50s)", (long long)id, what);
-    snprintf(store->damage, sizeof store->damage, "%.50s", what);
+    snprintf(text, sizeof text, "profile %lld is damaged (%.50s)", (long long)id, problem);
+    snprintf(store->damage, sizeof store->damage, "%.50s", problem);
     return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, text, "remove it, or restore the file from a copy",
                          error);
 }

@@ -34,14 +34,14 @@ static int classify(sqlite3_file *handle, lp_store_file *file) {
 
 /* `name` comes from sqlite3_create_filename, as xOpen demands. */
 static int probe(sqlite3_vfs *vfs, const char *name, lp_store_file *file) {
-    int there = 0;
+    int exists = 0;
     sqlite3_file *handle = sqlite3_malloc(vfs->szOsFile);
     if (!handle) return SQLITE_NOMEM;
     memset(handle, 0, (size_t)vfs->szOsFile);
     int rc = vfs->xOpen(vfs, name, handle, SQLITE_OPEN_MAIN_DB | SQLITE_OPEN_READONLY, NULL);
     if (rc == SQLITE_OK)
         rc = classify(handle, file);
-    else if (vfs->xAccess(vfs, name, SQLITE_ACCESS_EXISTS, &there) == SQLITE_OK && !there) {
+    else if (vfs->xAccess(vfs, name, SQLITE_ACCESS_EXISTS, &exists) == SQLITE_OK && !exists) {
         *file = LP_STORE_FILE_MISSING;
         rc = SQLITE_OK;
     }

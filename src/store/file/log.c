@@ -26,14 +26,14 @@ static void leave_log(const char *full) {
 
 int lp_store_settle_journal(lensprof_store *store) {
     int64_t pages;
-    if (store->settled) return SQLITE_OK;
+    if (store->journal_ready) return SQLITE_OK;
     sqlite3_busy_timeout(store->db, store->busy_ms < SETTLE_MS ? store->busy_ms : SETTLE_MS);
     int rc = lp_store_execute(store, "PRAGMA journal_mode = WAL"); /* stays as it is where there can be no log */
     if (rc == SQLITE_OK) {
         rc = lp_store_integer(store, "PRAGMA page_count", &pages);
         if (rc == SQLITE_PROTOCOL || (rc & 0xff) == SQLITE_IOERR || (rc & 0xff) == SQLITE_CANTOPEN)
             leave_log(sqlite3_db_filename(store->db, "main"));
-        store->settled = rc == SQLITE_OK;
+        store->journal_ready = rc == SQLITE_OK;
     }
     sqlite3_busy_timeout(store->db, store->busy_ms);
     return rc;

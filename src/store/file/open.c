@@ -118,7 +118,7 @@ lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_
         made->mode = mode;
         made->layout = 0;
         made->busy_ms = busy_ms;
-        made->settled = made->immutable = made->batch = false;
+        made->journal_ready = made->immutable = made->batch = false;
         made->prepared = 0;
         made->damage[0] = 0;
         memcpy(made->path, path, length + 1);

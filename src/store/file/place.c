@@ -6,10 +6,10 @@
 bool lp_store_has_log(const char *full) {
     sqlite3_vfs *vfs = sqlite3_vfs_find(NULL);
     char *log = sqlite3_mprintf("%s-wal", full);
-    int there = 0;
-    if (log) (void)vfs->xAccess(vfs, log, SQLITE_ACCESS_EXISTS, &there); /* false for one of no bytes */
+    int exists = 0;
+    if (log) (void)vfs->xAccess(vfs, log, SQLITE_ACCESS_EXISTS, &exists); /* false for one of no bytes */
     sqlite3_free(log);
-    return there != 0;
+    return exists != 0;
 }
 
 bool lp_store_is_folder_writable(const char *full, bool *exists) {

@@ -17,12 +17,12 @@
 struct lensprof_store {
     sqlite3 *db;
     uint32_t mode;
-    int busy_ms;       /* how long it waits for other processes */
-    bool settled;      /* the journal mode is what it is to be */
-    bool immutable;    /* read without locks, from where nobody can write a log */
-    int layout;        /* of the file, as the transaction found or made it */
-    bool batch;        /* the caller's transaction is open: calls are savepoints in it */
-    uint32_t prepared; /* statements that are kept for the next call */
+    int busy_ms;        /* how long it waits for other processes */
+    bool journal_ready; /* the journal mode is what it is to be */
+    bool immutable;     /* read without locks, from where nobody can write a log */
+    int layout;         /* of the file, as the transaction found or made it */
+    bool batch;         /* the caller's transaction is open: calls are savepoints in it */
+    uint32_t prepared;  /* statements that are kept for the next call */
     struct {
         const char *sql; /* a literal, known by its address */
         sqlite3_stmt *statement;
@@ -40,19 +40,19 @@ bool lp_store_has_log(const char *full); /* a log that is not empty exists next 
 bool lp_store_is_folder_writable(const char *full, bool *exists);
 
 /* error.c: each sets `error` (may be NULL) to "path: what; next" and returns the status. */
-lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *what, const char *next,
+lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *problem, const char *next,
                               lensprof_error *error);
 /* For a result code of SQLite on this store; `db` (may be NULL) adds its message. Never LENSPROF_OK. */
 lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lensprof_error *error);
 /* For a wrong argument; the text names it and not the file. */
-lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error);
+lensprof_status lp_store_fail_argument(const char *problem, lensprof_error *error);
 lensprof_status lp_store_fail_capacity(uint32_t rows, uint32_t capacity, lensprof_error *error);
 /* STRUCT_SIZE for a struct; `wrong` is the result of lp_sized_wrong. */
 lensprof_status lp_store_fail_size(const char *name, const char *wrong, lensprof_error *error);
 /* Whether a profile's struct_size is one that this library knows; also of outputs. */
 lensprof_status lp_store_check_size(const lensprof_profile *profile, lensprof_error *error);
 /* CORRUPT and NOT_FOUND for the profile with an id. */
-lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *what, lensprof_error *error);
+lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *problem, lensprof_error *error);
 lensprof_status lp_store_fail_missing(const lensprof_store *store, int64_t id, lensprof_error *error);
 void lp_store_clear(lensprof_error *error);
 

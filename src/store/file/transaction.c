@@ -53,10 +53,10 @@ static lensprof_status check_layout(const lensprof_store *store, const layout *f
     if (found->application_id != LP_STORE_APPLICATION_ID)
         return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "is not a lensprof database", restore, error);
     if (found->user_version > LP_STORE_LAYOUT) {
-        char what[80];
-        snprintf(what, sizeof what, "has layout %lld; this lensprof supports up to %d", (long long)found->user_version,
-                 LP_STORE_LAYOUT);
-        return lp_store_fail(store->path, LENSPROF_ERROR_LAYOUT, what, "update lensprof", error);
+        char problem[80];
+        snprintf(problem, sizeof problem, "has layout %lld; this lensprof supports up to %d",
+                 (long long)found->user_version, LP_STORE_LAYOUT);
+        return lp_store_fail(store->path, LENSPROF_ERROR_LAYOUT, problem, "update lensprof", error);
     }
     if (found->user_version < 1)
         return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has no layout number", restore, error);

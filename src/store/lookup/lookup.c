@@ -38,19 +38,19 @@ static lensprof_status find_falloff(work *w, lensprof_error *error) {
     lensprof_error refusal;
     bool is_known = false;
     for (uint32_t i = 0; i < w->count; i++) {
-        lensprof_error own;
+        lensprof_error camera_error;
         bool knows_lens = false;
-        lp_store_clear(&own);
+        lp_store_clear(&camera_error);
         lensprof_lookup_init(&w->lookup);
         w->lookup.falloff_store = i;
         const lensprof_status status =
-            lp_find_falloff(w->stores[i], w->key, &w->options, &w->falloff, &w->lookup, &knows_lens, &own);
+            lp_find_falloff(w->stores[i], w->key, &w->options, &w->falloff, &w->lookup, &knows_lens, &camera_error);
         if (status == LENSPROF_OK) return LENSPROF_OK;
         if (status != LENSPROF_ERROR_NOT_FOUND) {
-            if (error) *error = own;
+            if (error) *error = camera_error;
             return status;
         }
-        if (!i || (knows_lens && !is_known)) refused = w->lookup, refusal = own, is_known = knows_lens;
+        if (!i || (knows_lens && !is_known)) refused = w->lookup, refusal = camera_error, is_known = knows_lens;
     }
     w->lookup = refused;
     if (error) *error = refusal;
@@ -72,8 +72,9 @@ static lensprof_status find_response(work *w, lensprof_error *error) {
     w->lookup.response_rows = r->rows;
     memcpy(w->lookup.response_id, r->id, sizeof r->id);
     memcpy(w->lookup.response_weight, r->weight, sizeof r->weight);
-    if (r->has_other_style && !r->rows) lp_mind(&w->lookup, LENSPROF_REASON_LOOKUP_OTHER_STYLE, NULL);
-    if (r->from == LENSPROF_RESPONSE_FROM_KIND) lp_mind(&w->lookup, LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE, NULL);
+    if (r->has_other_style && !r->rows) lp_add_lookup_reason(&w->lookup, LENSPROF_REASON_LOOKUP_OTHER_STYLE, NULL);
+    if (r->from == LENSPROF_RESPONSE_FROM_KIND)
+        lp_add_lookup_reason(&w->lookup, LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE, NULL);
     return LENSPROF_OK;
 }
 
@@ -105,17 +106,17 @@ static double sigma_of_falloff(const lensprof_lookup *lookup) {
 static void set_covariance(const work *w, lensprof_profile *profile) {
     const uint32_t modes = lp_covariance_modes(profile->response, profile->responses);
     const uint32_t n = lp_covariance_index(modes, profile->vignettings);
-    double own[9];
+    double block[9];
     profile->covariance_size = 0;
     memset(profile->covariance, 0, sizeof profile->covariance);
     if (n > LENSPROF_COVARIANCE_MAX) return;
     profile->covariance_size = n;
     for (uint32_t i = 0; i < modes && w->response.modes == modes; i++)
         memcpy(&profile->covariance[i * n], &w->response.covariance[i * modes], modes * sizeof(double));
-    lp_falloff_covariance(sigma_of_falloff(&w->lookup), own);
+    lp_falloff_covariance(sigma_of_falloff(&w->lookup), block);
     for (uint32_t c = 0; c < profile->vignettings; c++)
         for (uint32_t i = 0; i < 3; i++)
-            memcpy(&profile->covariance[(modes + 3 * c + i) * n + modes + 3 * c], &own[3 * i], 3 * sizeof(double));
+            memcpy(&profile->covariance[(modes + 3 * c + i) * n + modes + 3 * c], &block[3 * i], 3 * sizeof(double));
 }
 
 static void set_falloff(const work *w, lensprof_profile *profile) {
@@ -169,10 +170,10 @@ static lensprof_status compose(work *w, lensprof_error *error) {
 
 /* The camera's response if no falloff was found, as `error` and the reason in *lookup state. */
 static lensprof_status answer_response(work *w, lensprof_error *error) {
-    lensprof_error own;
+    lensprof_error response_error;
     w->falloff.key = *w->key;
-    lensprof_status status = find_response(w, &own);
-    if (status != LENSPROF_OK && error) *error = own;
+    lensprof_status status = find_response(w, &response_error);
+    if (status != LENSPROF_OK && error) *error = response_error;
     if (status != LENSPROF_OK) return status;
     if (!w->response.rows) return LENSPROF_ERROR_NOT_FOUND;
     w->lookup.falloff_store = w->lookup.response_store;
@@ -226,17 +227,17 @@ static lensprof_status look_up(work *w, lensprof_error *error) {
 
 /* The caller's options as this library's, and whether the rest of the call can be answered. */
 static lensprof_status check_lookup(const lensprof_profile_key *key, const lensprof_lookup_options *given,
-                                    lensprof_lookup_options *own, const lensprof_profile *profile,
+                                    lensprof_lookup_options *options, const lensprof_profile *profile,
                                     const lensprof_lookup *lookup, lensprof_error *error) {
-    lensprof_lookup_options_init(own);
-    const char *wrong = lp_sized_take(own, given, FIRST_OPTIONS);
+    lensprof_lookup_options_init(options);
+    const char *wrong = lp_sized_take(options, given, FIRST_OPTIONS);
     if (wrong) return lp_store_fail_size("lensprof_lookup_options", wrong, error);
     wrong = lp_sized_wrong(lookup, FIRST_LOOKUP, sizeof *lookup);
     if (wrong) return lp_store_fail_size("lensprof_lookup", wrong, error);
     const lensprof_status status = lp_store_check_size(profile, error);
     if (status != LENSPROF_OK) return status;
-    if (own->distance_rule > LENSPROF_DISTANCE_USUAL || own->with_doubt > 1 || own->any_processing > 1
-        || own->force_falloff > 1 || own->response_alone > 1)
+    if (options->distance_rule > LENSPROF_DISTANCE_USUAL || options->with_doubt > 1 || options->any_processing > 1
+        || options->force_falloff > 1 || options->response_alone > 1)
         return lp_store_fail_argument("an option is unknown; see lensprof_lookup_options", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
         return lp_store_fail_argument("the key is invalid; see lensprof_profile_key", error);

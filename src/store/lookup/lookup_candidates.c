@@ -28,19 +28,19 @@ static const char curves_sql[] =
     " WHERE profile_id BETWEEN ?1 AND ?2 ORDER BY profile_id, curve";
 
 static lp_candidate *add(lp_candidates *found) {
-    if (found->count == found->room) {
-        const uint32_t room = found->room ? 2 * found->room : 64;
-        lp_candidate *all = realloc(found->all, room * sizeof *all);
+    if (found->count == found->capacity) {
+        const uint32_t capacity = found->capacity ? 2 * found->capacity : 64;
+        lp_candidate *all = realloc(found->all, capacity * sizeof *all);
         if (!all) return NULL;
-        found->all = all, found->room = room;
+        found->all = all, found->capacity = capacity;
     }
     return memset(&found->all[found->count++], 0, sizeof(lp_candidate));
 }
 
 /* -1 for a row of another camera or unit. */
-static int fits(const char *own, const char *asked) {
-    if (!*own) return 0;
-    return lp_name_score(own, asked) >= 0.8 ? 1 : -1;
+static int fits(const char *stored, const char *requested) {
+    if (!*stored) return 0;
+    return lp_name_score(stored, requested) >= 0.8 ? 1 : -1;
 }
 
 /* As rows_sql has it. */
@@ -89,9 +89,9 @@ static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r) {
 }
 
 /* 1: the same picture style; 0: one of them is not known. */
-int lp_fits_style(const char *own, const char *asked) {
-    if (!lp_is_known(own) || !lp_is_known(asked)) return 0;
-    return lp_name_score(own, asked) >= 0.9 ? 1 : -1;
+int lp_fits_style(const char *stored, const char *requested) {
+    if (!lp_is_known(stored) || !lp_is_known(requested)) return 0;
+    return lp_name_score(stored, requested) >= 0.9 ? 1 : -1;
 }
 
 bool lp_is_known(const char *text) { return text[strspn(text, " ")] != 0; }
@@ -127,21 +127,21 @@ static bool take_row(const row *r, const lensprof_profile_key *key, const lenspr
     const int camera = found->by_table ? 1 : found->last_camera; /* from the table */
     if (unit < 0) return true;
     if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
-    lp_candidate *one = add(found);
-    if (!one) return false;
+    lp_candidate *candidate = add(found);
+    if (!candidate) return false;
     found->name_score = fmax(found->name_score, found->last_score);
-    one->is_fixed = !lp_is_known(key->lens) || !lp_is_known(r->key.lens) || found->by_camera;
-    one->of_unit = unit, one->of_camera = *key->camera_model ? camera : 0;
-    one->node.variance = r->covariance_size > 0 ? LP_VARIANCE_UNREAD : 0.0;
-    one->has_own_response = (o->any_processing || r->key.processing == key->processing) && one->of_camera >= 0
-                            && lp_fits_style(r->key.style, key->style) >= 0;
-    one->processing = r->key.processing;
-    one->crop = r->key.crop_factor;
-    one->node.id = r->id;
-    one->node.focal_mm = r->key.focal_mm;
-    one->node.aperture = r->key.aperture;
-    one->node.distance_m = r->key.distance_m;
-    one->color_temperature_k = r->key.color_temperature_k;
+    candidate->is_fixed = !lp_is_known(key->lens) || !lp_is_known(r->key.lens) || found->by_camera;
+    candidate->of_unit = unit, candidate->of_camera = *key->camera_model ? camera : 0;
+    candidate->node.variance = r->covariance_size > 0 ? LP_VARIANCE_UNREAD : 0.0;
+    candidate->has_own_response = (o->any_processing || r->key.processing == key->processing)
+                                  && candidate->of_camera >= 0 && lp_fits_style(r->key.style, key->style) >= 0;
+    candidate->processing = r->key.processing;
+    candidate->crop = r->key.crop_factor;
+    candidate->node.id = r->id;
+    candidate->node.focal_mm = r->key.focal_mm;
+    candidate->node.aperture = r->key.aperture;
+    candidate->node.distance_m = r->key.distance_m;
+    candidate->color_temperature_k = r->key.color_temperature_k;
     return true;
 }
 

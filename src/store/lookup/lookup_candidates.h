@@ -21,7 +21,7 @@ typedef struct lp_candidate {
 
 typedef struct lp_candidates {
     lp_candidate *all; /* free it */
-    uint32_t count, room;
+    uint32_t count, capacity;
     double name_score;
     lensprof_profile_key last; /* names of the row before, which most rows share, and what they were found to be */
     double last_score;
@@ -37,7 +37,7 @@ typedef struct lp_candidates {
 bool lp_is_known(const char *text);
 
 /* Picture styles: 1 the same, 0 one of them is not known, -1 different ones. */
-int lp_fits_style(const char *own, const char *asked);
+int lp_fits_style(const char *stored, const char *requested);
 
 /* Light falls off the same whatever is made of it: rows of raw and rendered pictures serve both, those of pictures that
  * the camera has corrected serve such ones alone, unless options->force_falloff. All rows of the lens under the first

@@ -22,16 +22,16 @@
 #define APERTURE_WIDENING 2.06
 
 /* A clause for which there is no room is left out as a whole, its name first. */
-void lp_mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name) {
+void lp_add_lookup_reason(lensprof_lookup *lookup, lensprof_reason reason, const char *name) {
     const char *text = lensprof_reason_text(reason);
-    const size_t used = strlen(lookup->reason), room = sizeof lookup->reason - used;
+    const size_t used = strlen(lookup->reason), capacity = sizeof lookup->reason - used;
     const size_t bytes = strlen(text) + (used ? 2 : 0);
-    uint32_t which = 0;
-    while (which + 1 < LENSPROF_LOOKUP_REASONS && lookup->reason_code[which]) which++;
-    lookup->reason_code[which] = reason;
-    if (bytes >= room) return;
-    if (name && bytes + 2 + strlen(name) >= room) name = NULL;
-    snprintf(lookup->reason + used, room, "%s%s%s%s", used ? "; " : "", text, name ? ": " : "", name ? name : "");
+    uint32_t index = 0;
+    while (index + 1 < LENSPROF_LOOKUP_REASONS && lookup->reason_code[index]) index++;
+    lookup->reason_code[index] = reason;
+    if (bytes >= capacity) return;
+    if (name && bytes + 2 + strlen(name) >= capacity) name = NULL;
+    snprintf(lookup->reason + used, capacity, "%s%s%s%s", used ? "; " : "", text, name ? ": " : "", name ? name : "");
 }
 
 /* ---- which of them ---- */
@@ -44,8 +44,10 @@ static int is_sensor_covered(const lp_candidate *c, const lensprof_profile_key *
 /* Larger is better: unit, camera, then the sensor nearest to the key's; where that is not known, the smallest, whose
  * falloff is the weakest. */
 static double rank_of(const lp_candidate *c, const lensprof_profile_key *key) {
-    const int own = c->crop != LENSPROF_UNKNOWN, asked = key->crop_factor != LENSPROF_UNKNOWN;
-    const double sensor = !own ? 0.5 : asked ? fmin(c->crop / key->crop_factor, 1.0) : 1.0 - 1.0 / (1.0 + c->crop);
+    const int has_crop = c->crop != LENSPROF_UNKNOWN, is_requested = key->crop_factor != LENSPROF_UNKNOWN;
+    const double sensor = !has_crop      ? 0.5
+                          : is_requested ? fmin(c->crop / key->crop_factor, 1.0)
+                                         : 1.0 - 1.0 / (1.0 + c->crop);
     return 100.0 * c->of_unit + 10.0 * c->of_camera + sensor;
 }
 
@@ -113,64 +115,62 @@ double lp_choose_candidates(const lp_candidates *found, const lensprof_profile_k
                             lp_candidates *group, lensprof_lookup *lookup) {
     const double rank = take_best(found, key, below, group);
     if (!group->count) return rank;
-    const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
+    const int is_ambiguous = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
     keep_one_falloff(group);
-    if (!keep_nearest_light(group, key)) lp_mind(lookup, LENSPROF_REASON_LOOKUP_OTHER_LIGHT, NULL);
-    if (several) lp_mind(lookup, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, NULL);
-    if (group->all[0].of_camera < 0) lp_mind(lookup, LENSPROF_REASON_LOOKUP_ON_OTHER_CAMERA, NULL);
+    if (!keep_nearest_light(group, key)) lp_add_lookup_reason(lookup, LENSPROF_REASON_LOOKUP_OTHER_LIGHT, NULL);
+    if (is_ambiguous) lp_add_lookup_reason(lookup, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, NULL);
+    if (group->all[0].of_camera < 0) lp_add_lookup_reason(lookup, LENSPROF_REASON_LOOKUP_ON_OTHER_CAMERA, NULL);
     if (found->by_words)
-        lp_mind(lookup, LENSPROF_REASON_LOOKUP_BY_WORDS, found->last.lens);
+        lp_add_lookup_reason(lookup, LENSPROF_REASON_LOOKUP_BY_WORDS, found->last.lens);
     else if (found->by_camera)
-        lp_mind(lookup, LENSPROF_REASON_LOOKUP_BUILT_IN, found->last.lens);
+        lp_add_lookup_reason(lookup, LENSPROF_REASON_LOOKUP_BUILT_IN, found->last.lens);
     return rank - SAME_SENSOR;
 }
 
 /* ---- at which setting ---- */
 
 /* Focal length for 0, aperture for 1. */
-static double setting(const lp_falloff_node *node, int which) { return which ? node->aperture : node->focal_mm; }
+static double setting(const lp_falloff_node *node, int axis) { return axis ? node->aperture : node->focal_mm; }
 
-static void set(lp_falloff_node *node, int which, double value) {
-    *(which ? &node->aperture : &node->focal_mm) = value;
-}
+static void set(lp_falloff_node *node, int axis, double value) { *(axis ? &node->aperture : &node->focal_mm) = value; }
 
 /* Rows that lack a number which the key has are of no use; one that the key lacks must be the same in all rows. Returns
  * NONE, or what is wrong. */
-static lensprof_reason settle(lp_candidates *found, lp_falloff_node *at, int which) {
+static lensprof_reason resolve_axis(lp_candidates *found, lp_falloff_node *target, int axis) {
     static const lensprof_reason missing[] = {LENSPROF_REASON_LOOKUP_FOCAL_MISSING,
                                               LENSPROF_REASON_LOOKUP_APERTURE_MISSING};
     static const lensprof_reason useless[] = {LENSPROF_REASON_LOOKUP_NO_FOCAL, LENSPROF_REASON_LOOKUP_NO_APERTURE};
     uint32_t kept = 0;
-    if (setting(at, which) == LENSPROF_UNKNOWN) {
-        const double only = setting(&found->all[0].node, which);
+    if (setting(target, axis) == LENSPROF_UNKNOWN) {
+        const double only = setting(&found->all[0].node, axis);
         for (uint32_t i = 1; i < found->count; i++)
-            if (!lp_is_same(setting(&found->all[i].node, which), only)) return missing[which];
-        set(at, which, only != LENSPROF_UNKNOWN ? only : 1.0); /* where nobody knows it makes no difference */
-        for (uint32_t i = 0; i < found->count && only == LENSPROF_UNKNOWN; i++) set(&found->all[i].node, which, 1.0);
+            if (!lp_is_same(setting(&found->all[i].node, axis), only)) return missing[axis];
+        set(target, axis, only != LENSPROF_UNKNOWN ? only : 1.0); /* where nobody knows it makes no difference */
+        for (uint32_t i = 0; i < found->count && only == LENSPROF_UNKNOWN; i++) set(&found->all[i].node, axis, 1.0);
         return LENSPROF_REASON_NONE;
     }
     for (uint32_t i = 0; i < found->count; i++)
-        if (setting(&found->all[i].node, which) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
+        if (setting(&found->all[i].node, axis) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
     found->count = kept;
-    return kept ? LENSPROF_REASON_NONE : useless[which];
+    return kept ? LENSPROF_REASON_NONE : useless[axis];
 }
 
 /* 0 within the stored settings, 1 outside, 2 too far. Nothing is predicted more than one node beyond the last: the
  * outermost two nodes' spacing (in stops or octaves), or a twelfth of an octave in focal length and a third of a stop
  * where there is one node only. */
-static int place_of(const lp_candidates *found, const lp_falloff_node *at, int which) {
+static int place_of(const lp_candidates *found, const lp_falloff_node *target, int axis) {
     double low = INFINITY, high = -INFINITY, above_low = INFINITY, below_high = -INFINITY;
-    const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
+    const double single = axis ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
     for (uint32_t i = 0; i < found->count; i++) {
-        const double value = log2(setting(&found->all[i].node, which));
+        const double value = log2(setting(&found->all[i].node, axis));
         low = fmin(low, value), high = fmax(high, value);
     }
     for (uint32_t i = 0; i < found->count; i++) {
-        const double value = log2(setting(&found->all[i].node, which));
+        const double value = log2(setting(&found->all[i].node, axis));
         if (value > low + 1e-6) above_low = fmin(above_low, value);
         if (value < high - 1e-6) below_high = fmax(below_high, value);
     }
-    const double asked = log2(setting(at, which)), least = 1e-6;
+    const double asked = log2(setting(target, axis)), least = 1e-6;
     const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
     const double after = high - low > 1e-6 ? fmax(high - below_high, single) : single;
     if (asked < low - before - least || asked > high + after + least) return 2;
@@ -178,35 +178,36 @@ static int place_of(const lp_candidates *found, const lp_falloff_node *at, int w
 }
 
 /* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */
-lensprof_reason lp_settle(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
-    static const lensprof_reason beyond[] = {LENSPROF_REASON_LOOKUP_FOCAL_BEYOND,
-                                             LENSPROF_REASON_LOOKUP_APERTURE_BEYOND};
+lensprof_reason lp_resolve_setting(lp_candidates *found, lp_falloff_node *target, lensprof_lookup *lookup) {
+    static const lensprof_reason out_of_range[] = {LENSPROF_REASON_LOOKUP_FOCAL_BEYOND,
+                                                   LENSPROF_REASON_LOOKUP_APERTURE_BEYOND};
     static const lensprof_reason outside[] = {LENSPROF_REASON_LOOKUP_FOCAL_OUTSIDE,
                                               LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE};
-    for (int which = 0; which < 2; which++) {
-        const lensprof_reason wrong = settle(found, at, which);
+    for (int axis = 0; axis < 2; axis++) {
+        const lensprof_reason wrong = resolve_axis(found, target, axis);
         if (wrong) return wrong;
-        const int side = place_of(found, at, which);
-        if (side > 1) return beyond[which];
-        if (side > 0) lp_mind(lookup, outside[which], NULL);
+        const int side = place_of(found, target, axis);
+        if (side > 1) return out_of_range[axis];
+        if (side > 0) lp_add_lookup_reason(lookup, outside[axis], NULL);
     }
     return LENSPROF_REASON_NONE;
 }
 
 /* Of the stored focal lengths for 0, apertures for 1. */
-static void range_of(const lp_candidates *found, int which, double *low, double *high) {
+static void range_of(const lp_candidates *found, int axis, double *low, double *high) {
     *low = INFINITY, *high = -INFINITY;
     for (uint32_t i = 0; i < found->count; i++) {
-        const double value = setting(&found->all[i].node, which);
+        const double value = setting(&found->all[i].node, axis);
         *low = fmin(*low, value), *high = fmax(*high, value);
     }
 }
 
-double lp_widening(const lp_candidates *found, const lp_falloff_node *at) {
+double lp_widening(const lp_candidates *found, const lp_falloff_node *target) {
     double low[2], high[2], widening = 1.0;
-    for (int which = 0; which < 2; which++) range_of(found, which, &low[which], &high[which]);
-    if (at->focal_mm < low[0] * (1.0 - 1e-6) || at->focal_mm > high[0] * (1.0 + 1e-6)) widening = FOCAL_WIDENING;
-    if (at->aperture < low[1] * (1.0 - 1e-6)) widening = fmax(widening, APERTURE_WIDENING);
+    for (int axis = 0; axis < 2; axis++) range_of(found, axis, &low[axis], &high[axis]);
+    if (target->focal_mm < low[0] * (1.0 - 1e-6) || target->focal_mm > high[0] * (1.0 + 1e-6))
+        widening = FOCAL_WIDENING;
+    if (target->aperture < low[1] * (1.0 - 1e-6)) widening = fmax(widening, APERTURE_WIDENING);
     return widening;
 }
 
@@ -219,14 +220,14 @@ static void spell_number(double value, char text[NUMBER_BYTES]) {
     if (text[length - 1] == '.') text[--length] = 0;
 }
 
-bool lp_is_outside_both(const lp_candidates *found, const lp_falloff_node *at, char *text, size_t bytes) {
+bool lp_is_outside_both(const lp_candidates *found, const lp_falloff_node *target, char *text, size_t bytes) {
     double low[2], high[2];
-    for (int which = 0; which < 2; which++) range_of(found, which, &low[which], &high[which]);
-    const bool is_shorter = at->focal_mm < low[0] / (1.0 + NEAR_FOCAL);
-    if (!is_shorter && at->focal_mm <= high[0] * (1.0 + NEAR_FOCAL)) return false;
-    if (at->aperture >= low[1] * (1.0 - 1e-6) && at->aperture <= high[1] * (1.0 + 1e-6)) return false;
+    for (int axis = 0; axis < 2; axis++) range_of(found, axis, &low[axis], &high[axis]);
+    const bool is_shorter = target->focal_mm < low[0] / (1.0 + NEAR_FOCAL);
+    if (!is_shorter && target->focal_mm <= high[0] * (1.0 + NEAR_FOCAL)) return false;
+    if (target->aperture >= low[1] * (1.0 - 1e-6) && target->aperture <= high[1] * (1.0 + 1e-6)) return false;
     char word[6][NUMBER_BYTES];
-    const double values[6] = {at->focal_mm, at->aperture, low[0], high[0], low[1], high[1]};
+    const double values[6] = {target->focal_mm, target->aperture, low[0], high[0], low[1], high[1]};
     for (int i = 0; i < 6; i++) spell_number(values[i], word[i]);
     snprintf(text, bytes,
              "focal length %s mm and aperture f/%s are both outside those at which this lens is known: %s to %s mm,"
@@ -237,28 +238,28 @@ bool lp_is_outside_both(const lp_candidates *found, const lp_falloff_node *at, c
 
 /* Cameras with a fixed lens round its focal length as they like (4.25, 4.2, 4.3 mm): one that differs by no more than
  * that is the stored one. */
-void lp_round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
-    double nearest = LENSPROF_UNKNOWN, off = fmax(SAME_FOCAL * at->focal_mm, SAME_FOCAL_MM);
-    for (uint32_t i = 0; i < found->count && at->focal_mm != LENSPROF_UNKNOWN; i++) {
+void lp_round_focal(const lp_candidates *found, lp_falloff_node *target, lensprof_lookup *lookup) {
+    double nearest = LENSPROF_UNKNOWN, off = fmax(SAME_FOCAL * target->focal_mm, SAME_FOCAL_MM);
+    for (uint32_t i = 0; i < found->count && target->focal_mm != LENSPROF_UNKNOWN; i++) {
         const lp_candidate *c = &found->all[i];
-        const double d = fabs(c->node.focal_mm - at->focal_mm);
+        const double d = fabs(c->node.focal_mm - target->focal_mm);
         if (c->is_fixed && c->node.focal_mm != LENSPROF_UNKNOWN && d <= off + 1e-9 && (d < off || nearest < 0.0))
             off = d, nearest = c->node.focal_mm;
     }
-    if (nearest < 0.0 || lp_is_same(nearest, at->focal_mm)) return;
-    at->focal_mm = nearest;
-    lp_mind(lookup, LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED, NULL);
+    if (nearest < 0.0 || lp_is_same(nearest, target->focal_mm)) return;
+    target->focal_mm = nearest;
+    lp_add_lookup_reason(lookup, LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED, NULL);
 }
 
 /* The newest row that is at the setting and has the pictures' response, or -1. */
-int64_t lp_find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key) {
+int64_t lp_find_exact(const lp_candidates *found, const lp_falloff_node *target, const lensprof_profile_key *key) {
     int64_t newest = -1;
     for (uint32_t i = 0; i < found->count; i++) {
         const lp_candidate *c = &found->all[i];
         const int same_sensor = c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
                                 || fabs(c->crop / key->crop_factor - 1.0) <= SAME_SENSOR;
-        if (same_sensor && c->has_own_response && lp_is_same(c->node.focal_mm, at->focal_mm)
-            && lp_is_same(c->node.aperture, at->aperture) && lp_is_same(c->node.distance_m, at->distance_m)
+        if (same_sensor && c->has_own_response && lp_is_same(c->node.focal_mm, target->focal_mm)
+            && lp_is_same(c->node.aperture, target->aperture) && lp_is_same(c->node.distance_m, target->distance_m)
             && c->node.id > newest)
             newest = c->node.id;
     }

@@ -45,22 +45,23 @@ static double corner_of(const lp_falloff_prediction *p) {
 typedef struct predictions {
     uint32_t count;
     double share[MOST_DISTANCES];
-    lp_falloff_prediction at[MOST_DISTANCES];
+    lp_falloff_prediction prediction[MOST_DISTANCES];
 } predictions;
 
-/* -1 without memory. If none can be made, at[0] is the distance of the nearest node. */
-static int predict_at(const distances *where, const lp_falloff_nodes *nodes, lp_falloff_node at, predictions *made) {
+/* -1 without memory. If none can be made, prediction[0] is at the distance of the nearest node. */
+static int predict_at(const distances *candidates, const lp_falloff_nodes *nodes, lp_falloff_node target,
+                      predictions *made) {
     double shares = 0.0;
     made->count = 0;
-    for (uint32_t d = 0; d < where->count; d++) {
-        lp_falloff_prediction one;
-        at.distance_m = where->distance_m[d];
-        const int done = lp_predict_falloff(nodes, &at, &one);
+    for (uint32_t d = 0; d < candidates->count; d++) {
+        lp_falloff_prediction prediction;
+        target.distance_m = candidates->distance_m[d];
+        const int done = lp_predict_falloff(nodes, &target, &prediction);
         if (done < 0) return -1;
         if (!done && (made->count || d)) continue;
-        made->at[made->count] = one;
-        made->share[made->count] = where->share[d];
-        if (done) shares += where->share[d], made->count++;
+        made->prediction[made->count] = prediction;
+        made->share[made->count] = candidates->share[d];
+        if (done) shares += candidates->share[d], made->count++;
     }
     for (uint32_t d = 0; d < made->count; d++) made->share[d] /= shares;
     return 1;
@@ -70,7 +71,7 @@ static int predict_at(const distances *where, const lp_falloff_nodes *nodes, lp_
 static double spread_about(const predictions *made, double corner) {
     double variance = 0.0;
     for (uint32_t d = 0; d < made->count; d++) {
-        const double off = corner_of(&made->at[d]) - corner;
+        const double off = corner_of(&made->prediction[d]) - corner;
         variance += made->share[d] * off * off;
     }
     return sqrt(variance);
@@ -81,8 +82,8 @@ static void take_nearest(const predictions *made, lp_falloff_prediction *p) {
     const lp_falloff_prediction curves = *p;
     double nearest = INFINITY;
     for (uint32_t d = 0; d < made->count; d++) {
-        const double off = fabs(corner_of(&made->at[d]) - corner_of(&curves));
-        if (off < nearest) nearest = off, *p = made->at[d];
+        const double off = fabs(corner_of(&made->prediction[d]) - corner_of(&curves));
+        if (off < nearest) nearest = off, *p = made->prediction[d];
     }
     for (int c = 0; c < 3; c++)
         for (int n = 0; n < 3; n++) p->k[c][n] = curves.k[c][n];
@@ -90,14 +91,14 @@ static void take_nearest(const predictions *made, lp_falloff_prediction *p) {
 
 /* At every radius the mean of the predictions, or the weakest of them. */
 static void join(const predictions *made, int weakest, lp_falloff_prediction *p) {
-    double own[LP_FALLOFF_RADII], joined[LP_FALLOFF_RADII];
-    *p = made->at[0];
+    double samples[LP_FALLOFF_RADII], joined[LP_FALLOFF_RADII];
+    *p = made->prediction[0];
     for (int c = 0; c < 3 && made->count > 1; c++) {
         for (uint32_t d = 0; d < made->count; d++) {
-            lp_sample_falloff(made->at[d].k[c], own);
+            lp_sample_falloff(made->prediction[d].k[c], samples);
             for (int j = 0; j < LP_FALLOFF_RADII; j++)
-                joined[j] =
-                    weakest ? (d ? fmax(joined[j], own[j]) : own[j]) : (d ? joined[j] : 0.0) + made->share[d] * own[j];
+                joined[j] = weakest ? (d ? fmax(joined[j], samples[j]) : samples[j])
+                                    : (d ? joined[j] : 0.0) + made->share[d] * samples[j];
         }
         lp_fit_falloff(joined, p->k[c]);
     }
@@ -106,25 +107,25 @@ static void join(const predictions *made, int weakest, lp_falloff_prediction *p)
 
 /* How far the truth is from `p` by the distance alone: the spread over the usual distances, or over those stored where
  * none of the usual ones can be predicted. -1 without memory. */
-static int spread_by_distance(const lp_falloff_nodes *nodes, const lp_falloff_node *at, const predictions *made,
+static int spread_by_distance(const lp_falloff_nodes *nodes, const lp_falloff_node *target, const predictions *made,
                               const lp_falloff_prediction *p, double *sigma) {
     predictions likely;
-    if (predict_at(&usual, nodes, *at, &likely) < 0) return -1;
+    if (predict_at(&usual, nodes, *target, &likely) < 0) return -1;
     *sigma = spread_about(likely.count ? &likely : made, corner_of(p));
     return 1;
 }
 
-int lp_predict_any_distance(const lp_falloff_nodes *nodes, const lp_falloff_node *at, uint32_t rule,
+int lp_predict_any_distance(const lp_falloff_nodes *nodes, const lp_falloff_node *target, uint32_t rule,
                             lp_falloff_prediction *prediction, double *sigma) {
     const distances stored = stored_distances(nodes);
     const int is_lone = stored.count == 1;
     distances tried = rule == LENSPROF_DISTANCE_USUAL && !is_lone ? usual : stored;
     predictions made;
     if (rule == LENSPROF_DISTANCE_FARTHEST && tried.count) tried.count = 1;
-    if (predict_at(&tried, nodes, *at, &made) < 0) return -1;
-    *prediction = made.at[0];
+    if (predict_at(&tried, nodes, *target, &made) < 0) return -1;
+    *prediction = made.prediction[0];
     if (!made.count) return 0;
     join(&made, rule == LENSPROF_DISTANCE_WEAKEST, prediction);
     *sigma = LONE_DISTANCE_SIGMA;
-    return is_lone ? 1 : spread_by_distance(nodes, at, &made, prediction, sigma);
+    return is_lone ? 1 : spread_by_distance(nodes, target, &made, prediction, sigma);
 }

@@ -52,11 +52,12 @@ static bool is_same_setting(const lp_falloff_node *a, const lp_falloff_node *b) 
            && lp_is_same(a->distance_m, b->distance_m);
 }
 
-/* A row's place among the others: `at` is larger by no more than TOLERANCE of itself where the setting is the same. */
+/* A row's place among the others: `position` is larger by no more than TOLERANCE of itself where the setting is the
+ * same. */
 typedef struct placed {
-    double at;
+    double position;
     lp_candidate *row;
-    bool is_own; /* of the key's processing */
+    bool has_key_processing; /* of the key's processing */
 } placed;
 
 #define TOLERANCE 2e-6 /* twice that of lp_is_same */
@@ -73,14 +74,14 @@ static int order_of(double a, double b) { return a < b ? -1 : a > b; }
 /* Of rows with one setting profiles of the key's processing come before others, then the newest, as everywhere: it may
  * hold the others, or have overruled them. */
 static int compare_rank(const placed *a, const placed *b) {
-    if (a->is_own != b->is_own) return a->is_own ? -1 : 1;
+    if (a->has_key_processing != b->has_key_processing) return a->has_key_processing ? -1 : 1;
     return a->row->node.id > b->row->node.id ? -1 : a->row->node.id < b->row->node.id;
 }
 
 static int compare_places(const void *first, const void *second) {
     const placed *a = first, *b = second;
     const lp_falloff_node *of_a = &a->row->node, *of_b = &b->row->node;
-    int side = order_of(a->at, b->at);
+    int side = order_of(a->position, b->position);
     if (!side) side = order_of(of_a->focal_mm, of_b->focal_mm);
     if (!side) side = order_of(of_a->aperture, of_b->aperture);
     if (!side) side = order_of(of_a->distance_m, of_b->distance_m);
@@ -106,7 +107,7 @@ static void find_replaced(lp_candidates *group, uint32_t processing, placed *pla
         else
             places[kept++] = places[i];
     for (uint32_t i = 0; i < kept; i++)
-        for (uint32_t j = i + 1; j < kept && places[j].at <= places[i].at * (1.0 + TOLERANCE); j++)
+        for (uint32_t j = i + 1; j < kept && places[j].position <= places[i].position * (1.0 + TOLERANCE); j++)
             if (is_same_setting(&places[i].row->node, &places[j].row->node))
                 places[compare_rank(&places[i], &places[j]) < 0 ? j : i].row->is_replaced = true;
 }
@@ -191,36 +192,38 @@ static double sensor_sigma(const lp_candidates *group, const lensprof_profile_ke
 /* What those that are used have in common, where the key leaves it open. */
 static lensprof_profile_key complete_key(const lensprof_profile_key *key, const lensprof_lookup_options *o,
                                          const lp_candidates *group) {
-    lensprof_profile_key whole = *key;
-    if (o->any_processing) whole.processing = group->all[group->count - 1].processing; /* of the newest */
-    for (uint32_t i = 0; i < group->count && whole.crop_factor == LENSPROF_UNKNOWN; i++)
-        whole.crop_factor = group->all[i].crop;
-    return whole;
+    lensprof_profile_key completed = *key;
+    if (o->any_processing) completed.processing = group->all[group->count - 1].processing; /* of the newest */
+    for (uint32_t i = 0; i < group->count && completed.crop_factor == LENSPROF_UNKNOWN; i++)
+        completed.crop_factor = group->all[i].crop;
+    return completed;
 }
 
-static void mind_what_is_open(const lp_falloff_node *at, uint32_t distance_rule, lensprof_lookup *lookup) {
+static void add_unknown_reasons(const lp_falloff_node *target, uint32_t distance_rule, lensprof_lookup *lookup) {
     static const lensprof_reason distances[] = {LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE,
                                                 LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE,
                                                 LENSPROF_REASON_LOOKUP_USUAL_DISTANCE};
-    bool said = false;
+    bool is_reported = false;
     for (uint32_t i = 0; i < LENSPROF_LOOKUP_REASONS; i++)
-        said |= lookup->reason_code[i] == LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR;
-    if (lookup->sensor_sigma > 0.0 && !said) lp_mind(lookup, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, NULL);
-    if (at->distance_m == LENSPROF_UNKNOWN) lp_mind(lookup, distances[distance_rule], NULL);
+        is_reported |= lookup->reason_code[i] == LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR;
+    if (lookup->sensor_sigma > 0.0 && !is_reported)
+        lp_add_lookup_reason(lookup, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, NULL);
+    if (target->distance_m == LENSPROF_UNKNOWN) lp_add_lookup_reason(lookup, distances[distance_rule], NULL);
 }
 
 /* As lp_predict_falloff; -1 also on an error, which is in from->status. */
-static int predict_at(source *from, lp_falloff_nodes *nodes, const lp_falloff_node *at, uint32_t distance_rule,
+static int predict_at(source *from, lp_falloff_nodes *nodes, const lp_falloff_node *target, uint32_t distance_rule,
                       lp_falloff_prediction *p, double *distance_sigma) {
     nodes->read_variance = read_node, nodes->user = from;
     if (!nodes->count) return -1;
     *distance_sigma = 0.0;
-    return at->distance_m == LENSPROF_UNKNOWN ? lp_predict_any_distance(nodes, at, distance_rule, p, distance_sigma)
-                                              : lp_predict_falloff(nodes, at, p);
+    return target->distance_m == LENSPROF_UNKNOWN
+               ? lp_predict_any_distance(nodes, target, distance_rule, p, distance_sigma)
+               : lp_predict_falloff(nodes, target, p);
 }
 
 static lensprof_status predict(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
-                               lp_candidates *group, lp_falloff_node at, lp_falloff_answer *answer,
+                               lp_candidates *group, lp_falloff_node target, lp_falloff_answer *answer,
                                lensprof_lookup *lookup, lensprof_error *error) {
     lp_falloff_prediction p;
     double distance_sigma;
@@ -229,7 +232,7 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
     if (!nodes.node) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
     for (uint32_t i = 0; i < group->count; i++) rescale(&group->all[i], &answer->key);
     nodes.count = take_nodes(group, answer->key.processing, nodes.node);
-    const int done = predict_at(&from, &nodes, &at, o->distance_rule, &p, &distance_sigma);
+    const int done = predict_at(&from, &nodes, &target, o->distance_rule, &p, &distance_sigma);
     for (uint32_t i = 0; done > 0 && i < p.used; i++) {
         lookup->id[i] = nodes.node[p.row[i].node].id;
         lookup->weight[i] = p.row[i].weight;
@@ -240,11 +243,11 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
     lookup->distance = p.nearest;
     if (!done) return lp_refuse(store, lookup, LENSPROF_REASON_LOOKUP_TOO_FAR, error);
     lookup->rows = p.used;
-    lookup->falloff_sigma = p.sigma * lp_widening(group, &at);
+    lookup->falloff_sigma = p.sigma * lp_widening(group, &target);
     lookup->distance_sigma = distance_sigma;
     lookup->sensor_sigma = sensor_sigma(group, key, p.k[1]);
     memcpy(answer->k, p.k, sizeof answer->k);
-    mind_what_is_open(&at, o->distance_rule, lookup);
+    add_unknown_reasons(&target, o->distance_rule, lookup);
     return LENSPROF_OK;
 }
 
@@ -252,13 +255,13 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
 static lensprof_status ask_group(lensprof_store *store, const lensprof_profile_key *key,
                                  const lensprof_lookup_options *o, lp_candidates *group, lp_falloff_answer *answer,
                                  lensprof_lookup *lookup, lensprof_error *error) {
-    lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
-    lp_round_focal(group, &at, lookup);
-    int64_t same = lp_find_exact(group, &at, key);
+    lp_falloff_node target = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
+    lp_round_focal(group, &target, lookup);
+    int64_t same = lp_find_exact(group, &target, key);
     if (same < 0) {
-        const lensprof_reason wrong = lp_settle(group, &at, lookup);
+        const lensprof_reason wrong = lp_resolve_setting(group, &target, lookup);
         if (wrong) return lp_refuse(store, lookup, wrong, error);
-        same = lp_find_exact(group, &at, key);
+        same = lp_find_exact(group, &target, key);
     }
     answer->key = complete_key(key, o, group);
     if (same > 0) {
@@ -267,9 +270,9 @@ static lensprof_status ask_group(lensprof_store *store, const lensprof_profile_k
         return LENSPROF_OK;
     }
     char text[sizeof lookup->reason];
-    if (lp_is_outside_both(group, &at, text, sizeof text)) return refuse_both(store, text, lookup, error);
+    if (lp_is_outside_both(group, &target, text, sizeof text)) return refuse_both(store, text, lookup, error);
     const lensprof_status status = lp_read_curves(store, group, error);
-    return status == LENSPROF_OK ? predict(store, key, o, group, at, answer, lookup, error) : status;
+    return status == LENSPROF_OK ? predict(store, key, o, group, target, answer, lookup, error) : status;
 }
 
 /* ---- groups, the best first ---- */
@@ -284,18 +287,18 @@ static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_prof
         LENSPROF_REASON_LOOKUP_DOUBTFUL, LENSPROF_REASON_LOOKUP_OTHER_CAMERA};
     const bool has_lens = lp_is_known(key->lens);
     lensprof_lookup_options wider = *o;
-    for (int which = 0; which < (has_lens ? 3 : 2); which++) {
+    for (int step = 0; step < (has_lens ? 3 : 2); step++) {
         lp_candidates others;
         memset(&others, 0, sizeof others);
-        if (which == 0) wider.any_processing = 1;
-        if (which == 1) wider.with_doubt = 1;
-        others.any_unit = which == 2;
+        if (step == 0) wider.any_processing = 1;
+        if (step == 1) wider.with_doubt = 1;
+        others.any_unit = step == 2;
         const lensprof_status status = lp_find_candidates(store, key, &wider, &others, error);
         const uint32_t count = others.count;
         free(others.all);
         if (status != LENSPROF_OK) return status;
         *knows_lens |= count > 0;
-        if (count) return lp_refuse(store, lookup, reasons[which], error);
+        if (count) return lp_refuse(store, lookup, reasons[step], error);
     }
     const bool of_lens = has_lens || !*key->camera_model;
     return lp_refuse(store, lookup, of_lens ? LENSPROF_REASON_LOOKUP_NO_LENS : LENSPROF_REASON_LOOKUP_NO_CAMERA, error);
@@ -319,11 +322,11 @@ static lensprof_status ask_groups(lensprof_store *store, const lensprof_profile_
             if (error) *error = best_error;
             return status;
         }
-        lensprof_error own;
-        lp_store_clear(&own);
-        status = ask_group(store, key, o, group, answer, lookup, &own);
-        if (!tried) best = *lookup, best_error = own;
-        if (status != LENSPROF_OK && status != LENSPROF_ERROR_NOT_FOUND && error) *error = own;
+        lensprof_error group_error;
+        lp_store_clear(&group_error);
+        status = ask_group(store, key, o, group, answer, lookup, &group_error);
+        if (!tried) best = *lookup, best_error = group_error;
+        if (status != LENSPROF_OK && status != LENSPROF_ERROR_NOT_FOUND && error) *error = group_error;
     }
     return status;
 }

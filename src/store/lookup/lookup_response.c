@@ -123,11 +123,11 @@ typedef struct spellings {
 } spellings;
 
 static void spell(const lensprof_profile_key *key, spellings *all) {
-    char own[LP_NAME_BYTES], maker[LP_NAME_BYTES];
+    char model[LP_NAME_BYTES], maker[LP_NAME_BYTES];
     const char *names[LP_CAMERA_NAMES];
-    lp_squeeze(key->camera_model, own);
+    lp_squeeze(key->camera_model, model);
     lp_squeeze(key->camera_maker, maker);
-    const char *bare = lp_without_maker(own), *in_front = lp_maker_in_front(own);
+    const char *bare = lp_without_maker(model), *in_front = lp_maker_in_front(model);
     if (!in_front) in_front = lp_maker_in_front(maker);
     if (!in_front) in_front = maker;
     const uint32_t count = lp_camera_names(bare, names);
@@ -172,7 +172,7 @@ static lensprof_status choose_profiles(lensprof_store *store, const lensprof_pro
 
 /* Sums over the profiles, each times its weight. */
 typedef struct sums {
-    double weight, shared, own; /* of 1/s^2; of the errors that all share, w s; of the others, w^2 s^2 */
+    double weight, shared, independent; /* of 1/s^2; of the errors that all share, w s; of the others, w^2 s^2 */
     double table[3][LENSPROF_RESPONSE_SAMPLES];
     double emor[3][LENSPROF_EMOR_MODES];
     double covariance[LENSPROF_EMOR_MODES * LENSPROF_EMOR_MODES];
@@ -184,7 +184,7 @@ static void add_profile(sums *all, const lensprof_profile *profile, double sigma
     const double w = 1.0 / (sigma * sigma);
     const uint32_t n = profile->covariance_size, modes = profile->response[0].modes;
     all->weight += w;
-    *(is_shared ? &all->shared : &all->own) += is_shared ? w * sigma : w * w * sigma * sigma;
+    *(is_shared ? &all->shared : &all->independent) += is_shared ? w * sigma : w * w * sigma * sigma;
     for (uint32_t c = 0; c < 3; c++) {
         const lensprof_response *response = &profile->response[profile->responses == 3 ? c : 0];
         all->is_emor &= response->kind == LENSPROF_RESPONSE_EMOR;
@@ -260,7 +260,7 @@ static lensprof_status fuse(lensprof_store *store, const choice *chosen, lp_resp
     }
     if (!answer->rows) return LENSPROF_OK;
     answer->from = LENSPROF_RESPONSE_FROM_CAMERA;
-    const double variance = (all.shared * all.shared + all.own) / (all.weight * all.weight);
+    const double variance = (all.shared * all.shared + all.independent) / (all.weight * all.weight);
     answer->sigma = sqrt(variance + REPEATABILITY * REPEATABILITY);
     for (uint32_t i = 0; i < answer->rows; i++) answer->weight[i] /= all.weight;
     lensprof_status status = LENSPROF_OK;

@@ -8,23 +8,23 @@
 #define LEAST_SCORE 0.2 /* of a name that is near at all */
 
 /* Keeps names[count] in the order of their scores; returns how many there are then. */
-static uint32_t keep(lensprof_store_name *names, uint32_t count, uint32_t most, const char *lens, double score) {
-    uint32_t at = count;
+static uint32_t keep(lensprof_store_name *names, uint32_t count, uint32_t max_count, const char *lens, double score) {
+    uint32_t index = count;
     for (uint32_t i = 0; i < count; i++) {
         if (!strcmp(names[i].lens, lens)) return count;
-        if (score > names[i].score && at == count) at = i;
+        if (score > names[i].score && index == count) index = i;
     }
-    if (at == most) return count;
-    const uint32_t last = count < most ? count : most - 1;
-    memmove(&names[at + 1], &names[at], (last - at) * sizeof *names);
-    memset(&names[at], 0, sizeof *names);
-    strcpy(names[at].lens, lens);
-    names[at].score = score;
+    if (index == max_count) return count;
+    const uint32_t last = count < max_count ? count : max_count - 1;
+    memmove(&names[index + 1], &names[index], (last - index) * sizeof *names);
+    memset(&names[index], 0, sizeof *names);
+    strcpy(names[index].lens, lens);
+    names[index].score = score;
     return last + 1;
 }
 
 static lensprof_status search(lensprof_store *store, const lensprof_profile_key *key, lensprof_store_name *names,
-                              uint32_t most, uint32_t *count, lensprof_error *error) {
+                              uint32_t max_count, uint32_t *count, lensprof_error *error) {
     lp_store_reader reader = {NULL, 0, NULL};
     lensprof_status status =
         lp_store_prepare(store, "SELECT DISTINCT trim(lens) FROM profiles ORDER BY 1", &reader.statement, error);
@@ -36,7 +36,7 @@ static lensprof_status search(lensprof_store *store, const lensprof_profile_key 
         lp_read_text(&reader, lens, sizeof lens);
         if (reader.bad) continue;
         const double score = lp_words_likeness(lens, key->lens, key->camera_maker);
-        if (score >= LEAST_SCORE) *count = keep(names, *count, most, lens, score);
+        if (score >= LEAST_SCORE) *count = keep(names, *count, max_count, lens, score);
     }
     if (rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, reader.statement);

@@ -77,10 +77,10 @@ static bool have_own_word(const lp_words *x, const lp_words *y, bool any_letter)
     return false;
 }
 
-/* Makers that are both named must be the same. One alone must be the camera's (`own`, NULL = none that is known), or
- * that of lenses for others' cameras; then the names must share more than numbers, as where one alone has a code: "E
- * 20mm F2.8 F050" is no "Sony E 20mm F2.8". */
-static bool may_be_same_maker(const lp_words *x, const lp_words *y, const char *camera_maker, const char *own,
+/* Makers that are both named must be the same. One alone must be the camera's (`own_maker`, NULL = none that is known),
+ * or that of lenses for others' cameras; then the names must share more than numbers, as where one alone has a code:
+ * "E 20mm F2.8 F050" is no "Sony E 20mm F2.8". */
+static bool may_be_same_maker(const lp_words *x, const lp_words *y, const char *camera_maker, const char *own_maker,
                               uint32_t apart) {
     const share codes = compare(x, y, LP_WORD_CODE);
     if (!x->makers && !y->makers) return true;
@@ -91,26 +91,26 @@ static bool may_be_same_maker(const lp_words *x, const lp_words *y, const char *
     }
     if ((codes.alone[0] || codes.alone[1]) && !have_own_word(x, y, false)) return false;
     const lp_words *named = x->makers ? x : y;
-    if (!*camera_maker || (own && is_named(named, own))) return true;
+    if (!*camera_maker || (own_maker && is_named(named, own_maker))) return true;
     for (uint32_t i = 0; i < named->makers; i++)
-        if (own && lp_makes_lenses_alone(named->maker[i])) return have_own_word(x, y, !apart);
+        if (own_maker && lp_makes_lenses_alone(named->maker[i])) return have_own_word(x, y, !apart);
     return false;
 }
 
 /* A name of numbers alone is anybody's. */
-static bool says_enough(const lp_words *words) {
+static bool is_informative(const lp_words *words) {
     if (words->makers) return true;
     for (uint32_t i = 0; i < words->count; i++)
         if (words->word[i].kind != LP_WORD_NUMBER) return true;
     return false;
 }
 
-static void weigh(lp_words *x, lp_words *y, const char *own) {
+static void weigh(lp_words *x, lp_words *y, const char *own_maker) {
     const char *makers[2 * LP_MOST_MAKERS + 1];
     uint32_t count = 0;
     for (uint32_t i = 0; i < x->makers; i++) makers[count++] = x->maker[i];
     for (uint32_t i = 0; i < y->makers; i++) makers[count++] = y->maker[i];
-    if (!count && own) makers[count++] = own;
+    if (!count && own_maker) makers[count++] = own_maker;
     lp_weigh_words(x, makers, count);
     lp_weigh_words(y, makers, count);
 }
@@ -118,17 +118,17 @@ static void weigh(lp_words *x, lp_words *y, const char *own) {
 static bool match(lp_words *x, lp_words *y, const char *camera_maker, uint32_t *apart) {
     char camera[LP_NAME_BYTES];
     *apart = 0;
-    if (!have_same_numbers(x, y) || !says_enough(x) || !says_enough(y)) return false;
+    if (!have_same_numbers(x, y) || !is_informative(x) || !is_informative(y)) return false;
     lp_squeeze(camera_maker, camera);
-    const char *own = lp_maker_in_front(camera);
-    weigh(x, y, own);
+    const char *own_maker = lp_maker_in_front(camera);
+    weigh(x, y, own_maker);
     if (!is_same_identity(x, y) || !is_same_identity(y, x)) return false;
     for (int kind = LP_WORD_VARIANT; kind < LP_WORD_KINDS; kind++) {
         const share s = compare(x, y, (lp_word_kind)kind);
         if ((kind == LP_WORD_DESIGN || kind == LP_WORD_CODE) && is_contradiction(s)) return false;
         *apart += s.alone[0] + s.alone[1];
     }
-    return may_be_same_maker(x, y, camera, own, *apart);
+    return may_be_same_maker(x, y, camera, own_maker, *apart);
 }
 
 bool lp_may_match(const lp_words *asked, const char *stored) {
@@ -165,8 +165,8 @@ double lp_words_likeness(const char *a, const char *b, const char *camera_maker)
     for (uint32_t i = 0; i < y.count; i++)
         if (!has(&x, y.word[i].text, y.word[i].kind)) all += weight(&y.word[i]);
     lp_squeeze(camera_maker, camera);
-    const char *own = x.makers ? x.maker[0] : lp_maker_in_front(camera),
-               *other = y.makers ? y.maker[0] : lp_maker_in_front(camera);
+    const char *first_maker = x.makers ? x.maker[0] : lp_maker_in_front(camera),
+               *second_maker = y.makers ? y.maker[0] : lp_maker_in_front(camera);
     const double likeness = all > 0.0 ? common / all : 0.0;
-    return own && other && strcmp(own, other) ? 0.5 * likeness : likeness;
+    return first_maker && second_maker && strcmp(first_maker, second_maker) ? 0.5 * likeness : likeness;
 }

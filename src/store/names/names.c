@@ -178,8 +178,8 @@ int lp_is_same_maker(const char *a, const char *b) {
 uint32_t lp_camera_names(const char *squeezed, const char *names[LP_CAMERA_NAMES]) {
     uint32_t count = 0;
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras && !count; i++)
-        for (int own = 0; own < LP_CAMERA_NAMES; own++) {
-            if (strcmp(cameras[i][own], squeezed)) continue;
+        for (int index = 0; index < LP_CAMERA_NAMES; index++) {
+            if (strcmp(cameras[i][index], squeezed)) continue;
             for (int n = 0; n < LP_CAMERA_NAMES; n++) names[count++] = cameras[i][n];
             break;
         }
@@ -188,29 +188,29 @@ uint32_t lp_camera_names(const char *squeezed, const char *names[LP_CAMERA_NAMES
 }
 
 static void add(lp_names *names, const char *front, const char *name) {
-    char whole[LP_NAME_BYTES];
+    char combined[LP_NAME_BYTES];
     const size_t first = strlen(front), second = strlen(name);
-    if (!second || first + second >= sizeof whole || names->count == LP_NAME_VARIANTS) return;
-    memcpy(whole, front, first);
-    memcpy(whole + first, name, second + 1);
+    if (!second || first + second >= sizeof combined || names->count == LP_NAME_VARIANTS) return;
+    memcpy(combined, front, first);
+    memcpy(combined + first, name, second + 1);
     for (uint32_t i = 0; i < names->count; i++)
-        if (!strcmp(names->name[i], whole)) return;
-    strcpy(names->name[names->count++], whole);
+        if (!strcmp(names->name[i], combined)) return;
+    strcpy(names->name[names->count++], combined);
 }
 
 void lp_name_variants(const char *lens, const char *camera_maker, lp_names *names) {
-    char own[LP_NAME_BYTES], camera[LP_NAME_BYTES];
+    char squeezed[LP_NAME_BYTES], camera[LP_NAME_BYTES];
     const char *maker;
     names->count = 0;
-    lp_squeeze(lens, own);
+    lp_squeeze(lens, squeezed);
     lp_squeeze(camera_maker, camera);
-    const char *bare = without_maker(own, &maker);
+    const char *bare = without_maker(squeezed, &maker);
     const struct spelling *of_camera = spelling_in_front(camera);
-    add(names, "", own);
+    add(names, "", squeezed);
     add(names, "", bare);
-    if (!maker) add(names, of_camera ? of_camera->maker : camera, own);
+    if (!maker) add(names, of_camera ? of_camera->maker : camera, squeezed);
     if (!maker && of_camera) maker = of_camera->maker;
-    if (maker) add(names, maker, own); /* "Nikon Nikkor Z 50mm" */
+    if (maker) add(names, maker, squeezed); /* "Nikon Nikkor Z 50mm" */
     for (size_t i = 0; maker && i < SPELLINGS; i++)
         if (!strcmp(spellings[i].maker, maker)) add(names, spellings[i].text, bare);
 }

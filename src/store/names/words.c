@@ -19,7 +19,7 @@ static bool is_one_of(const char *word, const char *const *list, size_t count) {
 }
 #define IS_ONE_OF(word, list) is_one_of(word, list, sizeof(list) / sizeof *(list))
 
-static bool says_nothing(const char *word) {
+static bool is_filler_word(const char *word) {
     static const char *const idle[] = {"lens", "mm", "f", "mark", "mk", "carl", "compatibles"};
     return IS_ONE_OF(word, idle);
 }
@@ -86,7 +86,7 @@ static bool add_letters(reading *r, char *word) {
         if (r->words->makers < LP_MOST_MAKERS) r->words->maker[r->words->makers++] = maker;
         return true;
     }
-    if (says_nothing(word)) return true;
+    if (is_filler_word(word)) return true;
     const char *generation = generation_in(word, &first);
     if (generation) return (!first || add(r, first, LP_WORD_IDENTITY)) && add(r, generation, LP_WORD_IDENTITY);
     if (!strcmp(word, "eye")) return true; /* "fish-eye" */

@@ -112,9 +112,9 @@ lensprof_status lensprof_store_put_camera(lensprof_store *store, const lensprof_
 
 /* Refuses what no camera has: the text names the row. */
 static lensprof_status refuse(const lensprof_store *store, int64_t id, const char *wrong, lensprof_error *error) {
-    char what[120];
-    snprintf(what, sizeof what, "camera %lld is damaged (%s)", (long long)id, wrong);
-    return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, what,
+    char problem[120];
+    snprintf(problem, sizeof problem, "camera %lld is damaged (%s)", (long long)id, wrong);
+    return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, problem,
                          "import the cameras again, or restore the file from a copy", error);
 }
 
@@ -227,7 +227,7 @@ lensprof_status lensprof_store_find_camera(lensprof_store *store, const char *ma
 typedef struct listing {
     const lensprof_store *store;
     lensprof_camera_model *all;
-    uint32_t kept, room, capacity, found;
+    uint32_t kept, allocated, capacity, found;
 } listing;
 
 static lensprof_status list_camera(void *user, int64_t id, const lensprof_camera_model *camera, const char *wrong,
@@ -236,11 +236,11 @@ static lensprof_status list_camera(void *user, int64_t id, const lensprof_camera
     if (wrong) return refuse(list->store, id, wrong, error);
     list->found++;
     if (list->kept == list->capacity) return LENSPROF_OK;
-    if (list->kept == list->room) {
-        const uint32_t room = list->room ? 2 * list->room : 64;
-        lensprof_camera_model *all = realloc(list->all, room * sizeof *all);
+    if (list->kept == list->allocated) {
+        const uint32_t allocated = list->allocated ? 2 * list->allocated : 64;
+        lensprof_camera_model *all = realloc(list->all, allocated * sizeof *all);
         if (!all) return lp_store_fail_sql(list->store->path, NULL, SQLITE_NOMEM, error);
-        list->all = all, list->room = room;
+        list->all = all, list->allocated = allocated;
     }
     list->all[list->kept++] = *camera;
     return LENSPROF_OK;

@@ -24,11 +24,11 @@ static lensprof_status report(inspection *all, int64_t id, const char *reason) {
 }
 
 /* A statement that could not be run to its end: damage is a fault of the file, anything else ends the check. */
-static lensprof_status report_failure(inspection *all, int rc, const char *what, lensprof_error *error) {
+static lensprof_status report_failure(inspection *all, int rc, const char *problem, lensprof_error *error) {
     char reason[200];
     const lensprof_status status = lp_store_fail_sql(all->store->path, all->store->db, rc, error);
     if (status != LENSPROF_ERROR_CORRUPT) return status;
-    snprintf(reason, sizeof reason, "%s (%.100s)", what, sqlite3_errmsg(all->store->db));
+    snprintf(reason, sizeof reason, "%s (%.100s)", problem, sqlite3_errmsg(all->store->db));
     lp_store_clear(error);
     return report(all, 0, reason);
 }
@@ -36,8 +36,8 @@ static lensprof_status report_failure(inspection *all, int rc, const char *what,
 /* Where SQLite could not read on (no memory, an I/O error) its check reports that in a text, like damage: the result
  * code in it, or SQLITE_OK. */
 static int code_in(const char *text) {
-    const char *at = strstr(text, "error code");
-    const int code = at ? (int)strtol(at + strlen("error code") + 1, NULL, 10) : SQLITE_OK;
+    const char *marker = strstr(text, "error code");
+    const int code = marker ? (int)strtol(marker + strlen("error code") + 1, NULL, 10) : SQLITE_OK;
     return (code & 0xff) == SQLITE_CORRUPT ? SQLITE_OK : code;
 }
 

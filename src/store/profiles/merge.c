@@ -12,17 +12,17 @@ typedef struct arrival {
 typedef struct merging {
     lensprof_store *store, *other;
     arrival *all; /* by rising `from` */
-    size_t count, room;
+    size_t count, allocated;
     uint32_t added, known;
 } merging;
 
 /* False without memory. */
 static bool remember(merging *m, int64_t from, int64_t to) {
-    if (m->count == m->room) {
-        const size_t room = m->room ? 2 * m->room : 256;
-        arrival *all = realloc(m->all, room * sizeof *all);
+    if (m->count == m->allocated) {
+        const size_t allocated = m->allocated ? 2 * m->allocated : 256;
+        arrival *all = realloc(m->all, allocated * sizeof *all);
         if (!all) return false;
-        m->all = all, m->room = room;
+        m->all = all, m->allocated = allocated;
     }
     m->all[m->count++] = (arrival){from, to};
     return true;
@@ -47,14 +47,14 @@ static int64_t prior_here(const merging *m, const lensprof_provenance *provenanc
 }
 
 /* A new profile. */
-static lensprof_status add(merging *m, lensprof_profile *profile, int64_t *here, lensprof_error *error) {
+static lensprof_status add(merging *m, lensprof_profile *profile, int64_t *target_id, lensprof_error *error) {
     m->added++;
     profile->provenance.prior_id = prior_here(m, &profile->provenance);
-    return lp_store_insert(m->store, profile, here, error);
+    return lp_store_insert(m->store, profile, target_id, error);
 }
 
 /* A known profile, now in the store's scratch, gets its prior where only the other database has it. */
-static lensprof_status complete(merging *m, const lensprof_profile *profile, int64_t here, lensprof_error *error) {
+static lensprof_status complete(merging *m, const lensprof_profile *profile, int64_t target_id, lensprof_error *error) {
     const int64_t prior = prior_here(m, &profile->provenance);
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
     m->known++;
@@ -63,17 +63,18 @@ static lensprof_status complete(merging *m, const lensprof_profile *profile, int
         lp_store_prepare(m->store, "UPDATE profiles SET prior_id = ?1 WHERE id = ?2", &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     lp_bind_integer(&binder, prior);
-    lp_bind_integer(&binder, here);
+    lp_bind_integer(&binder, target_id);
     return lp_store_run(m->store, &binder, error);
 }
 
 static lensprof_status take(merging *m, int64_t id, lensprof_error *error) {
-    int64_t here = 0;
+    int64_t target_id = 0;
     lensprof_profile *profile = &m->other->scratch;
     lensprof_status status = lp_store_fetch(m->other, id, error);
-    if (status == LENSPROF_OK) status = lp_store_find_same(m->store, profile, &here, error);
-    if (status == LENSPROF_OK) status = here ? complete(m, profile, here, error) : add(m, profile, &here, error);
-    if (status == LENSPROF_OK && !remember(m, id, here))
+    if (status == LENSPROF_OK) status = lp_store_find_same(m->store, profile, &target_id, error);
+    if (status == LENSPROF_OK)
+        status = target_id ? complete(m, profile, target_id, error) : add(m, profile, &target_id, error);
+    if (status == LENSPROF_OK && !remember(m, id, target_id))
         return lp_store_fail_sql(m->store->path, NULL, SQLITE_NOMEM, error);
     return status;
 }

@@ -188,20 +188,22 @@ lensprof_status lensprof_store_get(lensprof_store *store, int64_t id, lensprof_p
 /* Rows as they come, in a buffer that grows, so that the caller's stays untouched when a later row fails. */
 typedef struct listing {
     lensprof_store_row *rows;
-    uint32_t kept, room, capacity, found;
+    uint32_t kept, allocated, capacity, found;
 } listing;
 
 static bool keep(listing *list, const lensprof_store_row *row) {
     if (list->found < UINT32_MAX) list->found++;
     if (list->kept == list->capacity) return true;
-    if (list->kept == list->room) {
-        uint32_t room = list->room > list->capacity / 2 ? list->capacity : list->room ? 2 * list->room : 16;
-        if (room > list->capacity) room = list->capacity;
-        uint64_t bytes = (uint64_t)room * sizeof *list->rows;
+    if (list->kept == list->allocated) {
+        uint32_t allocated = list->allocated > list->capacity / 2 ? list->capacity
+                             : list->allocated                    ? 2 * list->allocated
+                                                                  : 16;
+        if (allocated > list->capacity) allocated = list->capacity;
+        uint64_t bytes = (uint64_t)allocated * sizeof *list->rows;
         lensprof_store_row *rows = bytes == (size_t)bytes ? realloc(list->rows, (size_t)bytes) : NULL;
         if (!rows) return false;
         list->rows = rows;
-        list->room = room;
+        list->allocated = allocated;
     }
     list->rows[list->kept++] = *row;
     return true;

@@ -27,7 +27,7 @@ static const char *const cameras_sql =
 typedef struct summaries {
     lensprof_store_summary *rows; /* free it */
     bool *is_named;               /* of each: its name is the one that is asked for */
-    uint32_t count, room, named;
+    uint32_t count, allocated, named;
 } summaries;
 
 static void free_summaries(summaries *all) {
@@ -36,13 +36,13 @@ static void free_summaries(summaries *all) {
 }
 
 static bool grow(summaries *all) {
-    if (all->count < all->room) return true;
-    const uint32_t room = all->room ? 2 * all->room : 64;
-    lensprof_store_summary *rows = realloc(all->rows, room * sizeof *rows);
+    if (all->count < all->allocated) return true;
+    const uint32_t allocated = all->allocated ? 2 * all->allocated : 64;
+    lensprof_store_summary *rows = realloc(all->rows, allocated * sizeof *rows);
     if (rows) all->rows = rows;
-    bool *is_named = rows ? realloc(all->is_named, room * sizeof *is_named) : NULL;
+    bool *is_named = rows ? realloc(all->is_named, allocated * sizeof *is_named) : NULL;
     if (!is_named) return false;
-    all->is_named = is_named, all->room = room;
+    all->is_named = is_named, all->allocated = allocated;
     return true;
 }
 
@@ -61,24 +61,24 @@ static void read_summary(lp_store_reader *reader, lensprof_store_summary *row) {
 
 /* Whether each word of `part` is in the name. */
 static bool has_words(const lensprof_store_summary *row, const char *part) {
-    char whole[LP_NAME_BYTES], squeezed[LP_NAME_BYTES], word[LP_NAME_BYTES];
+    char full_name[LP_NAME_BYTES], squeezed[LP_NAME_BYTES], word[LP_NAME_BYTES];
     size_t used = 0;
     for (const char *const *text = (const char *const[]){row->camera_maker, row->camera_model, row->lens, NULL}; *text;
          text++) {
         lp_squeeze(*text, squeezed);
         const size_t bytes = strlen(squeezed);
-        if (used + bytes >= sizeof whole) break;
-        memcpy(whole + used, squeezed, bytes);
+        if (used + bytes >= sizeof full_name) break;
+        memcpy(full_name + used, squeezed, bytes);
         used += bytes;
     }
-    whole[used] = 0;
+    full_name[used] = 0;
     while (*part) {
         const size_t bytes = strcspn(part, " ");
         if (bytes >= sizeof word) return false;
         memcpy(word, part, bytes);
         word[bytes] = 0;
         lp_squeeze(word, squeezed);
-        if (!strstr(whole, squeezed)) return false;
+        if (!strstr(full_name, squeezed)) return false;
         part += bytes + strspn(part + bytes, " ");
     }
     return true;

@@ -22,9 +22,9 @@ static lensprof_status check_profile(lensprof_store *store, const lensprof_profi
     if (status != LENSPROF_OK) return status;
     status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) {
-        char what[80];
-        snprintf(what, sizeof what, "the profile is invalid (%s)", lensprof_status_name(status));
-        return lp_store_fail(store->path, status, what, "nothing was stored; correct the profile", error);
+        char problem[80];
+        snprintf(problem, sizeof problem, "the profile is invalid (%s)", lensprof_status_name(status));
+        return lp_store_fail(store->path, status, problem, "nothing was stored; correct the profile", error);
     }
     if (profile->provenance.not_usable && !profile->provenance.forced)
         return lp_store_fail(store->path, LENSPROF_ERROR_ARGUMENT, "the fit of this profile was not usable",
