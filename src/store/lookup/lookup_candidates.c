@@ -239,9 +239,9 @@ static lensprof_status find_by_words(lensprof_store *store, const lensprof_profi
                                      lensprof_error *error) {
     sqlite3_stmt *statement;
     best_name best = {"", 0, false};
-    lp_words asked;
+    lp_words requested;
     *name = 0;
-    if (!lp_split_words(key->lens, &asked)) return LENSPROF_OK;
+    if (!lp_split_words(key->lens, &requested)) return LENSPROF_OK;
     lensprof_status status = lp_store_prepare(store, lenses_sql[store->layout >= 3], &statement, error);
     if (status != LENSPROF_OK) return status;
     int rc = sqlite3_step(statement);
@@ -249,7 +249,7 @@ static lensprof_status find_by_words(lensprof_store *store, const lensprof_profi
         uint32_t apart;
         const char *stored = (const char *)sqlite3_column_text(statement, 0);
         if (!stored || (size_t)sqlite3_column_bytes(statement, 0) >= sizeof((lensprof_profile_key *)0)->lens) continue;
-        if (lp_may_match(&asked, stored) && lp_words_match(&asked, stored, key->camera_maker, &apart) > 0.0)
+        if (lp_may_match(&requested, stored) && lp_words_match(&requested, stored, key->camera_maker, &apart) > 0.0)
             keep_better(&best, stored, apart);
     }
     if (rc != SQLITE_ROW && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);

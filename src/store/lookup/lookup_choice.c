@@ -97,18 +97,18 @@ static bool keep_nearest_light(lp_candidates *found, const lensprof_profile_key 
     uint32_t kept = 0;
     double nearest = INFINITY;
     if (key->color_temperature_k == LENSPROF_UNKNOWN) return true;
-    const double asked = mired_of(key->color_temperature_k);
+    const double requested = mired_of(key->color_temperature_k);
     for (uint32_t i = 0; i < found->count; i++)
         if (found->all[i].color_temperature_k != LENSPROF_UNKNOWN)
-            nearest = fmin(nearest, fabs(mired_of(found->all[i].color_temperature_k) - asked));
+            nearest = fmin(nearest, fabs(mired_of(found->all[i].color_temperature_k) - requested));
     for (uint32_t i = 0; i < found->count; i++) {
         const lp_candidate *c = &found->all[i];
         if (c->color_temperature_k == LENSPROF_UNKNOWN
-            || fabs(mired_of(c->color_temperature_k) - asked) <= nearest * (1.0 + 1e-9))
+            || fabs(mired_of(c->color_temperature_k) - requested) <= nearest * (1.0 + 1e-9))
             found->all[kept++] = *c;
     }
     found->count = kept;
-    return nearest == INFINITY || nearest <= 1e-6 * asked;
+    return nearest == INFINITY || nearest <= 1e-6 * requested;
 }
 
 double lp_choose_candidates(const lp_candidates *found, const lensprof_profile_key *key, double below,
@@ -170,11 +170,11 @@ static int place_of(const lp_candidates *found, const lp_falloff_node *target, i
         if (value > low + 1e-6) above_low = fmin(above_low, value);
         if (value < high - 1e-6) below_high = fmax(below_high, value);
     }
-    const double asked = log2(setting(target, axis)), least = 1e-6;
+    const double requested = log2(setting(target, axis)), least = 1e-6;
     const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
     const double after = high - low > 1e-6 ? fmax(high - below_high, single) : single;
-    if (asked < low - before - least || asked > high + after + least) return 2;
-    return asked < low - least || asked > high + least;
+    if (requested < low - before - least || requested > high + after + least) return 2;
+    return requested < low - least || requested > high + least;
 }
 
 /* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */

@@ -131,14 +131,14 @@ static bool match(lp_words *x, lp_words *y, const char *camera_maker, uint32_t *
     return may_be_same_maker(x, y, camera, own_maker, *apart);
 }
 
-bool lp_may_match(const lp_words *asked, const char *stored) {
-    for (uint32_t i = 0; i < asked->count; i++)
-        if (asked->word[i].kind == LP_WORD_NUMBER && !strstr(stored, asked->word[i].text)) return false;
+bool lp_may_match(const lp_words *requested, const char *stored) {
+    for (uint32_t i = 0; i < requested->count; i++)
+        if (requested->word[i].kind == LP_WORD_NUMBER && !strstr(stored, requested->word[i].text)) return false;
     return true;
 }
 
-double lp_words_match(const lp_words *asked, const char *stored, const char *camera_maker, uint32_t *apart) {
-    lp_words x, y = *asked;
+double lp_words_match(const lp_words *requested, const char *stored, const char *camera_maker, uint32_t *apart) {
+    lp_words x, y = *requested;
     *apart = 0;
     if (!lp_split_words(stored, &x) || !match(&x, &y, camera_maker, apart)) return 0.0;
     return *apart ? WORDS_MISSING : SAME_WORDS;

@@ -37,14 +37,14 @@ const char *lp_maker_in_front(const char *squeezed);
 bool lp_makes_lenses_alone(const char *maker);
 
 /* False where the numbers of the names differ, in most cases: a quick look before lp_words_match. */
-bool lp_may_match(const lp_words *asked, const char *stored);
+bool lp_may_match(const lp_words *requested, const char *stored);
 
 /* 0.6: the same words in another order, except for words that do not identify the lens ("lens", "mm", "for Canon EF");
  * 0.5: some that may be missing are in one of the names alone (glass and advertising: "ED", "M.Zuiko Digital" and "M.",
  * "(IF)"; the maker's code, "A032"), *apart is how many. All numbers (focal lengths, f-numbers) agree, and all other
  * words, as generations (II, III), mounts, motors and stabilisers, tell lenses apart. Makers that are both named are
  * the same; one that is named in one of them is the camera's (empty = any), or makes lenses for others'. Else 0. */
-double lp_words_match(const lp_words *asked, const char *stored, const char *camera_maker, uint32_t *apart);
+double lp_words_match(const lp_words *requested, const char *stored, const char *camera_maker, uint32_t *apart);
 double lp_words_score(const char *a, const char *b, const char *camera_maker);
 
 /* Whether the lens is that of several variants which is meant where none is named: "... (Standard)". */

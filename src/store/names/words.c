@@ -38,10 +38,10 @@ bool lp_is_common_word(const char *word) {
 typedef struct reading {
     lp_words *words;
     const char *text;
-    char bracket;         /* that is open, or 0 */
-    bool is_behind_bar;   /* "| Contemporary 016" */
-    bool is_behind_plus;  /* "+ 1.4x": words of what is attached, which are never the lens's */
-    bool is_behind_macro; /* "Macro 1:2" */
+    char bracket;       /* that is open, or 0 */
+    bool follows_bar;   /* "| Contemporary 016" */
+    bool follows_plus;  /* "+ 1.4x": words of what is attached, which are never the lens's */
+    bool follows_macro; /* "Macro 1:2" */
     uint32_t numbers;
 } reading;
 
@@ -50,8 +50,8 @@ static bool add(reading *r, const char *text, lp_word_kind kind) {
     if (w->count == LP_MOST_WORDS) return false;
     lp_word *word = &w->word[w->count++];
     memset(word, 0, sizeof *word);
-    word->kind = r->is_behind_plus ? LP_WORD_IDENTITY : kind;
-    snprintf(word->text, sizeof word->text, "%s%.*s", r->is_behind_plus ? "+" : "", LP_WORD_BYTES - 2, text);
+    word->kind = r->follows_plus ? LP_WORD_IDENTITY : kind;
+    snprintf(word->text, sizeof word->text, "%s%.*s", r->follows_plus ? "+" : "", LP_WORD_BYTES - 2, text);
     r->numbers += kind == LP_WORD_NUMBER;
     return true;
 }
@@ -67,7 +67,7 @@ static const char *take_letters(const char *text, char *word) {
 
 /* Sigma's lines, which have one letter after a bar or in brackets. */
 static const char *line_of(const reading *r, const char *word) {
-    if (!r->is_behind_bar && r->bracket != '[') return word;
+    if (!r->follows_bar && r->bracket != '[') return word;
     return !strcmp(word, "a") ? "art" : !strcmp(word, "c") ? "contemporary" : !strcmp(word, "s") ? "sports" : word;
 }
 
@@ -137,7 +137,7 @@ static bool take_number(reading *r) {
         if (n + 1 < sizeof word) word[n++] = *end;
     }
     const bool is_ratio = !strcmp(word, "1") && *end == ':';
-    if (is_ratio && r->is_behind_macro && r->numbers >= 2) { /* a scale */
+    if (is_ratio && r->follows_macro && r->numbers >= 2) { /* a scale */
         r->text = end + 1 + strspn(end + 1, "0123456789.");
         return true;
     }
@@ -176,7 +176,7 @@ static bool take_word(reading *r, bool *done) {
         return add(r, word, LP_WORD_IDENTITY);
     }
     if (!add_letters(r, word)) return false;
-    r->is_behind_macro = !strcmp(word, "macro");
+    r->follows_macro = !strcmp(word, "macro");
     if (is_after_slash && r->words->count == before + 1) mark_variants(r->words, before - 1, 2);
     return true;
 }
@@ -186,8 +186,8 @@ static void take_sign(reading *r) {
     const char c = *r->text++;
     if (c == '(' || c == '[') r->bracket = c;
     if (c == ')' || c == ']') r->bracket = 0;
-    if (c == '|') r->is_behind_bar = true;
-    if (c == '+') r->is_behind_plus = true;
+    if (c == '|') r->follows_bar = true;
+    if (c == '+') r->follows_plus = true;
 }
 
 bool lp_split_words(const char *name, lp_words *words) {
