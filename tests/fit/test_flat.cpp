@@ -23,7 +23,7 @@ static void derivatives_are_those_of_central_differences(void **) {
                 double x = 600 * lp_random(&random), y = 400 * lp_random(&random);
                 Prediction p = predict(model, u, shot, channel, x, y);
                 Eigen::VectorXd by = Eigen::VectorXd::Zero(u.size());
-                for (size_t i = 0; i < static_cast<size_t>(p.count); i++) by[p.index[i]] += p.by[i];
+                for (size_t i = 0; i < static_cast<size_t>(p.count); i++) by[p.index[i]] += p.derivative[i];
                 for (Eigen::Index i = 0; i < u.size(); i++) {
                     Eigen::VectorXd up = u, down = u;
                     up[i] += 1e-5, down[i] -= 1e-5;

@@ -42,7 +42,7 @@ lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *err
     lensprof_status status = lensprof_profile_validate(o.profile);
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the profile is invalid; see lensprof_profile_validate");
-    if (!says_how_sure(*o.profile))
+    if (!has_uncertainty(*o.profile))
         return fail(
             LENSPROF_ERROR_ARGUMENT, error,
             "fit options: the profile has neither a covariance nor the gamma_sigma of a refined response, so its "
@@ -125,10 +125,10 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
         if (image.camera >= LENSPROF_CAMERAS_MAX || image.reserved)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "camera must be 0..%d, and reserved 0", LENSPROF_CAMERAS_MAX - 1);
-        for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
-            if (of >= count)
-                return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "linked to image %u of %u", of,
-                               count);
+        for (uint32_t owner : {image.ev_of, image.red_of, image.blue_of})
+            if (owner >= count)
+                return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "linked to image %u of %u",
+                               owner, count);
         if (images[image.ev_of].ev_of != image.ev_of || images[image.red_of].red_of != image.red_of
             || images[image.blue_of].blue_of != image.blue_of)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
@@ -150,20 +150,20 @@ lensprof_status check_cameras(const std::vector<lensprof_fit_image> &images, len
     return LENSPROF_OK;
 }
 
-// Checks a position and grey values in an image; errors name the item `what` and its number.
+// Checks a position and grey values in an image; errors name the item of `item_kind` and its number.
 lensprof_status check_end(const double xy[2], const double value[3], const lensprof_fit_image &frame, uint32_t image,
-                          int channels, lensprof_item_kind what, uint32_t number, lensprof_error *error) {
+                          int channels, lensprof_item_kind item_kind, uint32_t number, lensprof_error *error) {
     double x = xy[0], y = xy[1];
     if (!std::isfinite(x) || !std::isfinite(y))
-        return fail_at(what, number, LENSPROF_ERROR_NOT_FINITE, error, "a position is not a number");
+        return fail_at(item_kind, number, LENSPROF_ERROR_NOT_FINITE, error, "a position is not a number");
     if (x < -1.0 || y < -1.0 || x > frame.width || y > frame.height)
-        return fail_at(what, number, LENSPROF_ERROR_ARGUMENT, error, "position %g, %g is outside image %u", x, y,
+        return fail_at(item_kind, number, LENSPROF_ERROR_ARGUMENT, error, "position %g, %g is outside image %u", x, y,
                        image);
     for (int c = 0; c < channels; c++) {
         if (!std::isfinite(value[c]))
-            return fail_at(what, number, LENSPROF_ERROR_NOT_FINITE, error, "a grey value is not a number");
+            return fail_at(item_kind, number, LENSPROF_ERROR_NOT_FINITE, error, "a grey value is not a number");
         if (value[c] < 0.0 || value[c] > 1.0)
-            return fail_at(what, number, LENSPROF_ERROR_ARGUMENT, error, "grey values must be 0..1");
+            return fail_at(item_kind, number, LENSPROF_ERROR_ARGUMENT, error, "grey values must be 0..1");
     }
     return LENSPROF_OK;
 }
@@ -255,12 +255,12 @@ struct Call {
     int channels() const { return static_cast<int>(options.channels); }
 };
 
-lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std::vector<lensprof_fit_image> &own,
+lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std::vector<lensprof_fit_image> &images,
                             lensprof_error *error) {
     auto init = [](lensprof_fit_image &image, uint32_t i) { lensprof_fit_image_init(&image, i, 0, 0); };
-    lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, own, error);
-    if (status == LENSPROF_OK) status = check_images(own.data(), count, error);
-    return status == LENSPROF_OK ? check_cameras(own, error) : status;
+    lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, images, error);
+    if (status == LENSPROF_OK) status = check_images(images.data(), count, error);
+    return status == LENSPROF_OK ? check_cameras(images, error) : status;
 }
 
 // Rejects more than one setting per camera for methods that estimate a single falloff.
@@ -284,14 +284,14 @@ lensprof_status check_settings(const Call &call, lensprof_error *error) {
 // Allocates results for lens settings or cameras: as many as the images name, or as the caller asks for. None if all
 // numbers are 0 and the caller does not ask for any.
 template <class Item, class Init>
-lensprof_status take_items(Item *given, uint32_t given_count, uint32_t last, uint32_t most, size_t first_size,
-                           Init init, std::vector<Item> &own, lensprof_error *error) {
+lensprof_status take_items(Item *given, uint32_t given_count, uint32_t last, uint32_t max_count, size_t first_size,
+                           Init init, std::vector<Item> &items, lensprof_error *error) {
     std::vector<Item> checked;
-    const uint32_t count = given ? std::min(given_count, most) : 0;
+    const uint32_t count = given ? std::min(given_count, max_count) : 0;
     const lensprof_status status = take_all(given, count, first_size, LENSPROF_ITEM_NONE, init, checked, error);
     if (status != LENSPROF_OK || (last == 0 && !given)) return status;
-    own.resize(std::max(last + 1, count));
-    for (Item &item : own) init(item, 0);
+    items.resize(std::max(last + 1, count));
+    for (Item &item : items) init(item, 0);
     return LENSPROF_OK;
 }
 
@@ -331,11 +331,11 @@ lensprof_status take_settings(const lensprof_fit_result &given, Call &call, lens
 }
 
 template <class Item>
-void give_items(Item *given, uint32_t given_count, const std::vector<Item> &own) {
+void give_items(Item *given, uint32_t given_count, const std::vector<Item> &items) {
     auto *bytes = reinterpret_cast<char *>(given);
     const size_t step = bytes ? lp_sized_bytes(bytes) : 0;
-    for (size_t n = 0; bytes && n < std::min<size_t>(given_count, own.size()); n++)
-        lp_sized_copy(bytes + n * step, &own[n]);
+    for (size_t n = 0; bytes && n < std::min<size_t>(given_count, items.size()); n++)
+        lp_sized_copy(bytes + n * step, &items[n]);
 }
 
 // Copies the settings into the caller's arrays, which may have fewer elements than this library's. Their addresses and
@@ -430,15 +430,16 @@ lensprof_status fit_tracks(Call &call, const lensprof_observation *observations,
 template <class Method>
 void fit_group(Call &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures, Method method) {
     const auto pairs_within = [&](const Group &group) {
-        std::vector<lensprof_pair> own;
-        std::copy_if(pairs, pairs + count, std::back_inserter(own),
+        std::vector<lensprof_pair> group_pairs;
+        std::copy_if(pairs, pairs + count, std::back_inserter(group_pairs),
                      [&](const lensprof_pair &pair) { return group.holds(pair.image[0], pair.image[1]); });
-        return own;
+        return group_pairs;
     };
     const auto fit = [&](const lensprof_fit_options &options, const Group &group, lensprof_exposure *found,
                          lensprof_fit_result &result) {
-        const std::vector<lensprof_pair> own = pairs_within(group);
-        method(options, call.images.data(), call.count(), own.data(), static_cast<uint32_t>(own.size()), found, result);
+        const std::vector<lensprof_pair> group_pairs = pairs_within(group);
+        method(options, call.images.data(), call.count(), group_pairs.data(), static_cast<uint32_t>(group_pairs.size()),
+               found, result);
     };
     fit_largest_group(call.options, call.images.data(), call.count(), pairs_within, fit, exposures, call.result);
 }
@@ -463,16 +464,16 @@ lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count
 // Fits one camera of several, using only its images.
 bool fit_camera(const CameraInput &input, lensprof_exposure *exposures, lensprof_fit_result &result) {
     if (!has_unknowns(input.options, input.images.data(), static_cast<uint32_t>(input.images.size()))) return false;
-    Call own;
-    own.options = input.options;
-    own.images = input.images;
-    own.result = result;
+    Call call;
+    call.options = input.options;
+    call.images = input.images;
+    call.result = result;
     const auto pairs = static_cast<uint32_t>(input.pairs.size()),
                observations = static_cast<uint32_t>(input.observations.size());
     const lensprof_status status = observations
-                                       ? fit_tracks(own, input.observations.data(), observations, exposures, nullptr)
-                                       : fit_pairs(own, input.pairs.data(), pairs, exposures, nullptr);
-    result = own.result;
+                                       ? fit_tracks(call, input.observations.data(), observations, exposures, nullptr)
+                                       : fit_pairs(call, input.pairs.data(), pairs, exposures, nullptr);
+    result = call.result;
     return status == LENSPROF_OK;
 }
 
@@ -606,22 +607,22 @@ lensprof_status lensprof_profile_from_fit(lensprof_profile *profile, const lensp
     lensprof_fit_result_init(&fit);
     const lensprof_status status = take_fitted(given, kFirstOptions, options, result, kFirstResult, fit, error);
     if (status != LENSPROF_OK) return status;
-    const auto change = [&](lensprof_profile &own) {
+    const auto change = [&](lensprof_profile &target) {
         const uint32_t used = image_count - std::min(fit.left_out, image_count);
-        put_result(fit, given ? method_name(options.method) : "", used, own);
-        own.responses = 1;
-        own.response[0] = fit.response;
-        lensprof_gain_grid_init(&own.grid);
-        own.provenance.pairs = fit.pairs;
-        own.provenance.heldout_rms = fit.heldout_rms;
-        own.provenance.gamma_sigma = std::max(fit.gamma_sigma, 0.0);
+        put_result(fit, given ? method_name(options.method) : "", used, target);
+        target.responses = 1;
+        target.response[0] = fit.response;
+        lensprof_gain_grid_init(&target.grid);
+        target.provenance.pairs = fit.pairs;
+        target.provenance.heldout_rms = fit.heldout_rms;
+        target.provenance.gamma_sigma = std::max(fit.gamma_sigma, 0.0);
         const bool is_shown = fit.response_from != LENSPROF_FIT_RESPONSE_KIND;
-        std::snprintf(own.provenance.doubt, sizeof own.provenance.doubt, "%s", is_shown ? "" : LP_DOUBT_RESPONSE);
+        std::snprintf(target.provenance.doubt, sizeof target.provenance.doubt, "%s", is_shown ? "" : LP_DOUBT_RESPONSE);
         const bool holds =
             fit.profile_prior != LENSPROF_PROFILE_PRIOR_NONE && fit.profile_prior != LENSPROF_PROFILE_PRIOR_OVERRULED;
         if (!holds || !options.profile) return;
-        own.provenance.images = sum_of(used, options.profile->provenance.images);
-        own.provenance.pairs = sum_of(fit.pairs, options.profile->provenance.pairs);
+        target.provenance.images = sum_of(used, options.profile->provenance.images);
+        target.provenance.pairs = sum_of(fit.pairs, options.profile->provenance.pairs);
     };
     return change_given_profile(profile, change, error);
 }
@@ -638,16 +639,16 @@ lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result, co
     lensprof_fit_setting_init(&setting);
     if (const char *wrong = lp_sized_take(&setting, given, kFirstSetting))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "setting: %s", wrong);
-    lensprof_fit_result own;
-    lensprof_fit_result_init(&own);
-    if (const char *wrong = lp_sized_take(&own, result, kFirstResult))
+    lensprof_fit_result local_result;
+    lensprof_fit_result_init(&local_result);
+    if (const char *wrong = lp_sized_take(&local_result, result, kFirstResult))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
     if (!setting.images)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "setting: it has no image in the fit; choose one with images");
-    copy_setting(setting, own);
-    own.pairs = setting.pairs;
-    own.left_out = 0;
-    lp_sized_copy(result, &own);
+    copy_setting(setting, local_result);
+    local_result.pairs = setting.pairs;
+    local_result.left_out = 0;
+    lp_sized_copy(result, &local_result);
     return LENSPROF_OK;
 }
 
@@ -663,14 +664,14 @@ lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result, con
     lensprof_fit_camera_init(&camera);
     if (const char *wrong = lp_sized_take(&camera, given, kFirstCamera))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "camera: %s", wrong);
-    lensprof_fit_result own;
-    lensprof_fit_result_init(&own);
-    if (const char *wrong = lp_sized_take(&own, result, kFirstResult))
+    lensprof_fit_result local_result;
+    lensprof_fit_result_init(&local_result);
+    if (const char *wrong = lp_sized_take(&local_result, result, kFirstResult))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
     if (!camera.images) return fail(LENSPROF_ERROR_ARGUMENT, error, "camera: it has no fit; choose one with images");
-    copy_camera(camera, own);
-    own.usable = 0;  // until a setting is copied
-    lp_sized_copy(result, &own);
+    copy_camera(camera, local_result);
+    local_result.usable = 0;  // until a setting is copied
+    lp_sized_copy(result, &local_result);
     return LENSPROF_OK;
 }
 
@@ -686,13 +687,14 @@ lensprof_status lensprof_transfer_rms(const lensprof_response *response, const l
     lensprof_status status = check_model(*response, vignetting, channels, exposures, image_count, error);
     if (status != LENSPROF_OK) return status;
     try {
-        std::vector<lensprof_fit_image> own;
-        status = take_images(images, image_count, own, error);
+        std::vector<lensprof_fit_image> local_images;
+        status = take_images(images, image_count, local_images, error);
         if (status == LENSPROF_OK)
-            status = check_pairs(pairs, pair_count, own.data(), image_count, static_cast<int>(channels), error);
+            status =
+                check_pairs(pairs, pair_count, local_images.data(), image_count, static_cast<int>(channels), error);
         if (status != LENSPROF_OK) return status;
-        Summary summary = transfer_summary(*response, vignetting, own.data(), exposures, image_count, pairs, pair_count,
-                                           static_cast<int>(channels));
+        Summary summary = transfer_summary(*response, vignetting, local_images.data(), exposures, image_count, pairs,
+                                           pair_count, static_cast<int>(channels));
         *rms = summary.rms;
         if (median) *median = summary.median;
         return LENSPROF_OK;

@@ -180,13 +180,13 @@ lensprof_status lensprof_profile_from_flat(lensprof_profile *profile, const lens
     if (status != LENSPROF_OK) return status;
     if (options.responses != 1 && options.responses != 3)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "options: responses is %u; give 1 or 3", options.responses);
-    const auto change = [&](lensprof_profile &own) {
-        put_result(flat, "flat", image_count, own);
-        own.responses = options.response ? options.responses : 1;
-        lensprof_response_set_linear(&own.response[0]);
-        if (options.response) std::copy_n(options.response, own.responses, own.response);
-        own.grid = flat.gain_grid;
-        own.provenance.pairs = flat.cells;
+    const auto change = [&](lensprof_profile &target) {
+        put_result(flat, "flat", image_count, target);
+        target.responses = options.response ? options.responses : 1;
+        lensprof_response_set_linear(&target.response[0]);
+        if (options.response) std::copy_n(options.response, target.responses, target.response);
+        target.grid = flat.gain_grid;
+        target.provenance.pairs = flat.cells;
     };
     return change_given_profile(profile, change, error);
 }

@@ -35,11 +35,11 @@ lensprof_status change_given_profile(lensprof_profile *given, Change change, len
     if (const char *wrong = lp_sized_wrong(given, LP_FIRST_PROFILE, sizeof *given))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "profile: %s", wrong);
     try {
-        auto own = std::make_unique<lensprof_profile>();
-        lensprof_profile_init(own.get());
-        lp_sized_copy(own.get(), given);
-        change(*own);
-        lp_sized_copy(given, own.get());
+        auto local = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(local.get());
+        lp_sized_copy(local.get(), given);
+        change(*local);
+        lp_sized_copy(given, local.get());
         return LENSPROF_OK;
     } catch (const std::bad_alloc &) {
         return fail(LENSPROF_ERROR_MEMORY, error, "profile: out of memory");
@@ -48,14 +48,15 @@ lensprof_status change_given_profile(lensprof_profile *given, Change change, len
 
 // Converts a result and its options to this library's struct versions; ARGUMENT if the counts are impossible for a fit.
 template <class Options, class Result>
-lensprof_status take_fitted(const Options *options, size_t first_options, Options &own_options, const Result *result,
-                            size_t first_result, Result &own, lensprof_error *error) {
+lensprof_status take_fitted(const Options *options, size_t first_options, Options &local_options, const Result *result,
+                            size_t first_result, Result &local_result, lensprof_error *error) {
     if (options)
-        if (const char *wrong = lp_sized_take(&own_options, options, first_options))
+        if (const char *wrong = lp_sized_take(&local_options, options, first_options))
             return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "options: %s", wrong);
-    if (const char *wrong = lp_sized_take(&own, result, first_result))
+    if (const char *wrong = lp_sized_take(&local_result, result, first_result))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
-    if ((own.vignettings != 1 && own.vignettings != 3) || own.covariance_size > LENSPROF_COVARIANCE_MAX)
+    if ((local_result.vignettings != 1 && local_result.vignettings != 3)
+        || local_result.covariance_size > LENSPROF_COVARIANCE_MAX)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "result: not filled by a fit; pass one whose fit returned OK");
     return LENSPROF_OK;
 }

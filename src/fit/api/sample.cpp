@@ -45,17 +45,17 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
 }
 
 // Converts the caller's options to this library's struct version.
-lensprof_status take_options(const lensprof_sample_options *given, uint32_t count, lensprof_sample_options &own,
+lensprof_status take_options(const lensprof_sample_options *given, uint32_t count, lensprof_sample_options &options,
                              lensprof_error *error) {
-    lensprof_sample_options_init(&own);
-    if (const char *wrong = lp_sized_take(&own, given, kFirstOptions))
+    lensprof_sample_options_init(&options);
+    if (const char *wrong = lp_sized_take(&options, given, kFirstOptions))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "sample options: %s", wrong);
-    return check_options(own, count, error);
+    return check_options(options, count, error);
 }
 
 void give_links(const lensprof_sample_options &options, const std::vector<lensprof_link> &links) {
-    const size_t room = options.links ? std::min<size_t>(links.size(), options.link_capacity) : 0;
-    std::copy_n(links.begin(), room, options.links);
+    const size_t capacity = options.links ? std::min<size_t>(links.size(), options.link_capacity) : 0;
+    std::copy_n(links.begin(), capacity, options.links);
     if (options.link_count) *options.link_count = static_cast<uint32_t>(links.size());
 }
 
@@ -134,17 +134,17 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
     }
 }
 
-// Common to both samplings: writes up to `room` results of `draw` into `items`.
+// Common to both samplings: writes up to `max_items` results of `draw` into `items`.
 template <class Item, class Draw>
 lensprof_status sample_into(const lensprof_sample_options &options, const lensprof_sample_image *images,
-                            uint32_t image_count, const Matches *matches, uint64_t room, Item *items, uint32_t capacity,
-                            uint32_t *count, Draw draw, lensprof_error *error) {
+                            uint32_t image_count, const Matches *matches, uint64_t max_items, Item *items,
+                            uint32_t capacity, uint32_t *count, Draw draw, lensprof_error *error) {
     if (options.link_count) *options.link_count = 0;
-    if (capacity < room) *count = static_cast<uint32_t>(room);
+    if (capacity < max_items) *count = static_cast<uint32_t>(max_items);
     if (capacity == 0) return LENSPROF_OK;
-    if (capacity < room)
+    if (capacity < max_items)
         return fail(LENSPROF_ERROR_CAPACITY, error, "sample: the buffer is too small; provide room for %u items",
-                    static_cast<uint32_t>(room));
+                    static_cast<uint32_t>(max_items));
     std::vector<Item> result;
     const lensprof_status status = sample(options, images, image_count, matches, draw, result, error);
     if (status != LENSPROF_OK) return status;
@@ -202,8 +202,8 @@ lensprof_status lensprof_sample_tracks(const lensprof_sample_options *given, con
         return options.sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper_tracks(wanted)
                                                            : sampler.balanced_tracks(wanted);
     };
-    uint64_t room = uint64_t{wanted} * std::min(image_count, kLongestTrack);
-    return sample_into(options, images, image_count, nullptr, room, observations, capacity, count, draw, error);
+    uint64_t max_items = uint64_t{wanted} * std::min(image_count, kLongestTrack);
+    return sample_into(options, images, image_count, nullptr, max_items, observations, capacity, count, draw, error);
 }
 
 lensprof_status lensprof_sample_matches(const lensprof_sample_options *given, const lensprof_sample_image *images,
@@ -219,11 +219,11 @@ lensprof_status lensprof_sample_matches(const lensprof_sample_options *given, co
     if (options.sampling == LENSPROF_SAMPLING_PAPER)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: paper sampling does not support matches; use balanced");
     const uint32_t wanted = wanted_pairs(options, image_count);
-    const Matches own{matches, match_count};
+    const Matches match_list{matches, match_count};
     auto draw = [&](Sampler &sampler) {
         return sampler.of_matches(matches, match_count, wanted, options.match_of_pair);
     };
-    return sample_into(options, images, image_count, &own, wanted, pairs, capacity, count, draw, error);
+    return sample_into(options, images, image_count, &match_list, wanted, pairs, capacity, count, draw, error);
 }
 
 }  // extern "C"

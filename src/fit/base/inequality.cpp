@@ -91,9 +91,9 @@ bool add_violated(const Inequalities &all, const Eigen::VectorXd &d, std::vector
         worst = -1;
     };
     for (int i = 0; i < all.count(); i++) {
-        auto at = static_cast<size_t>(i);
-        if (gap[at] > all.tolerance(i)) {
-            if (!in_set[at] && (worst < 0 || gap[at] > gap[static_cast<size_t>(worst)])) worst = i;
+        auto index = static_cast<size_t>(i);
+        if (gap[index] > all.tolerance(i)) {
+            if (!in_set[index] && (worst < 0 || gap[index] > gap[static_cast<size_t>(worst)])) worst = i;
         } else {
             flush();
         }

@@ -41,9 +41,9 @@ std::array<double, LENSPROF_RESPONSE_SAMPLES> response_samples(Inverse inverse) 
     std::array<double, LENSPROF_RESPONSE_SAMPLES> f{};
     constexpr size_t last = LENSPROF_RESPONSE_SAMPLES - 1;
     for (size_t j = 1, i = 0; j < last; j++) {
-        double at = x.back() * static_cast<double>(j) / last;
-        while (x[i + 1] < at) i++;
-        f[j] = (static_cast<double>(i) + (at - x[i]) / (x[i + 1] - x[i])) / count;
+        double level = x.back() * static_cast<double>(j) / last;
+        while (x[i + 1] < level) i++;
+        f[j] = (static_cast<double>(i) + (level - x[i]) / (x[i + 1] - x[i])) / count;
     }
     f.back() = 1.0;
     return f;

@@ -10,9 +10,9 @@ namespace lensprof {
 template <class Value>
 Value quantile(std::vector<Value> &values, double share) {
     if (values.empty()) return Value{};
-    auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
+    auto position = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), position, values.end());
+    return *position;
 }
 
 template <class Value>

@@ -28,12 +28,12 @@ float quantum(uint32_t sample) {
 float noise_of(std::vector<float> &differences, float step) {
     if (differences.empty()) return step;
     float center = median(differences);
-    std::vector<float> away(differences.size());
-    for (size_t i = 0; i < away.size(); i++) away[i] = std::abs(differences[i] - center);
-    std::vector<float> order = away;
+    std::vector<float> deviations(differences.size());
+    for (size_t i = 0; i < deviations.size(); i++) deviations[i] = std::abs(differences[i] - center);
+    std::vector<float> order = deviations;
     float limit = 4.0f * std::max(static_cast<float>(kMadToSigma) * median(order), step);
     double sum = 0.0, kept = 0.0;
-    for (float a : away)
+    for (float a : deviations)
         if (a <= limit) sum += static_cast<double>(a) * a, kept += 1.0;
     float rounding = step / std::sqrt(12.0f);
     return std::max(static_cast<float>(std::sqrt(0.5 * sum / std::max(kept, 1.0))), rounding);
@@ -46,9 +46,9 @@ struct Robust {
 // Mean of the values near the median, and the share of those far below it.
 Robust robust_mean_of(std::vector<float> &values, float noise) {
     float center = median(values);
-    std::vector<float> away(values.size());
-    for (size_t i = 0; i < away.size(); i++) away[i] = std::abs(values[i] - center);
-    float spread = std::max(static_cast<float>(kMadToSigma) * median(away), noise);
+    std::vector<float> deviations(values.size());
+    for (size_t i = 0; i < deviations.size(); i++) deviations[i] = std::abs(values[i] - center);
+    float spread = std::max(static_cast<float>(kMadToSigma) * median(deviations), noise);
     double sum = 0.0, kept = 0.0, low = 0.0;
     for (float v : values) {
         if (std::abs(v - center) <= kCut * spread) sum += v - center, kept += 1.0;
@@ -85,7 +85,7 @@ public:
     void measure(int column, int channels, Cell &cell) {
         size_t white = 0, black = 0;
         gather(column, channels, white, black, cell);
-        cell.pixels = static_cast<uint32_t>(own_[0].size());
+        cell.pixels = static_cast<uint32_t>(cell_values_[0].size());
         if (cell.pixels < 4 || cell.pixels < kSmallestPart * expected_) return;
         double limit = kLargestBeyond * cell.pixels;
         const float step = quantum(image_.view.sample);
@@ -94,7 +94,7 @@ public:
                                                           : CellState::used;
         for (size_t c = 0; c < static_cast<size_t>(channels); c++) {
             cell.noise[c] = noise_of(differences_[c], step);
-            Robust robust = robust_mean_of(own_[c], std::max(cell.noise[c], step));
+            Robust robust = robust_mean_of(cell_values_[c], std::max(cell.noise[c], step));
             cell.value[c] = robust.mean;
             cell.low_share = std::max(cell.low_share, robust.low_share);
         }
@@ -102,28 +102,29 @@ public:
 
 private:
     void gather(int column, int channels, size_t &white, size_t &black, Cell &cell) {
-        for (auto &own : own_) own.clear();
+        for (auto &values : cell_values_) values.clear();
         for (auto &differences : differences_) differences.clear();
         const auto low = static_cast<float>(image_.black), high = static_cast<float>(image_.white);
         const size_t first = static_cast<size_t>(across_[static_cast<size_t>(column)]),
                      last = static_cast<size_t>(across_[static_cast<size_t>(column) + 1]), width = image_.view.width;
         for (size_t v = 0; v < allowed_.size() / width; v++)
             for (size_t u = first; u < last; u++) {
-                const size_t at = width * v + u;
-                if (!allowed_[at]) continue;
+                const size_t index = width * v + u;
+                if (!allowed_[index]) continue;
                 cell.x += static_cast<double>(u);
                 cell.y += static_cast<double>(v);
-                const float *rgb = &values_[3 * at];
+                const float *rgb = &values_[3 * index];
                 bool above = false, below = false;
                 for (size_t c = 0; c < static_cast<size_t>(channels); c++) {
-                    own_[c].push_back(rgb[c]);
+                    cell_values_[c].push_back(rgb[c]);
                     above |= rgb[c] > high;
                     below |= rgb[c] < low;
-                    if (u > first && allowed_[at - 1]) differences_[c].push_back(rgb[c] - values_[3 * (at - 1) + c]);
+                    if (u > first && allowed_[index - 1])
+                        differences_[c].push_back(rgb[c] - values_[3 * (index - 1) + c]);
                 }
                 white += above, black += below;
             }
-        const auto count = static_cast<double>(std::max<size_t>(own_[0].size(), 1));
+        const auto count = static_cast<double>(std::max<size_t>(cell_values_[0].size(), 1));
         cell.x = (cell.x / count + 0.5) * image_.reduction - 0.5;
         cell.y = (cell.y / count + top_ + 0.5) * image_.reduction - 0.5;
     }
@@ -134,7 +135,7 @@ private:
     double expected_ = 0.0;
     std::vector<float> values_;
     std::vector<uint8_t> allowed_;
-    std::array<std::vector<float>, 3> own_, differences_;
+    std::array<std::vector<float>, 3> cell_values_, differences_;
 };
 
 NoiseCurve noise_curve(const std::vector<Cell> &cells, size_t channel) {

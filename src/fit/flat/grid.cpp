@@ -43,9 +43,10 @@ void add_stiffness(const lensprof_gain_grid &gain, bool across, double weight, E
     for (int row = across ? 0 : 1; row < (across ? rows : rows - 1); row++)
         for (int column = across ? 1 : 0; column < (across ? columns - 1 : columns); column++) {
             const int middle = row * columns + column, node[3] = {middle - step, middle, middle + step};
-            const double by[3] = {1.0, -2.0, 1.0};
+            const double coefficient[3] = {1.0, -2.0, 1.0};
             for (int a = 0; a < 3; a++)
-                for (int b = 0; b < 3; b++) entries.emplace_back(node[a], node[b], weight * by[a] * by[b]);
+                for (int b = 0; b < 3; b++)
+                    entries.emplace_back(node[a], node[b], weight * coefficient[a] * coefficient[b]);
         }
 }
 
@@ -57,12 +58,12 @@ bool fit_channel(const FlatFit &fit, int channel, lensprof_gain_grid &gain) {
     for (const FlatCell &cell : fit.problem.cells) {
         double p = flat_residual(fit.problem, fit.estimate, cell, channel).prediction.value;
         double weight = 1.0 / (cell.variance[static_cast<size_t>(channel)] / (p * p) + kSmallestNoise * kSmallestNoise);
-        Bilinear at = bilinear(gain, fit.grid, cell);
+        Bilinear weights = bilinear(gain, fit.grid, cell);
         total += weight;
         for (int a = 0; a < 4; a++) {
-            right[at.node[a]] += weight * at.share[a] * (cell.value[static_cast<size_t>(channel)] / p);
+            right[weights.node[a]] += weight * weights.share[a] * (cell.value[static_cast<size_t>(channel)] / p);
             for (int b = 0; b < 4; b++)
-                entries.emplace_back(at.node[a], at.node[b], weight * at.share[a] * at.share[b]);
+                entries.emplace_back(weights.node[a], weights.node[b], weight * weights.share[a] * weights.share[b]);
         }
     }
     double typical = total / static_cast<double>(nodes);

@@ -10,16 +10,16 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t kFewestCells = 60;
-constexpr double kSmallestRadius = 0.6, kWholeRadius = 0.9;  // half diagonals
-constexpr double kMuchBeyond = 0.2, kSomeBeyond = 0.005;     // of the card, white or black in every exposure
-constexpr double kLargestCornerSigma = 0.01;                 // of M
-constexpr double kMuchTexture = 0.01, kSomeTexture = 0.005;  // of the light
-constexpr double kSteepAlone = 0.2, kSlantAlone = 0.1;       // of the light per half diagonal, not rotated:
-constexpr double kSteepTurned = 0.5;                         // its square is about the error of a plane
-constexpr double kMuchOwn = 0.015, kSomeOwn = 0.004;         // of the light
-constexpr double kNotRadial = 0.003;                         // of the light
-constexpr double kWrongEv = 0.3, kDoubtfulEv = 0.1;          // EV, within a shot
-constexpr double kSteepest = 0.05, kFlattest = 20.0;         // d ln E / d ln B; of cameras .2 to 10
+constexpr double kSmallestRadius = 0.6, kWholeRadius = 0.9;   // half diagonals
+constexpr double kMuchClipped = 0.2, kSomeClipped = 0.005;    // of the card, white or black in every exposure
+constexpr double kLargestCornerSigma = 0.01;                  // of M
+constexpr double kMuchTexture = 0.01, kSomeTexture = 0.005;   // of the light
+constexpr double kSteepAlone = 0.2, kSlantAlone = 0.1;        // of the light per half diagonal, not rotated:
+constexpr double kSteepTurned = 0.5;                          // its square is about the error of a plane
+constexpr double kMuchPerShot = 0.015, kSomePerShot = 0.004;  // of the light
+constexpr double kNotRadial = 0.003;                          // of the light
+constexpr double kWrongEv = 0.3, kDoubtfulEv = 0.1;           // EV, within a shot
+constexpr double kSteepest = 0.05, kFlattest = 20.0;          // d ln E / d ln B; of cameras .2 to 10
 constexpr double kFewInliers = 0.5;
 constexpr double kFarCentre = 0.1;  // half diagonals, as for the overlap fit
 
@@ -34,7 +34,7 @@ struct Worst {
 };
 
 // Share of a shot's card that is white (or black) in every exposure.
-Worst beyond(const FlatFit &fit, CellState state) {
+Worst worst_share_in(const FlatFit &fit, CellState state) {
     Worst worst;
     for (const Shot &shot : fit.shots) {
         double card = 0.0, lost = 0.0;
@@ -93,9 +93,9 @@ bool has_no_gradation(const FlatFit &fit, lensprof_flat_result &r) {
 }
 
 bool lacks_light(const FlatFit &fit, lensprof_flat_result &r) {
-    Worst white = beyond(fit, CellState::white), black = beyond(fit, CellState::black);
-    if (white.value > kMuchBeyond) return refuse(r, of_shot(LENSPROF_REASON_FLAT_WHITE, white.shot, {white.value}));
-    if (black.value > kMuchBeyond) return refuse(r, of_shot(LENSPROF_REASON_FLAT_BLACK, black.shot, {black.value}));
+    Worst white = worst_share_in(fit, CellState::white), black = worst_share_in(fit, CellState::black);
+    if (white.value > kMuchClipped) return refuse(r, of_shot(LENSPROF_REASON_FLAT_WHITE, white.shot, {white.value}));
+    if (black.value > kMuchClipped) return refuse(r, of_shot(LENSPROF_REASON_FLAT_BLACK, black.shot, {black.value}));
     uint32_t number;
     if (lacks_card(fit, number)) return refuse(r, of_shot(LENSPROF_REASON_FLAT_NO_CARD, number));
     if (r.cells < kFewestCells) return refuse(r, {LENSPROF_REASON_FLAT_FEW_CELLS, {double(r.cells)}});
@@ -108,7 +108,7 @@ bool contradicts_model(const FlatFit &fit, lensprof_flat_result &r) {
     if (wrong.value > kWrongEv)
         return refuse(r, of_image(LENSPROF_REASON_FLAT_EXPOSURE_WRONG, wrong.shot, {wrong.value}));
     if (r.texture > kMuchTexture) return refuse(r, {LENSPROF_REASON_FLAT_TEXTURE, {r.texture}});
-    if (r.shot_residual > kMuchOwn) return refuse(r, {LENSPROF_REASON_FLAT_SHOTS_DIFFER, {r.shot_residual}});
+    if (r.shot_residual > kMuchPerShot) return refuse(r, {LENSPROF_REASON_FLAT_SHOTS_DIFFER, {r.shot_residual}});
     if (r.inlier_share < kFewInliers) return refuse(r, {LENSPROF_REASON_FLAT_FEW_AGREE, {r.inlier_share}});
     const bool plane = fit.problem.model.light_terms > 0;
     if (plane && steep.value > (r.separated ? kSteepTurned : kSteepAlone))
@@ -131,14 +131,15 @@ bool is_undetermined(const FlatFit &fit, lensprof_flat_result &r) {
 
 // The most important warning about the card and the pictures.
 bool warns_of_card(const FlatFit &fit, lensprof_flat_result &r) {
-    Worst wrong = wrong_exposure(fit, r), white = beyond(fit, CellState::white), black = beyond(fit, CellState::black);
+    Worst wrong = wrong_exposure(fit, r), white = worst_share_in(fit, CellState::white),
+          black = worst_share_in(fit, CellState::black);
     if (r.radius < kWholeRadius) return warn(r, {LENSPROF_REASON_FLAT_EXTRAPOLATED, {r.radius}});
-    if (white.value > kSomeBeyond && white.value > black.value)
+    if (white.value > kSomeClipped && white.value > black.value)
         return warn(r, of_shot(LENSPROF_REASON_FLAT_SOME_WHITE, white.shot, {white.value}));
-    if (black.value > kSomeBeyond) return warn(r, of_shot(LENSPROF_REASON_FLAT_SOME_BLACK, black.shot, {black.value}));
+    if (black.value > kSomeClipped) return warn(r, of_shot(LENSPROF_REASON_FLAT_SOME_BLACK, black.shot, {black.value}));
     if (wrong.value > kDoubtfulEv)
         return warn(r, of_image(LENSPROF_REASON_FLAT_EXPOSURE_DOUBTFUL, wrong.shot, {wrong.value}));
-    if (r.shot_residual > kSomeOwn) return warn(r, {LENSPROF_REASON_FLAT_SHOTS_DIFFER_SOME, {r.shot_residual}});
+    if (r.shot_residual > kSomePerShot) return warn(r, {LENSPROF_REASON_FLAT_SHOTS_DIFFER_SOME, {r.shot_residual}});
     return r.texture > kSomeTexture && warn(r, {LENSPROF_REASON_FLAT_SOME_TEXTURE, {r.texture}});
 }
 

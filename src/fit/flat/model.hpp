@@ -44,11 +44,11 @@ struct Prediction {
     double value = 0.0, falloff = 0.0;
     int count = 0;
     std::array<int, kMost> index;
-    std::array<double, kMost> by;
+    std::array<double, kMost> derivative;
 
-    void add(int i, double derivative) {
+    void add(int i, double slope) {
         index[static_cast<size_t>(count)] = i;
-        by[static_cast<size_t>(count++)] = derivative;
+        derivative[static_cast<size_t>(count++)] = slope;
     }
 };
 

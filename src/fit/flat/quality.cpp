@@ -42,13 +42,13 @@ struct Mean {
 double root_of_rest(double square, double noise) { return std::sqrt(std::max(square - kTrimming * noise, 0.0)); }
 
 struct Patterns {
-    double texture, frame, own;
+    double texture, frame, per_shot;
 };
 
 // Splits the residuals, given the variance of a cell's noise (relative).
 Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, double noise) {
     const int shots = fit.problem.model.shots;
-    Mean fine, frame, own;
+    Mean fine, frame, per_shot;
     double depth = 0.0;
     for (int c = 0; c < fit.problem.model.channels; c++) {
         std::vector<std::vector<double>> coarse;
@@ -69,12 +69,12 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
             depth += 1.0 / common[i].count;
             for (const auto &map : coarse)
                 if (common[i].count > 1.0 && !std::isnan(map[i]))
-                    own.add(std::pow(map[i] - common[i].value(), 2) * common[i].count / (common[i].count - 1.0));
+                    per_shot.add(std::pow(map[i] - common[i].value(), 2) * common[i].count / (common[i].count - 1.0));
         }
     }
     depth = frame.count > 0.0 ? depth / frame.count : 1.0;  // mean of 1 / number of shots that see a cell
     return {root_of_rest(fine.value() * kSmoothed / (kSmoothed - 1.0), noise),
-            root_of_rest(frame.value(), noise * depth / kSmoothed), root_of_rest(own.value(), noise / kSmoothed)};
+            root_of_rest(frame.value(), noise * depth / kSmoothed), root_of_rest(per_shot.value(), noise / kSmoothed)};
 }
 
 double corner_sigma(const FlatFit &fit) {
@@ -97,8 +97,9 @@ void describe_picture(const FlatFit &fit, const Shot &shot, uint32_t image, lens
             for (size_t c = 0; c < fit.options.channels; c++)
                 noise.push_back(255.0 * static_cast<double>(cell.noise[c]));
         const auto columns = static_cast<size_t>(fit.grid.columns);
-        const uint32_t at[2] = {static_cast<uint32_t>(i % columns), static_cast<uint32_t>(i / columns)};
-        for (int d = 0; d < 2; d++) first[d] = std::min(first[d], at[d]), last[d] = std::max(last[d], at[d] + 1);
+        const uint32_t position[2] = {static_cast<uint32_t>(i % columns), static_cast<uint32_t>(i / columns)};
+        for (int d = 0; d < 2; d++)
+            first[d] = std::min(first[d], position[d]), last[d] = std::max(last[d], position[d] + 1);
     }
     q.white_share = white.value();
     q.black_share = black.value();
@@ -132,9 +133,9 @@ void describe_images(const FlatFit &fit, lensprof_flat_result &r) {
         q.residual = std::sqrt(square.value());
         auto gradient = light_gradient(fit.problem.model, fit.estimate.u, static_cast<int>(s));
         std::copy(gradient.begin(), gradient.end(), q.gradient);
-        std::vector<double> away = exposure_residuals(fit.options, fit.images, fit.pictures, responses, shot);
+        std::vector<double> ev_residuals = exposure_residuals(fit.options, fit.images, fit.pictures, responses, shot);
         for (size_t i = 0; i < shot.images.size(); i++) {
-            q.ev_residual = away[i];
+            q.ev_residual = ev_residuals[i];
             describe_picture(fit, shot, shot.images[i], q);
             r.image_quality[shot.images[i]] = q;
         }
@@ -144,16 +145,16 @@ void describe_images(const FlatFit &fit, lensprof_flat_result &r) {
 }  // namespace
 
 std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, const lensprof_gain_grid *gain, bool dust) {
-    const Shot &own = fit.shots[static_cast<size_t>(shot)];
-    std::vector<double> map(own.light.size(), std::numeric_limits<double>::quiet_NaN());
+    const Shot &shot_data = fit.shots[static_cast<size_t>(shot)];
+    std::vector<double> map(shot_data.light.size(), std::numeric_limits<double>::quiet_NaN());
     for (size_t i = 0; i < map.size(); i++) {
         bool left_out = fit.left_out[static_cast<size_t>(shot)][i] && !dust;
-        if (own.light[i].state != CellState::used || !own.card[i] || left_out) continue;
-        const double x = own.light[i].x, y = own.light[i].y;
+        if (shot_data.light[i].state != CellState::used || !shot_data.card[i] || left_out) continue;
+        const double x = shot_data.light[i].x, y = shot_data.light[i].y;
         double p = predict(fit.problem.model, fit.estimate.u, shot, channel, x, y).value;
         if (gain)
             p *= lensprof_gain_grid_eval(gain, fit.grid.width, fit.grid.height, x, y, static_cast<uint32_t>(channel));
-        map[i] = own.light[i].value[static_cast<size_t>(channel)] / p - 1.0;
+        map[i] = shot_data.light[i].value[static_cast<size_t>(channel)] / p - 1.0;
     }
     return map;
 }
@@ -177,7 +178,7 @@ void describe_flat(const FlatFit &fit, lensprof_flat_result &r) {
     Patterns rest = split_residuals(fit, nullptr, noise.value());
     r.texture = rest.texture;
     r.frame_residual = rest.frame;
-    r.shot_residual = fit.shots.size() > 1 ? rest.own : 0.0;
+    r.shot_residual = fit.shots.size() > 1 ? rest.per_shot : 0.0;
     r.grid_residual = 0.0;
     lensprof_gain_grid_init(&r.gain_grid);
     bool wanted = fit.options.grid == LENSPROF_FLAT_GRID_ALWAYS

@@ -89,11 +89,12 @@ double Responses::invert(int channel, double grey, double *slope) const {
 std::vector<Shot> group_shots(const lensprof_flat_image *images, uint32_t count) {
     std::vector<Shot> shots;
     for (uint32_t i = 0; i < count; i++) {
-        auto at = std::find_if(shots.begin(), shots.end(), [&](const Shot &s) { return s.number == images[i].shot; });
-        if (at == shots.end()) at = shots.emplace(shots.end());
-        at->number = images[i].shot;
-        at->turn = images[i].turn_deg * kPi / 180.0;
-        at->images.push_back(i);
+        auto entry =
+            std::find_if(shots.begin(), shots.end(), [&](const Shot &s) { return s.number == images[i].shot; });
+        if (entry == shots.end()) entry = shots.emplace(shots.end());
+        entry->number = images[i].shot;
+        entry->turn = images[i].turn_deg * kPi / 180.0;
+        entry->images.push_back(i);
     }
     for (auto &shot : shots)
         std::stable_sort(shot.images.begin(), shot.images.end(),
@@ -139,20 +140,20 @@ std::vector<double> exposure_residuals(const lensprof_flat_options &options, con
                                        const Shot &shot) {
     const int channels = static_cast<int>(options.channels);
     std::vector<double> residuals;
-    for (uint32_t own : shot.images) {
-        std::vector<double> away;
+    for (uint32_t image : shot.images) {
+        std::vector<double> log_ratios;
         for (size_t cell = 0; cell < shot.light.size() && shot.images.size() > 1; cell++)
             for (int c = 0; c < channels; c++) {
-                Sample mine = sample_of(images[own], pictures[own], pictures[own].cells[cell], c, responses);
+                Sample sample = sample_of(images[image], pictures[image], pictures[image].cells[cell], c, responses);
                 double sum = 0.0, weight = 0.0;
                 for (uint32_t i : shot.images) {
                     Sample s = sample_of(images[i], pictures[i], pictures[i].cells[cell], c, responses);
-                    if (i != own) sum += s.weight * s.light, weight += s.weight;
+                    if (i != image) sum += s.weight * s.light, weight += s.weight;
                 }
-                if (shot.card[cell] && mine.weight > 0.0 && weight > 0.0)
-                    away.push_back(std::log2(mine.light * weight / sum));
+                if (shot.card[cell] && sample.weight > 0.0 && weight > 0.0)
+                    log_ratios.push_back(std::log2(sample.light * weight / sum));
             }
-        residuals.push_back(median(away));
+        residuals.push_back(median(log_ratios));
     }
     return residuals;
 }

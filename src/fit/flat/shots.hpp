@@ -67,9 +67,10 @@ std::vector<std::vector<int>> connected_cells(const CellGrid &grid, const std::v
         seen[static_cast<size_t>(start)] = true;
         for (size_t i = 0; i < group.size(); i++) {
             int cell = group[i], column = cell % grid.columns, row = cell / grid.columns;
-            const int near[4] = {column > 0 ? cell - 1 : -1, column + 1 < grid.columns ? cell + 1 : -1,
-                                 row > 0 ? cell - grid.columns : -1, row + 1 < grid.rows ? cell + grid.columns : -1};
-            for (int other : near)
+            const int adjacent[4] = {column > 0 ? cell - 1 : -1, column + 1 < grid.columns ? cell + 1 : -1,
+                                     row > 0 ? cell - grid.columns : -1,
+                                     row + 1 < grid.rows ? cell + grid.columns : -1};
+            for (int other : adjacent)
                 if (other >= 0 && member[static_cast<size_t>(other)] && !seen[static_cast<size_t>(other)]
                     && joins(cell, other)) {
                     seen[static_cast<size_t>(other)] = true;

@@ -14,9 +14,9 @@
 namespace lensprof {
 namespace {
 
-constexpr double kCutoff = 4.0;    // of the robust loss, sigmas of a cell's typical size
-constexpr int kRounds = 12;        // of estimating noise and fit in turn
-constexpr double kSettled = 1e-3;  // largest change of the noise parameters at convergence
+constexpr double kCutoff = 4.0;           // of the robust loss, sigmas of a cell's typical size
+constexpr int kRounds = 12;               // of estimating noise and fit in turn
+constexpr double kNoiseTolerance = 1e-3;  // largest change of the noise parameters at convergence
 constexpr DescentLimits kLimits{60, 1e-6, 1e12, 1e-8};
 constexpr double kSmallestScale = 0.2;
 constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;   // of chi-squared, 1 and 3 degrees of freedom
@@ -57,9 +57,9 @@ double objective(const FlatProblem &problem, const Eigen::VectorXd &u, const Sig
     for (size_t i = 0; i < sigmas.size(); i++) {
         double chi2 = 0.0;
         for (int c = 0; c < problem.model.channels; c++) {
-            const auto at = static_cast<size_t>(c);
-            double r =
-                (problem.cells[i].value[at] - predict_cell(problem, u, problem.cells[i], c).value) / sigmas[i][at];
+            const auto channel = static_cast<size_t>(c);
+            double r = (problem.cells[i].value[channel] - predict_cell(problem, u, problem.cells[i], c).value)
+                       / sigmas[i][channel];
             chi2 += r * r;
         }
         sum += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
@@ -79,18 +79,20 @@ QuadraticModel normal_equations(const FlatProblem &problem, const Eigen::VectorX
         std::array<Prediction, 3> p;
         double residual[3], chi2 = 0.0, divisor;
         for (int c = 0; c < problem.model.channels; c++) {
-            const auto at = static_cast<size_t>(c);
-            p[at] = predict_cell(problem, u, cell, c);
-            residual[c] = (cell.value[at] - p[at].value) / sigmas[i][at];
+            const auto channel = static_cast<size_t>(c);
+            p[channel] = predict_cell(problem, u, cell, c);
+            residual[c] = (cell.value[channel] - p[channel].value) / sigmas[i][channel];
             chi2 += residual[c] * residual[c];
         }
         normal.objective += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
         for (int c = 0; c < problem.model.channels; c++) {
-            const Prediction &one = p[static_cast<size_t>(c)];
+            const Prediction &prediction = p[static_cast<size_t>(c)];
             const double sigma = sigmas[i][static_cast<size_t>(c)], weight = 1.0 / (divisor * sigma * sigma);
-            for (size_t a = 0; a < static_cast<size_t>(one.count); a++) {
-                gradient[one.index[a]] += residual[c] / (divisor * sigma) * one.by[a];
-                for (size_t b = 0; b <= a; b++) data(one.index[a], one.index[b]) += weight * one.by[a] * one.by[b];
+            for (size_t a = 0; a < static_cast<size_t>(prediction.count); a++) {
+                gradient[prediction.index[a]] += residual[c] / (divisor * sigma) * prediction.derivative[a];
+                for (size_t b = 0; b <= a; b++)
+                    data(prediction.index[a], prediction.index[b]) +=
+                        weight * prediction.derivative[a] * prediction.derivative[b];
             }
         }
     }
@@ -170,8 +172,8 @@ double unevenness(const FlatProblem &problem, const std::vector<std::array<doubl
             squares.push_back(r * r);
             noises.push_back(problem.cells[i].variance[c] / (p * p));
         }
-    double beyond = median(squares) / kMedianChi2 - median(noises);
-    return std::sqrt(std::max(beyond, 0.0));
+    double excess = median(squares) / kMedianChi2 - median(noises);
+    return std::sqrt(std::max(excess, 0.0));
 }
 
 // Mean square of the residuals without outliers, per degree of freedom.
@@ -299,7 +301,7 @@ void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
         Eigen::Vector3d before = state();
         descend(problem, estimate);
         measure_noise(problem, estimate);
-        if ((state() - before).norm() < kSettled * before.norm()) break;
+        if ((state() - before).norm() < kNoiseTolerance * before.norm()) break;
     }
 }
 

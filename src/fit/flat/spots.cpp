@@ -23,13 +23,13 @@ struct SpotMap {
 
 // Standard deviation of the mean over a cell's channels from the noise of its pixels, relative to the light.
 std::vector<double> noise_of_shot(const FlatFit &fit, int shot) {
-    const Shot &own = fit.shots[static_cast<size_t>(shot)];
+    const Shot &shot_data = fit.shots[static_cast<size_t>(shot)];
     const auto channels = static_cast<size_t>(fit.problem.model.channels);
-    std::vector<double> noise(own.light.size(), 1.0);
+    std::vector<double> noise(shot_data.light.size(), 1.0);
     for (size_t i = 0; i < noise.size(); i++) {
         double sum = 0.0;
-        for (size_t c = 0; c < channels && own.light[i].state == CellState::used; c++)
-            sum += own.light[i].variance[c] / (own.light[i].value[c] * own.light[i].value[c]);
+        for (size_t c = 0; c < channels && shot_data.light[i].state == CellState::used; c++)
+            sum += shot_data.light[i].variance[c] / (shot_data.light[i].value[c] * shot_data.light[i].value[c]);
         if (sum > 0.0) noise[i] = std::sqrt(sum) / static_cast<double>(channels);
     }
     return noise;
@@ -41,8 +41,8 @@ SpotMap spots_of_shot(const FlatFit &fit, int shot) {
     const int channels = fit.problem.model.channels;
     std::vector<double> residual(count, 0.0);
     for (int c = 0; c < channels; c++) {
-        std::vector<double> one = residual_map(fit, shot, c, nullptr, true);
-        for (size_t i = 0; i < count; i++) residual[i] += one[i] / channels;
+        std::vector<double> channel_residual = residual_map(fit, shot, c, nullptr, true);
+        for (size_t i = 0; i < count; i++) residual[i] += channel_residual[i] / channels;
     }
     SpotMap map{std::vector<double>(count), std::vector<bool>(count)};
     const std::vector<double> noise = noise_of_shot(fit, shot);
@@ -53,13 +53,13 @@ SpotMap spots_of_shot(const FlatFit &fit, int shot) {
         // symmetric, so that a slope towards the corners does not look like a spot
         const int across = std::min({kSurroundings, column, grid.columns - 1 - column});
         const int down = std::min({kSurroundings, row, grid.rows - 1 - row});
-        std::vector<double> near;
+        std::vector<double> surroundings;
         for (int y = row - down; y <= row + down; y++)
             for (int x = column - across; x <= column + across; x++) {
                 double value = residual[static_cast<size_t>(y * grid.columns + x)];
-                if (!std::isnan(value)) near.push_back(value);
+                if (!std::isnan(value)) surroundings.push_back(value);
             }
-        map.below[i] = residual[i] - median(near);
+        map.below[i] = residual[i] - median(surroundings);
         size.push_back(std::abs(map.below[i]) / noise[i]);
     }
     const double sigma = std::max(kMadToSigma * median(size), 1.0);

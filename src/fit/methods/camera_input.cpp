@@ -8,7 +8,7 @@ namespace lensprof {
 namespace {
 
 // Groups of images connected by data of one camera; each group is identified by its smallest index.
-std::vector<uint32_t> groups_of_own(const CamerasData &data, const std::vector<uint32_t> &camera_of) {
+std::vector<uint32_t> camera_groups(const CamerasData &data, const std::vector<uint32_t> &camera_of) {
     std::vector<uint32_t> parent(data.images.size());
     std::iota(parent.begin(), parent.end(), 0u);
     const auto root = [&](uint32_t i) {
@@ -29,7 +29,7 @@ std::vector<uint32_t> groups_of_own(const CamerasData &data, const std::vector<u
 
 // Selects the images of each camera that are fitted.
 void part_images(const CamerasData &data, const std::vector<uint32_t> &camera_of, std::vector<CameraInput> &inputs) {
-    const std::vector<uint32_t> groups = groups_of_own(data, camera_of);
+    const std::vector<uint32_t> groups = camera_groups(data, camera_of);
     std::vector<uint32_t> size(data.images.size()), largest(inputs.size(), kNoPlace);
     for (const uint32_t group : groups) size[group]++;
     for (uint32_t i = 0; i < groups.size(); i++) {
@@ -49,13 +49,13 @@ void part_images(const CamerasData &data, const std::vector<uint32_t> &camera_of
 
 // If images share unknowns with an image that is not included, they share them with the first included image of these.
 void link_images(const std::vector<lensprof_fit_image> &all, CameraInput &input) {
-    for (uint32_t lensprof_fit_image::*of :
+    for (uint32_t lensprof_fit_image::*owner_field :
          {&lensprof_fit_image::ev_of, &lensprof_fit_image::red_of, &lensprof_fit_image::blue_of}) {
         std::map<uint32_t, uint32_t> first;  // by the image that owns the unknown
         for (uint32_t n = 0; n < input.images.size(); n++) {
-            const uint32_t owner = all[input.numbers[n]].*of;
-            const uint32_t own = input.place[owner] != kNoPlace ? input.place[owner] : n;
-            input.images[n].*of = first.try_emplace(owner, own).first->second;
+            const uint32_t owner = all[input.numbers[n]].*owner_field;
+            const uint32_t local_owner = input.place[owner] != kNoPlace ? input.place[owner] : n;
+            input.images[n].*owner_field = first.try_emplace(owner, local_owner).first->second;
         }
     }
 }
@@ -111,14 +111,16 @@ std::vector<CameraInput> part_cameras(const CamerasData &data, const std::vector
         input.options.links = input.links.data();
         input.options.link_count = static_cast<uint32_t>(input.links.size());
         const uint32_t setting = data.images[data.options.reference].setting;
-        const auto alike = std::find_if(input.images.begin(), input.images.end(),
-                                        [&](const lensprof_fit_image &image) { return image.setting == setting; });
-        const uint32_t own = input.place[data.options.reference];
-        input.options.reference = own != kNoPlace               ? own
-                                  : alike != input.images.end() ? static_cast<uint32_t>(alike - input.images.begin())
-                                                                : 0;
+        const auto same_setting =
+            std::find_if(input.images.begin(), input.images.end(),
+                         [&](const lensprof_fit_image &image) { return image.setting == setting; });
+        const uint32_t reference = input.place[data.options.reference];
+        input.options.reference = reference != kNoPlace ? reference
+                                  : same_setting != input.images.end()
+                                      ? static_cast<uint32_t>(same_setting - input.images.begin())
+                                      : 0;
         // Its falloff and response belong to the reference's setting.
-        if (alike == input.images.end()) input.options.profile = nullptr;
+        if (same_setting == input.images.end()) input.options.profile = nullptr;
     }
     return inputs;
 }

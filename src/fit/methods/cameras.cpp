@@ -23,8 +23,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double kUnsettledSigma = 1.0;  // of ln gamma if nothing determines it
-constexpr double kBetter = 0.9;          // relative standard error below which other cameras determine gamma
+constexpr double kUndeterminedSigma = 1.0;  // of ln gamma if nothing determines it
+constexpr double kBetter = 0.9;             // relative standard error below which other cameras determine gamma
 // Uncertainty of a response's light at white, natural logarithm: no pair shows grey values near it, and exposures are
 // defined by it. Over 60 pairs of measured responses of today's cameras the exposures of two cameras were .37 EV off,
 // RMS, median .24.
@@ -37,9 +37,9 @@ struct PartOfProgress {
     void *user = nullptr;
     double from = 0.0, to = 1.0;
 
-    static int tell(double done, void *part) {
-        const auto &own = *static_cast<const PartOfProgress *>(part);
-        return own.progress(own.from + (own.to - own.from) * done, own.user);
+    static int report(double done, void *part) {
+        const auto &self = *static_cast<const PartOfProgress *>(part);
+        return self.progress(self.from + (self.to - self.from) * done, self.user);
     }
 };
 
@@ -82,7 +82,7 @@ private:
     void attach();
     void number_components();
     bool attach_image(uint32_t image, const std::vector<uint32_t> &pairs);
-    void give(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const;
+    void write(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const;
     void give_camera(uint32_t number, lensprof_fit_result &r) const;
 
     const lensprof_fit_options &options_;
@@ -98,11 +98,11 @@ private:
 void CamerasFit::fit_each(const FitCamera &fit, const lensprof_fit_result &result) {
     double done = 0.0;  // share of the images
     for (Camera &camera : cameras_) {
-        const double own = static_cast<double>(camera.input.images.size()) / static_cast<double>(images_.size());
-        PartOfProgress part{options_.progress, options_.progress_user, done, done + own};
-        done += own;
+        const double share = static_cast<double>(camera.input.images.size()) / static_cast<double>(images_.size());
+        PartOfProgress part{options_.progress, options_.progress_user, done, done + share};
+        done += share;
         if (options_.progress)
-            camera.input.options.progress = PartOfProgress::tell, camera.input.options.progress_user = &part;
+            camera.input.options.progress = PartOfProgress::report, camera.input.options.progress_user = &part;
         std::vector<lensprof_exposure> start;
         for (const lensprof_fit_image &image : camera.input.images) start.push_back(image.exposure);
         camera.found = std::make_unique<Output>(result, start.data(), static_cast<uint32_t>(start.size()));
@@ -116,10 +116,10 @@ void CamerasFit::fit_each(const FitCamera &fit, const lensprof_fit_result &resul
 uint32_t CamerasFit::choose_base() const {
     uint32_t base = camera_of_[options_.reference];
     if (cameras_[base].corrects()) return base;
-    uint32_t most = 0;
+    uint32_t max_images = 0;
     for (uint32_t k = 0; k < cameras_.size(); k++) {
-        if (!cameras_[k].corrects() || cameras_[k].joined_images() <= most) continue;
-        base = k, most = cameras_[k].joined_images();
+        if (!cameras_[k].corrects() || cameras_[k].joined_images() <= max_images) continue;
+        base = k, max_images = cameras_[k].joined_images();
     }
     for (uint32_t k = 0; k < cameras_.size() && !cameras_[base].is_fitted; k++)
         if (cameras_[k].is_fitted) base = k;
@@ -156,17 +156,17 @@ bool CamerasFit::light_of(const lensprof_pair &pair, int side, const lensprof_ex
 std::vector<LightPair> CamerasFit::light_pairs() const {
     std::vector<LightPair> light;
     for (const lensprof_pair &pair : pairs_) {
-        LightPair own{};
+        LightPair light_pair{};
         bool is_known = camera_of_[pair.image[0]] != camera_of_[pair.image[1]];
         for (int side = 0; side < 2 && is_known; side++) {
             const uint32_t image = pair.image[side], camera = camera_of_[image],
                            place = cameras_[camera].input.place[image];
-            own.image[side] = image, own.camera[side] = camera;
+            light_pair.image[side] = image, light_pair.camera[side] = camera;
             is_known = place != kNoPlace
-                       && light_of(pair, side, cameras_[camera].found->exposures[place], own.log_light[side],
-                                   own.variance[side]);
+                       && light_of(pair, side, cameras_[camera].found->exposures[place], light_pair.log_light[side],
+                                   light_pair.variance[side]);
         }
-        if (is_known) light.push_back(own);
+        if (is_known) light.push_back(light_pair);
     }
     return light;
 }
@@ -184,9 +184,9 @@ double CamerasFit::response_variance(uint32_t number) const {
     double count = 0.0;
     for (const lensprof_pair &pair : pairs_)
         for (int side = 0; side < 2; side++) {
-            const uint32_t own = pair.image[side], other = pair.image[1 - side];
+            const uint32_t image = pair.image[side], other = pair.image[1 - side];
             const double b = pair.value[side][options_.channels == 3 ? 1 : 0];
-            if (camera_of_[own] != number || camera_of_[other] == number || !(b > kDarkest && b < kWhite)) continue;
+            if (camera_of_[image] != number || camera_of_[other] == number || !(b > kDarkest && b < kWhite)) continue;
             double slope;
             const double x = lp_curve_invert(r.response.table, b, &slope);
             if (!(x > 0.0)) continue;
@@ -210,14 +210,14 @@ double CamerasFit::response_variance(uint32_t number) const {
 // held.
 std::vector<double> CamerasFit::gamma_sigmas(uint32_t base) const {
     std::vector<double> sigmas;
-    bool is_any_settled = false;
+    bool is_any_determined = false;
     for (const Camera &camera : cameras_) {
         const bool is_known = !camera.is_fitted || camera.result().gamma_from == LENSPROF_GAMMA_KNOWN;
-        const bool is_settled = is_known || camera.result().gamma_from != LENSPROF_GAMMA_NONE;
-        is_any_settled = is_any_settled || (is_settled && camera.is_fitted);
-        sigmas.push_back(is_known ? 0.0 : is_settled ? camera.result().gamma_sigma : kUnsettledSigma);
+        const bool is_determined = is_known || camera.result().gamma_from != LENSPROF_GAMMA_NONE;
+        is_any_determined = is_any_determined || (is_determined && camera.is_fitted);
+        sigmas.push_back(is_known ? 0.0 : is_determined ? camera.result().gamma_sigma : kUndeterminedSigma);
     }
-    if (!is_any_settled) sigmas[base] = 0.0;
+    if (!is_any_determined) sigmas[base] = 0.0;
     return sigmas;
 }
 
@@ -225,19 +225,19 @@ std::vector<double> CamerasFit::gamma_sigmas(uint32_t base) const {
 // gamma is then known better than the best of them.
 void CamerasFit::state_gamma(uint32_t number, const std::vector<double> &sigmas, double &sigma, uint32_t &from) const {
     double best = HUGE_VAL, best_other = HUGE_VAL;
-    bool are_priors = true, is_unsettled = true;
+    bool are_priors = true, is_undetermined = true;
     for (uint32_t k = 0; k < cameras_.size(); k++) {
         if (!joints_[k].joined || !cameras_[k].is_fitted) continue;
         best = std::min(best, sigmas[k]);
         if (k != number) best_other = std::min(best_other, sigmas[k]);
-        const uint32_t own = cameras_[k].result().gamma_from;
-        are_priors = are_priors && own == LENSPROF_GAMMA_PRIOR;
-        is_unsettled = is_unsettled && own == LENSPROF_GAMMA_NONE;
+        const uint32_t gamma_from = cameras_[k].result().gamma_from;
+        are_priors = are_priors && gamma_from == LENSPROF_GAMMA_PRIOR;
+        is_undetermined = is_undetermined && gamma_from == LENSPROF_GAMMA_NONE;
     }
     sigma = joints_[number].log_gamma_sigma;
     if (are_priors) sigma = std::max(sigma, best);
     if (best_other < kBetter * sigmas[number]) from = LENSPROF_GAMMA_CAMERAS;
-    if (is_unsettled) from = LENSPROF_GAMMA_NONE, sigma = LENSPROF_UNKNOWN;
+    if (is_undetermined) from = LENSPROF_GAMMA_NONE, sigma = LENSPROF_UNKNOWN;
 }
 
 // Moves every camera's result to agree with the others.
@@ -323,11 +323,11 @@ bool CamerasFit::attach_image(uint32_t image, const std::vector<uint32_t> &pairs
     for (const uint32_t p : pairs) {
         const lensprof_pair &pair = pairs_[p];
         const int side = pair.image[1] == image, other = 1 - side;
-        double own[3], seen[3], unused[3];
-        if (!light_of(pair, side, zero, own, unused)
-            || !light_of(pair, other, exposures_[pair.image[other]], seen, unused))
+        double image_light[3], other_light[3], unused[3];
+        if (!light_of(pair, side, zero, image_light, unused)
+            || !light_of(pair, other, exposures_[pair.image[other]], other_light, unused))
             continue;
-        for (uint32_t c = 0; c < options_.channels; c++) log_exposure[c].push_back(own[c] - seen[c]);
+        for (uint32_t c = 0; c < options_.channels; c++) log_exposure[c].push_back(image_light[c] - other_light[c]);
         other_variance += std::pow(quality_[pair.image[other]].ev_sigma, 2);
     }
     const size_t count = log_exposure[0].size();
@@ -419,7 +419,7 @@ void CamerasFit::give_camera(uint32_t number, lensprof_fit_result &r) const {
     }
 }
 
-void CamerasFit::give(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const {
+void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const {
     const Camera &first = cameras_[base];
     lensprof_fit_result r = first.result();
     r.image_quality = result.image_quality;
@@ -455,7 +455,7 @@ bool CamerasFit::run(const FitCamera &fit, lensprof_exposure *exposures, lenspro
     collect();
     attach();
     number_components();
-    give(base, exposures, result);
+    write(base, exposures, result);
     return true;
 }
 

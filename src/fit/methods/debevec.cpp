@@ -36,11 +36,12 @@ double hat(double level) { return std::min(level, 255.0 - level) + 1.0; }
 // values below level 1, which have no unknown, and for white values, which carry no information.
 bool add_equation(double b1, double b2, double log_ratio, NormalRows &rows) {
     if (std::min(b1, b2) * 255.0 < 1.0 || std::max(b1, b2) >= 1.0) return false;
-    const Place one = place_of(b1), two = place_of(b2);
-    const int column[4] = {column_of(one.low), column_of(one.low + 1), column_of(two.low), column_of(two.low + 1)};
-    const double by[4] = {1.0 - one.share, one.share, two.share - 1.0, -two.share};
+    const Place place1 = place_of(b1), place2 = place_of(b2);
+    const int column[4] = {column_of(place1.low), column_of(place1.low + 1), column_of(place2.low),
+                           column_of(place2.low + 1)};
+    const double coefficient[4] = {1.0 - place1.share, place1.share, place2.share - 1.0, -place2.share};
     double w1 = std::pow(hat(255.0 * b1), 2), w2 = std::pow(hat(255.0 * b2), 2);
-    rows.add(column, by, 4, log_ratio, w1 * w2 / (w1 + w2));
+    rows.add(column, coefficient, 4, log_ratio, w1 * w2 / (w1 + w2));
     return true;
 }
 

@@ -125,8 +125,8 @@ void GroupFit::choose_reference() {
 std::vector<Falloffs> falloffs_of(const Problem &problem, const lensprof_fit_result &r) {
     std::vector<Falloffs> falloffs;
     for (uint32_t number : problem.setting_number) {
-        const lensprof_vignetting *own = r.settings ? r.settings[number].vignetting : r.vignetting;
-        falloffs.push_back({own[0], own[1], own[2]});
+        const lensprof_vignetting *vignetting = r.settings ? r.settings[number].vignetting : r.vignetting;
+        falloffs.push_back({vignetting[0], vignetting[1], vignetting[2]});
     }
     return falloffs;
 }
@@ -153,10 +153,10 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fi
 // changed.
 bool GroupFit::leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
     bool any = break_links(exposures, r);
-    const bool is_of_one = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE
-                           || r.reason_code == LENSPROF_REASON_IMAGE_DISAGREES
-                           || r.reason_code == LENSPROF_REASON_EXPOSURE_UNCERTAIN;
-    if (!any && !r.usable && is_of_one && r.reason_item.kind == LENSPROF_ITEM_IMAGE)
+    const bool is_image_reason = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE
+                                 || r.reason_code == LENSPROF_REASON_IMAGE_DISAGREES
+                                 || r.reason_code == LENSPROF_REASON_EXPOSURE_UNCERTAIN;
+    if (!any && !r.usable && is_image_reason && r.reason_item.kind == LENSPROF_ITEM_IMAGE)
         any = banned_[r.reason_item.index] = true;
     return any;
 }
@@ -215,8 +215,8 @@ void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
         return;
     }
     if (!r.usable) return;
-    const auto is_own = [&](const auto &link) { return is_within(link); };
-    const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_own);
+    const auto is_in_group = [&](const auto &link) { return is_within(link); };
+    const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_in_group);
     if (r.reason_code != LENSPROF_REASON_NONE && !is_of_greys(r.reason_code)) return;
     // Links that sampling found to show something else have no pairs that could contradict the result.
     const auto is_contradicted = [&](const lensprof_link &link) {
@@ -229,7 +229,7 @@ void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
         warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(all.left_out)}));
     else if (broken != group_.broken.end())
         warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, (*broken)[0],
-                         {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_own))}));
+                         {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_in_group))}));
     else if (contradicted != end)
         warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, contradicted->image[0],
                          {double(std::count_if(links, end, is_contradicted))}));
@@ -243,12 +243,12 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
     for (const Edge &edge : all.edges) had_pairs_[edge.image[0]] = had_pairs_[edge.image[1]] = true;
     const bool may_leave_out = all.image_unknowns > 0 && !is_static(all);
     if (may_leave_out && !take_largest(all)) component_ = all.component, group_.joined.assign(count_, true);
-    lensprof_fit_options own = options_;
+    lensprof_fit_options group_options = options_;
     for (int n = 1;; n++) {
-        own.reference = group_.reference;
-        const bool is_same_setting = images_[own.reference].setting == images_[options_.reference].setting;
-        own.profile = is_same_setting ? options_.profile : nullptr;  // if it has the falloff of that setting
-        fit(own, group_, exposures, result);
+        group_options.reference = group_.reference;
+        const bool is_same_setting = images_[group_options.reference].setting == images_[options_.reference].setting;
+        group_options.profile = is_same_setting ? options_.profile : nullptr;  // if it has the falloff of that setting
+        fit(group_options, group_, exposures, result);
         note_quality(result);
         const Group before = group_;
         const std::vector<uint32_t> component = component_;

@@ -84,8 +84,8 @@ private:
     const uint32_t reference_;
     const int channels_;
     std::vector<Joint> joints_;
-    Eigen::VectorXd at_;    // the estimate
-    double scatter_ = 0.0;  // of light, beyond the noise of grey values, natural logarithm
+    Eigen::VectorXd estimate_;  // ln gamma of every camera, then its offsets
+    double scatter_ = 0.0;      // of light, beyond the noise of grey values, natural logarithm
     Eigen::MatrixXd cov_;
 };
 
@@ -120,16 +120,16 @@ size_t Join::farthest() const {
 double Join::residual(const LightPair &pair, int c) const {
     double value[2];
     for (int side = 0; side < 2; side++)
-        value[side] = std::exp(at_[gamma_column(pair.camera[side])]) * pair.log_light[side][c]
-                      + at_[offset_column(pair.camera[side], c)];
+        value[side] = std::exp(estimate_[gamma_column(pair.camera[side])]) * pair.log_light[side][c]
+                      + estimate_[offset_column(pair.camera[side], c)];
     return value[0] - value[1];
 }
 
 double Join::variance(const LightPair &pair, int c) const {
     double sum = 0.0;
     for (int side = 0; side < 2; side++)
-        sum +=
-            std::exp(2.0 * at_[gamma_column(pair.camera[side])]) * (pair.variance[side][c] + 0.5 * scatter_ * scatter_);
+        sum += std::exp(2.0 * estimate_[gamma_column(pair.camera[side])])
+               * (pair.variance[side][c] + 0.5 * scatter_ * scatter_);
     return sum;
 }
 
@@ -145,10 +145,10 @@ Slopes Join::slopes(const LightPair &pair, int c) const {
     Slopes result{r / s, {}, {}};
     for (int side = 0; side < 2; side++) {
         const uint32_t camera = pair.camera[side];
-        const double gamma = std::exp(at_[gamma_column(camera)]), sign = side ? -1.0 : 1.0;
-        const double own = gamma * gamma * (pair.variance[side][c] + 0.5 * scatter_ * scatter_);
+        const double gamma = std::exp(estimate_[gamma_column(camera)]), sign = side ? -1.0 : 1.0;
+        const double variance_slope = gamma * gamma * (pair.variance[side][c] + 0.5 * scatter_ * scatter_);
         result.column[2 * side] = gamma_column(camera);
-        result.slope[2 * side] = sign * gamma * pair.log_light[side][c] / s - r * own / (v * s);
+        result.slope[2 * side] = sign * gamma * pair.log_light[side][c] / s - r * variance_slope / (v * s);
         result.column[2 * side + 1] = offset_column(camera, c);
         result.slope[2 * side + 1] = sign / s;
     }
@@ -157,7 +157,7 @@ Slopes Join::slopes(const LightPair &pair, int c) const {
 
 // Start values from medians, from camera to camera.
 void Join::start_offsets() {
-    at_ = Eigen::VectorXd::Zero(count_ * (1 + channels_));
+    estimate_ = Eigen::VectorXd::Zero(count_ * (1 + channels_));
     std::vector<bool> is_known(joints_.size());
     is_known[reference_] = true;
     for (bool any = true; any;) {
@@ -170,7 +170,7 @@ void Join::start_offsets() {
                 differences[{camera, c}].push_back(is_known[pair.camera[0]] ? residual(pair, c) : -residual(pair, c));
         }
         for (auto &[of, values] : differences) {
-            at_[offset_column(of.first, of.second)] = median(values);
+            estimate_[offset_column(of.first, of.second)] = median(values);
             is_known[of.first] = any = true;
         }
     }
@@ -181,7 +181,8 @@ void Join::find_scatter() {
     std::vector<double> squares;
     for (const LightPair &pair : pairs_)
         for (int c = 0; c < channels_ && takes(pair); c++) {
-            const double scale = std::exp(at_[gamma_column(pair.camera[0])] + at_[gamma_column(pair.camera[1])]);
+            const double scale =
+                std::exp(estimate_[gamma_column(pair.camera[0])] + estimate_[gamma_column(pair.camera[1])]);
             const double noise = pair.variance[0][c] + pair.variance[1][c];
             squares.push_back(std::max(0.0, std::pow(kMadToSigma * residual(pair, c), 2) / scale - noise));
         }
@@ -190,24 +191,24 @@ void Join::find_scatter() {
 
 // One Gauss-Newton step of the weighted residuals; returns its length. `normal` receives the normal equations.
 double Join::step(Eigen::MatrixXd &normal) {
-    const auto size = at_.size();
+    const auto size = estimate_.size();
     normal = Eigen::MatrixXd::Zero(size, size);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
     for (const LightPair &pair : pairs_) {
         if (!takes(pair)) continue;
         const double trust = weight(pair);
         for (int c = 0; c < channels_; c++) {
-            const Slopes own = slopes(pair, c);
+            const Slopes row = slopes(pair, c);
             for (int i = 0; i < 4; i++) {
-                right[own.column[i]] -= trust * own.slope[i] * own.residual;
-                for (int j = 0; j < 4; j++) normal(own.column[i], own.column[j]) += trust * own.slope[i] * own.slope[j];
+                right[row.column[i]] -= trust * row.slope[i] * row.residual;
+                for (int j = 0; j < 4; j++) normal(row.column[i], row.column[j]) += trust * row.slope[i] * row.slope[j];
             }
         }
     }
     for (uint32_t k = 0; k < joints_.size(); k++) {
         const int g = gamma_column(k);
         const double precision = 1.0 / std::pow(std::max(sigma_[k], kKnownSigma), 2);
-        normal(g, g) += precision, right[g] -= precision * at_[g];
+        normal(g, g) += precision, right[g] -= precision * estimate_[g];
         for (int c = 0; c < channels_; c++) {  // of the reference 0; cameras that are not joined are undetermined
             const int b = offset_column(k, c);
             if (k != reference_ && joints_[k].joined) continue;
@@ -218,8 +219,8 @@ double Join::step(Eigen::MatrixXd &normal) {
     const Eigen::VectorXd change = normal.ldlt().solve(right);
     const double length = change.cwiseAbs().maxCoeff();
     if (!std::isfinite(length)) return 0.0;
-    at_ += change;
-    for (int k = 0; k < count_; k++) at_[k] = std::clamp(at_[k], -kLargestLogGamma, kLargestLogGamma);
+    estimate_ += change;
+    for (int k = 0; k < count_; k++) estimate_[k] = std::clamp(estimate_[k], -kLargestLogGamma, kLargestLogGamma);
     return length;
 }
 
@@ -240,14 +241,14 @@ Eigen::MatrixXd Join::covariance_by_links() const {
     for (const LightPair &pair : pairs_) {
         if (!takes(pair)) continue;
         const double trust = weight(pair);
-        auto &gradient =
-            gradients.try_emplace({pair.image[0], pair.image[1]}, Eigen::VectorXd::Zero(at_.size())).first->second;
+        auto &gradient = gradients.try_emplace({pair.image[0], pair.image[1]}, Eigen::VectorXd::Zero(estimate_.size()))
+                             .first->second;
         for (int c = 0; c < channels_; c++) {
-            const Slopes own = slopes(pair, c);
-            for (int i = 0; i < 4; i++) gradient[own.column[i]] += trust * own.slope[i] * own.residual;
+            const Slopes row = slopes(pair, c);
+            for (int i = 0; i < 4; i++) gradient[row.column[i]] += trust * row.slope[i] * row.residual;
         }
     }
-    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(at_.size(), at_.size());
+    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(estimate_.size(), estimate_.size());
     for (const auto &[link, gradient] : gradients) squares += gradient * gradient.transpose();
     return cov_ * squares * cov_;
 }
@@ -280,17 +281,18 @@ void Join::describe() {
     const auto sigma_of = [&](int column) {
         return larger([&](const Eigen::MatrixXd &m) { return m(column, column); });
     };
-    const auto sigma_between = [&](int one, int other) {
-        return larger([&](const Eigen::MatrixXd &m) { return m(one, one) + m(other, other) - 2.0 * m(one, other); });
+    const auto sigma_between = [&](int first, int second) {
+        return larger(
+            [&](const Eigen::MatrixXd &m) { return m(first, first) + m(second, second) - 2.0 * m(first, second); });
     };
     const int measured = channels_ == 3 ? 1 : 0;
     for (uint32_t k = 0; k < joints_.size(); k++) {
         Joint &joint = joints_[k];
         if (!joint.joined) continue;
         const bool is_open = sigma_[k] > 0.0;
-        joint.log_gamma = is_open ? at_[gamma_column(k)] : 0.0;
+        joint.log_gamma = is_open ? estimate_[gamma_column(k)] : 0.0;
         joint.log_gamma_sigma = is_open ? sigma_of(gamma_column(k)) : 0.0;
-        for (int c = 0; c < channels_; c++) joint.offset[static_cast<size_t>(c)] = at_[offset_column(k, c)];
+        for (int c = 0; c < channels_; c++) joint.offset[static_cast<size_t>(c)] = estimate_[offset_column(k, c)];
         if (k == reference_) continue;
         joint.offset_sigma = sigma_of(offset_column(k, measured));
         for (int c = 0; c < channels_; c++)
@@ -334,11 +336,11 @@ std::vector<LightPair> agreeing(const std::vector<LightPair> &pairs) {
     std::map<std::array<uint32_t, 2>, std::vector<const LightPair *>> between;
     for (const LightPair &pair : pairs)
         between[{std::min(pair.camera[0], pair.camera[1]), std::max(pair.camera[0], pair.camera[1])}].push_back(&pair);
-    std::vector<LightPair> some;
-    for (const auto &[cameras, own] : between)
-        if (own.size() >= kFewestJoining && may_agree(own))
-            for (const LightPair *pair : own) some.push_back(*pair);
-    return some;
+    std::vector<LightPair> kept;
+    for (const auto &[cameras, joining] : between)
+        if (joining.size() >= kFewestJoining && may_agree(joining))
+            for (const LightPair *pair : joining) kept.push_back(*pair);
+    return kept;
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ protected:
     }
 
     // The pairs or tracks used for short first fits.
-    const std::vector<uint32_t> &few() const { return split_.few.empty() ? split_.all : split_.few; }
+    const std::vector<uint32_t> &brief_subset() const { return split_.brief.empty() ? split_.all : split_.brief; }
 
     // The best of short fits from every start, all at one fixed noise level so that their costs are comparable. Use a
     // gauge that leaves gamma open.

@@ -68,13 +68,13 @@ private:
                                                      const lensprof_profile *profile, const Problem &problem) {
         if (!profile) return nullptr;
         const bool is_free = options.free & LENSPROF_FREE_RESPONSE;
-        const int most = !is_free ? 0 : static_cast<int>(std::min<uint32_t>(options.modes, LENSPROF_EMOR_MODES));
-        return std::make_unique<StoredPrior>(*profile, problem, most);
+        const int max_modes = !is_free ? 0 : static_cast<int>(std::min<uint32_t>(options.modes, LENSPROF_EMOR_MODES));
+        return std::make_unique<StoredPrior>(*profile, problem, max_modes);
     }
     std::vector<uint32_t> thinned(const std::vector<uint32_t> &items) const {
-        std::vector<uint32_t> some;
-        for (size_t i = 0; i < items.size(); i += step_) some.push_back(items[i]);
-        return some;
+        std::vector<uint32_t> kept;
+        for (size_t i = 0; i < items.size(); i += step_) kept.push_back(items[i]);
+        return kept;
     }
     void take_all();
     void set_vignettings(int count) {
@@ -82,9 +82,9 @@ private:
         if (stored_) stored_->put_into(prior_, count, options_.prior_weight, gauge_.is_open());
     }
     int first_vignettings() const {
-        const bool three =
+        const bool per_channel =
             options_.vignettings == 3 || (options_.vignettings == 0 && stored_ && stored_->vignettings() == 3);
-        return three && options_.channels == 3 ? 3 : 1;
+        return per_channel && options_.channels == 3 ? 3 : 1;
     }
     // Fewer modes than the profile's would discard what is known of the others.
     int start_modes() const { return stored_ ? std::max(kStartModes, stored_->modes()) : kStartModes; }
@@ -96,7 +96,7 @@ private:
     Candidate choose_modes(const Estimate &start);
     Candidate choose(Loss &used);
     bool follows(const Loss &used, Estimate &estimate, Outcome &outcome);
-    void free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
+    void free_response(const Gauge &requested, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
 
     uint32_t image_count_;
     const Make problem_;
@@ -114,12 +114,12 @@ private:
 
 // The best of short fits from every start, with its gamma determined.
 Estimate Fit::best_start(int modes) {
-    Problem brief = problem_(few());
+    Problem brief = problem_(brief_subset());
     brief.vignettings = all_.vignettings;
-    Gauge unheld = gauge_.unheld();
-    Estimate best = best_brief_fit(brief, unheld, control_.cancelled, start_estimates(brief, options_, modes));
+    Gauge unconstrained = gauge_.unconstrained();
+    Estimate best = best_brief_fit(brief, unconstrained, control_.cancelled, start_estimates(brief, options_, modes));
     start_exposures(all_, kRoughWidth, best);  // sets the exposures of images that had few pairs here
-    gauge_.settle(train_, best);
+    gauge_.apply_gamma(train_, best);
     return best;
 }
 
@@ -159,8 +159,8 @@ void Fit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
 bool Fit::is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined) {
     HeldoutLoss modes = heldout_loss(heldout_, best.estimate, common_);
     refined.estimate = best.estimate;
-    Loss own = used;
-    refine(train_, own, refined.estimate);
+    Loss refined_loss = used;
+    refine(train_, refined_loss, refined.estimate);
     static_cast<HeldoutLoss &>(refined) = heldout_loss(heldout_, refined.estimate, common_);
     double error, difference = loss_difference(refined, modes, error);
     return difference < error;
@@ -169,14 +169,14 @@ bool Fit::is_as_good_refined(const Candidate &best, const Loss &used, Candidate 
 // Recomputes the exposures from the fitted response and all pairs. If pairs that agree by chance had misled an image,
 // the fit of `problem` from there has a lower cost.
 void Fit::reconsider(const Problem &problem, const Loss &used, Estimate &estimate) {
-    constexpr double kAway = 0.15;  // natural logarithm
+    constexpr double kLargestChange = 0.15;  // natural logarithm
     Estimate other = estimate;
     start_exposures(all_, kFineWidth, other);
-    double away = 0.0;
+    double change = 0.0;
     for (size_t i = 0; i < other.log_exposure.size(); i++)
         for (size_t c = 0; c < 3; c++)
-            away = std::max(away, std::abs(other.log_exposure[i][c] - estimate.log_exposure[i][c]));
-    if (away < kAway) return;
+            change = std::max(change, std::abs(other.log_exposure[i][c] - estimate.log_exposure[i][c]));
+    if (change < kLargestChange) return;
     Control brief = control_;
     brief.rounds = 1;
     brief.flat = 0.05;
@@ -199,7 +199,7 @@ Candidate Fit::choose_modes(const Estimate &start) {
         lowest = std::min(lowest, tried.front().mean);
         if (failures == 2) break;
     }
-    auto is_good = [&](const Candidate &one) { return is_as_good(one, best_of(tried)); };
+    auto is_good = [&](const Candidate &candidate) { return is_as_good(candidate, best_of(tried)); };
     for (int modes : {3, 2, 1}) {
         if (!is_good(tried.back()) || (stored_ && modes < stored_->modes())) break;
         tried.push_back(candidate(tried.back().estimate, modes));
@@ -251,19 +251,19 @@ void Fit::take_all() {
 
 // Whether modes can follow to the requested gamma: the estimate is then that of a fit which holds it.
 bool Fit::follows(const Loss &used, Estimate &estimate, Outcome &outcome) {
-    Estimate there = estimate;
-    Loss own = used;
-    Outcome result = solve(all_, prior_, gauge_, own, true, control_, there);
-    HeldoutLoss before = heldout_loss(heldout_, estimate, common_), after = heldout_loss(heldout_, there, common_);
+    Estimate trial = estimate;
+    Loss trial_loss = used;
+    Outcome result = solve(all_, prior_, gauge_, trial_loss, true, control_, trial);
+    HeldoutLoss before = heldout_loss(heldout_, estimate, common_), after = heldout_loss(heldout_, trial, common_);
     double error, difference = loss_difference(after, before, error);
-    if (difference > error || std::abs(gauge_.distance(all_, there)) > kFollows) return false;
-    estimate = there, outcome = result;
+    if (difference > error || std::abs(gauge_.distance(all_, trial)) > kFollows) return false;
+    estimate = trial, outcome = result;
     return true;
 }
 
 // Frees the response from its modes if that is better, or if these cannot follow to the requested gamma. The fits so
 // far have the gamma of most cameras.
-void Fit::free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
+void Fit::free_response(const Gauge &requested, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
     const bool was_thinned = step_ > 1;
     take_all();
     Candidate refined;
@@ -272,17 +272,17 @@ void Fit::free_response(const Gauge &asked, Loss &used, Candidate &best, Estimat
         best = refined, refine(all_, used, estimate);
     else if (was_thinned)
         outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
-    gauge_ = asked;
+    gauge_ = requested;
     if (!is_refined && follows(used, estimate, outcome)) return;
-    for (Estimate *one : {&estimate, &best.estimate}) {
-        if (!one->is_refined) set_table(*one, one->curve.table.data());
-        gauge_.settle(all_, *one);
+    for (Estimate *target : {&estimate, &best.estimate}) {
+        if (!target->is_refined) set_table(*target, target->curve.table.data());
+        gauge_.apply_gamma(all_, *target);
     }
 }
 
 void Fit::run() {
     bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMostRefinedImages;
-    const Gauge asked = gauge_;
+    const Gauge requested = gauge_;
     if (frees) gauge_ = gauge_.by_prior();
     used_ = loss();
     used_.distrusts = true;
@@ -291,16 +291,16 @@ void Fit::run() {
     if (has_heldout_) reconsider(all_, used_, estimate_);
     outcome_ = solve(all_, prior_, gauge_, used_, true, control_, estimate_);
     if (frees)
-        free_response(asked, used_, best_, estimate_, outcome_);
+        free_response(requested, used_, best_, estimate_, outcome_);
     else
         take_all();
 }
 
 double Fit::worse_than(const Fit &other) const {
     if (!has_heldout_) return 0.0;
-    HeldoutLoss own = heldout_loss(other.heldout_, best_.estimate, other.common_),
-                others = heldout_loss(other.heldout_, other.best_.estimate, other.common_);
-    double error, difference = loss_difference(own, others, error);
+    HeldoutLoss own_loss = heldout_loss(other.heldout_, best_.estimate, other.common_),
+                other_loss = heldout_loss(other.heldout_, other.best_.estimate, other.common_);
+    double error, difference = loss_difference(own_loss, other_loss, error);
     return error > 0.0 ? difference / error : 0.0;
 }
 
@@ -324,25 +324,27 @@ constexpr Part kParts[] = {{true, true, LENSPROF_PROFILE_PRIOR_USED},
 
 // The profile with a covariance restricted to this part of it; NULL if that contains no information.
 std::unique_ptr<lensprof_profile> part_of(const lensprof_profile &profile, const Part &part) {
-    auto own = std::make_unique<lensprof_profile>(profile);
-    const uint32_t n = own->covariance_size, modes = lp_covariance_modes(own->response, own->responses);
+    auto restricted = std::make_unique<lensprof_profile>(profile);
+    const uint32_t n = restricted->covariance_size,
+                   modes = lp_covariance_modes(restricted->response, restricted->responses);
     for (uint32_t i = 0; i < n; i++) {
         const bool is_kept = i < modes ? part.response : part.falloff;
-        for (uint32_t j = 0; j < n && !is_kept; j++) own->covariance[i * n + j] = own->covariance[j * n + i] = 0.0;
+        for (uint32_t j = 0; j < n && !is_kept; j++)
+            restricted->covariance[i * n + j] = restricted->covariance[j * n + i] = 0.0;
     }
-    if (!part.response && !modes) lensprof_response_set_linear(&own->response[0]);
-    return says_how_sure(*own) ? std::move(own) : nullptr;
+    if (!part.response && !modes) lensprof_response_set_linear(&restricted->response[0]);
+    return has_uncertainty(*restricted) ? std::move(restricted) : nullptr;
 }
 
 // Distance of the pictures from a profile used as the prior, standard errors.
 struct Contradiction {
     double falloff, response, worse, gamma;  // the response's shape, held-out pairs, gamma of the kind of camera
 
-    double apart() const { return std::max(falloff, response); }
+    double distance() const { return std::max(falloff, response); }
     double in_all() const { return std::max(worse, gamma); }
-    bool is_one() const {
+    bool is_significant() const {
         constexpr double kClearly = 3.0, kFarApart = 5.0;
-        return worse > kClearly || apart() > kFarApart;
+        return worse > kClearly || distance() > kFarApart;
     }
 };
 
@@ -363,20 +365,20 @@ public:
         alone_.describe(exposures, r);
         if (!options_.profile) return;
         const Contradiction all = attempt(kParts[0], exposures, r, r);
-        if (!all.is_one()) return;
+        if (!all.is_significant()) return;
         const bool has_both = part_of(*options_.profile, kParts[1]) && part_of(*options_.profile, kParts[2]);
         std::unique_ptr<Output> best;
         Contradiction least{HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
         for (const Part &part : {kParts[1], kParts[2]}) {
             if (!has_both) break;
-            auto own = std::make_unique<Output>(r, exposures, image_count_);
-            const Contradiction some = attempt(part, own->exposures.data(), r, *own->result);
-            if (some.is_one() || some.in_all() >= least.in_all()) continue;
-            least = some;
-            best = std::move(own);
+            auto output = std::make_unique<Output>(r, exposures, image_count_);
+            const Contradiction contradiction = attempt(part, output->exposures.data(), r, *output->result);
+            if (contradiction.is_significant() || contradiction.in_all() >= least.in_all()) continue;
+            least = contradiction;
+            best = std::move(output);
         }
         r.profile_prior = LENSPROF_PROFILE_PRIOR_OVERRULED;
-        if (best) best->give(r, exposures);
+        if (best) best->write(r, exposures);
         for_each_verdict(r, [&](auto &verdict) {
             if (verdict.usable) warn(verdict, reason_of(r.profile_prior, all));
         });
@@ -393,7 +395,7 @@ private:
         informed.run();
         const Contradiction found{informed.falloff_distance(alone), informed.response_distance(alone),
                                   informed.worse_than(alone_), informed.gamma_distance()};
-        if (found.is_one()) return found;
+        if (found.is_significant()) return found;
         informed.describe(exposures, r);
         r.profile_prior = part.verdict;
         return found;
@@ -404,7 +406,7 @@ private:
             return {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, {all.response, all.worse}};
         if (verdict == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED)
             return {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, {all.falloff, all.worse}};
-        return {LENSPROF_REASON_PRIOR_OVERRULED, {all.apart(), all.worse}};
+        return {LENSPROF_REASON_PRIOR_OVERRULED, {all.distance(), all.worse}};
     }
 
     const lensprof_fit_options &options_;
@@ -416,10 +418,10 @@ private:
 
 void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
               lensprof_exposure *exposures, lensprof_fit_result &result) {
-    Output own(result, exposures, image_count);  // the caller's stay unchanged until all is done
-    own.result->profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
-    InformedFit(options, image_count, make, count).run(own.exposures.data(), *own.result);
-    own.give(result, exposures);
+    Output output(result, exposures, image_count);  // the caller's stay unchanged until all is done
+    output.result->profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
+    InformedFit(options, image_count, make, count).run(output.exposures.data(), *output.result);
+    output.write(result, exposures);
 }
 
 }  // namespace
@@ -431,10 +433,10 @@ void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *
         return make_problem(options, images, image_count, pairs, keep);
     };
     run_fits(options, image_count, make, pair_count, exposures, result);
-    settle_unshown_response(
+    resolve_unobserved_response(
         options, image_count,
-        [&](const lensprof_fit_options &held, lensprof_exposure *own, lensprof_fit_result &r) {
-            fit_overlap(held, images, image_count, pairs, pair_count, own, r);
+        [&](const lensprof_fit_options &held, lensprof_exposure *held_exposures, lensprof_fit_result &r) {
+            fit_overlap(held, images, image_count, pairs, pair_count, held_exposures, r);
         },
         exposures, result);
 }
@@ -445,10 +447,10 @@ void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image 
         return make_problem(options, images, image_count, tracks, keep);
     };
     run_fits(options, image_count, make, static_cast<uint32_t>(tracks.tracks.size()), exposures, result);
-    settle_unshown_response(
+    resolve_unobserved_response(
         options, image_count,
-        [&](const lensprof_fit_options &held, lensprof_exposure *own, lensprof_fit_result &r) {
-            fit_radiance(held, images, image_count, tracks, own, r);
+        [&](const lensprof_fit_options &held, lensprof_exposure *held_exposures, lensprof_fit_result &r) {
+            fit_radiance(held, images, image_count, tracks, held_exposures, r);
         },
         exposures, result);
 }

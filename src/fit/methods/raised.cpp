@@ -79,8 +79,8 @@ void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<
     for (size_t i = 0; i < exposures.size(); i++) {
         lensprof_exposure &e = exposures[i];
         if (std::isnan(e.ev)) continue;
-        const double away = e.ev - zero.ev, of_gamma = old_sigma * away;
-        e.ev = zero.ev + gamma * away;
+        const double ev_offset = e.ev - zero.ev, of_gamma = old_sigma * ev_offset;
+        e.ev = zero.ev + gamma * ev_offset;
         for (int c = 0; c < 3; c++) {
             const double before = e.white_balance[c];
             e.white_balance[c] = zero.white_balance[c] * std::pow(before / zero.white_balance[c], gamma);
@@ -89,7 +89,7 @@ void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<
         if (!r.image_quality) continue;
         double &ev_sigma = r.image_quality[i].ev_sigma;
         const double of_data = std::max(0.0, ev_sigma * ev_sigma - of_gamma * of_gamma);
-        ev_sigma = std::sqrt(gamma * gamma * of_data + std::pow(sigma * gamma * away, 2));
+        ev_sigma = std::sqrt(gamma * gamma * of_data + std::pow(sigma * gamma * ev_offset, 2));
     }
     r.gamma_sigma = stated;
     r.light_spread_ev *= gamma;

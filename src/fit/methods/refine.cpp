@@ -22,12 +22,12 @@ constexpr double kLargestCorrection = 8.0;  // levels, one standard deviation: h
 // is therefore constant.
 struct Correction {
     double first;  // that grey value, levels
-    std::array<double, kLevels> at{};
+    std::array<double, kLevels> offset{};
 
     explicit Correction(const Curve &base) : first(std::clamp(255.0 * base.table[1], 1.0, 254.0)) {}
 
     Place place_of(double b) const { return lensprof::place_of(b, first); }
-    double value(double b) const { return value_at(at, place_of(b)); }
+    double value(double b) const { return value_at(offset, place_of(b)); }
 };
 
 // f at the 1024 samples of irradiance from g = exp(G0 + D).
@@ -43,7 +43,7 @@ int image_column(int unknown) { return unknown < 0 ? -1 : kUnknown + unknown; }
 struct Row {
     static constexpr int kEntries = 8;
     int column[kEntries];
-    double by[kEntries];
+    double coefficient[kEntries];
 };
 
 Row row_of(const Problem &problem, const lensprof_pair &pair, int c, int side, Place b, Place p) {
@@ -62,14 +62,14 @@ public:
     Equations(const Problem &problem, const Estimate &first)
         : problem_(problem), first_(first), size_(kUnknown + problem.image_unknowns), rows_(size_) {}
 
-    void add_pairs(const Loss &loss, const Correction &d, const Estimate &now);
+    void add_pairs(const Loss &loss, const Correction &d, const Estimate &current);
     void add_smoothness();
     void hold_gamma();
     Eigen::VectorXd solve() const { return solve_symmetric(rows_.normal, rows_.right); }
 
 private:
     void add_transfer(const lensprof_pair &pair, int c, int side, const Transfer &t, const Correction &d,
-                      const Estimate &now, double weight);
+                      const Estimate &current, double weight);
 
     const Problem &problem_;
     const Estimate &first_;
@@ -80,28 +80,28 @@ private:
 // A prediction P = f( g(B) t ) solves  G(P) + D(P) = G(B) + D(B) + ln t, so that
 //     dP = (D(B) - D(P) + d ln t) dP/d ln t.
 void Equations::add_transfer(const lensprof_pair &pair, int c, int side, const Transfer &t, const Correction &d,
-                             const Estimate &now, double weight) {
+                             const Estimate &current, double weight) {
     const auto channel = static_cast<size_t>(c);
     const double from = pair.value[1 - side][c], to = pair.value[side][c] - t.residual[side];
     const double slope = std::abs(t.by_delta[side]);
     if (slope == 0.0) return;  // saturated prediction
     uint32_t i = pair.image[side], j = pair.image[1 - side];
     Row row = row_of(problem_, pair, c, side, d.place_of(from), d.place_of(to));
-    double done = d.value(from) - d.value(to) + now.log_exposure[i][channel] - first_.log_exposure[i][channel]
-                  - now.log_exposure[j][channel] + first_.log_exposure[j][channel];
-    rows_.add(row.column, row.by, Row::kEntries, t.residual[side] / slope + done, weight * slope * slope);
+    double done = d.value(from) - d.value(to) + current.log_exposure[i][channel] - first_.log_exposure[i][channel]
+                  - current.log_exposure[j][channel] + first_.log_exposure[j][channel];
+    rows_.add(row.column, row.coefficient, Row::kEntries, t.residual[side] / slope + done, weight * slope * slope);
 }
 
-void Equations::add_pairs(const Loss &loss, const Correction &d, const Estimate &now) {
-    NoiseWeights weights = noise_weights(problem_, now, loss);
-    for_each_transfer(problem_, now, [&](size_t p, const PairTransfer &t) {
+void Equations::add_pairs(const Loss &loss, const Correction &d, const Estimate &current) {
+    NoiseWeights weights = noise_weights(problem_, current, loss);
+    for_each_transfer(problem_, current, [&](size_t p, const PairTransfer &t) {
         PairResiduals factor, residuals = weighted_residuals(t, problem_.channels, weights[p]);
         pair_cost(residuals, problem_.channels, loss, &factor);
         for (int c = 0; c < problem_.channels; c++)
             for (int side = 0; side < 2; side++) {
                 const auto channel = static_cast<size_t>(c), direction = static_cast<size_t>(side);
                 double weight = weights[p][channel][direction];
-                add_transfer(problem_.pairs[p], c, side, t.channel[channel], d, now,
+                add_transfer(problem_.pairs[p], c, side, t.channel[channel], d, current,
                              factor[channel][direction] * weight * weight);
             }
     });
@@ -147,13 +147,13 @@ struct Refinement {
 };
 
 // The first estimate after applying a refinement.
-Estimate refined(const Problem &problem, const Estimate &first, const Refinement &by) {
+Estimate refined(const Problem &problem, const Estimate &first, const Refinement &refinement) {
     Estimate estimate = first;
-    set_table(estimate, table_of(first.curve, by.d).data());
+    set_table(estimate, table_of(first.curve, refinement.d).data());
     for (uint32_t i = 0; i < problem.image_count; i++)
         for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++)
             for (int unknown : {problem.ev_unknown[i], problem.balance_unknown[i][c]})
-                if (unknown >= 0) estimate.log_exposure[i][c] += by.changes[unknown];
+                if (unknown >= 0) estimate.log_exposure[i][c] += refinement.changes[unknown];
     return estimate;
 }
 
@@ -168,16 +168,16 @@ double cost_of(const Problem &problem, const Loss &loss, const Estimate &estimat
 
 // Tries 1, 1/2, 1/4 and 1/8 of the step to the solution of a round; false if none lowers the cost.
 bool advance(const Problem &problem, const Loss &loss, const Estimate &first, const Eigen::VectorXd &found,
-             Refinement &by, Estimate &estimate, double &cost) {
+             Refinement &refinement, Estimate &estimate, double &cost) {
     for (double share = 1.0; share > 0.1; share *= 0.5) {
-        Refinement next = by;
+        Refinement next = refinement;
         for (int k = 0; k < kUnknown; k++)
-            next.d.at[static_cast<size_t>(k)] += share * (found[k] - by.d.at[static_cast<size_t>(k)]);
-        next.changes += share * (found.tail(problem.image_unknowns) - by.changes);
+            next.d.offset[static_cast<size_t>(k)] += share * (found[k] - refinement.d.offset[static_cast<size_t>(k)]);
+        next.changes += share * (found.tail(problem.image_unknowns) - refinement.changes);
         Estimate candidate = refined(problem, first, next);
         double lower = cost_of(problem, loss, candidate);
         if (!(lower < cost)) continue;
-        by = next, estimate = candidate, cost = lower;
+        refinement = next, estimate = candidate, cost = lower;
         return true;
     }
     return false;
@@ -185,30 +185,30 @@ bool advance(const Problem &problem, const Loss &loss, const Estimate &first, co
 
 }  // namespace
 
-Estimate corrected(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+Estimate corrected(const Problem &problem, const Estimate &first, const Eigen::VectorXd &offsets,
                    const Eigen::VectorXd &changes) {
     Refinement refinement{Correction(first.curve), changes};
-    std::copy(by.begin(), by.end(), refinement.d.at.begin());
+    std::copy(offsets.begin(), offsets.end(), refinement.d.offset.begin());
     return refined(problem, first, refinement);
 }
 
-std::vector<double> prediction_rates(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+std::vector<double> prediction_rates(const Problem &problem, const Estimate &first, const Eigen::VectorXd &offsets,
                                      const Eigen::VectorXd &changes) {
-    Eigen::VectorXd unknowns(by.size() + changes.size());
-    unknowns << by, changes;
-    const Correction none(first.curve);
+    Eigen::VectorXd unknowns(offsets.size() + changes.size());
+    unknowns << offsets, changes;
+    const Correction no_correction(first.curve);
     std::vector<double> rates;
     for_each_transfer(problem, first, [&](size_t p, const PairTransfer &t) {
         const lensprof_pair &pair = problem.pairs[p];
         for (int c = 0; c < problem.channels; c++)
             for (int side = 0; side < 2; side++) {
-                const Transfer &one = t.channel[static_cast<size_t>(c)];
-                Row row = row_of(problem, pair, c, side, none.place_of(pair.value[1 - side][c]),
-                                 none.place_of(pair.value[side][c] - one.residual[side]));
+                const Transfer &transfer = t.channel[static_cast<size_t>(c)];
+                Row row = row_of(problem, pair, c, side, no_correction.place_of(pair.value[1 - side][c]),
+                                 no_correction.place_of(pair.value[side][c] - transfer.residual[side]));
                 double sum = 0.0;
                 for (int k = 0; k < Row::kEntries; k++)
-                    if (row.column[k] >= 0) sum += row.by[k] * unknowns[row.column[k]];
-                rates.push_back(sum * std::abs(one.by_delta[side]));
+                    if (row.column[k] >= 0) sum += row.coefficient[k] * unknowns[row.column[k]];
+                rates.push_back(sum * std::abs(transfer.by_delta[side]));
             }
     });
     return rates;
@@ -216,16 +216,16 @@ std::vector<double> prediction_rates(const Problem &problem, const Estimate &fir
 
 void refine_response(const Problem &problem, const Loss &loss, Estimate &estimate) {
     const Estimate first = estimate;
-    Refinement by{Correction(first.curve), Eigen::VectorXd::Zero(problem.image_unknowns)};
+    Refinement refinement{Correction(first.curve), Eigen::VectorXd::Zero(problem.image_unknowns)};
     double cost = cost_of(problem, loss, first);
     for (int round = 0; round < kRounds; round++) {
         Equations equations(problem, first);
-        equations.add_pairs(loss, by.d, estimate);
+        equations.add_pairs(loss, refinement.d, estimate);
         equations.add_smoothness();
         equations.hold_gamma();
         Eigen::VectorXd found = equations.solve();
         double before = cost;
-        if (!found.allFinite() || !advance(problem, loss, first, found, by, estimate, cost)) break;
+        if (!found.allFinite() || !advance(problem, loss, first, found, refinement, estimate, cost)) break;
         if (before - cost < kWorthwhile) break;
     }
     if (!estimate.is_refined) set_table(estimate, first.curve.table.data());

@@ -16,16 +16,16 @@ constexpr uint32_t kMostRefinedImages = 256;  // their exposures are solved for 
 // provides the noise. gamma, which no pair determines, stays.
 void refine_response(const Problem &problem, const Loss &loss, Estimate &estimate);
 
-// Its parts, for tests of the derivatives. `by`: D at levels 1..254 of 255; `changes`: changes of the images' log
+// Its parts, for tests of the derivatives. `offsets`: D at levels 1..254 of 255; `changes`: changes of the images' log
 // exposures.
 constexpr int kCorrections = 254;
 
 // The estimate with a corrected response (then a table) and changed exposures.
-Estimate corrected(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+Estimate corrected(const Problem &problem, const Estimate &first, const Eigen::VectorXd &offsets,
                    const Eigen::VectorXd &changes);
 
-// Derivatives at 0 of every pair's predictions ([channel][direction]) along `by` and `changes`.
-std::vector<double> prediction_rates(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+// Derivatives at 0 of every pair's predictions ([channel][direction]) along `offsets` and `changes`.
+std::vector<double> prediction_rates(const Problem &problem, const Estimate &first, const Eigen::VectorXd &offsets,
                                      const Eigen::VectorXd &changes);
 
 }  // namespace lensprof

@@ -73,8 +73,8 @@ void hold_typical(const lensprof_fit_options &options, uint32_t image_count, con
 
 }  // namespace
 
-void settle_unshown_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
-                             lensprof_exposure *exposures, lensprof_fit_result &r) {
+void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
+                                 lensprof_exposure *exposures, lensprof_fit_result &r) {
     constexpr uint32_t kFalloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     const bool is_narrow = r.reason_code == LENSPROF_REASON_FEW_GREYS;
     const bool is_even = r.light_spread_ev < kSmallestSpread && r.reason_code != LENSPROF_REASON_EXPOSURES_ALIKE;

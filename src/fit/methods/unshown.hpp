@@ -14,7 +14,7 @@ using FitHeld =
 // If the light at the ends of the pairs differs too little to determine a response, replaces the result by one with a
 // held response, including its errors: that of the prior profile, or else, by another fit, the typical response of the
 // kind of camera. The paper's own variant, without a prior, is unchanged.
-void settle_unshown_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
-                             lensprof_exposure *exposures, lensprof_fit_result &result);
+void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
+                                 lensprof_exposure *exposures, lensprof_fit_result &result);
 
 }  // namespace lensprof

@@ -18,7 +18,7 @@ constexpr double kShapeError = 0.02;  // of a shape: error of fits, and of 25 mo
 constexpr double kUsual =
     3.5;  // standard deviations: 95 % of a kind's measured curves are nearer, and almost all others
 constexpr double kSmallestSigma = 1e-3;  // of ln gamma: that of LINEAR is 0
-constexpr double kOdd = 0.5;             // above 1, by which a response is untypical of the kind
+constexpr double kUntypical = 0.5;       // above 1, by which a response is untypical of the kind
 
 // ln g at four grey values, scaled to 0 at the dark and 1 at the bright one of the gauge. It is the same for all
 // members f(x^(1/gamma)) of a family, whose ln g are multiples of each other.
@@ -86,7 +86,7 @@ double GammaPrior::oddness(const double *table) const {
 }
 
 double GammaPrior::sigma_of(const double *table) const {
-    return std::hypot(sigma_, of_any_ * std::clamp((oddness(table) - 1.0) / kOdd, 0.0, 1.0));
+    return std::hypot(sigma_, of_any_ * std::clamp((oddness(table) - 1.0) / kUntypical, 0.0, 1.0));
 }
 
 }  // namespace lensprof

@@ -94,11 +94,11 @@ Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem, const 
     if (any) known_weight_.assign(problem.image_count, 1.0);
 }
 
-Gauge Gauge::unheld() const {
-    Gauge other = *this;
-    other.open_ = false;
-    other.known_weight_.clear();
-    return other;
+Gauge Gauge::unconstrained() const {
+    Gauge result = *this;
+    result.open_ = false;
+    result.known_weight_.clear();
+    return result;
 }
 
 Gauge Gauge::by_prior() const {
@@ -152,21 +152,21 @@ double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     if (!open_) return 0.0;
     lensprof_gamma_from expected_from;
     const double offset = expected(estimate, expected_sigma_, expected_from);
-    bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
+    bool is_informative = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
     double expected_precision = 1.0 / (expected_sigma_ * expected_sigma_);
-    if (says) {  // errors of the prior have heavy tails: if exposures contradict it, it has less weight
+    if (is_informative) {  // errors of the prior have heavy tails: if exposures contradict it, it has less weight
         double z = (offset - std::log(slope_)) / std::hypot(expected_sigma_, slope_sigma_);
         if (expected_from != LENSPROF_GAMMA_PRIOR) z /= kDoubtful;  // those of a profile do not
         expected_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
     }
-    double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
+    double precision = is_informative ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
     from_ = precision > expected_precision ? LENSPROF_GAMMA_EXPOSURES : expected_from;
     oddness_ = prior_.oddness(estimate.curve.table.data());
     sigma_ = 1.0 / std::sqrt(precision + expected_precision);
     return (expected_precision * offset + precision * std::log(slope_)) / (precision + expected_precision);
 }
 
-void Gauge::settle(const Problem &problem, Estimate &estimate) {
+void Gauge::apply_gamma(const Problem &problem, Estimate &estimate) {
     if (!open_) return;
     for (int round = 0; round < 3; round++) {
         double step = -std::clamp(distance(problem, estimate), -kLargestStep, kLargestStep);
@@ -186,7 +186,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
     prior.pin.setZero();
     prior.pin_precision = prior.pin_value = 0.0;
     if (open_) {
-        double here = distance(problem, estimate);
+        double current = distance(problem, estimate);
         prior.pin = gamma_slope(estimate);
         double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
         double hold = std::clamp(kPinSigma * std::sqrt(kPinPairs / pairs), kSmallestPinSigma, kLargestPinSigma);
@@ -195,7 +195,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
         hold = std::max(hold * better, std::min(hold, kPinSigma));
         if (is_loose_) hold = kLooseSigma;
         prior.pin_precision = 1.0 / (hold * hold);
-        prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
+        prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - current;
     } else {
         compare_known(problem, estimate);
     }

@@ -29,14 +29,14 @@ public:
     bool is_open() const { return open_; }
 
     // The same knowledge without holding gamma to it: for first fits, whose shape must find its own optimum.
-    Gauge unheld() const;
+    Gauge unconstrained() const;
 
     // The prior alone, held loosely. Few modes lose shape if they are held to a gamma, above all to one that known
     // exposures ask for, which would also bias the pictures' exposures. A refined response can follow exactly.
     Gauge by_prior() const;
 
     // Moves the estimate along its family to the determined gamma, as well as its modes and falloff can follow.
-    void settle(const Problem &problem, Estimate &estimate);
+    void apply_gamma(const Problem &problem, Estimate &estimate);
 
     // Writes the hold on gamma, and the known exposures, into the prior, linearised at the estimate.
     void renew(const Problem &problem, const Estimate &estimate, Prior &prior);

@@ -62,9 +62,9 @@ struct Regression {
         : levels(1 + static_cast<size_t>(*std::max_element(level.begin(), level.end()))) {
         auto weight = [&](uint32_t i) { return trusts[i] / std::pow(scatter * known.sigma[i], 2); };
         for (uint32_t i : known.members) {
-            Level &one = levels[static_cast<size_t>(level[i])];
-            one.count++, one.weight += weight(i), one.trust += trusts[i];
-            one.found += weight(i) * known.found[i], one.known += weight(i) * known.known[i];
+            Level &group = levels[static_cast<size_t>(level[i])];
+            group.count++, group.weight += weight(i), group.trust += trusts[i];
+            group.found += weight(i) * known.found[i], group.known += weight(i) * known.known[i];
         }
         for (size_t l = 0; l < levels.size(); l++) {
             levels[l].found /= levels[l].weight, levels[l].known /= levels[l].weight;
@@ -72,8 +72,8 @@ struct Regression {
             if (levels[l].count > levels[largest].count) largest = l;
         }
         for (uint32_t i : known.members) {
-            const Level &one = levels[static_cast<size_t>(level[i])];
-            const double dx = known.found[i] - one.found, dy = known.known[i] - one.known;
+            const Level &group = levels[static_cast<size_t>(level[i])];
+            const double dx = known.found[i] - group.found, dy = known.known[i] - group.known;
             xx += weight(i) * dx * dx, xy += weight(i) * dx * dy, yy += weight(i) * dy * dy;
         }
     }
@@ -106,25 +106,28 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     level_offset_.assign(count, 0.0);
     for (int round = 0; round < 8; round++) {
         if (round > 0 && known.members.size() >= kFewestOfLevels) level = neighbours.levels(off, known.sigma, scatter_);
-        const Regression of(known, level, known_weight_, scatter_);
-        const double excess = of.yy > 0.0 ? std::max(0.0, 1.0 - of.trust / of.yy) : 0.0;
-        const bool says = open_ && excess > 0.0 && of.xy > kSmallestSlope * of.xx && of.xy * kSmallestSlope < of.xx;
-        const double per_known = says ? of.xy / of.xx : 1.0;  // known EV per found EV
+        const Regression regression(known, level, known_weight_, scatter_);
+        const double excess = regression.yy > 0.0 ? std::max(0.0, 1.0 - regression.trust / regression.yy) : 0.0;
+        const bool is_informative = open_ && excess > 0.0 && regression.xy > kSmallestSlope * regression.xx
+                                    && regression.xy * kSmallestSlope < regression.xx;
+        const double per_known = is_informative ? regression.xy / regression.xx : 1.0;  // known EV per found EV
         slope_ = 1.0 / per_known;
-        slope_sigma_ = says ? 1.0 / (per_known * std::sqrt(of.xx * excess)) : 0.0;
-        auto offset = [&](size_t l) { return kLn2 * (of.levels[l].found - slope_ * of.levels[l].known); };
-        known_offset_ = offset(of.largest);
+        slope_sigma_ = is_informative ? 1.0 / (per_known * std::sqrt(regression.xx * excess)) : 0.0;
+        auto offset = [&](size_t l) {
+            return kLn2 * (regression.levels[l].found - slope_ * regression.levels[l].known);
+        };
+        known_offset_ = offset(regression.largest);
         std::vector<double> distances;
         for (uint32_t i : known.members) {
-            off[i] = of.off(known, i, of.largest, per_known);
+            off[i] = regression.off(known, i, regression.largest, per_known);
             distances.push_back(std::abs(off[i]) / known.sigma[i]);
         }
         scatter_ = std::min(scatter_of(distances, 2), neighbours.scatter(off, known.sigma));
         for (uint32_t i : known.members) {
-            const auto own = static_cast<size_t>(level[i]);
-            const double z = of.off(known, i, own, per_known) / (kDoubtful * scatter_ * known.sigma[i]);
+            const auto own_level = static_cast<size_t>(level[i]);
+            const double z = regression.off(known, i, own_level, per_known) / (kDoubtful * scatter_ * known.sigma[i]);
             known_weight_[i] = 1.0 / (1.0 + z * z);
-            level_offset_[i] = offset(own);
+            level_offset_[i] = offset(own_level);
         }
     }
     leave_out(problem, off);

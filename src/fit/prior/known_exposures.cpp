@@ -12,7 +12,7 @@ namespace lensprof {
 namespace {
 
 constexpr double kOneIn = 2.33;         // standard deviations that a normal variable exceeds with probability 1 %
-constexpr double kWorthAWord = 0.1;     // EV
+constexpr double kReportableEv = 0.1;   // EV
 constexpr double kClearSpread = 0.7;    // EV, from the darkest to the brightest: visible in any pictures
 constexpr double kFlatSlope = 0.1;      // of the known exposures against the found ones: they belong to something else
 constexpr double kClearlyBetter = 4.0;  // in chi-squared, than the next explanation
@@ -98,7 +98,7 @@ void explain(const Known &known, KnownExposures &result) {
         result.image = known.image(first);
         result.off_ev = line.step;
     };
-    for (size_t m = 0; m < known.count(); m++) consider(m, m + 1, KnownExposures::Explanation::one);
+    for (size_t m = 0; m < known.count(); m++) consider(m, m + 1, KnownExposures::Explanation::single_image);
     for (size_t m = 2; m + 1 < known.count(); m++) consider(m, known.count(), KnownExposures::Explanation::step);
     bool is_clear = known.freedom() > 1 && best < limit(known.freedom() - 1) && next - best > kClearlyBetter;
     if (!is_clear) result.explanation = KnownExposures::Explanation::any;
@@ -118,7 +118,7 @@ KnownExposures compare_known(const Problem &problem, const Estimate &estimate, b
     if (known.freedom() < 1) return result;
     Line line = known.fit(0, 0);
     result.slope = 1.0 / line.slope;
-    if (line.chi2 < limit(known.freedom()) || line.largest < kWorthAWord) return result;
+    if (line.chi2 < limit(known.freedom()) || line.largest < kReportableEv) return result;
     explain(known, result);
     if (result.explanation == KnownExposures::Explanation::any) result.off_ev = line.largest;
     return result;

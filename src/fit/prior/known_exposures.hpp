@@ -9,7 +9,7 @@ struct KnownExposures {
     enum class Explanation {
         none,
         order,
-        one,
+        single_image,
         step,
         any
     };

@@ -49,12 +49,12 @@ Prior make_prior(double weight, int vignettings, int settings, bool by_covarianc
 void tie_channels(double weight, int vignettings, int setting, Prior &prior) {
     const int first = falloff_column(setting), green = green_falloff(vignettings, setting);
     const double tie = weight / (kChannelSigma * kChannelSigma);
-    for (int own = first; own < first + 3 * vignettings; own++) {
-        const int of_green = green + (own - first) % 3;
-        if (own == of_green) continue;
-        prior.precision(own, own) += tie;
+    for (int column = first; column < first + 3 * vignettings; column++) {
+        const int of_green = green + (column - first) % 3;
+        if (column == of_green) continue;
+        prior.precision(column, column) += tie;
         prior.precision(of_green, of_green) += tie;
-        prior.precision(own, of_green) = prior.precision(of_green, own) = -tie;
+        prior.precision(column, of_green) = prior.precision(of_green, column) = -tie;
     }
 }
 

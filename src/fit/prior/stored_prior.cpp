@@ -23,7 +23,7 @@ constexpr int kCurveModes = 9;
 constexpr double kCurveLevels = 0.2, kCurveDrift = 0.025;
 
 constexpr double kRadii2[4] = {0.1, 0.25, 0.5, 1.0};  // r^2 at which falloffs are compared
-constexpr double kSaysNothing = 0.7;  // a standard error of ln gamma from here on carries no information
+constexpr double kUninformative = 0.7;  // a standard error of ln gamma from here on carries no information
 
 double log_falloff(const lensprof_vignetting &v, double r2) {
     return std::log(std::max(lensprof_vignetting_eval(&v, r2, nullptr), 1e-3));
@@ -31,16 +31,16 @@ double log_falloff(const lensprof_vignetting &v, double r2) {
 
 bool is_refined_curve(const lensprof_profile &profile) {
     return profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_TABLE
-           && profile.provenance.gamma_sigma > 0.0 && profile.provenance.gamma_sigma < kSaysNothing;
+           && profile.provenance.gamma_sigma > 0.0 && profile.provenance.gamma_sigma < kUninformative;
 }
 
 }  // namespace
 
-bool says_how_sure(const lensprof_profile &profile) {
+bool has_uncertainty(const lensprof_profile &profile) {
     const uint32_t n = profile.covariance_size;
-    bool says = is_refined_curve(profile);
-    for (uint32_t i = 0; i < n; i++) says = says || profile.covariance[i * n + i] > 0.0;
-    return says;
+    bool is_stated = is_refined_curve(profile);
+    for (uint32_t i = 0; i < n; i++) is_stated = is_stated || profile.covariance[i * n + i] > 0.0;
+    return is_stated;
 }
 
 bool is_covariance(const lensprof_profile &profile) {
@@ -101,7 +101,7 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
     for (int d = 0; d < 2; d++) mean_[kCenter + d] = profile.vignetting[0].center[d];
     if (is_curve) take_curve_error(problem, profile);
     shares_gamma_ = profile.provenance.gamma_sigma > 0.0;
-    settle_gamma(problem, profile);
+    find_gamma_errors(problem, profile);
 }
 
 // Covariance of the modes on which a refined curve was projected: that of its shape, and that of its gamma along the
@@ -127,8 +127,8 @@ Estimate StoredPrior::estimate_of(const Problem &problem, const lensprof_profile
 
 // ln M of a falloff relative to that of the profile, over the frame: 1 if both are equal, gamma for M^gamma.
 double StoredPrior::falloff_ratio(const lensprof_vignetting &v) const {
-    const int own = green_falloff(vignettings_);
-    const lensprof_vignetting known{{mean_[own], mean_[own + 1], mean_[own + 2]}, {}};
+    const int green = green_falloff(vignettings_);
+    const lensprof_vignetting known{{mean_[green], mean_[green + 1], mean_[green + 2]}, {}};
     double product = 0.0, square = 0.0;
     for (double r2 : kRadii2) {
         product += log_falloff(v, r2) * log_falloff(known, r2);
@@ -139,22 +139,24 @@ double StoredPrior::falloff_ratio(const lensprof_vignetting &v) const {
 
 // Errors of ln gamma from the response's position and from the falloff's depth, and their covariance: both are linear
 // in the profile's parameters.
-void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &profile) {
+void StoredPrior::find_gamma_errors(const Problem &problem, const lensprof_profile &profile) {
     const Estimate stored = estimate_of(problem, profile);
     response_position_ = gamma_position(stored.curve.table.data());
     Eigen::VectorXd by_response = Eigen::VectorXd::Zero(kOneSetting), by_falloff = by_response;
     by_response.head(kMaxModes) = gamma_slope(stored);
-    const int own = green_falloff(vignettings_);
+    const int green = green_falloff(vignettings_);
     for (int n = 0; n < 3; n++) {
         constexpr double h = 1e-5;
         lensprof_vignetting up = profile.vignetting[vignettings_ == 3 ? 1 : 0], down = up;
         up.k[n] += h, down.k[n] -= h;
-        by_falloff[own + n] = (falloff_ratio(up) - falloff_ratio(down)) / (2 * h);
+        by_falloff[green + n] = (falloff_ratio(up) - falloff_ratio(down)) / (2 * h);
     }
-    const auto sigma = [&](const Eigen::VectorXd &by) { return std::sqrt(std::max(by.dot(covariance_ * by), 0.0)); };
+    const auto sigma = [&](const Eigen::VectorXd &derivative) {
+        return std::sqrt(std::max(derivative.dot(covariance_ * derivative), 0.0));
+    };
     response_sigma_ = modes_ > 0 ? sigma(by_response) : 0.0;
     falloff_sigma_ = sigma(by_falloff);
-    if (!(falloff_sigma_ < kSaysNothing)) falloff_sigma_ = 0.0;
+    if (!(falloff_sigma_ < kUninformative)) falloff_sigma_ = 0.0;
     gamma_covariance_ = by_response.dot(covariance_ * by_falloff);
     if (is_refined_curve(profile)
         && profile.provenance.images > 0)  // from one fit, which does not store their covariance
@@ -174,14 +176,17 @@ double StoredPrior::gamma_offset(const Estimate &estimate, double &sigma, bool &
     if (!has_response() || !has_falloff()) return by_falloff ? of_falloff : of_response;
     // The minimum variance mean, or only the better of the two if the other adds no information. Errors of falloffs of
     // other settings have heavy tails: if the falloff contradicts the response, it has less weight.
-    const double own = response_sigma_ * response_sigma_;
-    double other = falloff_sigma_ * falloff_sigma_, both = own + other - 2.0 * gamma_covariance_;
-    if (both > 0.0) other *= 1.0 + std::pow(of_response - of_falloff, 2) / both;
-    both = own + other - 2.0 * gamma_covariance_;
-    double share = both > 0.0 ? (other - gamma_covariance_) / both : 0.5;  // of the response
+    const double response_variance = response_sigma_ * response_sigma_;
+    double falloff_variance = falloff_sigma_ * falloff_sigma_,
+           difference_variance = response_variance + falloff_variance - 2.0 * gamma_covariance_;
+    if (difference_variance > 0.0)
+        falloff_variance *= 1.0 + std::pow(of_response - of_falloff, 2) / difference_variance;
+    difference_variance = response_variance + falloff_variance - 2.0 * gamma_covariance_;
+    double share = difference_variance > 0.0 ? (falloff_variance - gamma_covariance_) / difference_variance
+                                             : 0.5;  // of the response
     share = std::clamp(share, 0.0, 1.0);
     by_falloff = share < 0.5;
-    sigma = std::sqrt(share * share * own + (1.0 - share) * (1.0 - share) * other
+    sigma = std::sqrt(share * share * response_variance + (1.0 - share) * (1.0 - share) * falloff_variance
                       + 2.0 * share * (1.0 - share) * gamma_covariance_);
     return share * of_response + (1.0 - share) * of_falloff;
 }
@@ -204,7 +209,7 @@ StoredPrior::Places StoredPrior::places(int vignettings) const {
 
 // The inverse of the covariance of what is known. If gamma is determined separately, its value is arbitrary here: the
 // precision along its direction is removed.
-Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from, bool settles_gamma) const {
+Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from, bool is_gamma_open) const {
     const auto count = static_cast<Eigen::Index>(from.size());
     Eigen::MatrixXd covariance(count, count);
     Eigen::VectorXd direction(count);
@@ -216,23 +221,24 @@ Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from, bool set
     Eigen::MatrixXd precision = inverse_of_symmetric(covariance);
     const Eigen::VectorXd along = precision * direction;
     const double length = direction.dot(along);
-    if (settles_gamma && length > 0.0) precision -= along * along.transpose() / length;
+    if (is_gamma_open && length > 0.0) precision -= along * along.transpose() / length;
     return 0.5 * (precision + precision.transpose());
 }
 
 double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
-    const int own = green_falloff(vignettings_), size = static_cast<int>(alone.covariance_size);
-    const int theirs = static_cast<int>(lp_covariance_index(alone.response.modes, alone.vignettings == 3 ? 1 : 0));
-    if (covariance_(own, own) <= 0.0 || size < theirs + 3) return 0.0;
+    const int stored_row = green_falloff(vignettings_), size = static_cast<int>(alone.covariance_size);
+    const int fitted_row = static_cast<int>(lp_covariance_index(alone.response.modes, alone.vignettings == 3 ? 1 : 0));
+    if (covariance_(stored_row, stored_row) <= 0.0 || size < fitted_row + 3) return 0.0;
     double farthest = 0.0;
     for (double r2 : kRadii2) {
         const double power[3] = {r2, r2 * r2, r2 * r2 * r2};
         double variance = 0.0, difference = 0.0;
         for (int i = 0; i < 3; i++) {
-            difference += power[i] * (mean_[own + i] - alone.vignetting[1].k[i]);
+            difference += power[i] * (mean_[stored_row + i] - alone.vignetting[1].k[i]);
             for (int j = 0; j < 3; j++)
                 variance += power[i] * power[j]
-                            * (covariance_(own + i, own + j) + alone.covariance[(theirs + i) * size + theirs + j]);
+                            * (covariance_(stored_row + i, stored_row + j)
+                               + alone.covariance[(fitted_row + i) * size + fitted_row + j]);
         }
         if (variance > 0.0) farthest = std::max(farthest, std::abs(difference) / std::sqrt(variance));
     }
@@ -243,14 +249,14 @@ double StoredPrior::response_distance(const lensprof_fit_result &alone) const {
     if (modes_ == 0) return 0.0;
     const auto size = static_cast<Eigen::Index>(alone.covariance_size);
     const auto modes = std::min(static_cast<Eigen::Index>(alone.response.modes), size);
-    const Eigen::Map<const Eigen::MatrixXd> theirs(alone.covariance, size, size);
+    const Eigen::Map<const Eigen::MatrixXd> fitted_covariance(alone.covariance, size, size);
     Estimate stored;
     set_response(stored, mean_.data(), modes_);
     return shape_distance({stored.curve.table.data(), covariance_.topLeftCorner(modes_, modes_)},
-                          {alone.response.table, theirs.topLeftCorner(modes, modes)});
+                          {alone.response.table, fitted_covariance.topLeftCorner(modes, modes)});
 }
 
-void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool settles_gamma) const {
+void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool is_gamma_open) const {
     const Places places = this->places(vignettings);
     if (modes_ > 0) prior.covariance_weight = 0.0;
     const auto forget = [&](int row) { prior.precision.row(row).setZero(), prior.precision.col(row).setZero(); };
@@ -270,7 +276,7 @@ void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool se
     const bool has_falloff =
         std::any_of(places.to.begin(), places.to.end(), [](int row) { return row >= kFalloff && row < kCenter; });
     if (tied && has_falloff) tie_channels(weight, vignettings, 0, prior);
-    const Eigen::MatrixXd precision = precision_of(places.from, settles_gamma);
+    const Eigen::MatrixXd precision = precision_of(places.from, is_gamma_open);
     for (size_t i = 0; i < places.to.size(); i++)
         for (size_t j = 0; j < places.to.size(); j++)
             prior.precision(places.to[i], places.to[j]) +=

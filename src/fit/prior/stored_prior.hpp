@@ -9,7 +9,7 @@ namespace lensprof {
 
 // Whether a valid profile states the uncertainty of anything: by its covariance or, for a refined response (a table),
 // by its gamma_sigma.
-bool says_how_sure(const lensprof_profile &profile);
+bool has_uncertainty(const lensprof_profile &profile);
 
 // Whether the covariance of a valid profile is positive semi-definite: no combination of parameters has a variance
 // below 0.
@@ -28,7 +28,7 @@ public:
 
     // Replaces the part of a prior for `vignettings` falloff curves that the profile knows. If gamma is determined
     // separately (gauge.hpp), the profile's knowledge of gamma is left out.
-    void put_into(Prior &prior, int vignettings, double weight, bool settles_gamma) const;
+    void put_into(Prior &prior, int vignettings, double weight, bool is_gamma_open) const;
 
     // Largest difference between its falloff (green's) and that of a result without it, in combined standard errors.
     double falloff_distance(const lensprof_fit_result &alone) const;
@@ -55,11 +55,11 @@ private:
         std::vector<int> from, to;
     };
     Places places(int vignettings) const;
-    Eigen::MatrixXd precision_of(const std::vector<int> &from, bool settles_gamma) const;
+    Eigen::MatrixXd precision_of(const std::vector<int> &from, bool is_gamma_open) const;
     double falloff_ratio(const lensprof_vignetting &v) const;
     void take_curve_error(const Problem &problem, const lensprof_profile &profile);
     Estimate estimate_of(const Problem &problem, const lensprof_profile &profile) const;
-    void settle_gamma(const Problem &problem, const lensprof_profile &profile);
+    void find_gamma_errors(const Problem &problem, const lensprof_profile &profile);
 
     int modes_ = 0, vignettings_ = 1;
     Eigen::VectorXd mean_ = Eigen::VectorXd::Zero(kOneSetting), gamma_direction_ = Eigen::VectorXd::Zero(kOneSetting);

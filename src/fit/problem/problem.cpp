@@ -87,11 +87,11 @@ void find_components(Problem &problem) {
     for (uint32_t i = 0; i < problem.image_count; i++) problem.component.push_back(find_root(parent, i));
 }
 
-// The column of the unknown that image `of` owns, created on first use; -1 if it is fixed.
-int unknown_of(std::vector<int> &columns, uint32_t of, bool is_free, int &count) {
+// The column of the unknown that image `owner` owns, created on first use; -1 if it is fixed.
+int unknown_of(std::vector<int> &columns, uint32_t owner, bool is_free, int &count) {
     if (!is_free) return -1;
-    if (columns[of] < 0) columns[of] = count++;
-    return columns[of];
+    if (columns[owner] < 0) columns[owner] = count++;
+    return columns[owner];
 }
 
 // Whether every image with a free exposure has white balances that are free and not shared with another image.
@@ -110,13 +110,13 @@ void number_unknowns(Problem &problem) {
     std::vector<int> ev(problem.image_count, -1), red = ev, blue = ev;
     for (uint32_t i = 0; i < problem.image_count; i++) {
         const auto &image = problem.images[i];
-        auto is_free = [&](uint32_t of, uint32_t flag) {
-            bool is_reference = of == problem.reference
+        auto is_free = [&](uint32_t owner, uint32_t flag) {
+            bool is_reference = owner == problem.reference
                                 || (flag == LENSPROF_FREE_EV    ? problem.images[problem.reference].ev_of
                                     : flag == LENSPROF_FREE_RED ? problem.images[problem.reference].red_of
                                                                 : problem.images[problem.reference].blue_of)
-                                       == of;
-            return !is_reference && (problem.images[of].free & flag);
+                                       == owner;
+            return !is_reference && (problem.images[owner].free & flag);
         };
         int &n = problem.image_unknowns;
         problem.ev_unknown.push_back(unknown_of(ev, image.ev_of, is_free(image.ev_of, LENSPROF_FREE_EV), n));
@@ -207,14 +207,14 @@ Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_ima
                      const Tracks &tracks, const std::vector<uint32_t> &keep) {
     Problem problem = empty_problem(options, images, image_count);
     problem.by_radiance = true;
-    auto &own = problem.tracks;
+    auto &kept = problem.tracks;
     for (uint32_t t : keep) {
         const Range &track = tracks.tracks[t];
-        size_t first = own.observations.size();
-        for (size_t i = track.first; i < track.last; i++) own.observations.push_back(tracks.observations[i]);
-        own.tracks.push_back({first, own.observations.size()});
+        size_t first = kept.observations.size();
+        for (size_t i = track.first; i < track.last; i++) kept.observations.push_back(tracks.observations[i]);
+        kept.tracks.push_back({first, kept.observations.size()});
     }
-    problem.pairs = pairs_of(own, problem.channels);
+    problem.pairs = pairs_of(kept, problem.channels);
     find_track_chunks(problem);
     find_links(problem);
     complete(problem);

@@ -70,12 +70,12 @@ double TrackEvaluator::solve(std::vector<Sighting> &sightings) const {
     }
     for (const Sighting &s : sightings) {
         if (s.kind == Kind::unused) continue;
-        double inverse_slope, own = irradiance_of(estimate_, s.value, &inverse_slope) / s.factor;
-        if (s.kind != Kind::at_least) low = std::min(low, own);
-        if (s.kind != Kind::at_most) high = std::max(high, own);
+        double inverse_slope, estimate = irradiance_of(estimate_, s.value, &inverse_slope) / s.factor;
+        if (s.kind != Kind::at_least) low = std::min(low, estimate);
+        if (s.kind != Kind::at_most) high = std::max(high, estimate);
         if (!is_measured(s) || !(inverse_slope > 0.0)) continue;
         double slope = s.factor / inverse_slope;
-        top += slope * slope * own, bottom += slope * slope;
+        top += slope * slope * estimate, bottom += slope * slope;
     }
     double radiance = bottom > 0.0 ? std::clamp(top / bottom, low, std::max(low, high)) : 0.5 * (low + high);
     for (int n = 0; n < kSteps; n++) {
@@ -136,8 +136,8 @@ void TrackEvaluator::distrust(const Range &track, uint8_t *trust) const {
     size_t count = track.last - track.first;
     TrackFit fit;
     evaluate(track, trust, fit);
-    double now = cost(track, trust, fit, nullptr), most = most_cost(problem_, loss_);
-    for (size_t out = 0; out + 2 < count && now - static_cast<double>(out) * most > most; out++) {
+    double current = cost(track, trust, fit, nullptr), max_cost = most_cost(problem_, loss_);
+    for (size_t out = 0; out + 2 < count && current - static_cast<double>(out) * max_cost > max_cost; out++) {
         std::vector<std::pair<double, size_t>> suspects;
         for (size_t i = 0; i < count; i++) {
             double fall = 0.0;
@@ -151,20 +151,20 @@ void TrackEvaluator::distrust(const Range &track, uint8_t *trust) const {
             if (trust[track.first + i]) suspects.emplace_back(-fall, i);
         }
         std::sort(suspects.begin(), suspects.end());
-        double best = now;
+        double best = current;
         size_t worst = count;
         for (size_t n = 0; n < std::min(kSuspects, suspects.size()); n++) {
-            uint8_t &own = trust[track.first + suspects[n].second];
-            own = 0;
+            uint8_t &is_trusted = trust[track.first + suspects[n].second];
+            is_trusted = 0;
             evaluate(track, trust, fit);
             double without = cost(track, trust, fit, nullptr);
-            own = 1;
+            is_trusted = 1;
             if (without < best) best = without, worst = suspects[n].second;
         }
         if (worst == count) return;
         trust[track.first + worst] = 0;
         evaluate(track, trust, fit);
-        now = best;
+        current = best;
     }
 }
 

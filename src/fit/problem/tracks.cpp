@@ -46,13 +46,13 @@ public:
     void join(uint32_t a, uint32_t b) {
         uint32_t p = point_[a], q = point_[b];
         if (p != kNone && p == q) return;
-        std::vector<uint32_t> mine = p == kNone ? std::vector<uint32_t>{a} : points_[p];
-        std::vector<uint32_t> other = q == kNone ? std::vector<uint32_t>{b} : points_[q];
-        if (!are_apart(mine, other)) return keep_apart(a, b);
+        std::vector<uint32_t> first = p == kNone ? std::vector<uint32_t>{a} : points_[p];
+        std::vector<uint32_t> second = q == kNone ? std::vector<uint32_t>{b} : points_[q];
+        if (!are_apart(first, second)) return keep_apart(a, b);
         if (p == kNone) p = static_cast<uint32_t>(points_.size()), points_.emplace_back();
-        mine.insert(mine.end(), other.begin(), other.end());
-        for (uint32_t end : mine) point_[end] = p;
-        points_[p] = std::move(mine);
+        first.insert(first.end(), second.begin(), second.end());
+        for (uint32_t end : first) point_[end] = p;
+        points_[p] = std::move(first);
         if (q != kNone) points_[q].clear();
     }
 
@@ -61,9 +61,9 @@ public:
 private:
     static constexpr uint32_t kNone = 0xFFFFFFFFu;
 
-    bool are_apart(const std::vector<uint32_t> &one, const std::vector<uint32_t> &other) const {
-        for (uint32_t a : one)
-            for (uint32_t b : other)
+    bool are_apart(const std::vector<uint32_t> &first, const std::vector<uint32_t> &second) const {
+        for (uint32_t a : first)
+            for (uint32_t b : second)
                 if (ends_[a].image == ends_[b].image) return false;
         return true;
     }
@@ -114,22 +114,22 @@ std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, ui
 }
 
 Tracks tracks_within(const Tracks &tracks, const std::function<bool(uint32_t i, uint32_t j)> &holds) {
-    Tracks own;
+    Tracks result;
     for (const Range &track : tracks.tracks) {
-        const size_t first = own.observations.size();
+        const size_t first = result.observations.size();
         for (size_t n = track.first; n < track.last; n++) {
             const uint32_t image = tracks.observations[n].image;
             bool agrees = holds(image, image);
-            for (size_t kept = first; kept < own.observations.size() && agrees; kept++)
-                agrees = holds(own.observations[kept].image, image);
-            if (agrees) own.observations.push_back(tracks.observations[n]);
+            for (size_t kept = first; kept < result.observations.size() && agrees; kept++)
+                agrees = holds(result.observations[kept].image, image);
+            if (agrees) result.observations.push_back(tracks.observations[n]);
         }
-        if (own.observations.size() < first + 2)
-            own.observations.resize(first);
+        if (result.observations.size() < first + 2)
+            result.observations.resize(first);
         else
-            own.tracks.push_back({first, own.observations.size()});
+            result.tracks.push_back({first, result.observations.size()});
     }
-    return own;
+    return result;
 }
 
 std::vector<lensprof_pair> pairs_of(const Tracks &tracks, int channels) {

@@ -91,10 +91,11 @@ GreyLevels::GreyLevels(const View &view, const Light &light) {
 
 double GreyLevels::reliability(double x, double y, double texture) const {
     const Level &coarse = level[0];
-    const auto at = [&](double place, int size) {
+    const auto level_index = [&](double place, int size) {
         return static_cast<size_t>(std::clamp(static_cast<int>((place + 0.5) / coarse.pixel), 0, size - 1));
     };
-    const double noise = noise_[at(y, coarse.height) * static_cast<size_t>(coarse.width) + at(x, coarse.width)];
+    const double noise =
+        noise_[level_index(y, coarse.height) * static_cast<size_t>(coarse.width) + level_index(x, coarse.width)];
     return texture > 0.0 ? std::max(0.0, 1.0 - noise / (texture * texture)) : 0.0;
 }
 

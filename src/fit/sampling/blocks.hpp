@@ -86,11 +86,11 @@ private:
             const double u = std::floor(u0 + map[0][0] * a + map[0][1] * b);
             const double v = std::floor(v0 + map[1][0] * a + map[1][1] * b);
             if (!(u >= 0.0 && v >= 0.0 && u < level.width && v < level.height)) return false;
-            const float one =
+            const float sample =
                 level.grey[static_cast<size_t>(v) * static_cast<size_t>(level.width) + static_cast<size_t>(u)];
-            grey[static_cast<size_t>(k)] = one;
-            lost += is_lost_grey(one);
-            sum += one;
+            grey[static_cast<size_t>(k)] = sample;
+            lost += is_lost_grey(sample);
+            sum += sample;
         }
         for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount;
         return true;
@@ -111,9 +111,9 @@ private:
 
     void normalise() {
         float square = 0.0f;
-        for (const float one : value) square += one * one;
+        for (const float sample : value) square += sample * sample;
         texture = std::sqrt(square / kCount);
-        for (float &one : value) one = square > 0.0f ? one / std::sqrt(square) : 0.0f;
+        for (float &sample : value) sample = square > 0.0f ? sample / std::sqrt(square) : 0.0f;
     }
 
     double correlation_of_rest(const Block &other) const {

@@ -56,10 +56,10 @@ void pixel_place(const lensprof_camera &camera, const Eigen::Vector2d &place, do
 
 bool place_of(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
               double y, double xy[2]) {
-    double direction[2], own[2] = {x, y};
+    double direction[2], source_xy[2] = {x, y};
     const bool is_forward = way == Way::forward;
-    if (correction.bend && !is_forward && !apply_homography(from, correction.bend->back, own)) return false;
-    if (!lensprof_camera_unproject(&from, own[0], own[1], direction)) return false;
+    if (correction.bend && !is_forward && !apply_homography(from, correction.bend->back, source_xy)) return false;
+    if (!lensprof_camera_unproject(&from, source_xy[0], source_xy[1], direction)) return false;
     rotate(correction.rotation, is_forward ? 1.0 : -1.0, direction);
     return lensprof_camera_project(&to, direction[0], direction[1], xy)
            && (!correction.bend || !is_forward || apply_homography(to, correction.bend->forward, xy));
@@ -73,14 +73,14 @@ bool sees(const lensprof_camera &first, const lensprof_camera &second, double ac
 
 bool sight(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
            double y, Sight &out) {
-    double xy[2], beside[2];
+    double xy[2], shifted[2];
     constexpr double step = 2.0;  // px
     if (!place_of(from, to, correction, way, x, y, xy)) return false;
     for (int d = 0; d < 2; d++) {
         double inwards = (d == 0 ? x < 0.5 * from.width : y < 0.5 * from.height) ? step : -step;
         double to_x = x + (d == 0 ? inwards : 0.0), to_y = y + (d == 1 ? inwards : 0.0);
-        if (!place_of(from, to, correction, way, to_x, to_y, beside)) return false;
-        for (int e = 0; e < 2; e++) out.map[e][d] = (beside[e] - xy[e]) / inwards;
+        if (!place_of(from, to, correction, way, to_x, to_y, shifted)) return false;
+        for (int e = 0; e < 2; e++) out.map[e][d] = (shifted[e] - xy[e]) / inwards;
     }
     out.x = xy[0], out.y = xy[1];
     return true;

@@ -17,8 +17,8 @@ constexpr size_t kPerWanted = 16;  // matches examined per wanted pair
 constexpr int kRings = 2;
 constexpr double kRing = 4.0;
 
-// At most `most` of every link, evenly chosen, in the original order.
-std::vector<uint32_t> thinned(const lensprof_match *matches, uint32_t count, size_t most,
+// At most `max_per_link` of every link, evenly chosen, in the original order.
+std::vector<uint32_t> thinned(const lensprof_match *matches, uint32_t count, size_t max_per_link,
                               const std::function<uint32_t(const lensprof_match &)> &link_of, uint32_t links) {
     std::vector<size_t> of_link(links), seen(links);
     for (uint32_t m = 0; m < count; m++) of_link[link_of(matches[m])]++;
@@ -26,7 +26,7 @@ std::vector<uint32_t> thinned(const lensprof_match *matches, uint32_t count, siz
     for (uint32_t m = 0; m < count; m++) {
         const uint32_t link = link_of(matches[m]);
         const size_t n = seen[link]++, all = of_link[link];
-        if (all <= most || n * most / all != (n + 1) * most / all) kept.push_back(m);
+        if (all <= max_per_link || n * max_per_link / all != (n + 1) * max_per_link / all) kept.push_back(m);
     }
     return kept;
 }
@@ -102,21 +102,21 @@ std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, ui
     read_grey_levels();
     size_t links = 0;
     for (const auto &list : neighbours_) links += list.size();
-    const size_t most = std::max<size_t>(1, kPerWanted * wanted / std::max<size_t>(1, links / 2));
+    const size_t max_per_link = std::max<size_t>(1, kPerWanted * wanted / std::max<size_t>(1, links / 2));
     const auto link_of = [&](const lensprof_match &m) { return edge_of(m.image[0], m.image[1]); };
-    const std::vector<uint32_t> looked = thinned(matches, count, most, link_of, edge_numbers_);
-    const auto pieces = static_cast<uint32_t>((looked.size() + kPiece - 1) / kPiece);
+    const std::vector<uint32_t> kept = thinned(matches, count, max_per_link, link_of, edge_numbers_);
+    const auto pieces = static_cast<uint32_t>((kept.size() + kPiece - 1) / kPiece);
     std::vector<std::vector<MatchCandidate>> found(pieces);
     std::atomic<uint32_t> done{0};
     const auto work = [&](uint32_t piece) {
-        for (size_t n = size_t{piece} * kPiece; n < std::min(looked.size(), (size_t{piece} + 1) * kPiece); n++) {
+        for (size_t n = size_t{piece} * kPiece; n < std::min(kept.size(), (size_t{piece} + 1) * kPiece); n++) {
             MatchCandidate candidate;
-            candidate.match = looked[n];
-            if (quiet_place(matches[looked[n]], candidate)) found[piece].push_back(candidate);
+            candidate.match = kept[n];
+            if (quiet_place(matches[kept[n]], candidate)) found[piece].push_back(candidate);
         }
         done++;
     };
-    each(pieces, work, [&] { return 0.95 * done / std::max(pieces, 1u); });
+    run_parallel(pieces, work, [&] { return 0.95 * done / std::max(pieces, 1u); });
     std::vector<MatchCandidate> all;
     for (auto &list : found) std::move(list.begin(), list.end(), std::back_inserter(all));
     std::vector<lensprof_pair> pairs;
@@ -124,7 +124,7 @@ std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, ui
         if (match_of_pair) match_of_pair[pairs.size()] = chosen.match;
         pairs.push_back(chosen.pair);
     }
-    show_done();
+    report_done();
     return pairs;
 }
 

@@ -89,7 +89,7 @@ struct Place {
 // A block that was found in the second image.
 struct Match {
     const Place *place;
-    Sight at;             // its expected place
+    Sight expected;       // expected place in the second image
     Eigen::Vector2d off;  // and its offset from there, px of the full frame
     double quality;
     Eigen::Matrix<double, 2, Eigen::Dynamic> rows;  // derivative of the expected place by every unknown
@@ -103,8 +103,8 @@ Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, dou
         Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(size, size) * ridge * ridge;
         Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
         for (const Match &m : matches) {
-            const double away = (m.off - m.rows * change).norm() / (round ? pixel : 4.0 * pixel);
-            const double weight = m.quality / (1.0 + away * away);
+            const double distance = (m.off - m.rows * change).norm() / (round ? pixel : 4.0 * pixel);
+            const double weight = m.quality / (1.0 + distance * distance);
             normal += weight * m.rows.transpose() * m.rows;
             right += weight * m.rows.transpose() * m.off;
         }
@@ -118,8 +118,8 @@ using Correlations = std::vector<std::optional<double>>;  // per place; empty if
 double mean_of(const Correlations &correlations, size_t &count) {
     double sum = 0.0;
     count = 0;
-    for (const auto &one : correlations)
-        if (one) sum += *one, count++;
+    for (const auto &correlation : correlations)
+        if (correlation) sum += *correlation, count++;
     return count ? sum / static_cast<double>(count) : 0.0;
 }
 
@@ -138,7 +138,7 @@ struct Matcher {
     void find_places();
     double mean_agreement(size_t level, const Rotation &rotation) const;
     Rotation together(const double shift[2]) const;
-    bool cut(size_t level, const Sight &at, double du, double dv, Block<4> &out) const;
+    bool cut(size_t level, const Sight &expected, double du, double dv, Block<4> &out) const;
     Correlations correlations(size_t level, const Correction &correction) const;
     void common_shift(double shift[2]) const;
     std::vector<Match> look(size_t level, const double *shift, int reach, int step, double least,
@@ -148,10 +148,10 @@ struct Matcher {
     bool guess_bend(Correction &correction) const;
     std::optional<Rotation> rotation(const double shift[2]) const;
     std::optional<Correction> bent(Correction correction) const;
-    bool is_better(const Correction &correction, const Correlations &by, const Correction &than,
+    bool is_better(const Correction &correction, const Correlations &correlations, const Correction &reference,
                    const Correlations &without) const;
     double median_shift(const Correction &from, const Correction &to) const;
-    bool is_in_place(const Correlations &alike) const;
+    bool is_in_place(const Correlations &uncorrected) const;
 };
 
 // The approximate area of the first frame that the second sees: shares of its width and height. False if it sees
@@ -161,10 +161,11 @@ bool Matcher::overlap_box(double low[2], double high[2]) const {
     std::fill(low, low + 2, 1.0), std::fill(high, high + 2, 0.0);
     for (int row = 0; row < kScan; row++)
         for (int column = 0; column < kScan; column++) {
-            const double at[2] = {(column + 0.5) / kScan, (row + 0.5) / kScan};
-            const bool is_seen = sees(first, second, at[0], at[1]);
+            const double position[2] = {(column + 0.5) / kScan, (row + 0.5) / kScan};
+            const bool is_seen = sees(first, second, position[0], position[1]);
             for (int d = 0; d < 2 && is_seen; d++)
-                low[d] = std::min(low[d], at[d] - 0.5 / kScan), high[d] = std::max(high[d], at[d] + 0.5 / kScan);
+                low[d] = std::min(low[d], position[d] - 0.5 / kScan),
+                high[d] = std::max(high[d], position[d] + 0.5 / kScan);
         }
     return high[0] > low[0];
 }
@@ -187,8 +188,8 @@ void Matcher::find_places() {
             p.x = (low[0] + (column + 0.5) / kColumns * (high[0] - low[0])) * first.width - 0.5;
             p.y = (low[1] + (row + 0.5) / kRows * (high[1] - low[1])) * first.height - 0.5;
             p.cell = static_cast<size_t>(row / kCell * (kColumns / kCell) + column / kCell);
-            Sight at;
-            bool good = sight(first, second, {}, Way::forward, p.x, p.y, at);
+            Sight expected;
+            bool good = sight(first, second, {}, Way::forward, p.x, p.y, expected);
             for (size_t n = 0; n < 2 && good; n++)
                 good = p.block[n].cut_flat(first_grey.level[n], p.x, p.y, first_grey.level[n].pixel, kUpright);
             if (good && is_textured(p)) places.push_back(p);
@@ -201,18 +202,19 @@ void Matcher::find_places() {
 }
 
 // The second image's block, (du, dv) level pixels from its expected place.
-bool Matcher::cut(size_t n, const Sight &at, double du, double dv, Block<4> &out) const {
+bool Matcher::cut(size_t n, const Sight &expected, double du, double dv, Block<4> &out) const {
     const auto &level = second_grey.level[n];
-    return out.cut_flat(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
+    return out.cut_flat(level, expected.x + du * level.pixel, expected.y + dv * level.pixel, first_grey.level[n].pixel,
+                        expected.map);
 }
 
 Correlations Matcher::correlations(size_t n, const Correction &correction) const {
     Correlations result;
     Block<4> other;
-    Sight at;
+    Sight expected;
     for (const Place &p : places) {
-        bool seen =
-            p.shows(n) && sight(first, second, correction, Way::forward, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
+        bool seen = p.shows(n) && sight(first, second, correction, Way::forward, p.x, p.y, expected)
+                    && cut(n, expected, 0.0, 0.0, other);
         result.push_back(seen ? std::optional(p.block[n].correlation(other)) : std::nullopt);
     }
     return result;
@@ -225,11 +227,11 @@ void Matcher::common_shift(double shift[2]) const {
     std::array<size_t, size * size> count{};
     auto offset = [](int k) { return k - kFarthest; };
     Block<4> other;
-    Sight at;
+    Sight expected;
     for (const Place &p : places) {
-        if (!sight(first, second, {}, Way::forward, p.x, p.y, at)) continue;
+        if (!sight(first, second, {}, Way::forward, p.x, p.y, expected)) continue;
         for (int k = 0; k < size * size; k++)
-            if (cut(0, at, offset(k % size), offset(k / size), other)) {
+            if (cut(0, expected, offset(k % size), offset(k / size), other)) {
                 sum[static_cast<size_t>(k)] += agreement(p.block[0].correlation(other));
                 count[static_cast<size_t>(k)]++;
             }
@@ -253,12 +255,13 @@ std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int s
     for (const Place &p : places) {
         Match m{};
         m.place = &p, m.quality = least;
-        if (!sight(first, second, correction, Way::forward, p.x, p.y, m.at)) continue;
+        if (!sight(first, second, correction, Way::forward, p.x, p.y, m.expected)) continue;
         for (int dv = -reach; dv <= reach; dv += step)
             for (int du = -reach; du <= reach; du += step) {
-                if (!cut(n, m.at, shift[0] + du, shift[1] + dv, other)) continue;
-                const double alike = p.block[n].correlation(other);
-                if (alike > m.quality) m.quality = alike, m.off = {(shift[0] + du) * pixel, (shift[1] + dv) * pixel};
+                if (!cut(n, m.expected, shift[0] + du, shift[1] + dv, other)) continue;
+                const double correlation = p.block[n].correlation(other);
+                if (correlation > m.quality)
+                    m.quality = correlation, m.off = {(shift[0] + du) * pixel, (shift[1] + dv) * pixel};
             }
         if (m.quality > least) matches.push_back(m);
     }
@@ -267,11 +270,11 @@ std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int s
 
 // Mean over the blocks that are seen under the rotation; -1 if there are too few.
 double Matcher::mean_agreement(size_t level, const Rotation &rotation) const {
-    Correlations each = correlations(level, {rotation, {}});
-    for (auto &one : each)
-        if (one) one = agreement(*one);
+    Correlations agreements = correlations(level, {rotation, {}});
+    for (auto &correlation : agreements)
+        if (correlation) correlation = agreement(*correlation);
     size_t count;
-    const double mean = mean_of(each, count);
+    const double mean = mean_of(agreements, count);
     const auto showing = std::count_if(places.begin(), places.end(), [=](const Place &p) { return p.shows(level); });
     return 2 * count > static_cast<size_t>(showing) ? mean : -1.0;
 }
@@ -279,29 +282,31 @@ double Matcher::mean_agreement(size_t level, const Rotation &rotation) const {
 // The rotation under which all blocks together match best: along the axes through the middle of the second frame, with
 // steps of two pixels at first.
 Rotation Matcher::together(const double shift[2]) const {
-    double middle[2], beside[2];
+    double middle[2], one_px_aside[2];
     const double x = 0.5 * (second.width - 1.0), y = 0.5 * (second.height - 1.0);
-    if (!lensprof_camera_unproject(&second, x, y, middle) || !lensprof_camera_unproject(&second, x + 1.0, y, beside))
+    if (!lensprof_camera_unproject(&second, x, y, middle)
+        || !lensprof_camera_unproject(&second, x + 1.0, y, one_px_aside))
         return {};
     Eigen::Vector3d ahead, aside;
-    unit_vector(middle, ahead.data()), unit_vector(beside, aside.data());
+    unit_vector(middle, ahead.data()), unit_vector(one_px_aside, aside.data());
     const double angle = std::acos(std::min(1.0, ahead.dot(aside)));  // of one px of the full frame
     const Eigen::Vector3d right = (aside - ahead * ahead.dot(aside)).normalized(), up = right.cross(ahead);
     // A rotation by +angle about `up` moves what is ahead to the right or to the left: both are tried.
     const Eigen::Vector3d axes[3] = {angle * up, angle * right, ahead * 2.0 / std::hypot(second.width, second.height)};
     const double coarse = second_grey.level[0].pixel;
     Rotation best{};
-    double most = mean_agreement(0, best);
+    double best_agreement = mean_agreement(0, best);
     auto try_from = [&](size_t level, const Rotation &from, const Eigen::Vector3d &change) {
         const Rotation next{from[0] + change[0], from[1] + change[1], from[2] + change[2]};
         const double mean = mean_agreement(level, next);
-        if (mean > most) most = mean, best = next;
+        if (mean > best_agreement) best_agreement = mean, best = next;
     };
-    const Rotation none{};
+    const Rotation no_rotation{};
     for (double a : {-1.0, 1.0})
-        for (double b : {-1.0, 1.0}) try_from(0, none, coarse * (a * shift[0] * axes[0] + b * shift[1] * axes[1]));
+        for (double b : {-1.0, 1.0})
+            try_from(0, no_rotation, coarse * (a * shift[0] * axes[0] + b * shift[1] * axes[1]));
     for (size_t level : {0, 1}) {
-        most = mean_agreement(level, best);
+        best_agreement = mean_agreement(level, best);
         for (double step = level == 0 ? 2.0 : 1.0; step > 0.2; step *= 0.5)
             for (int round = 0; round < 6; round++) {
                 const Rotation from = best;
@@ -325,7 +330,7 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
             turned[static_cast<size_t>(d)] += kDerivativeStep;
             double moved[2];
             if (!place_of(first, second, {turned, {}}, Way::forward, m.place->x, m.place->y, moved)) return true;
-            m.rows.col(d) << (moved[0] - m.at.x) / kDerivativeStep, (moved[1] - m.at.y) / kDerivativeStep;
+            m.rows.col(d) << (moved[0] - m.expected.x) / kDerivativeStep, (moved[1] - m.expected.y) / kDerivativeStep;
         }
         return false;
     };
@@ -342,7 +347,7 @@ bool Matcher::refine_bend(size_t n, Correction &correction) const {
     std::vector<Match> matches = look(n, kNoShift, kSearch, 1, kMatch, correction);
     if (matches.size() < kFewest) return false;
     for (Match &m : matches) {
-        const Eigen::Vector2d s = frame_place(second, m.at.x, m.at.y);
+        const Eigen::Vector2d s = frame_place(second, m.expected.x, m.expected.y);
         m.rows.resize(2, 8);
         m.rows.row(0) << s[0], s[1], 1.0, 0.0, 0.0, 0.0, s[0] * s[0], s[0] * s[1];
         m.rows.row(1) << 0.0, 0.0, 0.0, s[0], s[1], 1.0, s[1] * s[0], s[1] * s[1];
@@ -364,7 +369,7 @@ bool Matcher::guess_bend(Correction &correction) const {
     using Complex = std::complex<double>;
     std::vector<Complex> from, off;
     for (const Match &m : matches) {
-        const Eigen::Vector2d s = frame_place(second, m.at.x, m.at.y);
+        const Eigen::Vector2d s = frame_place(second, m.expected.x, m.expected.y);
         from.emplace_back(s[0], s[1]), off.emplace_back(m.off[0] / scale, m.off[1] / scale);
     }
     const size_t count = matches.size(), guesses = count * (count - 1) / 2;
@@ -375,12 +380,12 @@ bool Matcher::guess_bend(Correction &correction) const {
     for (size_t a = 0; a < count; a++)
         for (size_t b = a + 1; b < count; b++) {
             if (guess++ % step) continue;
-            const Complex by = (off[b] - off[a]) / (from[b] - from[a]), moved = off[a] - by * from[a];
-            if (!(std::abs(by) < kLargestBend)) continue;
+            const Complex factor = (off[b] - off[a]) / (from[b] - from[a]), moved = off[a] - factor * from[a];
+            if (!(std::abs(factor) < kLargestBend)) continue;
             double follow = 0.0;
             for (size_t m = 0; m < count; m++)
-                follow += std::abs(off[m] - moved - by * from[m]) * scale < kFollows * pixel;
-            if (follow > best) best = follow, turn = by, shift = moved;
+                follow += std::abs(off[m] - moved - factor * from[m]) * scale < kFollows * pixel;
+            if (follow > best) best = follow, turn = factor, shift = moved;
         }
     if (best < std::max(double(kFewest), kFewestFollow * static_cast<double>(count))) return false;
     Eigen::Matrix3d bend;
@@ -406,36 +411,36 @@ double Matcher::median_shift(const Correction &a, const Correction &b) const {
 
 // Whether most blocks match better with the correction than without: things that moved prefer it, too, but the scene
 // around them does not.
-bool most_prefer(const Correlations &by, const Correlations &without) {
+bool most_prefer(const Correlations &corrected, const Correlations &without) {
     size_t better = 0, worse = 0;
-    for (size_t p = 0; p < by.size(); p++) {
-        double gain = by[p].value_or(0.0) - without[p].value_or(0.0);
+    for (size_t p = 0; p < corrected.size(); p++) {
+        double gain = corrected[p].value_or(0.0) - without[p].value_or(0.0);
         better += gain > kPreferred, worse += gain < -kPreferred;
     }
     return better > 2 * worse;
 }
 
-// Whether most blocks match clearly better, at places that are clearly different. `by` and `without` are the
+// Whether most blocks match clearly better, at places that are clearly different. `correlations` and `without` are the
 // correlations of the two.
-bool Matcher::is_better(const Correction &correction, const Correlations &by, const Correction &than,
+bool Matcher::is_better(const Correction &correction, const Correlations &correlations, const Correction &reference,
                         const Correlations &without) const {
     size_t compared, found_in;
-    const double before = mean_of(without, compared), found = mean_of(by, found_in);
+    const double before = mean_of(without, compared), found = mean_of(correlations, found_in);
     const bool is_match = found_in < kFewest ? found > kMatchOfFew : found > kMatch || found > before + kClearlyBetter;
-    return 2 * found_in > compared && is_match && found > before + kBetter && most_prefer(by, without)
-           && median_shift(than, correction) > kSmallestShift * second_grey.level[1].pixel;
+    return 2 * found_in > compared && is_match && found > before + kBetter && most_prefer(correlations, without)
+           && median_shift(reference, correction) > kSmallestShift * second_grey.level[1].pixel;
 }
 
 // Whether blocks match where the project has them, and no better slightly displaced: noise keeps their correlations low
-// even if the project is right. `alike`: without a correction.
-bool Matcher::is_in_place(const Correlations &alike) const {
+// even if the project is right. `uncorrected`: correlations without a correction.
+bool Matcher::is_in_place(const Correlations &uncorrected) const {
     size_t compared;
-    const double mean = mean_of(alike, compared);
+    const double mean = mean_of(uncorrected, compared);
     Rotation turned{};
     Correction bent{turned, Bend(Eigen::Matrix3d::Identity())};
     if (compared < kFewest || !(mean > kInPlace) || !refine(1, kNoShift, turned) || !refine_bend(1, bent)) return false;
-    const double most = kSmallestShift * second_grey.level[1].pixel;
-    return median_shift({}, {turned, {}}) < most && median_shift({}, bent) < most;
+    const double max_shift = kSmallestShift * second_grey.level[1].pixel;
+    return median_shift({}, {turned, {}}) < max_shift && median_shift({}, bent) < max_shift;
 }
 
 std::optional<Rotation> Matcher::rotation(const double shift[2]) const {
@@ -461,17 +466,18 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
     matcher.find_places();
     if (matcher.places.size() < kFewestTogether) return {};
     Correction found;
-    Correlations alike = matcher.correlations(1, found);
+    Correlations correlations = matcher.correlations(1, found);
     auto is_right = [&] {
         size_t compared;
-        const double mean = mean_of(alike, compared);
+        const double mean = mean_of(correlations, compared);
         return compared < kFewestTogether || mean > kRight;
     };
     auto take_if_better = [&](const Correction &other) {
-        const Correlations own = matcher.correlations(1, other);
-        if (matcher.is_better(other, own, found, alike)) found = other, alike = own;
+        const Correlations other_correlations = matcher.correlations(1, other);
+        if (matcher.is_better(other, other_correlations, found, correlations))
+            found = other, correlations = other_correlations;
     };
-    if (is_right() || matcher.is_in_place(alike)) return found;
+    if (is_right() || matcher.is_in_place(correlations)) return found;
     double shift[2];  // start of both rotations
     matcher.common_shift(shift);
     if (const auto rotation = matcher.rotation(shift)) take_if_better({*rotation, {}});

@@ -13,14 +13,14 @@ constexpr uint32_t kPiece = 32;  // places of one image that a thread processes 
 constexpr uint32_t kPaperRound = 8192;
 constexpr double kWidestCone =
     1.5;  // radians: beyond it, the border of a frame may be farther from the axis than its samples
-constexpr double kAlike = 0.5;   // correlation of places that may show the same,
-constexpr double kSurely = 0.8;  // and of those that clearly do
+constexpr double kAlike = 0.5;         // correlation of places that may show the same,
+constexpr double kClearlyAlike = 0.8;  // and of those that clearly do
 // Shares of the places with texture. Alike: .05 to .31 if a project is wrong, .43 and more in real sequences and with
 // 30 % of random pixels. If things moved on 44 % of the places, it can be .22, too, but .08 and more are clearly alike,
 // 3.2 times as many as among displaced places; with a wrong project, up to .1 are, 2.4 times.
-constexpr double kEnoughAlike = 0.4, kFewestSurely = 0.05, kAboveChance = 2.8;
-constexpr double kBeside = 12.0;  // coarse pixels
-constexpr uint32_t kFewestTold = 20;
+constexpr double kMinAlike = 0.4, kMinClearlyAlike = 0.05, kAboveChance = 2.8;
+constexpr double kDisplacement = 12.0;  // coarse pixels
+constexpr uint32_t kMinTextured = 20;
 constexpr double kMostlySmooth = 0.25;  // of the places with texture: smooth places tolerate a shift of a few pixels
 constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap
 constexpr double kShareOfRegistration = 0.5;  // of the progress that is shown
@@ -113,7 +113,8 @@ uint32_t Sampler::edge_of(uint32_t i, uint32_t j) const {
 }
 
 // Runs work on all threads; reports the fraction done() to the caller as long as it rises.
-void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done) {
+void Sampler::run_parallel(uint32_t count, const std::function<void(uint32_t)> &work,
+                           const std::function<double()> &done) {
     auto stop = [&] {
         shown_ = std::max(shown_, std::min(done(), 1.0));
         return options_.progress && options_.progress(shown_, options_.progress_user) != 0;
@@ -125,12 +126,12 @@ void Sampler::read_grey_levels() {
     const auto count = static_cast<uint32_t>(views_.size());
     grey_.resize(count);
     const Light light(options_.response, options_.vignetting);
-    each(
+    run_parallel(
         count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i], light); }, [] { return 0.0; });
 }
 
-void Sampler::show_done() {
-    each(
+void Sampler::report_done() {
+    run_parallel(
         1, [](uint32_t) {}, [] { return 1.0; });
 }
 
@@ -152,7 +153,7 @@ void Sampler::register_neighbours() {
             if (j > i) edges.push_back({i, j, 0});
     auto size = static_cast<uint32_t>(edges.size());
     auto camera = [&](uint32_t i) -> const lensprof_camera & { return views_[i].image().camera; };
-    each(
+    run_parallel(
         size, [&](uint32_t e) { edges[e].overlap = overlap_of(camera(edges[e].i), camera(edges[e].j)); },
         [] { return 0.0; });
     std::stable_sort(edges.begin(), edges.end(), [](const Edge &a, const Edge &b) { return a.overlap > b.overlap; });
@@ -169,13 +170,13 @@ void Sampler::register_neighbours() {
         corrections_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
         done++;
     };
-    each(static_cast<uint32_t>(edges.size()), work,
-         [&] { return kShareOfRegistration * done / std::max<size_t>(edges.size(), 1); });
+    run_parallel(static_cast<uint32_t>(edges.size()), work,
+                 [&] { return kShareOfRegistration * done / std::max<size_t>(edges.size(), 1); });
 }
 
 const Correction &Sampler::correction(uint32_t i, uint32_t j) const {
-    static const Correction none;
-    return patches_ ? corrections_[edge_of(i, j)] : none;
+    static const Correction no_correction;
+    return patches_ ? corrections_[edge_of(i, j)] : no_correction;
 }
 
 // The place at which image j sees what image i sees at (x, y); false if it does not.
@@ -186,30 +187,30 @@ bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2
 }
 
 // Whether both show the same there, as far as texture shows. Single points, as the paper samples them, are not checked.
-bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
-    Sight at;
+bool Sampler::shows_same_scene(uint32_t i, uint32_t j, double x, double y) {
+    Sight expected;
     if (!patches_ || options_.sampling == LENSPROF_SAMPLING_BRACKET) return true;
     if (!sight(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back,
-               x, y, at))
+               x, y, expected))
         return false;
-    return is_alike(i, x, y, j, at);
+    return is_alike(i, x, y, j, expected);
 }
 
 // The same for a place and its expected counterpart.
-bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight at) {
+bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight expected) {
     Likenesses &edge = likenesses_[edge_of(i, j)];
     edge.seen++;
-    std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
-    if (!told) return wide_likeness(*grey_[i], x, y, *grey_[j], at).value_or(1.0) > kAlike;
-    edge.told++;
-    if (*told > kAlike) edge.alike++;
-    if (*told > kSurely) edge.surely++;
+    std::optional<double> correlation = likeness(*grey_[i], x, y, *grey_[j], expected);
+    if (!correlation) return wide_likeness(*grey_[i], x, y, *grey_[j], expected).value_or(1.0) > kAlike;
+    edge.textured++;
+    if (*correlation > kAlike) edge.alike++;
+    if (*correlation > kClearlyAlike) edge.clearly_alike++;
     const auto side = static_cast<int>(std::abs(x) + std::abs(y));  // alternates from place to place
-    (side % 2 ? at.x : at.y) += (side / 2 % 2 ? kBeside : -kBeside) * grey_[j]->level[0].pixel;
-    std::optional<double> beside = likeness(*grey_[i], x, y, *grey_[j], at);
-    if (beside) edge.beside++;
-    if (beside && *beside > kSurely) edge.chance++;
-    return *told > kAlike;
+    (side % 2 ? expected.x : expected.y) += (side / 2 % 2 ? kDisplacement : -kDisplacement) * grey_[j]->level[0].pixel;
+    std::optional<double> displaced = likeness(*grey_[i], x, y, *grey_[j], expected);
+    if (displaced) edge.displaced++;
+    if (displaced && *displaced > kClearlyAlike) edge.chance++;
+    return *correlation > kAlike;
 }
 
 // If barely more places show the same than displaced places do, the project has one of the two images at a wrong
@@ -217,12 +218,14 @@ bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight at) {
 // some pixels is wrong only there, and those places are left out one by one.
 lensprof_link_state Sampler::state_of(uint32_t number) const {
     const Likenesses &edge = likenesses_[number];
-    const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
+    const double clearly_alike = edge.clearly_alike, textured = edge.textured, chance = edge.chance,
+                 displaced = edge.displaced;
     const lensprof_link_state without_texture = by_matches_ ? LENSPROF_LINK_VERIFIED : LENSPROF_LINK_UNVERIFIED;
-    if (told < kFewestTold) return without_texture;
-    if (edge.alike > kEnoughAlike * told) return LENSPROF_LINK_VERIFIED;
-    if (surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told) return LENSPROF_LINK_VERIFIED;
-    return told < kMostlySmooth * edge.seen ? without_texture : LENSPROF_LINK_CONTRADICTED;
+    if (textured < kMinTextured) return without_texture;
+    if (edge.alike > kMinAlike * textured) return LENSPROF_LINK_VERIFIED;
+    if (clearly_alike > kMinClearlyAlike * textured && clearly_alike * displaced > kAboveChance * chance * textured)
+        return LENSPROF_LINK_VERIFIED;
+    return textured < kMostlySmooth * edge.seen ? without_texture : LENSPROF_LINK_CONTRADICTED;
 }
 
 std::vector<lensprof_link> Sampler::links() const {
@@ -253,25 +256,25 @@ void Sampler::look(uint32_t i, double x, double y, const uint32_t *others, size_
                    std::vector<Candidate> &found) {
     double v[3], xy[2];
     if (!views_[i].holds(x, y) || !direction_of(views_[i].image().camera, x, y, v)) return;
-    End own, other;
+    End first_end, second_end;
     bool measured = false;
     for (size_t n = 0; n < count; n++) {
         const uint32_t j = others[n];
         if (dot(cones_[j].axis, v) < cones_[j].cosine - kSlack || !correspond(i, j, x, y, xy)) continue;
         if (!overlaps_) overlaps_ = true;
-        if (!measured && !measure(i, x, y, own)) return;
+        if (!measured && !measure(i, x, y, first_end)) return;
         measured = true;
-        if (!measure(j, xy[0], xy[1], other)) continue;
-        if (!is_the_same(i, j, x, y)) {
+        if (!measure(j, xy[0], xy[1], second_end)) continue;
+        if (!shows_same_scene(i, j, x, y)) {
             refused_++;
             continue;
         }
         found.push_back({x,
                          y,
                          {i, j},
-                         static_cast<float>(own.patch.gradient + other.patch.gradient),
-                         {own.radius, other.radius},
-                         {own.grey, other.grey}});
+                         static_cast<float>(first_end.patch.gradient + second_end.patch.gradient),
+                         {first_end.radius, second_end.radius},
+                         {first_end.grey, second_end.grey}});
     }
 }
 
@@ -284,10 +287,10 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
     size_t sights = 0;  // ways from image to image: a round looks `chunk` times along each
     for (const auto &list : neighbours_) sights += list.size();
     auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
-    const uint32_t most = 102400 / chunk, hopeless = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
+    const uint32_t max_rounds = 102400 / chunk, max_empty_rounds = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
     const double before = shown_;  // of the progress
-    for (uint32_t round = 0;
-         round < most && all.size() < wanted && refused_ < kMostRefused * wanted && !(round > hopeless && all.empty());
+    for (uint32_t round = 0; round < max_rounds && all.size() < wanted && refused_ < kMostRefused * wanted
+                             && !(round > max_empty_rounds && all.empty());
          round++) {
         std::vector<std::vector<Candidate>> found(views_.size() * pieces);
         std::atomic<size_t> count{all.size()};
@@ -302,8 +305,9 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
             }
             count += found[n].size();
         };
-        each(static_cast<uint32_t>(found.size()), work,
-             [&] { return before + (0.95 - before) * static_cast<double>(count) / static_cast<double>(wanted); });
+        run_parallel(static_cast<uint32_t>(found.size()), work, [&] {
+            return before + (0.95 - before) * static_cast<double>(count) / static_cast<double>(wanted);
+        });
         append(found, all);
     }
     return all;
@@ -325,8 +329,8 @@ std::vector<lensprof_pair> Sampler::pairs_of(const std::vector<Candidate> &chose
             }
         }
     };
-    each(pieces, work, [] { return 0.97; });
-    show_done();
+    run_parallel(pieces, work, [] { return 0.97; });
+    report_done();
     return pairs;
 }
 
@@ -349,9 +353,9 @@ std::vector<lensprof_pair> Sampler::paper(uint32_t wanted) {
     patches_ = false;
     Random random{options_.seed};
     std::vector<Candidate> all, best;
-    const size_t enough = 5 * static_cast<size_t>(wanted), most = 200 * static_cast<size_t>(wanted) + 10000;
-    for (size_t trials = 0; trials < most && all.size() < enough; trials += kPaperRound) {
-        std::vector<Look> looks(std::min<size_t>(kPaperRound, most - trials));
+    const size_t enough = 5 * static_cast<size_t>(wanted), max_trials = 200 * static_cast<size_t>(wanted) + 10000;
+    for (size_t trials = 0; trials < max_trials && all.size() < enough; trials += kPaperRound) {
+        std::vector<Look> looks(std::min<size_t>(kPaperRound, max_trials - trials));
         for (Look &l : looks) l = draw(random);
         std::vector<std::vector<Candidate>> found((looks.size() + kPiece - 1) / kPiece);
         auto work = [&](uint32_t n) {
@@ -361,19 +365,19 @@ std::vector<lensprof_pair> Sampler::paper(uint32_t wanted) {
             }
         };
         double done = 0.95 * static_cast<double>(all.size()) / static_cast<double>(enough);
-        each(static_cast<uint32_t>(found.size()), work, [=] { return done; });
+        run_parallel(static_cast<uint32_t>(found.size()), work, [=] { return done; });
         append(found, all);
     }
     all.resize(std::min(all.size(), enough));
     for (uint8_t bin = 0; bin < kRadiusBins; bin++) {
-        std::vector<Candidate> own;
-        std::copy_if(all.begin(), all.end(), std::back_inserter(own),
+        std::vector<Candidate> bin_candidates;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(bin_candidates),
                      [=](const Candidate &c) { return c.radius[0] == bin; });
-        std::stable_sort(own.begin(), own.end(),
+        std::stable_sort(bin_candidates.begin(), bin_candidates.end(),
                          [](const Candidate &a, const Candidate &b) { return a.gradient < b.gradient; });
-        own.resize(std::min<size_t>(own.size(), std::max(1u, wanted / kRadiusBins)));
-        own.resize(std::min(own.size(), wanted - best.size()));
-        best.insert(best.end(), own.begin(), own.end());
+        bin_candidates.resize(std::min<size_t>(bin_candidates.size(), std::max(1u, wanted / kRadiusBins)));
+        bin_candidates.resize(std::min(bin_candidates.size(), wanted - best.size()));
+        best.insert(best.end(), bin_candidates.begin(), bin_candidates.end());
     }
     return pairs_of(best);
 }

@@ -104,7 +104,7 @@ private:
     // clearly do show the same; for comparison, places displaced from where the other image should show them, and those
     // that clearly do.
     struct Likenesses {
-        std::atomic<uint32_t> seen{0}, told{0}, alike{0}, surely{0}, beside{0}, chance{0};
+        std::atomic<uint32_t> seen{0}, textured{0}, alike{0}, clearly_alike{0}, displaced{0}, chance{0};
         uint32_t pairs = 0;  // pairs that are used
     };
 
@@ -115,8 +115,8 @@ private:
     void register_neighbours();
     const Correction &correction(uint32_t i, uint32_t j) const;
     bool correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const;
-    bool is_the_same(uint32_t i, uint32_t j, double x, double y);
-    bool is_alike(uint32_t i, double x, double y, uint32_t j, Sight at);
+    bool shows_same_scene(uint32_t i, uint32_t j, double x, double y);
+    bool is_alike(uint32_t i, double x, double y, uint32_t j, Sight expected);
     lensprof_link_state state_of(uint32_t number) const;
     bool measure(uint32_t i, double x, double y, End &end) const;
     void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
@@ -133,8 +133,8 @@ private:
     std::vector<TrackCandidate> track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim);
     std::vector<TrackCandidate> in_place(std::vector<TrackCandidate> all) const;
     std::vector<lensprof_observation> observations_of(const std::vector<TrackCandidate> &chosen);
-    void show_done();
-    void each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done);
+    void report_done();
+    void run_parallel(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done);
 
     const lensprof_sample_options &options_;
     std::vector<View> views_;

@@ -12,9 +12,9 @@ namespace lensprof {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr uint32_t kPiece = 64;     // points that a thread processes as a unit,
-constexpr uint32_t kRound = 4096;   // and all threads together, before counting whether there are enough
-constexpr uint32_t kHopeless = 64;  // rounds without any track
+constexpr uint32_t kPiece = 64;           // points that a thread processes as a unit,
+constexpr uint32_t kRound = 4096;         // and all threads together, before counting whether there are enough
+constexpr uint32_t kMaxEmptyRounds = 64;  // rounds without any track
 constexpr uint32_t kMostRounds = 4096;
 constexpr size_t kPerWanted = 8;                  // candidates per wanted point,
 constexpr double kCells = 2.0;                    // and cells; each cell contributes its quietest candidates
@@ -72,7 +72,7 @@ bool Sampler::find_track(const Aim &aim, uint32_t number, TrackCandidate &found)
         bool good = (!other || correspond(anchor.image, visit.image, x, y, visit.xy))
                     && measure(visit.image, visit.xy[0], visit.xy[1], end);
         if (!good && !other) return false;
-        if (!good || (other && !is_the_same(anchor.image, visit.image, x, y))) continue;
+        if (!good || (other && !shows_same_scene(anchor.image, visit.image, x, y))) continue;
         visit.radius = end.radius, visit.grey = end.grey;
         gradient += end.patch.gradient;
         measured += *std::max_element(end.patch.value, end.patch.value + 3) < 1.0;
@@ -88,7 +88,7 @@ bool Sampler::find_track(const Aim &aim, uint32_t number, TrackCandidate &found)
 std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim) {
     std::vector<TrackCandidate> all;
     const double before = shown_;  // of the progress
-    for (uint32_t round = 0; round < kMostRounds && all.size() < wanted && !(round > kHopeless && all.empty());
+    for (uint32_t round = 0; round < kMostRounds && all.size() < wanted && !(round > kMaxEmptyRounds && all.empty());
          round++) {
         std::vector<std::vector<TrackCandidate>> found(kRound / kPiece);
         auto work = [&](uint32_t piece) {
@@ -98,7 +98,7 @@ std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, co
             }
         };
         const double done = before + (0.95 - before) * static_cast<double>(all.size()) / static_cast<double>(wanted);
-        each(static_cast<uint32_t>(found.size()), work, [=] { return done; });
+        run_parallel(static_cast<uint32_t>(found.size()), work, [=] { return done; });
         for (auto &list : found) std::move(list.begin(), list.end(), std::back_inserter(all));
     }
     return all;
@@ -128,8 +128,8 @@ std::vector<lensprof_observation> Sampler::observations_of(const std::vector<Tra
             tracks[n].push_back(o);
         }
     };
-    each(static_cast<uint32_t>(chosen.size()), work, [] { return 0.97; });
-    show_done();
+    run_parallel(static_cast<uint32_t>(chosen.size()), work, [] { return 0.97; });
+    report_done();
     std::vector<lensprof_observation> all;
     for (const auto &track : tracks) all.insert(all.end(), track.begin(), track.end());
     return all;
@@ -152,9 +152,9 @@ std::vector<lensprof_observation> Sampler::balanced_tracks(uint32_t wanted) {
         Eigen::Vector3d d = cosine * axis + sine * (std::cos(2.0 * kPi * b) * u + std::sin(2.0 * kPi * b) * v);
         // Lambert's azimuthal projection has equal areas, too, and its squares contain nearby places.
         auto line = [&](double x) { return static_cast<uint32_t>((0.5 + 0.4999 * std::sqrt(a) * x) * side); };
-        Aim at{{}, line(std::cos(2.0 * kPi * b)) * side + line(std::sin(2.0 * kPi * b))};
-        direction_of_vector(d.data(), at.direction);
-        return at;
+        Aim result{{}, line(std::cos(2.0 * kPi * b)) * side + line(std::sin(2.0 * kPi * b))};
+        direction_of_vector(d.data(), result.direction);
+        return result;
     };
     std::vector<TrackCandidate> all = in_place(track_candidates(kPerWanted * wanted, aim));
     std::sort(all.begin(), all.end(), [](const TrackCandidate &a, const TrackCandidate &b) {

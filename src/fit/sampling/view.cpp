@@ -43,14 +43,14 @@ typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
 
 // Grey values of the bytes 0..255.
 struct ByteValues {
-    float at[256];
-    constexpr ByteValues() : at() {
-        for (int i = 0; i < 256; i++) at[i] = static_cast<float>(i / 255.0);
+    float value[256];
+    constexpr ByteValues() : value() {
+        for (int i = 0; i < 256; i++) value[i] = static_cast<float>(i / 255.0);
     }
 };
 constexpr ByteValues kByteValues;
 
-float grey_value(uint8_t sample) { return kByteValues.at[sample]; }
+float grey_value(uint8_t sample) { return kByteValues.value[sample]; }
 float grey_value(uint16_t sample) { return static_cast<float>(sample / 65535.0); }
 float grey_value(float sample) { return sample; }
 
@@ -124,13 +124,13 @@ Lanes robust_mean(const Lanes *values) {
     Lanes center = median<kCount>(scratch);
     for (int i = 0; i < kCount; i++) scratch[i] = absolute(values[i] - center);
     Lanes spread = static_cast<float>(kMadToSigma) * median<kCount>(scratch);
-    const Lanes none = {}, one = none + 1.0f;
+    const Lanes zero = {}, one = zero + 1.0f;
     for (int round = 0; round < 3; round++) {
-        const Lanes limit = 2.5f * higher(spread, none + kSmallestSpread);
-        Lanes sum = none, square = none, kept = none;
+        const Lanes limit = 2.5f * higher(spread, zero + kSmallestSpread);
+        Lanes sum = zero, square = zero, kept = zero;
         for (int i = 0; i < kCount; i++) {
-            const Lanes distance = values[i] - center, used = absolute(distance) > limit ? none : distance;
-            kept += absolute(distance) > limit ? none : one;
+            const Lanes distance = values[i] - center, used = absolute(distance) > limit ? zero : distance;
+            kept += absolute(distance) > limit ? zero : one;
             sum += used;
             square += used * used;
         }
@@ -138,7 +138,7 @@ Lanes robust_mean(const Lanes *values) {
         Lanes deviation;
         for (int c = 0; c < kLanes; c++) deviation[c] = std::sqrt(square[c] / count[c]);
         // 1.1: corrects the spread of plain noise for the cut
-        spread = kept > none ? lower(spread, 1.1f * deviation) : spread;
+        spread = kept > zero ? lower(spread, 1.1f * deviation) : spread;
         center += sum / count;
     }
     return center;
@@ -228,8 +228,8 @@ lensprof_status check_finite(const std::function<lensprof_sample_image(uint32_t)
     };
     std::vector<Place> places(count);
     auto work = [&](uint32_t i) {
-        lensprof_sample_image own = image(i);
-        places[i].found = View(own).find_not_finite(places[i].x, places[i].y);
+        lensprof_sample_image view_image = image(i);
+        places[i].found = View(view_image).find_not_finite(places[i].x, places[i].y);
     };
     if (!for_each_parallel(count, threads, work, stop)) throw Cancelled();
     for (uint32_t i = 0; i < count; i++)

@@ -52,14 +52,14 @@ public:
         std::vector<double> gap(static_cast<size_t>(count()), -1.0);
         if (!region.columns.empty() && region.columns[0] < kMaxModes) rise_gaps(value.data(), region.modes, gap.data());
         for (int i = kRises; i < count(); i++) {
-            const Place at = place(i);
-            const double *k = value.data() + at.column;
-            if (at.is_center) {
-                gap[static_cast<size_t>(i)] = (at.is_upper ? *k : -*k) - kLargestCenter;
+            const Place bound = place(i);
+            const double *k = value.data() + bound.column;
+            if (bound.is_center) {
+                gap[static_cast<size_t>(i)] = (bound.is_upper ? *k : -*k) - kLargestCenter;
                 continue;
             }
             const lensprof_vignetting v{{k[0], k[1], k[2]}, {0.0, 0.0}};
-            gap[static_cast<size_t>(i)] = kSmallestM - lensprof_vignetting_eval(&v, at.radius2, nullptr);
+            gap[static_cast<size_t>(i)] = kSmallestM - lensprof_vignetting_eval(&v, bound.radius2, nullptr);
         }
         return gap;
     }
@@ -72,10 +72,10 @@ public:
                 if (column < kMaxModes) row[u] = rise_of_mode(column, i);
                 continue;
             }
-            const Place at = place(i);
-            const int power = column - at.column;
-            if (at.is_center && power == 0) row[u] = at.is_upper ? -1.0 : 1.0;
-            if (!at.is_center && power >= 0 && power < 3) row[u] = std::pow(at.radius2, power + 1);
+            const Place bound = place(i);
+            const int power = column - bound.column;
+            if (bound.is_center && power == 0) row[u] = bound.is_upper ? -1.0 : 1.0;
+            if (!bound.is_center && power >= 0 && power < 3) row[u] = std::pow(bound.radius2, power + 1);
         }
         return row;
     }

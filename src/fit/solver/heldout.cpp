@@ -28,7 +28,7 @@ Split split_pairs(uint32_t count, uint32_t images) {
     }
     uint32_t wanted = std::max(kStartPairs, kStartPairsPerImage * images);
     uint32_t step = std::max(1u, static_cast<uint32_t>(split.train.size()) / wanted);
-    for (size_t i = 0; i < split.train.size(); i += step) split.few.push_back(split.train[i]);
+    for (size_t i = 0; i < split.train.size(); i += step) split.brief.push_back(split.train[i]);
     return split;
 }
 
@@ -51,13 +51,13 @@ double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &stand
     return difference;
 }
 
-bool is_as_good(const HeldoutLoss &one, const HeldoutLoss &best) {
-    double error, difference = loss_difference(one, best, error);
+bool is_as_good(const HeldoutLoss &loss, const HeldoutLoss &best) {
+    double error, difference = loss_difference(loss, best, error);
     return difference <= error;
 }
 
-bool is_clearly_better(const HeldoutLoss &one, const HeldoutLoss &other) {
-    double error, difference = loss_difference(one, other, error);
+bool is_clearly_better(const HeldoutLoss &loss, const HeldoutLoss &other) {
+    double error, difference = loss_difference(loss, other, error);
     return difference < -3.0 * error;
 }
 

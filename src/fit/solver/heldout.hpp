@@ -13,7 +13,7 @@ constexpr size_t kFewestHeldout = 20;
 // Splits all pairs or tracks by their numbers: four fifths to fit, one fifth held out, and a few of the former for
 // first fits. The split is deterministic.
 struct Split {
-    std::vector<uint32_t> all, train, heldout, few;
+    std::vector<uint32_t> all, train, heldout, brief;
 
     bool has_heldout() const { return heldout.size() >= kFewestHeldout; }
 };
@@ -33,10 +33,10 @@ HeldoutLoss heldout_loss(const Problem &heldout, const Estimate &estimate, const
 double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &standard_error);
 
 // Whether a candidate is within one standard error (of the paired difference) of the best one.
-bool is_as_good(const HeldoutLoss &one, const HeldoutLoss &best);
+bool is_as_good(const HeldoutLoss &loss, const HeldoutLoss &best);
 
 // Whether a candidate is better by more than three standard errors.
-bool is_clearly_better(const HeldoutLoss &one, const HeldoutLoss &other);
+bool is_clearly_better(const HeldoutLoss &loss, const HeldoutLoss &other);
 
 // The candidate with the smallest held-out loss.
 template <class Candidate>

@@ -43,16 +43,17 @@ NormalEquations::NormalEquations(const Problem &problem, const Estimate &estimat
       columns_(free_columns(problem, estimate.modes)),
       modes_(static_cast<size_t>(std::lower_bound(columns_.begin(), columns_.end(), kMaxModes) - columns_.begin())) {}
 
-void NormalEquations::add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign, double *by) const {
+void NormalEquations::add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign,
+                                  double *derivative) const {
     const int setting = problem_.setting_of[image];
     for (size_t u = modes_; u < columns_.size(); u++) {
         const LensColumn column = lens_column(columns_[u]);
         if (column.setting != setting) continue;
         const int k = column.offset - 3 * curve;
         if (column.is_center())
-            by[u] += sign * place.by_center[columns_[u] - center_column(setting)];
+            derivative[u] += sign * place.by_center[columns_[u] - center_column(setting)];
         else if (k >= 0 && k < 3)
-            by[u] += sign * place.by_k[k];
+            derivative[u] += sign * place.by_k[k];
     }
 }
 
@@ -199,14 +200,14 @@ Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix
         for (int a = 0; a < count; a++) place[static_cast<size_t>(row[first + a])] = a;
         for (int a = 0; a < count; a++) {  // contribution of Z_ki and Z_ik = Z_ki of column k to the rows k and i
             const int k = row[first + a];
-            double own = l_j[a] * diagonal[k];
+            double product = l_j[a] * diagonal[k];
             for (int b = first_below(k); b < start[k + 1]; b++) {
                 const int i = place[static_cast<size_t>(row[b])];
                 if (i < 0) continue;
                 sum[static_cast<size_t>(i)] -= l_j[a] * z[static_cast<size_t>(b)];
-                own += l_j[i] * z[static_cast<size_t>(b)];
+                product += l_j[i] * z[static_cast<size_t>(b)];
             }
-            sum[static_cast<size_t>(a)] -= own;
+            sum[static_cast<size_t>(a)] -= product;
         }
         diagonal[j] = 1.0 / d[j];
         for (int a = 0; a < count; a++) {

@@ -59,7 +59,7 @@ protected:
 
     // Adds `sign` times the derivatives of ln M at a place of an image, for one falloff curve, to the derivatives by
     // the lens, which follow those by the modes.
-    void add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign, double *by) const;
+    void add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign, double *derivative) const;
 
     void complete(const Sums &sums, const Prior &prior, const Estimate &estimate);
 

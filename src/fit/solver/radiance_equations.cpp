@@ -82,8 +82,8 @@ void RadianceEquations::add_channel(const Range &track, int channel, const Track
         if (s.by_log == 0.0) continue;
         double weight = factor * s.weight, share = s.by_log / stiffness, root = std::sqrt(weight);
         auto image = problem_.tracks.observations[track.first + static_cast<size_t>(i)].image;
-        auto own = part.by_shared.col(i), row = part.rows.col(part.count);
-        row.head(n) = own - share * mixed;
+        auto column = part.by_shared.col(i), row = part.rows.col(part.count);
+        row.head(n) = column - share * mixed;
         double residual = s.residual - share * pull;
         part.cross.col(3 * image + c) += weight * s.by_log * row.head(n);
         part.image_gradient[3 * image + c] += weight * s.by_log * residual;

@@ -62,24 +62,25 @@ Ratios mode_of(const std::vector<Vote> &all, int channels, double width, double 
         double z = distance2 / (width * width);
         return 1.0 / (1.0 + z * z);
     };
-    auto every = [&](size_t count, auto &&visit) {
+    auto for_every_guess = [&](size_t count, auto &&visit) {
         count = std::min(count, all.size());
         for (size_t n = 0; n < count; n++) visit(all[n * all.size() / count]);
     };
     Ratios best{};
-    double most = -1.0;
-    every(kGuesses, [&](const Vote &guess) {
+    double most_votes = -1.0;
+    for_every_guess(kGuesses, [&](const Vote &guess) {
         double votes = 0.0;
-        every(kVoters, [&](const Vote &one) { votes += one.weight * closeness(guess.ratios, one.ratios); });
-        if (votes > most) most = votes, best = guess.ratios;
+        for_every_guess(kVoters,
+                        [&](const Vote &vote) { votes += vote.weight * closeness(guess.ratios, vote.ratios); });
+        if (votes > most_votes) most_votes = votes, best = guess.ratios;
     });
     for (int round = 0; round < 3; round++) {
         double sum = 0.0;
         Ratios mean{};
-        for (const Vote &one : all) {
-            double weight = one.weight * closeness(best, one.ratios);
+        for (const Vote &vote : all) {
+            double weight = vote.weight * closeness(best, vote.ratios);
             sum += weight;
-            for (size_t c = 0; c < 3; c++) mean[c] += weight * one.ratios[c];
+            for (size_t c = 0; c < 3; c++) mean[c] += weight * vote.ratios[c];
         }
         for (size_t c = 0; c < 3; c++) best[c] = mean[c] / sum;
         support = sum;
@@ -163,7 +164,7 @@ bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, TieFact
 }
 
 // Distance of a tie from the exposures, over all channels, natural logarithm.
-double surprise_of(const Problem &problem, const Tie &tie, const Estimate &estimate) {
+double tie_distance(const Problem &problem, const Tie &tie, const Estimate &estimate) {
     const auto &a = estimate.log_exposure[tie.image[0]], &b = estimate.log_exposure[tie.image[1]];
     double off2 = 0.0;
     for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
@@ -186,7 +187,7 @@ void start_exposures(const Problem &problem, double width, Estimate &estimate) {
     for (int round = 0; round <= kDistanceRounds + kNearRounds && add_exposures(problem, ties, factor, estimate);
          round++)
         for (Tie &tie : ties) {
-            double off = surprise_of(problem, tie, estimate), z = off / kNear;
+            double off = tie_distance(problem, tie, estimate), z = off / kNear;
             tie.trust = round < kDistanceRounds ? 1.0 / std::hypot(off, kExact) : 1.0 / ((1.0 + z * z) * (1.0 + z * z));
         }
     const auto zero = estimate.log_exposure[problem.reference];

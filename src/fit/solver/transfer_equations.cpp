@@ -69,23 +69,23 @@ void TransferEquations::add_edge(const Edge &edge, const Loss &loss, const Noise
         part.objective += 0.5 * pair_cost(residuals, problem_.channels, loss, &factor);
         for (int curve = 0; curve < problem_.vignettings; curve++) {
             const Falloff &fall = t.fall[static_cast<size_t>(curve)];
-            std::vector<double> &by = lens[static_cast<size_t>(curve)];
-            by.assign(columns_.size(), 0.0);
+            std::vector<double> &derivative = lens[static_cast<size_t>(curve)];
+            derivative.assign(columns_.size(), 0.0);
             for (int side = 0; side < 2; side++)
-                add_by_lens(fall.end[side], edge.image[side], curve, side ? -1.0 : 1.0, by.data());
+                add_by_lens(fall.end[side], edge.image[side], curve, side ? -1.0 : 1.0, derivative.data());
         }
         for (int c = 0; c < problem_.channels; c++) {
-            const Transfer &one = t.channel[static_cast<size_t>(c)];
-            const double *by = lens[problem_.vignettings == 3 ? static_cast<size_t>(c) : 0].data();
+            const Transfer &transfer = t.channel[static_cast<size_t>(c)];
+            const double *derivative = lens[problem_.vignettings == 3 ? static_cast<size_t>(c) : 0].data();
             for (int side = 0; side < 2; side++) {
-                double by_delta = one.by_delta[side], root = weights[p][c][side] * std::sqrt(factor[c][side]);
-                if (by_delta == 0.0 && one.by_value[side] == 0.0) continue;  // saturated prediction
+                double by_delta = transfer.by_delta[side], root = weights[p][c][side] * std::sqrt(factor[c][side]);
+                if (by_delta == 0.0 && transfer.by_value[side] == 0.0) continue;  // saturated prediction
                 Rows &rows = part.rows[static_cast<size_t>(c)];
                 double *row = rows.rows.col(rows.count).data();
-                if (emor) modes.transfer_by_emor(one, side, root, row);
-                for (Eigen::Index u = emor; u < n; u++) row[u] = root * by_delta * by[u];
+                if (emor) modes.transfer_by_emor(transfer, side, root, row);
+                for (Eigen::Index u = emor; u < n; u++) row[u] = root * by_delta * derivative[u];
                 row[n] = root * by_delta;
-                row[n + 1] = root * one.residual[side];
+                row[n + 1] = root * transfer.residual[side];
                 if (++rows.count == Rows::kCapacity) add_rows(edge, c, part);
             }
         }

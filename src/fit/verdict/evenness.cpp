@@ -37,9 +37,10 @@ std::vector<Seam> seams_of(const Problem &problem, const Estimate &estimate) {
     for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
         const auto &pair = problem.pairs[p];
         for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
-            const Transfer &one = t.channel[c];
+            const Transfer &transfer = t.channel[c];
             seams[p].before += 255.0 * std::abs(pair.value[0][c] - pair.value[1][c]) / problem.channels;
-            seams[p].after += 255.0 * 0.5 * (std::abs(one.residual[0]) + std::abs(one.residual[1])) / problem.channels;
+            seams[p].after +=
+                255.0 * 0.5 * (std::abs(transfer.residual[0]) + std::abs(transfer.residual[1])) / problem.channels;
         }
     });
     return seams;
@@ -58,12 +59,12 @@ bool is_even(const Seam &seam, double noise_levels) {
 
 // The first link that looks worse after the correction, or keeps a seam that the other links do not have.
 std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &seams, double noise_levels) {
-    const double most = std::max(kOddLink, kOddNoise * noise_levels);
+    const double max_residual = std::max(kOddLink, kOddNoise * noise_levels);
     for (const Edge &edge : problem.edges) {
         if (edge.last - edge.first < kFewestPairs) continue;
         const Seam seam = median_of(seams, edge.first, edge.last);
         if (seam.after > std::max(kGrown * seam.before, kSeen)
-            || (seam.after > most && seam.after > kGain * seam.before))
+            || (seam.after > max_residual && seam.after > kGain * seam.before))
             return seam;
     }
     return std::nullopt;
@@ -88,14 +89,14 @@ void judge_evenness(const Found &found, lensprof_fit_result &r) {
     r.evens = 0;
     if (!r.usable && !is_of_profile(r.reason_code)) return;
     const std::vector<Seam> tested = seams_of(found.tested, found.train);
-    const Seam whole = median_of(tested, 0, tested.size());
+    const Seam overall = median_of(tested, 0, tested.size());
     const std::optional<Seam> odd = odd_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
-    r.evens = r.converged && r.inlier_share > kFewestAgree && is_even(whole, r.noise_levels) && !odd;
+    r.evens = r.converged && r.inlier_share > kFewestAgree && is_even(overall, r.noise_levels) && !odd;
     if (!r.usable || r.reason_code != LENSPROF_REASON_NONE) return;
     if (r.inlier_share < kSmallestShare || r.heldout_rms > kLargestRms)
         warn(r, {LENSPROF_REASON_MANY_OUTLIERS, {1.0 - r.inlier_share, r.heldout_rms}});
     else if (!r.evens)
-        warn(r, {LENSPROF_REASON_SEAMS_STAY, {odd.value_or(whole).after, odd.value_or(whole).before}});
+        warn(r, {LENSPROF_REASON_SEAMS_STAY, {odd.value_or(overall).after, odd.value_or(overall).before}});
 }
 
 }  // namespace lensprof

@@ -13,12 +13,12 @@ namespace lensprof {
 namespace {
 
 // The verdict on a result that holds the numbers of one setting.
-void judge_all(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_own,
+void judge_all(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_result,
                lensprof_fit_result &r) {
     judge(found.problem, found.estimate, r);
     if (r.usable && r.reason_code == LENSPROF_REASON_NONE && found.gauge.oddness() > 1.0)
         warn(r, {LENSPROF_REASON_UNUSUAL_RESPONSE, {found.gauge.oddness(), r.gamma_sigma}});
-    if (judge_own) judge_own(r);
+    if (judge_result) judge_result(r);
     judge_evenness(found, r);
 }
 
@@ -45,20 +45,20 @@ void give_setting(const Problem &problem, int number, const lensprof_fit_result 
 
 }  // namespace
 
-void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_own,
+void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_result,
             lensprof_exposure *exposures, lensprof_fit_result &result) {
     lensprof_fit_result r = result;
     r.iterations = found.iterations;
     r.converged = found.converged;
-    std::vector<lensprof_fit_image_quality> own(found.problem.image_count);  // the verdict always needs it
-    if (!r.image_quality) r.image_quality = own.data();
+    std::vector<lensprof_fit_image_quality> image_quality(found.problem.image_count);  // the verdict always needs it
+    if (!r.image_quality) r.image_quality = image_quality.data();
     describe_model(found.problem, found.estimate, r);
     describe_heldout(found.tested, found.train, found.has_heldout, r);
     describe_quality(found.problem, found.gauge, found.noise, found.covariance, found.estimate, r);
     uint32_t evens = 1;                                      // 1 if all settings with pictures are even
     for (int s = found.problem.settings - 1; s >= 0; s--) {  // the first one last, because it stays in the result
         describe_setting(found.problem, found.gauge, found.covariance, found.estimate, s, r);
-        judge_all(found, judge_own, r);
+        judge_all(found, judge_result, r);
         if (has_pairs(found.problem, s)) evens = std::min(evens, r.evens);
         if (r.settings) give_setting(found.problem, s, r);
     }

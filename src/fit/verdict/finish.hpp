@@ -21,9 +21,9 @@ struct Found {
     bool converged;
 };
 
-// Fills the result except `profile_prior` and `seconds`, and the exposures. `judge_own` adds what only the method
+// Fills the result except `profile_prior` and `seconds`, and the exposures. `judge_result` adds what only the method
 // knows, after the common verdict.
-void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_own,
+void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_result,
             lensprof_exposure *exposures, lensprof_fit_result &result);
 
 }  // namespace lensprof

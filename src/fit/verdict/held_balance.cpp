@@ -31,12 +31,13 @@ struct Sum {
 };
 
 // For red (k = 0) or blue (1).
-HeldBalance held_balance_of(const Problem &problem, size_t k, const std::vector<std::array<double, 2>> &beside_green) {
+HeldBalance held_balance_of(const Problem &problem, size_t k,
+                            const std::vector<std::array<double, 2>> &relative_to_green) {
     std::vector<Sum> sums(problem.image_count);
     for (const Edge &edge : problem.edges) {
         if (edge.last - edge.first < kFewestPairs) continue;
         std::vector<double> values, distances;
-        for (size_t p = edge.first; p < edge.last; p++) values.push_back(beside_green[p][k]);
+        for (size_t p = edge.first; p < edge.last; p++) values.push_back(relative_to_green[p][k]);
         const double middle = median(values);
         for (const double value : values) distances.push_back(std::abs(value - middle));
         const double error =
@@ -55,12 +56,13 @@ HeldBalance held_balance_of(const Problem &problem, size_t k, const std::vector<
 
 HeldBalance held_balance(const Problem &problem, const Estimate &estimate) {
     if (problem.channels != 3) return {};
-    std::vector<std::array<double, 2>> beside_green(problem.pairs.size());  // red, blue
+    std::vector<std::array<double, 2>> relative_to_green(problem.pairs.size());  // red, blue
     for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
         for (size_t k = 0; k < 2; k++)
-            beside_green[p][k] = 255.0 * (t.channel[2 * k].residual[0] - t.channel[1].residual[0]);
+            relative_to_green[p][k] = 255.0 * (t.channel[2 * k].residual[0] - t.channel[1].residual[0]);
     });
-    const HeldBalance red = held_balance_of(problem, 0, beside_green), blue = held_balance_of(problem, 1, beside_green);
+    const HeldBalance red = held_balance_of(problem, 0, relative_to_green),
+                      blue = held_balance_of(problem, 1, relative_to_green);
     return red.levels > blue.levels ? red : blue;
 }
 

@@ -47,12 +47,12 @@ constexpr double kOddImage = 5.0;            // levels of 255, and four times th
 size_t count_informative(const Problem &problem) {
     std::vector<std::array<double, 10>> seen;
     for (const auto &p : problem.pairs) {
-        bool tells = false;
+        bool is_informative = false;
         for (int c = 0; c < problem.channels; c++)
-            tells = tells
-                    || (std::min(p.value[0][c], p.value[1][c]) > kBlack
-                        && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
-        if (!tells) continue;
+            is_informative = is_informative
+                             || (std::min(p.value[0][c], p.value[1][c]) > kBlack
+                                 && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
+        if (!is_informative) continue;
         seen.push_back({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1]});
         for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++)
             seen.back()[4 + c] = p.value[0][c], seen.back()[7 + c] = p.value[1][c];
@@ -62,11 +62,11 @@ size_t count_informative(const Problem &problem) {
 }
 
 // The number of pair ends in a bin that counts as "a few".
-uint32_t few(const lensprof_fit_result &r) { return 2 + r.pairs / 1000; }
+uint32_t few_pair_ends(const lensprof_fit_result &r) { return 2 + r.pairs / 1000; }
 
 // Whether a tenth of the grey values holds more than a few samples.
 bool is_covered(const Problem &problem, const lensprof_fit_result &r, int bin) {
-    return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * few(r);
+    return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * few_pair_ends(r);
 }
 
 uint32_t covered_greys(const Problem &problem, const lensprof_fit_result &r) {
@@ -99,7 +99,7 @@ bool fits_response(const Estimate &estimate) { return estimate.modes > 0 || esti
 // Outer edge of the outermost ring that holds more than a few pair ends.
 double covered_radius(const lensprof_fit_result &r) {
     for (int bin = LENSPROF_COVERAGE_BINS; bin > 0; bin--)
-        if (r.radius_ends[bin - 1] > few(r)) return bin / static_cast<double>(LENSPROF_COVERAGE_BINS);
+        if (r.radius_ends[bin - 1] > few_pair_ends(r)) return bin / static_cast<double>(LENSPROF_COVERAGE_BINS);
     return 0.0;
 }
 
@@ -127,11 +127,11 @@ double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
 std::vector<double> rise_above(double limit, const Problem &problem, const lensprof_fit_result &r) {
     double highest = 1.0, sigma = 0.0;
     for (int curve = 0; curve < problem.vignettings && r.covariance_size && frees_falloff(problem); curve++) {
-        const Highest own = highest_of(r.vignetting[curve]);
-        if (own.m <= highest) continue;
+        const Highest peak = highest_of(r.vignetting[curve]);
+        if (peak.m <= highest) continue;
         double held[9];
         covariance_held(r, curve, held);
-        highest = own.m, sigma = std::sqrt(std::max(0.0, lp_falloff_variance(held, 3, 0, own.r2)));
+        highest = peak.m, sigma = std::sqrt(std::max(0.0, lp_falloff_variance(held, 3, 0, peak.r2)));
     }
     if (highest - kClearly * sigma > limit) return {highest, sigma};
     return {};
@@ -150,14 +150,14 @@ double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
 
 // The image that disagrees most with those it overlaps, if the disagreement is clear; else -1.
 int odd_image(const Problem &problem, const lensprof_fit_result &r) {
-    int odd = -1;
+    int worst = -1;
     double limit = std::max(kOddImage, 4.0 * r.noise_levels);
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++)
         if (r.image_quality[i].median_residual > limit) {
             limit = r.image_quality[i].median_residual;
-            odd = static_cast<int>(i);
+            worst = static_cast<int>(i);
         }
-    return odd;
+    return worst;
 }
 
 // The image whose exposure the pairs leave most uncertain, if by more than `limit` EV; else -1.
@@ -166,10 +166,10 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
     limit = kLargestEvSigma;
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
         auto measured = static_cast<size_t>(problem.measured_channel());
-        double away = estimate.log_exposure[i][measured] - estimate.log_exposure[problem.reference][measured];
-        double of_gamma = std::max(r.gamma_sigma, 0.0) * away / kLn2, sigma = r.image_quality[i].ev_sigma;
-        double own = std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
-        if (own > limit) limit = own, worst = static_cast<int>(i);
+        double log_ratio = estimate.log_exposure[i][measured] - estimate.log_exposure[problem.reference][measured];
+        double of_gamma = std::max(r.gamma_sigma, 0.0) * log_ratio / kLn2, sigma = r.image_quality[i].ev_sigma;
+        double pair_sigma = std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
+        if (pair_sigma > limit) limit = pair_sigma, worst = static_cast<int>(i);
     }
     return worst;
 }
@@ -226,16 +226,16 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
 
 // The first image whose exposure is supported by fewer pairs than could agree by chance. Images that share an exposure
 // count together; so do those that are held, including the reference.
-bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint32_t &image, uint32_t &behind) {
+bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint32_t &image, uint32_t &inliers) {
     if (problem.image_unknowns == 0 || !r.image_quality) return false;
     auto held = static_cast<size_t>(problem.image_unknowns);
     auto owner = [&](uint32_t i) {
         return problem.ev_unknown[i] < 0 ? held : static_cast<size_t>(problem.ev_unknown[i]);
     };
-    std::vector<uint32_t> inliers(held + 1, 0u);
-    for (uint32_t i = 0; i < problem.image_count; i++) inliers[owner(i)] += r.image_quality[i].inliers;
+    std::vector<uint32_t> owner_inliers(held + 1, 0u);
+    for (uint32_t i = 0; i < problem.image_count; i++) owner_inliers[owner(i)] += r.image_quality[i].inliers;
     for (image = 0; image < problem.image_count; image++)
-        if (is_joined(problem, image) && (behind = inliers[owner(image)]) < kFewestInliers) return true;
+        if (is_joined(problem, image) && (inliers = owner_inliers[owner(image)]) < kFewestInliers) return true;
     return false;
 }
 
@@ -260,11 +260,11 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
     if (const double darkest = darkest_of(problem, r); darkest < kDarkest)
         return refuse(r, {LENSPROF_REASON_FALLOFF_DARK, {darkest}});
     const bool still = is_static(problem);
-    uint32_t image, behind;
-    if (has_few_inliers(problem, r, image, behind))
+    uint32_t image, inliers;
+    if (has_few_inliers(problem, r, image, inliers))
         return refuse(
             r, of_image(still ? LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE : LENSPROF_REASON_FEW_BEHIND_EXPOSURE, image,
-                        {double(behind)}));
+                        {double(inliers)}));
     if (disagrees(problem, r, image))
         return refuse(r,
                       of_image(still ? LENSPROF_REASON_STILL_IMAGE_DISAGREES : LENSPROF_REASON_IMAGE_DISAGREES, image,
@@ -286,39 +286,39 @@ bool leaves_out_any(const Problem &problem, const lensprof_fit_result &r) {
 // The image whose exposure is farthest from its known one, if clearly; else -1. Considers only images that are left
 // out, if there are any.
 int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
-    int odd = -1;
+    int worst = -1;
     const bool any = leaves_out_any(problem, r);
     double limit = any ? 0.0 : kContradiction;
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
         double sigma = problem.images[i].known_ev_sigma;
         double off = sigma > 0.0 ? std::abs(r.image_quality[i].known_ev_residual) / std::max(sigma, kKnownSigma) : 0.0;
         if (any && !r.image_quality[i].known_ev_left_out) continue;
-        if (off > limit) limit = off, odd = static_cast<int>(i);
+        if (off > limit) limit = off, worst = static_cast<int>(i);
     }
-    return odd;
+    return worst;
 }
 
 // Reports how known exposures contradict each other, or the exponent of the result, if they do. For many known
 // exposures, whose errors follow from their scatter, only steps and single errors are reported (contradicting_image).
-bool minds_known_exposures(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+bool warns_of_known_exposures(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     using Explanation = KnownExposures::Explanation;
     bool open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
     KnownExposures known = compare_known(problem, estimate, open);
     if (known.count > kMany && known.explanation != Explanation::step) return false;
-    const double away = std::abs(std::log(std::max(known.slope, 1e-3))), off = std::abs(known.off_ev);
+    const double slope_error = std::abs(std::log(std::max(known.slope, 1e-3))), offset_ev = std::abs(known.off_ev);
     switch (known.explanation) {
     case Explanation::order: return warn(r, {LENSPROF_REASON_KNOWN_ORDER, {known.off_ev}});
-    case Explanation::one: return warn(r, of_image(LENSPROF_REASON_KNOWN_WRONG, known.image, {off}));
+    case Explanation::single_image: return warn(r, of_image(LENSPROF_REASON_KNOWN_WRONG, known.image, {offset_ev}));
     case Explanation::step:
         return warn(r, of_image(known.off_ev > 0.0 ? LENSPROF_REASON_KNOWN_MORE_FROM : LENSPROF_REASON_KNOWN_LESS_FROM,
-                                known.image, {off}));
+                                known.image, {offset_ev}));
     case Explanation::any:
         if (leaves_out_any(problem, r)) return false;  // these are
         return warn(r, {LENSPROF_REASON_KNOWN_CONTRADICT, {known.off_ev}});
     default: break;
     }
     const bool is_unfollowed =
-        r.gamma_from == LENSPROF_GAMMA_EXPOSURES && away > std::max(kUnfollowed, 3.0 * r.gamma_sigma);
+        r.gamma_from == LENSPROF_GAMMA_EXPOSURES && slope_error > std::max(kUnfollowed, 3.0 * r.gamma_sigma);
     return is_unfollowed && warn(r, {LENSPROF_REASON_GAMMA_UNFOLLOWED, {1.0 / known.slope}});
 }
 
@@ -332,7 +332,7 @@ bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_
         return warn(r, of_image(is_static(problem) ? LENSPROF_REASON_STILL_IMAGE_ODD : LENSPROF_REASON_IMAGE_ODD, image,
                                 {r.image_quality[image].median_residual}));
     }
-    if (minds_known_exposures(problem, estimate, r)) return true;
+    if (warns_of_known_exposures(problem, estimate, r)) return true;
     if (contradicting < 0) return false;
     const auto image = static_cast<uint32_t>(contradicting);
     return warn(r, of_image(LENSPROF_REASON_KNOWN_WRONG, image, {std::abs(r.image_quality[image].known_ev_residual)}));
@@ -340,12 +340,13 @@ bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_
 
 bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     const bool is_still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
-    const double own = r.noise_levels * std::sqrt(r.image_share), of_frame = r.noise_levels * std::sqrt(r.frame_share);
+    const double image_pattern = r.noise_levels * std::sqrt(r.image_share),
+                 frame_pattern = r.noise_levels * std::sqrt(r.frame_share);
     const double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
-    if (r.image_share > kSuspiciousImageShare && own > (is_still ? kStillPattern : kSmallestPattern))
-        return warn(r, {LENSPROF_REASON_WEAK_PATTERNS, {r.image_share, own}});
-    if (r.frame_share > kNotRadial && of_frame > kSmallestPattern)
-        return warn(r, {LENSPROF_REASON_NOT_RADIAL, {r.frame_share, of_frame}});
+    if (r.image_share > kSuspiciousImageShare && image_pattern > (is_still ? kStillPattern : kSmallestPattern))
+        return warn(r, {LENSPROF_REASON_WEAK_PATTERNS, {r.image_share, image_pattern}});
+    if (r.frame_share > kNotRadial && frame_pattern > kSmallestPattern)
+        return warn(r, {LENSPROF_REASON_NOT_RADIAL, {r.frame_share, frame_pattern}});
     if (const auto rise = rise_above(kLargestRise, problem, r); !rise.empty())
         return warn(r, {LENSPROF_REASON_FALLOFF_RISES_SOME, rise});
     if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))

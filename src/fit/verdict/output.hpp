@@ -57,7 +57,7 @@ struct Output {
         result->settings = settings.empty() ? nullptr : settings.data();
     }
 
-    void give(lensprof_fit_result &to, lensprof_exposure *to_exposures) const {
+    void write(lensprof_fit_result &to, lensprof_exposure *to_exposures) const {
         lensprof_fit_image_quality *to_quality = to.image_quality;
         lensprof_fit_setting *to_settings = to.settings;
         to = *result;

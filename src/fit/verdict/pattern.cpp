@@ -34,13 +34,14 @@ struct Sample {
     double residual;
 };
 
-Eigen::Index cell_of(const Problem &problem, const lensprof_pair &pair, int side, bool own_maps) {
+Eigen::Index cell_of(const Problem &problem, const lensprof_pair &pair, int side, bool per_image) {
     const auto &image = problem.images[pair.image[side]];
-    auto at = [](double value, double size, int count) {
+    auto cell_index = [](double value, double size, int count) {
         return std::clamp(static_cast<int>((value + 0.5) / size * count), 0, count - 1);
     };
-    int cell = at(pair.xy[side][0], image.width, kColumns) + kColumns * at(pair.xy[side][1], image.height, kRows);
-    return cell + (own_maps ? kCells * static_cast<Eigen::Index>(pair.image[side]) : 0);
+    int cell = cell_index(pair.xy[side][0], image.width, kColumns)
+               + kColumns * cell_index(pair.xy[side][1], image.height, kRows);
+    return cell + (per_image ? kCells * static_cast<Eigen::Index>(pair.image[side]) : 0);
 }
 
 // Ridge regression of the residuals on the maps, by conjugate gradients: the cost is linear in the number of pairs.
@@ -91,18 +92,18 @@ double explained(const std::vector<Sample> (&halves)[2], Eigen::Index cells) {
 PatternShares pattern_shares(const Problem &problem, const std::vector<double> &residual,
                              const std::vector<bool> &is_inlier) {
     PatternShares shares;
-    for (bool own_maps : {false, true}) {
+    for (bool per_image : {false, true}) {
         std::vector<Sample> halves[2];
         size_t count = 0;
         for (size_t p = 0; p < problem.pairs.size(); p++) {
             if (!is_inlier[p]) continue;
             const auto &pair = problem.pairs[p];
             halves[count++ % 2].push_back(
-                {{cell_of(problem, pair, 0, own_maps), cell_of(problem, pair, 1, own_maps)}, residual[p]});
+                {{cell_of(problem, pair, 0, per_image), cell_of(problem, pair, 1, per_image)}, residual[p]});
         }
-        auto cells = static_cast<Eigen::Index>(own_maps ? kCells * static_cast<size_t>(problem.image_count) : kCells);
+        auto cells = static_cast<Eigen::Index>(per_image ? kCells * static_cast<size_t>(problem.image_count) : kCells);
         double share = explained(halves, cells);
-        if (own_maps)
+        if (per_image)
             shares.image = std::max(0.0, share - shares.frame);
         else
             shares.frame = share;

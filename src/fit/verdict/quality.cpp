@@ -34,8 +34,8 @@ void count_greys(const Problem &problem, lensprof_fit_result &r) {
 double signed_residual(const PairTransfer &t, int channels) {
     double sum = 0.0;
     for (int c = 0; c < channels; c++) {
-        const Transfer &one = t.channel[static_cast<size_t>(c)];
-        sum += 255.0 * one.residual[0] / std::sqrt(1.0 + one.by_value[0] * one.by_value[0]);
+        const Transfer &transfer = t.channel[static_cast<size_t>(c)];
+        sum += 255.0 * transfer.residual[0] / std::sqrt(1.0 + transfer.by_value[0] * transfer.by_value[0]);
     }
     return sum / channels;
 }
@@ -56,8 +56,8 @@ void describe_residuals(const Problem &problem, const Estimate &estimate, double
         for (uint32_t image : problem.pairs[p].image) {
             r.image_quality[image].inliers += is_inlier[p];
             for (int c = 0; c < problem.channels; c++)
-                for (double one : t.channel[static_cast<size_t>(c)].residual)
-                    of_image[image].push_back(255.0 * std::abs(one));
+                for (double channel_residual : t.channel[static_cast<size_t>(c)].residual)
+                    of_image[image].push_back(255.0 * std::abs(channel_residual));
         }
     });
     PatternShares shares = pattern_shares(problem, residual, is_inlier);

@@ -167,12 +167,12 @@ std::string wording_of(lensprof_reason code) {
 
 // The value for a placeholder such as "0.1%".
 std::string spell_value(const std::string &place, const std::vector<double> &values) {
-    const auto which = static_cast<size_t>(place[0] - '0');
+    const auto index = static_cast<size_t>(place[0] - '0');
     const size_t point = place.find('.');
     const int decimals = point == std::string::npos ? 0 : place[point + 1] - '0';
     const bool is_share = place.back() == '%';
     char text[64];
-    std::snprintf(text, sizeof text, is_share ? "%.*f %%" : "%.*f", decimals, (is_share ? 100.0 : 1.0) * values[which]);
+    std::snprintf(text, sizeof text, is_share ? "%.*f %%" : "%.*f", decimals, (is_share ? 100.0 : 1.0) * values[index]);
     return text;
 }
 
@@ -189,13 +189,13 @@ Reason of_shot(lensprof_reason code, uint32_t number, std::vector<double> values
 Sentence sentence_of(const Reason &reason) {
     const std::string wording = wording_of(reason.code);
     Sentence sentence{{}, {static_cast<uint32_t>(reason.kind), reason.index, 0, 0}};
-    for (size_t at = 0; at < wording.size();) {
-        if (wording[at] != '{') {
-            sentence.text += wording[at++];
+    for (size_t position = 0; position < wording.size();) {
+        if (wording[position] != '{') {
+            sentence.text += wording[position++];
             continue;
         }
-        const size_t end = wording.find('}', at);
-        const std::string place = wording.substr(at + 1, end - at - 1);
+        const size_t end = wording.find('}', position);
+        const std::string place = wording.substr(position + 1, end - position - 1);
         const size_t begin = sentence.text.size();
         if (place == "item") {
             sentence.text += item_word(reason.kind) + (" " + std::to_string(reason.index));
@@ -204,7 +204,7 @@ Sentence sentence_of(const Reason &reason) {
         } else {
             sentence.text += spell_value(place, reason.values);
         }
-        at = end + 1;
+        position = end + 1;
     }
     return sentence;
 }

@@ -52,18 +52,20 @@ Covariance jackknife(const Problem &problem, uint32_t pair_count,
     Covariance result;
     result.shared = Eigen::MatrixXd::Zero(kOneSetting, kOneSetting);
     result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
-    for (const Estimate &one : found)
-        if (one.log_exposure.empty()) return result;
+    for (const Estimate &estimate : found)
+        if (estimate.log_exposure.empty()) return result;
     constexpr double n = kJackknifeGroups, scale = (n - 1.0) / n;
     Eigen::VectorXd shared = Eigen::VectorXd::Zero(kOneSetting), images = result.images;
-    for (const Estimate &one : found) {
-        shared += shared_vector(one) / n;
-        images += image_vector(problem, one) / n;
+    for (const Estimate &estimate : found) {
+        shared += shared_vector(estimate) / n;
+        images += image_vector(problem, estimate) / n;
     }
-    for (const Estimate &one : found) {
-        Eigen::VectorXd off = shared_vector(one) - shared, own = image_vector(problem, one) - images;
-        result.shared += off * off.transpose();  // symmetric to the last bit, unlike scale * off * off'
-        result.images += own.cwiseAbs2();
+    for (const Estimate &estimate : found) {
+        Eigen::VectorXd shared_deviation = shared_vector(estimate) - shared,
+                        image_deviation = image_vector(problem, estimate) - images;
+        result.shared +=
+            shared_deviation * shared_deviation.transpose();  // symmetric to the last bit, unlike scale * off * off'
+        result.images += image_deviation.cwiseAbs2();
     }
     result.shared *= scale;
     result.images *= scale;

@@ -40,8 +40,8 @@ double log_ratio(const Problem &problem, const Estimate &estimate, const Transfe
 // The place on the estimate's curve nearest to a point, and the equation's residual at the point, linearised there:
 // otherwise noise in a point would enter the derivatives and flatten g (Gauss-Helmert model).
 struct Adjusted {
-    TransferPoint at;
-    double beyond;  // of g(b2) - g(b1), to first order
+    TransferPoint point;
+    double residual;  // of g(b2) - g(b1), to first order
 };
 
 Adjusted adjust(const LogModel &model, const TransferPoint &point, double ratio) {
@@ -51,10 +51,10 @@ Adjusted adjust(const LogModel &model, const TransferPoint &point, double ratio)
     double reach = kLargestShift * std::sqrt(steepness), step = std::clamp(off, -reach, reach) / steepness;
     Adjusted result{point, 0.0};
     for (size_t side = 0; side < 2; side++) {
-        double shift = (side ? -1.0 : 1.0) * step * slope[side], &level = result.at.level[side];
+        double shift = (side ? -1.0 : 1.0) * step * slope[side], &level = result.point.level[side];
         level = std::clamp(level + shift, 1.0, static_cast<double>(kLogLevels));
         at_level(model.g.data(), level, &slope[side]);
-        result.beyond += (side ? 1.0 : -1.0) * slope[side] * (point.level[side] - level);
+        result.residual += (side ? 1.0 : -1.0) * slope[side] * (point.level[side] - level);
     }
     return result;
 }
@@ -85,8 +85,8 @@ std::vector<std::vector<double>> point_weights(const Problem &problem, const std
     size_t p = 0;
     for (auto &curve : all)
         for (double &weight : curve) {
-            double far = z[p++] / usual;
-            weight /= (1.0 + far * far) * (1.0 + far * far);
+            double ratio = z[p++] / usual;
+            weight /= (1.0 + ratio * ratio) * (1.0 + ratio * ratio);
         }
     return all;
 }
@@ -110,16 +110,16 @@ void LogEquations::add_curve(const TransferCurve &curve, const std::vector<doubl
     const Edge &edge = problem_.edges[curve.edge];
     auto c = static_cast<size_t>(curve.channel);
     double weight = 0.0, right = 0.0, ratio = log_ratio(problem_, estimate, curve);
-    LogCoefficients by = LogCoefficients::Zero();  // sum of weighted rows
+    LogCoefficients row_sum = LogCoefficients::Zero();  // sum of weighted rows
     for (size_t p = 0; p < curve.points.size(); p++) {
         Adjusted point = adjusted ? adjust(model, curve.points[p], ratio) : Adjusted{curve.points[p], 0.0};
         const double *known = model.is_free ? kLogEmor[0] : model.g.data();
-        double w = weights[p], y = ratio - point.beyond - rise(known, point.at, nullptr);
+        double w = weights[p], y = ratio - point.residual - rise(known, point.point, nullptr);
         LogCoefficients row = LogCoefficients::Zero();
-        for (int n = 0; n < kLogModes && model.is_free; n++) row[n] = rise(kLogEmor[n + 1], point.at, nullptr);
+        for (int n = 0; n < kLogModes && model.is_free; n++) row[n] = rise(kLogEmor[n + 1], point.point, nullptr);
         response_ += w * row * row.transpose();
         response_right_ += w * y * row;
-        weight += w, right += w * y, by += w * row;
+        weight += w, right += w * y, row_sum += w * row;
         points_ += w > 0.0;
     }
     // The row's derivative by the unknowns of image 1 is +1, by those of image 2 -1.
@@ -128,7 +128,7 @@ void LogEquations::add_curve(const TransferCurve &curve, const std::vector<doubl
     for (int a = 0; a < 4; a++) {
         if (q[a] < 0) continue;
         double sign = a < 2 ? 1.0 : -1.0;
-        cross_.row(q[a]) += sign * by.transpose();
+        cross_.row(q[a]) += sign * row_sum.transpose();
         image_right_[q[a]] += sign * right;
         for (int b = 0; b < 4; b++)
             if (q[b] >= 0) entries_.emplace_back(q[a], q[b], weight * sign * (b < 2 ? 1.0 : -1.0));

@@ -81,10 +81,10 @@ private:
     bool holds_grey() const { return is_free_ && (gauge_.is_open() || gauge_.from() == LENSPROF_GAMMA_NONE); }
 
     State start();
-    bool fit_response(const Problem &problem, Gauge &gauge, bool settle, State &state) const;
+    bool fit_response(const Problem &problem, Gauge &gauge, bool find_gamma, State &state) const;
     void fit_falloff(const Problem &problem, Gauge &gauge, State &state) const;
-    int alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds, State &state,
-                  const std::function<void()> &tell, bool &is_still) const;
+    int alternate(const Problem &problem, Gauge &gauge, bool find_gamma, int rounds, State &state,
+                  const std::function<void()> &report, bool &is_still) const;
     Candidate candidate(const State &from, int modes);
     Candidate choose_modes(const State &start);
     Estimate in_emor(const State &state) const;
@@ -103,16 +103,16 @@ private:
 // Tries several held responses and starts from the one under which falloff and exposures explain most. Without a free
 // falloff, starts from the mean of the model.
 State Fit::start() {
-    Problem brief = problem(few());
+    Problem brief = problem(brief_subset());
     brief.vignettings = all_.vignettings;
     std::vector<Estimate> starts = start_estimates(has_falloff_ ? brief : train_, options_, is_free_ ? kFirstModes : 0);
     for (Estimate &start : starts)
         if (start.modes >= 0) set_fixed(start, table_response(start));
-    Gauge unheld = gauge_.unheld();
+    Gauge unconstrained = gauge_.unconstrained();
     State best;
-    best.estimate = has_falloff_ ? best_brief_fit(brief, unheld, nullptr, starts) : starts.front();
+    best.estimate = has_falloff_ ? best_brief_fit(brief, unconstrained, nullptr, starts) : starts.front();
     start_exposures(train_, kRoughWidth, best.estimate);
-    if (gauge_.is_open() && is_free_) gauge_.settle(train_, best.estimate);
+    if (gauge_.is_open() && is_free_) gauge_.apply_gamma(train_, best.estimate);
     best.model.is_free = is_free_;
     best.model.modes = is_free_ ? kFirstModes : 0;
     best.model.g = log_inverse(best.estimate.fixed);
@@ -121,8 +121,8 @@ State Fit::start() {
 }
 
 // Computes transfer functions under the current falloff, and the response and exposures that explain them. With
-// `settle`, gamma is determined again.
-bool Fit::fit_response(const Problem &problem, Gauge &gauge, bool settle, State &state) const {
+// `find_gamma`, gamma is determined again.
+bool Fit::fit_response(const Problem &problem, Gauge &gauge, bool find_gamma, State &state) const {
     constexpr int kRounds = 4;
     std::vector<TransferCurve> curves = transfer_curves(problem, state.estimate, as_paper_);
     std::vector<double> noise;
@@ -142,8 +142,8 @@ bool Fit::fit_response(const Problem &problem, Gauge &gauge, bool settle, State 
         state.is_solved = equations.points() > 0.0;
         if (!is_free_) continue;
         set_fixed(state.estimate, response_of(state.model.g));
-        if (settle && gauge.is_open()) {
-            gauge.settle(problem, state.estimate);
+        if (find_gamma && gauge.is_open()) {
+            gauge.apply_gamma(problem, state.estimate);
             state.model.g = log_inverse(state.estimate.fixed);
             state.grey = log_grey(state.estimate);
         } else if (holds_grey()) {
@@ -164,15 +164,15 @@ void Fit::fit_falloff(const Problem &problem, Gauge &gauge, State &state) const 
 }
 
 // Alternates falloff and response until neither moves; returns the number of rounds.
-int Fit::alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds, State &state,
-                   const std::function<void()> &tell, bool &is_still) const {
+int Fit::alternate(const Problem &problem, Gauge &gauge, bool find_gamma, int rounds, State &state,
+                   const std::function<void()> &report, bool &is_still) const {
     is_still = false;
     int round = 0;
     double last = 0.0;
     while (round < rounds && !is_still) {
-        tell();
+        report();
         Estimate before = state.estimate;
-        if (!fit_response(problem, gauge, settle, state)) {
+        if (!fit_response(problem, gauge, find_gamma, state)) {
             state.is_solved = false;
             return round;
         }
@@ -204,8 +204,8 @@ Candidate Fit::choose_modes(const State &start) {
     std::vector<Candidate> tried;
     for (int modes : {1, 2, 3, 4, 5, 7, 9, 12, 15, 20}) tried.push_back(candidate(start, modes));
     const Candidate &best = best_of(tried);
-    for (const Candidate &one : tried)
-        if (&one == &best || is_as_good(one, best)) return one;
+    for (const Candidate &candidate : tried)
+        if (&candidate == &best || is_as_good(candidate, best)) return candidate;
     return best;
 }
 
@@ -226,15 +226,15 @@ void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
 // ln of the exponent that takes the exposures of an estimate to those of another, as nearly as one exponent can; 0 if
 // they differ too little to determine one.
 double Fit::log_exponent(const Estimate &estimate, const Estimate &other) const {
-    double own = 0.0, both = 0.0;
+    double square = 0.0, product = 0.0;
     for (uint32_t i = 0; i < image_count_; i++)
         for (size_t c = 0; c < static_cast<size_t>(all_.channels); c++) {
             double x = estimate.log_exposure[i][c] - estimate.log_exposure[all_.reference][c];
-            own += x * x;
-            both += x * (other.log_exposure[i][c] - other.log_exposure[all_.reference][c]);
+            square += x * x;
+            product += x * (other.log_exposure[i][c] - other.log_exposure[all_.reference][c]);
         }
     const double spread = kSmallestSpread * kLn2, terms = static_cast<double>(image_count_) * all_.channels;
-    return own > spread * spread * terms && both > 0.0 ? std::log(both / own) : 0.0;
+    return square > spread * spread * terms && product > 0.0 ? std::log(product / square) : 0.0;
 }
 
 // There is no scatter along the family: gamma has an error of its own (Gauge::sigma).
@@ -246,14 +246,15 @@ Covariance Fit::scatter(const State &state) {
             part.vignettings = all_.vignettings;
             part.threads = 1;
             Gauge gauge = gauge_;
-            State own = state;
+            State part_state = state;
             bool is_still;
             alternate(
-                part, gauge, false, kAgainRounds, own, [] {}, is_still);
-            if (!own.is_solved) return Estimate();
+                part, gauge, false, kAgainRounds, part_state, [] {}, is_still);
+            if (!part_state.is_solved) return Estimate();
             if (holds_grey())
-                own.estimate = with_exponent(part, own.estimate, log_exponent(own.estimate, state.estimate));
-            return in_emor(own);
+                part_state.estimate =
+                    with_exponent(part, part_state.estimate, log_exponent(part_state.estimate, state.estimate));
+            return in_emor(part_state);
         },
         [this] { return is_cancelled(done_); });
 }
@@ -261,8 +262,8 @@ Covariance Fit::scatter(const State &state) {
 void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && split_.has_heldout();
     bool any_curves = may_choose_vignettings(split_.has_heldout());
-    int most = std::min(static_cast<int>(std::min(options_.max_iterations, 1000u)), kLastRounds);
-    auto tell = [this] { advance(done_); };
+    int max_rounds = std::min(static_cast<int>(std::min(options_.max_iterations, 1000u)), kLastRounds);
+    auto report = [this] { advance(done_); };
     bool is_still;
 
     set_vignettings(options_.vignettings == 3 && options_.channels == 3 ? 3 : 1);
@@ -271,7 +272,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     best.state = start();
     advance(0.1);
     if (is_free_ && options_.modes != LENSPROF_MODES_AUTO) best.state.model.modes = static_cast<int>(options_.modes);
-    alternate(train_, gauge_, true, std::min(most, kFirstRounds), best.state, tell, is_still);
+    alternate(train_, gauge_, true, std::min(max_rounds, kFirstRounds), best.state, report, is_still);
     common_ = loss();
     common_.noise = estimate_noise(train_, best.state.estimate, common_.noise);
     if (any_modes)
@@ -285,7 +286,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     advance(0.7);
 
     State last = best.state;
-    int rounds = alternate(all_, gauge_, true, most, last, tell, is_still);
+    int rounds = alternate(all_, gauge_, true, max_rounds, last, report, is_still);
     advance(0.8);
     Covariance found = scatter(last);
     Estimate estimate = in_emor(last);

@@ -36,12 +36,12 @@ std::vector<LevelPair> levels_of(const Problem &problem, const Estimate &estimat
     std::vector<LevelPair> levels;
     const size_t curve = problem.vignettings == 3 ? static_cast<size_t>(channel) : 0;
     const lensprof_vignetting &vignetting = estimate.vignetting[0][curve];  // of the only setting
-    bool even = vignetting.k[0] != 0.0 || vignetting.k[1] != 0.0 || vignetting.k[2] != 0.0;
+    bool has_falloff = vignetting.k[0] != 0.0 || vignetting.k[1] != 0.0 || vignetting.k[2] != 0.0;
     for (size_t p = edge.first; p < edge.last; p++) {
         const auto &pair = problem.pairs[p];
         double value[2] = {pair.value[0][channel], pair.value[1][channel]};
         if (std::max(value[0], value[1]) >= 1.0 || std::min(value[0], value[1]) <= 0.0) continue;
-        if (even) {
+        if (has_falloff) {
             double root = std::sqrt(falloff(problem, estimate, curve, pair).ratio);
             value[0] = evened(estimate, value[0], 1.0 / root);
             value[1] = evened(estimate, value[1], root);
@@ -64,8 +64,8 @@ struct SmoothTransfer {
                 double z = (b - centre) / kPathSmoothing, weight = std::exp(-0.5 * z * z);
                 // Beyond the ends the path continues as its mirror image.
                 int last = histogram.bins - 1, inside = b < 0 ? -b : b > last ? 2 * last - b : b;
-                double at = path.to[static_cast<size_t>(inside)];
-                sum += weight * (b < 0 ? -at : b > last ? 2 * last - at : at);
+                double value = path.to[static_cast<size_t>(inside)];
+                sum += weight * (b < 0 ? -value : b > last ? 2 * last - value : value);
                 weights += weight;
             }
             to[static_cast<size_t>(i)] = histogram.level(sum / weights);
@@ -81,12 +81,12 @@ struct SmoothTransfer {
 
 // A pair near the curve: the position along the curve of its nearest point (the sum of both levels, which resolves a
 // steep curve as finely as a flat one), and its distance.
-struct Beside {
+struct PathPosition {
     double along;
     double distance;
 };
 
-Beside beside(const SmoothTransfer &transfer, const LevelPair &pair) {
+PathPosition nearest_on_path(const SmoothTransfer &transfer, const LevelPair &pair) {
     double foot = pair[0], slope = 1.0, off = 0.0;
     for (int step = 0; step < 4; step++) {
         off = pair[1] - transfer.at(foot, slope);
@@ -103,23 +103,23 @@ Beside beside(const SmoothTransfer &transfer, const LevelPair &pair) {
 // of `range`.
 void add_means(const SmoothTransfer &transfer, const std::vector<LevelPair> &pairs, bool is_swapped, double reach,
                const double range[2], TransferCurve &curve) {
-    std::vector<Beside> besides;
-    std::vector<double> near;
+    std::vector<PathPosition> positions;
+    std::vector<double> distances;
     for (const LevelPair &pair : pairs) {
-        besides.push_back(beside(transfer, pair));
-        if (std::abs(besides.back().distance) < reach) near.push_back(std::abs(besides.back().distance));
+        positions.push_back(nearest_on_path(transfer, pair));
+        if (std::abs(positions.back().distance) < reach) distances.push_back(std::abs(positions.back().distance));
     }
-    if (near.empty()) return;
-    double noise = std::max(kMadToSigma * median(near), kSmallestNoise);
+    if (distances.empty()) return;
+    double noise = std::max(kMadToSigma * median(distances), kSmallestNoise);
     struct Sum {
         double weight = 0.0, level[2] = {0.0, 0.0};
     };
     std::array<Sum, 2 * kLevels> sums;
     for (size_t p = 0; p < pairs.size(); p++) {
-        double z = besides[p].distance / (kNear * noise);
+        double z = positions[p].distance / (kNear * noise);
         if (std::abs(z) >= 1.0) continue;
         double weight = (1.0 - z * z) * (1.0 - z * z);
-        Sum &sum = sums[static_cast<size_t>(std::clamp(std::lround(besides[p].along), 0l, 2l * kLevels - 1))];
+        Sum &sum = sums[static_cast<size_t>(std::clamp(std::lround(positions[p].along), 0l, 2l * kLevels - 1))];
         sum.weight += weight;
         for (size_t side = 0; side < 2; side++) sum.level[side] += weight * pairs[p][side];
     }
