@@ -31,11 +31,11 @@ public:
 
     size_t size() const { return bytes_.size(); }
 
-    // Unsigned, `count` bytes starting at `at`; 0 beyond the end.
-    uint32_t at(size_t at, size_t count) const {
+    // Unsigned, `count` bytes starting at `offset`; 0 beyond the end.
+    uint32_t number_at(size_t offset, size_t count) const {
         uint32_t value = 0;
-        if (at + count > bytes_.size()) return 0;
-        for (size_t i = 0; i < count; i++) value = value << 8 | bytes_[little_ ? at + count - 1 - i : at + i];
+        if (offset + count > bytes_.size()) return 0;
+        for (size_t i = 0; i < count; i++) value = value << 8 | bytes_[little_ ? offset + count - 1 - i : offset + i];
         return value;
     }
 
@@ -48,8 +48,9 @@ private:
 // 0x4018 (the menu setting, the sixth and the second word of four bytes), as documented by ExifTool.
 bool canon_corrects(const Exiv2::Image &image) {
     const Block done(image, "Exif.Canon.0x4015");
-    if (done.size() >= 6 && done.at(0, 1) == 0 && done.at(0, 4) != 0) return done.at(4, 2) == 1;
-    return Block(image, "Exif.Canon.0x4016").at(20, 4) == 1 || Block(image, "Exif.Canon.0x4018").at(4, 4) == 1;
+    if (done.size() >= 6 && done.number_at(0, 1) == 0 && done.number_at(0, 4) != 0) return done.number_at(4, 2) == 1;
+    return Block(image, "Exif.Canon.0x4016").number_at(20, 4) == 1
+           || Block(image, "Exif.Canon.0x4018").number_at(4, 4) == 1;
 }
 
 std::string maker_notes(const Exiv2::Image &image) {
@@ -66,12 +67,12 @@ std::string maker_notes(const Exiv2::Image &image) {
         {"Exif.Panasonic.ShadingCompensation", {1}, "Panasonic: shading compensation"},
         {"Exif.Nikon3.VignetteControl", {1, 3, 5}, "Nikon: vignette control"},
     };
-    for (const auto &one : switches) {
-        const auto value = read_integer(exif, one.key);
-        if (value && std::count(one.on.begin(), one.on.end(), *value)) return one.name;
+    for (const auto &entry : switches) {
+        const auto value = read_integer(exif, entry.key);
+        if (value && std::count(entry.on.begin(), entry.on.end(), *value)) return entry.name;
     }
     if (canon_corrects(image)) return "Canon: peripheral illumination correction";
-    if (Block(image, "Exif.Pentax.0x007d").at(2, 1) == 1) return "Pentax: peripheral illumination correction";
+    if (Block(image, "Exif.Pentax.0x007d").number_at(2, 1) == 1) return "Pentax: peripheral illumination correction";
     return {};
 }
 
@@ -79,8 +80,8 @@ std::string maker_notes(const Exiv2::Image &image) {
 bool is_rendered(const Exiv2::Image &image) {
     static const char *const types[] = {"image/jpeg", "image/heic", "image/heif",
                                         "image/avif", "image/webp", "image/jxl"};
-    const std::string own = image.mimeType();
-    return std::any_of(std::begin(types), std::end(types), [&](const char *type) { return own == type; });
+    const std::string mime_type = image.mimeType();
+    return std::any_of(std::begin(types), std::end(types), [&](const char *type) { return mime_type == type; });
 }
 
 // Programs that develop raw files regardless of the camera's switches but copy its notes. Those of the makers follow
@@ -114,14 +115,14 @@ bool has_falloff_opcodes(const Exiv2::ExifData &exif) {
         if (datum == exif.end() || datum->size() < 4) continue;
         std::vector<uint8_t> bytes(static_cast<size_t>(datum->size()));
         datum->copy(bytes.data(), Exiv2::bigEndian);
-        const auto word = [&](size_t at) {
-            return uint32_t(bytes[at]) << 24 | uint32_t(bytes[at + 1]) << 16 | uint32_t(bytes[at + 2]) << 8
-                   | bytes[at + 3];
+        const auto word = [&](size_t offset) {
+            return uint32_t(bytes[offset]) << 24 | uint32_t(bytes[offset + 1]) << 16 | uint32_t(bytes[offset + 2]) << 8
+                   | bytes[offset + 3];
         };
-        size_t at = 4;
-        for (uint32_t i = 0; i < word(0) && at + 16 <= bytes.size(); i++) {
-            if (word(at) == 3 || word(at) == 9) return true;
-            at += size_t(16) + word(at + 12);
+        size_t offset = 4;
+        for (uint32_t i = 0; i < word(0) && offset + 16 <= bytes.size(); i++) {
+            if (word(offset) == 3 || word(offset) == 9) return true;
+            offset += size_t(16) + word(offset + 12);
         }
     }
     return false;

@@ -37,9 +37,9 @@ double white_share(const Picture &picture) {
 }
 
 void warn_of_limits(const std::string &file, double own_ev, double wanted_ev, double white, Streams &streams) {
-    constexpr double darker = -0.1, much_brighter = 3.0, worth_a_word = 0.002;  // EV; share
+    constexpr double darker = -0.1, much_brighter = 3.0, min_reported_share = 0.002;  // EV; share
     const double change = wanted_ev - own_ev;
-    if (change < darker && white > worth_a_word)
+    if (change < darker && white > min_reported_share)
         warn(streams,
              file
                  + format(": %.1f %% of it is clipped in some channel and turns grey or coloured, because it becomes "

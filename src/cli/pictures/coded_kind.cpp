@@ -23,8 +23,8 @@ constexpr struct {
               {"mif1"sv, "HEIF"}, {"mif2"sv, "HEIF"}, {"msf1"sv, "HEIF"}};
 
 const char *name_of_brand(std::string_view brand) {
-    for (const auto &one : brands)
-        if (brand == one.brand) return one.name;
+    for (const auto &entry : brands)
+        if (brand == entry.brand) return entry.name;
     return nullptr;
 }
 
@@ -35,8 +35,8 @@ const char *name_of_brands(std::string_view start) {
     size_t size = 0;
     for (const char c : start.substr(0, 4)) size = size << 8 | static_cast<uint8_t>(c);
     const char *name = name_of_brand(start.substr(8, 4));
-    for (size_t at = 16; at + 4 <= std::min(size, start.size()); at += 4) {
-        const char *other = name_of_brand(start.substr(at, 4));
+    for (size_t offset = 16; offset + 4 <= std::min(size, start.size()); offset += 4) {
+        const char *other = name_of_brand(start.substr(offset, 4));
         if (other && (!name || name == "HEIF"sv)) name = other;
     }
     return name;
@@ -69,8 +69,8 @@ std::optional<CodedKind> coded_kind_of_name(const std::string &path) {
                 {".webp", {FileFormat::webp, "WebP"}}, {".jxl", {FileFormat::jxl, "JPEG XL"}}};
     std::string extension = std::filesystem::path(path).extension().string();
     for (char &c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    for (const auto &one : ends)
-        if (extension == one.end) return one.kind;
+    for (const auto &entry : ends)
+        if (extension == entry.end) return entry.kind;
     return std::nullopt;
 }
 

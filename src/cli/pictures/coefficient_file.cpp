@@ -52,7 +52,7 @@ CoefficientFile::~CoefficientFile() {
 void CoefficientFile::attach(jpeg_compress_struct &info) {
     if (coefficient_bytes(info) <= jpeg_memory_bytes) return;
     errno = 0;
-    file_ = open_nameless(beside_);
+    file_ = open_nameless(neighbour_);
     if (file_ < 0) ERREXIT(&info, JERR_FILE_WRITE);
     info.client_data = this;
     info.mem->request_virt_barray = request;
@@ -82,9 +82,10 @@ void CoefficientFile::store(j_common_ptr info, Array &array) {
         const char *from = reinterpret_cast<const char *>(array.window[y]);
         const uint64_t place = array.place + (array.window_start + uint64_t(y)) * array.row_bytes;
         for (size_t done = 0; done < array.row_bytes;) {
-            const ssize_t got = pwrite(file_, from + done, array.row_bytes - done, static_cast<off_t>(place + done));
-            if (got <= 0) ERREXIT(info, JERR_FILE_WRITE);
-            done += static_cast<size_t>(got);
+            const ssize_t written =
+                pwrite(file_, from + done, array.row_bytes - done, static_cast<off_t>(place + done));
+            if (written <= 0) ERREXIT(info, JERR_FILE_WRITE);
+            done += static_cast<size_t>(written);
         }
     }
     array.stored = std::max(array.stored, array.window_start + count);
@@ -98,9 +99,9 @@ void CoefficientFile::load(j_common_ptr info, Array &array, JDIMENSION start) {
         const uint64_t place = array.place + (start + uint64_t(y)) * array.row_bytes;
         if (start + y >= array.stored) std::memset(to, 0, array.row_bytes);
         for (size_t done = 0; start + y < array.stored && done < array.row_bytes;) {
-            const ssize_t got = pread(file_, to + done, array.row_bytes - done, static_cast<off_t>(place + done));
-            if (got <= 0) ERREXIT(info, JERR_FILE_READ);
-            done += static_cast<size_t>(got);
+            const ssize_t received = pread(file_, to + done, array.row_bytes - done, static_cast<off_t>(place + done));
+            if (received <= 0) ERREXIT(info, JERR_FILE_READ);
+            done += static_cast<size_t>(received);
         }
     }
 }

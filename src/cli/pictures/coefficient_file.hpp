@@ -16,8 +16,8 @@ namespace codec {
 // jpeg_memory_bytes of them are kept in an unnamed file, except for a few rows.
 class CoefficientFile {
 public:
-    // `beside`: a path in the folder where the file is created.
-    explicit CoefficientFile(const std::string &beside) : beside_(beside) {}
+    // `neighbour`: a path in the folder where the file is created.
+    explicit CoefficientFile(const std::string &neighbour) : neighbour_(neighbour) {}
     ~CoefficientFile();
     CoefficientFile(const CoefficientFile &) = delete;
     CoefficientFile &operator=(const CoefficientFile &) = delete;
@@ -36,7 +36,7 @@ private:
     void store(j_common_ptr info, Array &array);
     void load(j_common_ptr info, Array &array, JDIMENSION start);
 
-    std::string beside_;
+    std::string neighbour_;
     int file_ = -1;
     uint64_t end_ = 0;  // bytes used so far by the arrays in the file
 };

@@ -32,12 +32,12 @@ namespace {
 Exiv2::URational to_rational(double value) {
     double p0 = 0, q0 = 1, p1 = 1, q1 = 0, rest = value;
     for (int i = 0; i < 40; ++i) {
-        const double whole = std::floor(rest);
-        const double p2 = whole * p1 + p0, q2 = whole * q1 + q0;
+        const double integer = std::floor(rest);
+        const double p2 = integer * p1 + p0, q2 = integer * q1 + q0;
         if (p2 > 4e9 || q2 > 4e9) break;
         p0 = p1, q0 = q1, p1 = p2, q1 = q2;
-        if (std::fabs(p1 / q1 - value) <= 1e-9 * value || rest == whole) break;
-        rest = 1 / (rest - whole);
+        if (std::fabs(p1 / q1 - value) <= 1e-9 * value || rest == integer) break;
+        rest = 1 / (rest - integer);
     }
     return {static_cast<uint32_t>(p1), static_cast<uint32_t>(q1)};
 }

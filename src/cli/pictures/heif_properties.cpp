@@ -20,7 +20,7 @@ constexpr uint64_t most_meta_bytes = uint64_t(64) << 20;
 
 // Reads bytes from the front. Beyond the end it returns zeros and sets `is_short`.
 struct Bytes {
-    const uint8_t *at = nullptr;
+    const uint8_t *data = nullptr;
     size_t count = 0;
     bool is_short = false;
 
@@ -31,13 +31,13 @@ struct Bytes {
             return 0;
         }
         uint64_t value = 0;
-        for (size_t i = 0; i < bytes; i++) value = value << 8 | at[i];
+        for (size_t i = 0; i < bytes; i++) value = value << 8 | data[i];
         skip(bytes);
         return value;
     }
 
     void skip(size_t bytes) {
-        at += bytes;
+        data += bytes;
         count -= bytes;
     }
 };
@@ -58,7 +58,7 @@ std::optional<Box> next_box(Bytes &bytes) {
     if (size == 0) size = bytes.count;
     const size_t head = bytes.count - rest.count;
     if (rest.is_short || size < head || size > bytes.count) return std::nullopt;
-    box.content = {rest.at, static_cast<size_t>(size) - head};
+    box.content = {rest.data, static_cast<size_t>(size) - head};
     bytes.skip(static_cast<size_t>(size));
     return box;
 }
@@ -74,21 +74,21 @@ std::vector<uint8_t> read_meta(const std::string &path) {
     const File file = open_for_reading(path);
     const uint64_t end = file_bytes(file.get());
     std::vector<uint8_t> head;
-    for (uint64_t at = 0; at + 16 <= end && read_at(file.get(), at, 16, head);) {
+    for (uint64_t offset = 0; offset + 16 <= end && read_at(file.get(), offset, 16, head);) {
         Bytes bytes{head.data(), head.size()};
         uint64_t size = bytes.number(4), start = 8;
-        const bool is_meta = std::memcmp(bytes.at, "meta", 4) == 0;
+        const bool is_meta = std::memcmp(bytes.data, "meta", 4) == 0;
         bytes.skip(4);
         if (size == 1) size = bytes.number(8), start = 16;
-        if (size == 0) size = end - at;
-        if (size < start || size > end - at) break;
+        if (size == 0) size = end - offset;
+        if (size < start || size > end - offset) break;
         if (is_meta) {
             std::vector<uint8_t> meta;
-            if (size > most_meta_bytes || !read_at(file.get(), at + start, static_cast<size_t>(size - start), meta))
+            if (size > most_meta_bytes || !read_at(file.get(), offset + start, static_cast<size_t>(size - start), meta))
                 meta.clear();
             return meta;
         }
-        at += size;
+        offset += size;
     }
     return {};
 }
@@ -111,14 +111,14 @@ std::vector<size_t> properties_of(uint64_t item, Bytes ipma) {
 bool states_grey(const Box &box) {
     Bytes content = box.content;
     if (box.is("pixi")) return content.number(4) == 0 && content.number(1) == 1;
-    if (box.is("hvcC")) return content.count > 16 && (content.at[16] & 3) == 0;  // chroma_format
-    return box.is("av1C") && content.count > 2 && (content.at[2] & 0x10) != 0;   // monochrome
+    if (box.is("hvcC")) return content.count > 16 && (content.data[16] & 3) == 0;  // chroma_format
+    return box.is("av1C") && content.count > 2 && (content.data[2] & 0x10) != 0;   // monochrome
 }
 
-HeifProperties combine(const std::vector<Box> &properties, const std::vector<size_t> &own) {
+HeifProperties combine(const std::vector<Box> &properties, const std::vector<size_t> &indices) {
     HeifProperties combined;
     uint16_t &orientation = combined.orientation;
-    for (const size_t number : own) {
+    for (const size_t number : indices) {
         if (number == 0 || number > properties.size()) continue;
         Box box = properties[number - 1];
         combined.is_grey |= states_grey(box);
@@ -166,8 +166,8 @@ HeifProperties heif_properties(const std::string &path) {
     rest = iprp->content;
     while (const auto box = next_box(rest)) {  // there may be several ipma
         if (!box->is("ipma")) continue;
-        const std::vector<size_t> own = properties_of(item, box->content);
-        if (!own.empty()) return combine(properties, own);
+        const std::vector<size_t> indices = properties_of(item, box->content);
+        if (!indices.empty()) return combine(properties, indices);
     }
     return {};
 }

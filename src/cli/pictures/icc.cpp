@@ -19,20 +19,20 @@ struct Bytes {
     const uint8_t *data;
     size_t count;
 
-    bool has(size_t at, size_t size) const { return at <= count && size <= count - at; }
-    uint32_t u16(size_t at) const { return uint32_t(data[at]) << 8 | data[at + 1]; }
-    uint32_t u32(size_t at) const { return u16(at) << 16 | u16(at + 2); }
-    bool is(size_t at, const char *name) const { return !std::memcmp(data + at, name, 4); }
+    bool has(size_t offset, size_t size) const { return offset <= count && size <= count - offset; }
+    uint32_t u16(size_t offset) const { return uint32_t(data[offset]) << 8 | data[offset + 1]; }
+    uint32_t u32(size_t offset) const { return u16(offset) << 16 | u16(offset + 2); }
+    bool is(size_t offset, const char *name) const { return !std::memcmp(data + offset, name, 4); }
 };
 
-ToneCurve told(bool is_linear) { return is_linear ? ToneCurve::linear : ToneCurve::other; }
+ToneCurve linear_or_other(bool is_linear) { return is_linear ? ToneCurve::linear : ToneCurve::other; }
 
 ToneCurve of_samples(const Bytes &curve) {
     if (!curve.has(8, 4)) return ToneCurve::unknown;
     const size_t entries = curve.u32(8);
     if (entries > curve.count || !curve.has(12, 2 * entries)) return ToneCurve::unknown;
     if (entries == 0) return ToneCurve::linear;
-    if (entries == 1) return told(std::fabs(curve.u16(12) / 256.0 - 1.0) < kLinear);
+    if (entries == 1) return linear_or_other(std::fabs(curve.u16(12) / 256.0 - 1.0) < kLinear);
     for (size_t i = 0; i < entries; i++) {
         const double x = double(i) / double(entries - 1), y = curve.u16(12 + 2 * i) / 65535.0;
         if (std::fabs(y - x) > kLinear) return ToneCurve::other;
@@ -161,11 +161,11 @@ ToneCurve tone_curve_of(const uint8_t *data, size_t bytes) {
         if (!profile.has(tag, entry)) return ToneCurve::unknown;
         if (profile.is(tag, "A2B0")) return ToneCurve::unknown;  // tables, which go before the curves
         if (!is_tone_curve(profile, tag)) continue;
-        const size_t at = profile.u32(tag + 4), size = profile.u32(tag + 8);
-        if (!profile.has(at, size)) return ToneCurve::unknown;
-        const ToneCurve own = of_curve({data + at, size});
-        if (own != ToneCurve::linear) return own;
-        all = own;
+        const size_t offset = profile.u32(tag + 4), size = profile.u32(tag + 8);
+        if (!profile.has(offset, size)) return ToneCurve::unknown;
+        const ToneCurve curve = of_curve({data + offset, size});
+        if (curve != ToneCurve::linear) return curve;
+        all = curve;
     }
     return all;
 }

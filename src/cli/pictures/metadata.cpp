@@ -234,12 +234,12 @@ double read_pitched_crop(const Exiv2::ExifData &exif, PictureSize size) {
     const double unit = read_number(exif, {"Exif.Photo.FocalPlaneResolutionUnit"}) == 3 ? 10.0 : 25.4;  // mm: cm, inch
     const double width = read_number(exif, {"Exif.Photo.PixelXDimension"}),
                  height = read_number(exif, {"Exif.Photo.PixelYDimension"});
-    const bool is_own =
+    const bool is_same_size =
         (width == size.width && height == size.height) || (width == size.height && height == size.width);
-    return is_own ? std::hypot(36.0, 24.0)
-                        / std::hypot(width / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit,
-                                     height / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit)
-                  : NAN;
+    return is_same_size ? std::hypot(36.0, 24.0)
+                              / std::hypot(width / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit,
+                                           height / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit)
+                        : NAN;
 }
 
 // From the 35 mm equivalent focal length, which is rounded to whole mm; if the pixel pitch agrees with it, or there is
@@ -345,10 +345,11 @@ Exiv2::ExifData merge_exif(const Exiv2::ExifData &source, const Exiv2::ExifData 
 
 // Removes the thumbnail, and references to parts of the old file that are not copied.
 Exiv2::XmpData copy_xmp(const Exiv2::XmpData &source) {
-    static const char *const gone[] = {"Xmp.xmp.Thumbnails", "Xmp.xmpNote.", "Xmp.Container.", "Xmp.GContainer."};
+    static const char *const removed_prefixes[] = {"Xmp.xmp.Thumbnails", "Xmp.xmpNote.", "Xmp.Container.",
+                                                   "Xmp.GContainer."};
     Exiv2::XmpData copy;
     for (const Exiv2::Xmpdatum &datum : source) {
-        if (!begins_with_one(datum.key(), gone)) copy.add(datum);
+        if (!begins_with_one(datum.key(), removed_prefixes)) copy.add(datum);
     }
     return copy;
 }

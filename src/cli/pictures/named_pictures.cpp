@@ -44,9 +44,9 @@ public:
         for (const NamedPicture &picture : found_) {
             const std::vector<NamedPicture> &group = groups[stem(picture)];
             std::vector<std::string> others;
-            for (const NamedPicture &one : group)
-                if (is_raw_name(one.file) != is_raw_name(picture.file))
-                    others.push_back(fs::path(one.file).filename().string());
+            for (const NamedPicture &member : group)
+                if (is_raw_name(member.file) != is_raw_name(picture.file))
+                    others.push_back(fs::path(member.file).filename().string());
             if (!others.empty() && is_raw_name(picture.file) != can_read_raw()) continue;
             chosen.push_back(picture);
             chosen.back().instead_of = others;
@@ -63,17 +63,17 @@ private:
         std::error_code error;
         for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
             const std::string path = entry->path().string(), name = entry->path().filename().string();
-            std::error_code none;
+            std::error_code ignored;
             if (name[0] == '.') continue;
             if (is_folder(path))
-                (entry->is_symlink(none) ? links_ : folders_).push_back((fs::path(subfolder) / name).string());
+                (entry->is_symlink(ignored) ? links_ : folders_).push_back((fs::path(subfolder) / name).string());
             else if (is_picture_name(name))
                 found_.push_back({path, subfolder, true});
         }
         if (!error) return;
-        const std::string why = folder + ": cannot list the folder: " + error.message();
-        if (!unlisted_ || subfolder.empty()) throw Failure(ExitCode::unreadable, why);
-        unlisted_->push_back({folder, why});
+        const std::string message = folder + ": cannot list the folder: " + error.message();
+        if (!unlisted_ || subfolder.empty()) throw Failure(ExitCode::unreadable, message);
+        unlisted_->push_back({folder, message});
     }
 
     const std::string root_;

@@ -58,8 +58,8 @@ public:
     const TiffDirectory &image() const { return image_; }
     bool is_raw() const { return raw_; }
 
-    uint32_t number(uint16_t tag, uint32_t otherwise) { return reader_->number(image_, tag, otherwise); }
-    std::vector<uint32_t> numbers(uint16_t tag, uint32_t most) { return reader_->numbers(image_, tag, most); }
+    uint32_t number(uint16_t tag, uint32_t fallback) { return reader_->number(image_, tag, fallback); }
+    std::vector<uint32_t> numbers(uint16_t tag, uint32_t max_count) { return reader_->numbers(image_, tag, max_count); }
 
     std::vector<uint8_t> bytes_of(uint16_t tag) {
         const TiffEntry *entry = image_.find(tag);
@@ -143,8 +143,8 @@ uint32_t mosaic_layout(TiffFile &file) {
                  {LENSPROF_LAYOUT_GRBG, {1, 0, 2, 1}},
                  {LENSPROF_LAYOUT_GBRG, {1, 2, 0, 1}},
                  {LENSPROF_LAYOUT_BGGR, {2, 1, 1, 0}}};
-    for (const auto &one : known)
-        if (repeat == std::vector<uint32_t>{2, 2} && pattern == one.pattern) return one.layout;
+    for (const auto &entry : known)
+        if (repeat == std::vector<uint32_t>{2, 2} && pattern == entry.pattern) return entry.layout;
     return UINT32_MAX;
 }
 
@@ -187,11 +187,11 @@ std::vector<uint8_t> appendix(const TiffFile &file, uint16_t tag, const std::vec
     end.align(file.size());
     *place = file.size() + end.bytes().size();
     end.put(static_cast<uint32_t>(all.size()), 2);
-    for (const TiffEntry &one : all) {
-        end.put(one.tag, 2);
-        end.put(one.type, 2);
-        end.put(one.count, 4);
-        end.put(one.value, 4);
+    for (const TiffEntry &field : all) {
+        end.put(field.tag, 2);
+        end.put(field.type, 2);
+        end.put(field.count, 4);
+        end.put(field.value, 4);
     }
     end.put(file.image().next, 4);
     return end.bytes();

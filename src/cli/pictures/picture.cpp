@@ -190,8 +190,8 @@ auto PictureWriter::named(const Call &call) -> decltype(call()) {
         return call();
     } catch (const Failure &failure) {
         std::string text = failure.what();
-        const size_t at = text.find(output_->temporary());
-        if (at != std::string::npos) text.replace(at, output_->temporary().size(), path_);
+        const size_t position = text.find(output_->temporary());
+        if (position != std::string::npos) text.replace(position, output_->temporary().size(), path_);
         throw Failure(failure.code, text);
     }
 }

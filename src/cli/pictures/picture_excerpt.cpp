@@ -54,17 +54,17 @@ private:
 std::unique_ptr<PictureExcerpt> excerpt_of_jpeg(const std::string &path) {
     const File file = open_for_reading(path);
     std::vector<uint8_t> head;
-    for (uint64_t at = 2; at < start_max_bytes && read_at(file.get(), at, 4, head) && head[0] == 0xff;) {
+    for (uint64_t offset = 2; offset < start_max_bytes && read_at(file.get(), offset, 4, head) && head[0] == 0xff;) {
         const uint32_t marker = head[1], length = big_endian(&head[2], 2);
         if (marker < 0xc0 || (marker >= 0xd0 && marker <= 0xd9) || marker == 0xff || length < 2) return nullptr;
         if (marker != 0xda) {
-            at += 2 + length;
+            offset += 2 + length;
             continue;
         }
         std::vector<uint8_t> end;
-        if (!read_at(file.get(), at, 2 + length, end)) return nullptr;
+        if (!read_at(file.get(), offset, 2 + length, end)) return nullptr;
         end.insert(end.end(), {0xff, 0xd9});  // a scan without data, and the end
-        return std::make_unique<PixelsLast>(path, file.get(), at, end);
+        return std::make_unique<PixelsLast>(path, file.get(), offset, end);
     }
     return nullptr;
 }
@@ -74,14 +74,15 @@ std::unique_ptr<PictureExcerpt> excerpt_of_png(const std::string &path) {
     const File file = open_for_reading(path);
     std::vector<uint8_t> head;
     uint64_t pixels = 0;
-    for (uint64_t at = 8; read_at(file.get(), at, 8, head); at += 12 + uint64_t(big_endian(head.data(), 4))) {
+    for (uint64_t offset = 8; read_at(file.get(), offset, 8, head);
+         offset += 12 + uint64_t(big_endian(head.data(), 4))) {
         const bool data = std::memcmp(&head[4], "IDAT", 4) == 0, last = std::memcmp(&head[4], "IEND", 4) == 0;
         if (last && pixels > 0) {
             const std::vector<uint8_t> end = {0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xae, 0x42, 0x60, 0x82};
             return std::make_unique<PixelsLast>(path, file.get(), pixels, end);
         }
-        if (last || (!data && pixels > 0) || (!data && at > start_max_bytes)) return nullptr;
-        if (data && pixels == 0) pixels = at;
+        if (last || (!data && pixels > 0) || (!data && offset > start_max_bytes)) return nullptr;
+        if (data && pixels == 0) pixels = offset;
     }
     return nullptr;
 }

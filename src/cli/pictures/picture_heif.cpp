@@ -37,8 +37,8 @@ public:
             error = call();
         } catch (const std::bad_alloc &) {
             throw;
-        } catch (const std::exception &thrown) {
-            fail_damaged(path_, kind_ + ": " + thrown.what());
+        } catch (const std::exception &exception) {
+            fail_damaged(path_, kind_ + ": " + exception.what());
         }
         check(error);
     }
@@ -220,9 +220,9 @@ private:
 void HeifSource::decode() {
     const bool deep = header_.sample == LENSPROF_SAMPLE_U16;
     const bool has_alpha = lensprof_layout_samples(header_.layout) % 2 == 0;
-    const uint16_t one = 1;
+    const uint16_t probe = 1;
     uint8_t first = 0;
-    std::memcpy(&first, &one, 1);
+    std::memcpy(&first, &probe, 1);
     const heif_chroma native =
         first ? (has_alpha ? heif_chroma_interleaved_RRGGBBAA_LE : heif_chroma_interleaved_RRGGBB_LE)
               : (has_alpha ? heif_chroma_interleaved_RRGGBBAA_BE : heif_chroma_interleaved_RRGGBB_BE);
@@ -253,11 +253,12 @@ void HeifSource::copy_row(Sample *row) const {
     const uint8_t *from = pixels_ + (t.start_x + t.row_x * next_) * pixel + (t.start_y + t.row_y * next_) * row_bytes_;
     const uint32_t count = lensprof_layout_samples(header_.layout);
     for (uint32_t x = 0; x < header_.frame_width; ++x, from += step) {
-        Sample own[4];
-        std::memcpy(own, from, static_cast<size_t>(pixel));
-        if (count < 3) own[1] = own[samples_ - 1];  // grey: red, green and blue are equal
+        Sample pixel_samples[4];
+        std::memcpy(pixel_samples, from, static_cast<size_t>(pixel));
+        if (count < 3) pixel_samples[1] = pixel_samples[samples_ - 1];  // grey: red, green and blue are equal
         for (uint32_t c = 0; c < count; ++c)
-            *row++ = static_cast<Sample>((std::min<uint32_t>(own[c], white_) * uint64_t(full) + white_ / 2) / white_);
+            *row++ = static_cast<Sample>((std::min<uint32_t>(pixel_samples[c], white_) * uint64_t(full) + white_ / 2)
+                                         / white_);
     }
 }
 

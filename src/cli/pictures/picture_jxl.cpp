@@ -33,13 +33,13 @@ uint64_t big_endian(const uint8_t *bytes, size_t count) {
 bool has_jpeg(std::FILE *file) {
     std::vector<uint8_t> head;
     if (!read_at(file, 0, 4, head) || big_endian(head.data(), 4) != 12) return false;
-    uint64_t at = 12;
-    for (int boxes = 0; boxes < most_boxes && read_at(file, at, 16, head); ++boxes) {
+    uint64_t offset = 12;
+    for (int boxes = 0; boxes < most_boxes && read_at(file, offset, 16, head); ++boxes) {
         if (std::memcmp(&head[4], "jbrd", 4) == 0) return true;
         uint64_t size = big_endian(head.data(), 4);
         if (size == 1) size = big_endian(&head[8], 8);
-        if (size < 8 || size > UINT64_MAX / 4 - at) return false;  // 0: up to the end
-        at += size;
+        if (size < 8 || size > UINT64_MAX / 4 - offset) return false;  // 0: up to the end
+        offset += size;
     }
     return false;
 }
@@ -67,7 +67,9 @@ public:
     JxlDecoder *decoder() const { return decoder_.get(); }
     const JxlBasicInfo &info() const { return info_; }
     bool keeps_jpeg() const { return keeps_jpeg_; }
-    bool is_box(const char *type, const JxlBoxType &own) const { return std::memcmp(own, type, sizeof own) == 0; }
+    bool is_box(const char *type, const JxlBoxType &box_type) const {
+        return std::memcmp(box_type, type, sizeof box_type) == 0;
+    }
     std::vector<uint8_t> icc() const;
 
     // Contents of the EXIF and XMP boxes, up to the end of the file.
@@ -79,7 +81,7 @@ private:
     void open_box(std::vector<uint8_t> &box);
     void close_box();
     JxlDecoderStatus end_boxes();
-    void refuse_odd_kinds() const;
+    void check_kind() const;
 
     std::string path_;
     File file_;
@@ -108,9 +110,9 @@ void JxlFile::take_more() {
     const size_t rest = JxlDecoderReleaseInput(decoder());
     part_.erase(part_.begin(), part_.end() - static_cast<ptrdiff_t>(rest));
     part_.resize(rest + part_bytes);
-    const size_t got = std::fread(part_.data() + rest, 1, part_bytes, file_.get());
-    part_.resize(rest + got);
-    is_at_end_ = got < part_bytes;
+    const size_t received = std::fread(part_.data() + rest, 1, part_bytes, file_.get());
+    part_.resize(rest + received);
+    is_at_end_ = received < part_bytes;
     check(JxlDecoderSetInput(decoder(), part_.data(), part_.size()));
 }
 
@@ -172,7 +174,7 @@ void JxlFile::read_head() {
     expect(JXL_DEC_BASIC_INFO);
     check(JxlDecoderGetBasicInfo(decoder(), &info_));
     expect(JXL_DEC_COLOR_ENCODING);
-    refuse_odd_kinds();
+    check_kind();
     JxlColorEncoding colour = {};
     const bool is_named =
         JxlDecoderGetColorAsEncodedProfile(decoder(), nullptr, JXL_COLOR_PROFILE_TARGET_ORIGINAL, &colour)
@@ -191,7 +193,7 @@ void JxlFile::read_head() {
     check(JxlDecoderSetPreferredColorProfile(decoder(), &colour));
 }
 
-void JxlFile::refuse_odd_kinds() const {
+void JxlFile::check_kind() const {
     if (info_.have_animation) fail_animated(path_, "JPEG XL");
     for (uint32_t i = 0; i < info_.num_extra_channels; ++i) {
         JxlExtraChannelInfo channel = {};

@@ -40,9 +40,9 @@ void on_error(png_structp png, png_const_charp text) {
 void on_warning(png_structp, png_const_charp) {}
 
 bool little_endian() {
-    const uint16_t one = 1;
+    const uint16_t probe = 1;
     uint8_t first;
-    std::memcpy(&first, &one, 1);
+    std::memcpy(&first, &probe, 1);
     return first == 1;
 }
 

@@ -269,8 +269,8 @@ BandReader::BandReader(const Tiff &tiff, const std::string &path, const Picture 
 }
 
 void BandReader::check_block(uint64_t bytes) const {
-    const uint32_t most = limits_.most_side ? limits_.most_side : UINT32_MAX;
-    if (block_width_ == 0 || block_height_ == 0 || block_width_ > most || block_height_ > most
+    const uint32_t max_side = limits_.most_side ? limits_.most_side : UINT32_MAX;
+    if (block_width_ == 0 || block_height_ == 0 || block_width_ > max_side || block_height_ > max_side
         || bytes > block_max_bytes || bytes != uint64_t(block_width_) * block_height_ * block_pixel_bytes_)
         fail();
 }

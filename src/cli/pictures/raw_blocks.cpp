@@ -113,18 +113,18 @@ private:
         if (size < 4 || !read(offset, head, 2) || head[0] != 0xff || head[1] != start_of_image) return std::nullopt;
         JpegFrame frame;
         bool has_table = false;
-        uint64_t at = offset + 2;
-        for (int i = 0; i < most_segments && at + 4 <= end && read(at, head, 4) && head[0] == 0xff; ++i) {
+        uint64_t segment = offset + 2;
+        for (int i = 0; i < most_segments && segment + 4 <= end && read(segment, head, 4) && head[0] == 0xff; ++i) {
             const uint64_t length = uint64_t(head[2]) << 8 | head[3];
             if (head[1] == lossless_frame) {
                 uint8_t f[6];
-                if (length < 8 || at + 10 > end || !read(at + 4, f, 6)) return std::nullopt;
+                if (length < 8 || segment + 10 > end || !read(segment + 4, f, 6)) return std::nullopt;
                 frame = {uint32_t(f[3]) << 8 | f[4], uint32_t(f[1]) << 8 | f[2], f[5]};
             }
             has_table |= head[1] == huffman_table;
             if (head[1] == start_of_scan)
                 return has_table && frame.components > 0 ? std::optional<JpegFrame>(frame) : std::nullopt;
-            at += 2 + length;
+            segment += 2 + length;
         }
         return std::nullopt;
     }

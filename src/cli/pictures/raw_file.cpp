@@ -29,10 +29,10 @@ class CheckedStream final : public LibRaw_bigfile_datastream {
 public:
     explicit CheckedStream(const std::string &path) : LibRaw_bigfile_datastream(path.c_str()) {}
     int read(void *to, size_t size, size_t count) override {
-        const int got = LibRaw_bigfile_datastream::read(to, size, count);
-        if (got <= 0 && size * count > 0) is_past_end = true;
-        if (got < static_cast<int>(count)) is_short = true;
-        return got;
+        const int received = LibRaw_bigfile_datastream::read(to, size, count);
+        if (received <= 0 && size * count > 0) is_past_end = true;
+        if (received < static_cast<int>(count)) is_short = true;
+        return received;
     }
     int get_char() override {
         const int c = LibRaw_bigfile_datastream::get_char();
@@ -50,13 +50,13 @@ public:
     // Ends the current block. A block of which less than half was needed is damaged.
     void leave_block() {
         if (block_ != blocks.end() && (static_cast<uint64_t>(tell()) - block_->first) * 2 < block_->second)
-            is_left_early = true;
+            is_stopped_early = true;
         block_ = blocks.end();
     }
 
     RawBlocks blocks;
     std::function<void()> before_seek;
-    bool is_left_early = false;
+    bool is_stopped_early = false;
     bool is_past_end = false;
     bool is_short = false;  // a block was incomplete; some decoders request more than they need
 
@@ -122,7 +122,7 @@ RawFile::RawFile(const std::string &path, const std::string &kind) : path_(path)
     decoder_ = std::make_unique<Decoder>(path);
     check(decoder_->libraw.open_datastream(&decoder_->stream));
     check_size();
-    refuse_odd_kinds();
+    check_kind();
 }
 
 RawFile::~RawFile() = default;
@@ -141,11 +141,11 @@ void RawFile::check_size() const {
 }
 
 // Refuses kinds other than one linear value per channel on a square grid.
-void RawFile::refuse_odd_kinds() const {
+void RawFile::check_kind() const {
     LibRaw &libraw = decoder_->libraw;
     const libraw_data_t &d = libraw.imgdata;
-    const auto refuse = [&](const std::string &what) {
-        fail_unsupported(path_, "camera raw file (" + kind_ + ") of " + what
+    const auto refuse = [&](const std::string &message) {
+        fail_unsupported(path_, "camera raw file (" + kind_ + ") of " + message
                                     + ", which lensprof does not read; develop it to a linear 16 bit TIFF first");
     };
     if (d.idata.is_foveon) refuse("a Foveon sensor");
@@ -180,7 +180,7 @@ void RawFile::decode() {
     CheckedStream &stream = decoder_->stream;
     libraw_data_t &d = decoder_->data();
     stream.blocks = check_raw_blocks(path_, d.sizes.raw_width, d.sizes.raw_height);
-    stream.is_past_end = stream.is_left_early = false;
+    stream.is_past_end = stream.is_stopped_early = false;
     bool is_clear = false;
     stream.before_seek = [&] {
         if (is_clear || !d.rawdata.raw_alloc) return;
@@ -198,7 +198,7 @@ void RawFile::unpack() {
     decode();
     const bool is_cut = decoder_->data().idata.dng_version != 0 && decoder_->stream.is_past_end;
     if (is_cut || decoder_->libraw.error_count() > 0) fail_damaged(path_, "its pixels are cut off");
-    if (decoder_->stream.is_left_early) fail_damaged(path_, "its pixels use less than half of the stored bytes");
+    if (decoder_->stream.is_stopped_early) fail_damaged(path_, "its pixels use less than half of the stored bytes");
     if (width() != declared_width || height() != declared_height)
         fail_damaged(path_, size_text(width(), height()) + " instead of the declared "
                                 + size_text(declared_width, declared_height));
@@ -222,7 +222,7 @@ namespace {
 struct Level {
     float black, scale;  // scale: 65535 over white - black
     float white;         // saturated from here on
-    uint16_t of(uint16_t v) const {
+    uint16_t normalised(uint16_t v) const {
         if (v >= white) return saturated;
         return static_cast<uint16_t>(std::clamp((v - black) * scale + 0.5f, 0.0f, 65534.0f));
     }
@@ -250,13 +250,13 @@ void RawFile::make_linear_mosaic() {
             colour[x] = static_cast<uint32_t>(decoder_->libraw.COLOR(static_cast<int>(y), static_cast<int>(x))) & 3;
         uint16_t *row =
             d.rawdata.raw_image + size_t(y + d.sizes.top_margin) * (d.sizes.raw_pitch / 2) + d.sizes.left_margin;
-        for (uint32_t x = 0, at = 0; x < wide; ++x, at = at + 1 == columns ? 0 : at + 1) {
+        for (uint32_t x = 0, column = 0; x < wide; ++x, column = column + 1 == columns ? 0 : column + 1) {
             const uint32_t channel = colour[x % colour_period];
             uint64_t black = uint64_t(c.black) + c.cblack[channel];
-            if (has_pattern) black += c.cblack[6 + y % rows * columns + at];
+            if (has_pattern) black += c.cblack[6 + y % rows * columns + column];
             const auto b = static_cast<float>(black);
             if (!(white > b)) fail_damaged(path_, "its black level is not below its white level");
-            row[x] = Level{b, 65535.0f / (white - b), saturation_of(c, channel, white)}.of(row[x]);
+            row[x] = Level{b, 65535.0f / (white - b), saturation_of(c, channel, white)}.normalised(row[x]);
         }
     }
 }
@@ -270,8 +270,9 @@ void RawFile::make_linear_pixels() {
                                            : reinterpret_cast<uint16_t *>(d.rawdata.color4_image);
     std::array<Level, 3> levels{};
     for (uint32_t i = 0; i < 3; ++i) {
-        const unsigned own = d.idata.dng_version ? c.dng_levels.dng_whitelevel[i] : 0;
-        const auto white = static_cast<float>(own ? own : c.maximum), black = static_cast<float>(c.black + c.cblack[i]);
+        const unsigned dng_white = d.idata.dng_version ? c.dng_levels.dng_whitelevel[i] : 0;
+        const auto white = static_cast<float>(dng_white ? dng_white : c.maximum),
+                   black = static_cast<float>(c.black + c.cblack[i]);
         if (!(white > black)) fail_damaged(path_, "its black level is not below its white level");
         levels[i] = {black, 65535.0f / (white - black), white};
     }
@@ -280,7 +281,7 @@ void RawFile::make_linear_pixels() {
         uint16_t *row =
             samples + size_t(y + d.sizes.top_margin) * (d.sizes.raw_pitch / 2) + size_t(d.sizes.left_margin) * step;
         for (uint32_t x = 0; x < width(); ++x)
-            for (uint32_t i = 0; i < channels(); ++i) row[x * step + i] = levels[i].of(row[x * step + i]);
+            for (uint32_t i = 0; i < channels(); ++i) row[x * step + i] = levels[i].normalised(row[x * step + i]);
     }
 }
 
@@ -334,7 +335,7 @@ void RawFile::full_row(uint32_t y, uint16_t *samples) const {
     const size_t pitch = d.sizes.raw_pitch / 2;
     const size_t first = size_t(y + d.sizes.top_margin) * pitch;
     if (is_mosaic()) {
-        const uint16_t *own = d.rawdata.raw_image + first + d.sizes.left_margin;
+        const uint16_t *raw_row = d.rawdata.raw_image + first + d.sizes.left_margin;
         for (uint32_t x = 0; x < width(); ++x, samples += 3) {
             const uint32_t channel = channel_at(static_cast<int>(x), static_cast<int>(y));
             for (uint32_t c = 0; c < 3; ++c) {
@@ -342,7 +343,7 @@ void RawFile::full_row(uint32_t y, uint16_t *samples) const {
                 if (samples[c] == 0 && c != channel)  // in a corner of X-Trans LibRaw may find no neighbour
                     samples[c] = mean_of(static_cast<int>(x) - 2, static_cast<int>(y) - 2, 5, c);
             }
-            samples[channel] = own[x];
+            samples[channel] = raw_row[x];
         }
         return;
     }
@@ -362,9 +363,9 @@ RawColour RawFile::colour() const {
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) colour.xyz_to_camera[i][k] = d.color.cam_xyz[i][k];
     const float *mul = d.color.cam_mul[0] > 0 && d.color.cam_mul[2] > 0 ? d.color.cam_mul : d.color.pre_mul;
-    float neutral[3], most = 0;
-    for (int i = 0; i < 3; ++i) most = std::max(most, neutral[i] = mul[i] > 0 ? 1 / mul[i] : 1);
-    for (int i = 0; i < 3; ++i) colour.as_shot_neutral[i] = neutral[i] / most;
+    float neutral[3], largest = 0;
+    for (int i = 0; i < 3; ++i) largest = std::max(largest, neutral[i] = mul[i] > 0 ? 1 / mul[i] : 1);
+    for (int i = 0; i < 3; ++i) colour.as_shot_neutral[i] = neutral[i] / largest;
     colour.model = std::string(d.idata.make) + " " + d.idata.model;
     return colour;
 }

@@ -49,7 +49,7 @@ public:
 
 private:
     struct Decoder;
-    void refuse_odd_kinds() const;
+    void check_kind() const;
     void check_size() const;
     void check(int status) const;
     uint32_t channel_at(int x, int y) const;  // of the mosaic: 0 red, 1 green, 2 blue

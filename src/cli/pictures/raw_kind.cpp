@@ -20,7 +20,7 @@ constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892;
 
 // Files that are not a TIFF, by their first bytes.
 constexpr struct {
-    size_t at;
+    size_t offset;
     std::string_view bytes;
     const char *kind;
 } starts[] = {{0, "FUJIFILMCCD-RAW"sv, "Fujifilm RAF"},
@@ -78,8 +78,8 @@ std::string kind_of_maker(TiffReader &reader, const TiffDirectory &first, const 
     }
     for (char &c : maker) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     if (const char *named = kind_of_name(path)) return named;
-    for (const auto &one : makers)
-        if (maker.find(one.maker) != std::string::npos) return one.kind;
+    for (const auto &known : makers)
+        if (maker.find(known.maker) != std::string::npos) return known.kind;
     return "TIFF of a mosaic";
 }
 
@@ -112,9 +112,10 @@ std::optional<std::string> raw_kind(const std::string &path) {
     char start[16] = {};
     file.read(start, sizeof start);
     const std::string_view head(start, static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-    for (const auto &one : starts)
-        if (head.size() >= one.at + one.bytes.size() && head.substr(one.at, one.bytes.size()) == one.bytes)
-            return one.kind;
+    for (const auto &entry : starts)
+        if (head.size() >= entry.offset + entry.bytes.size()
+            && head.substr(entry.offset, entry.bytes.size()) == entry.bytes)
+            return entry.kind;
     if (head.substr(0, 4) != "II*\0"sv && head.substr(0, 4) != "MM\0*"sv) return std::nullopt;
     if (head.substr(0, 2) == "II"sv && head.size() >= 10 && head.substr(8, 2) == "CR"sv) return "Canon CR2";
     file.clear();

@@ -10,10 +10,11 @@
 namespace lensprof {
 namespace {
 
-// The number at `at`, and its end.
-double take_number(const std::string &text, size_t &at) {
+// The number at `position`, and its end.
+double take_number(const std::string &text, size_t &position) {
     double value = 0;
-    for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; at++) value = value * 10 + (text[at] - '0');
+    for (; position < text.size() && text[position] >= '0' && text[position] <= '9'; position++)
+        value = value * 10 + (text[position] - '0');
     return value;
 }
 
@@ -36,9 +37,10 @@ std::optional<double> aspect_of(const lensprof_camera_model &camera) {
 
 // "Canon PowerShot G5 X 4:3" is another format of the "Canon PowerShot G5 X".
 bool is_format_of(const lensprof_camera_model &camera, const lensprof_camera_model &other) {
-    const std::string model = camera.model, own = other.model;
-    if (std::string(camera.maker) != other.maker || model.compare(0, own.size(), own) != 0) return false;
-    return model.size() == own.size() || (model[own.size()] == ' ' && aspect_in(model.substr(own.size())));
+    const std::string model = camera.model, base_model = other.model;
+    if (std::string(camera.maker) != other.maker || model.compare(0, base_model.size(), base_model) != 0) return false;
+    return model.size() == base_model.size()
+           || (model[base_model.size()] == ' ' && aspect_in(model.substr(base_model.size())));
 }
 
 std::vector<lensprof_camera_model> all_cameras(lensprof_store *store, const std::string &file) {
@@ -57,9 +59,9 @@ double crop_factor_of_format(const std::vector<lensprof_camera_model> &cameras, 
     double crop = LENSPROF_UNKNOWN;
     for (const auto &other : cameras) {
         if (!is_format_of(other, camera)) continue;
-        const auto its = aspect_of(other);
-        if (!its) return LENSPROF_UNKNOWN;  // distinguished by something else
-        if (!(std::fabs(*its / aspect - 1) < same_aspect)) continue;
+        const auto format_aspect = aspect_of(other);
+        if (!format_aspect) return LENSPROF_UNKNOWN;  // distinguished by something else
+        if (!(std::fabs(*format_aspect / aspect - 1) < same_aspect)) continue;
         if (crop != LENSPROF_UNKNOWN && std::fabs(crop / other.crop_factor - 1) > same_crop) return LENSPROF_UNKNOWN;
         crop = other.crop_factor;
     }

@@ -59,13 +59,13 @@ TiffDirectory TiffReader::directory(uint64_t pointer) {
     const uint32_t count = order_.get(read(offset, 2).data(), 2);
     const std::vector<uint8_t> bytes = read(offset + 2, count * entry_bytes + 4);
     TiffDirectory directory{pointer, offset, {}, order_.get(&bytes[count * entry_bytes], 4)};
-    for (size_t at = 0; directory.entries.size() < count; at += entry_bytes) {
-        TiffEntry entry{static_cast<uint16_t>(order_.get(&bytes[at], 2)),
-                        static_cast<uint16_t>(order_.get(&bytes[at + 2], 2)),
-                        order_.get(&bytes[at + 4], 4),
+    for (size_t position = 0; directory.entries.size() < count; position += entry_bytes) {
+        TiffEntry entry{static_cast<uint16_t>(order_.get(&bytes[position], 2)),
+                        static_cast<uint16_t>(order_.get(&bytes[position + 2], 2)),
+                        order_.get(&bytes[position + 4], 4),
                         {},
-                        offset + 2 + at + 8};
-        std::memcpy(entry.value, &bytes[at + 8], 4);
+                        offset + 2 + position + 8};
+        std::memcpy(entry.value, &bytes[position + 8], 4);
         directory.entries.push_back(entry);
     }
     return directory;
@@ -82,29 +82,30 @@ std::vector<uint64_t> TiffReader::children(const TiffDirectory &directory) const
 }
 
 uint64_t TiffReader::place(const TiffEntry &entry) const {
-    const uint64_t at = entry.inside() ? entry.field : order_.get(entry.value, 4);
-    if (!has(at, entry.bytes())) throw UnusableTiff(TiffDefect::cut_off);
-    return at;
+    const uint64_t offset = entry.inside() ? entry.field : order_.get(entry.value, 4);
+    if (!has(offset, entry.bytes())) throw UnusableTiff(TiffDefect::cut_off);
+    return offset;
 }
 
 std::vector<uint8_t> TiffReader::first_bytes(const TiffEntry &entry, uint64_t count) {
     return read(place(entry), count);
 }
 
-std::vector<uint32_t> TiffReader::numbers(const TiffDirectory &directory, uint16_t tag, uint32_t most) {
+std::vector<uint32_t> TiffReader::numbers(const TiffDirectory &directory, uint16_t tag, uint32_t max_count) {
     std::vector<uint32_t> values;
     const TiffEntry *entry = directory.find(tag);
-    constexpr uint16_t whole[] = {tiff_byte, tiff_undefined, tiff_short, tiff_long, tiff_ifd};
-    if (!entry || std::find(std::begin(whole), std::end(whole), entry->type) == std::end(whole)) return values;
+    constexpr uint16_t integer_types[] = {tiff_byte, tiff_undefined, tiff_short, tiff_long, tiff_ifd};
+    if (!entry || std::find(std::begin(integer_types), std::end(integer_types), entry->type) == std::end(integer_types))
+        return values;
     const uint32_t size = tiff_type_bytes(entry->type);
-    const std::vector<uint8_t> bytes = first_bytes(*entry, uint64_t(size) * std::min(entry->count, most));
+    const std::vector<uint8_t> bytes = first_bytes(*entry, uint64_t(size) * std::min(entry->count, max_count));
     for (size_t i = 0; i < bytes.size(); i += size) values.push_back(order_.get(&bytes[i], size));
     return values;
 }
 
-uint32_t TiffReader::number(const TiffDirectory &directory, uint16_t tag, uint32_t otherwise) {
+uint32_t TiffReader::number(const TiffDirectory &directory, uint16_t tag, uint32_t fallback) {
     const std::vector<uint32_t> all = numbers(directory, tag, 1);
-    return all.empty() ? otherwise : all.front();
+    return all.empty() ? fallback : all.front();
 }
 
 void TiffReader::check_blocks(const TiffDirectory &directory, uint16_t offsets_tag, uint16_t bytes_tag) {

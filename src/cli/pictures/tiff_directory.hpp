@@ -22,7 +22,7 @@ enum class TiffDefect {
 
 // Thrown by TiffReader.
 struct UnusableTiff : std::exception {
-    explicit UnusableTiff(TiffDefect why) : defect(why) {}
+    explicit UnusableTiff(TiffDefect reason) : defect(reason) {}
     const char *what() const noexcept override { return "the TIFF file is unusable"; }
 
     TiffDefect defect;
@@ -85,9 +85,9 @@ public:
     // Position in the file of an entry's values, which must all be within the file.
     uint64_t place(const TiffEntry &entry) const;
 
-    // The first `most` numbers of a tag of bytes, shorts or longs; empty if it is missing or of another type.
-    std::vector<uint32_t> numbers(const TiffDirectory &directory, uint16_t tag, uint32_t most = UINT32_MAX);
-    uint32_t number(const TiffDirectory &directory, uint16_t tag, uint32_t otherwise);
+    // The first `max_count` numbers of a tag of bytes, shorts or longs; empty if it is missing or of another type.
+    std::vector<uint32_t> numbers(const TiffDirectory &directory, uint16_t tag, uint32_t max_count = UINT32_MAX);
+    uint32_t number(const TiffDirectory &directory, uint16_t tag, uint32_t fallback);
 
     // The values as they are in the file.
     std::vector<uint8_t> bytes(const TiffEntry &entry) { return first_bytes(entry, entry.bytes()); }
