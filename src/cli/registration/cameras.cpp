@@ -48,10 +48,10 @@ double focal_px(const PictureOptics &picture, double hfov_deg) {
     return picture.width / (2.0 * std::tan(0.5 * hfov_deg / degrees));
 }
 
-Eigen::Vector3d ray(const PictureOptics &picture, double hfov_deg, const cv::Point2d &at) {
+Eigen::Vector3d ray(const PictureOptics &picture, double hfov_deg, const cv::Point2d &pixel) {
     const double focal = focal_px(picture, hfov_deg);
-    return Eigen::Vector3d((at.x - 0.5 * (picture.width - 1.0)) / focal, (at.y - 0.5 * (picture.height - 1.0)) / focal,
-                           1.0)
+    return Eigen::Vector3d((pixel.x - 0.5 * (picture.width - 1.0)) / focal,
+                           (pixel.y - 0.5 * (picture.height - 1.0)) / focal, 1.0)
         .normalized();
 }
 
@@ -139,7 +139,7 @@ private:
     Part part_of(size_t link) const;
     void add_match(size_t link, const Match &match, double scale, Part &part) const;
     void add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const;
-    void move(const Eigen::VectorXd &by);
+    void move(const Eigen::VectorXd &step);
     bool step(double scale, double &damping);
     void descend(double first_scale);
     double fit(bool is_plane);
@@ -355,13 +355,13 @@ void CameraFit::add_match(size_t link, const Match &match, double scale, Part &p
     for (Eigen::Index n = 0; n < part.count; n++) {
         const Eigen::Index k = part.unknown[n];
         const int end = part.end[n];
-        const bool both = k < lens_unknowns && part.column[n] == column(p[1 - end], k);
+        const bool is_shared = k < lens_unknowns && part.column[n] == column(p[1 - end], k);
         Eigen::Vector2d moved[2];
         for (int side = 0; side < 2; side++) {
             lensprof_camera camera[2] = {cameras_[p[0]], cameras_[p[1]]};
-            const double by = side ? difference_steps[k] : -difference_steps[k];
-            value(camera[end], k) += by;
-            if (both) value(camera[1 - end], k) += by;
+            const double step = side ? difference_steps[k] : -difference_steps[k];
+            value(camera[end], k) += step;
+            if (is_shared) value(camera[1 - end], k) += step;
             if (!residual(camera[0], camera[1], match, moved[side])) return;
         }
         rows.col(n) = (moved[1] - moved[0]) / (2.0 * difference_steps[k]);
@@ -370,10 +370,10 @@ void CameraFit::add_match(size_t link, const Match &match, double scale, Part &p
     part.right -= weight * rows.transpose() * r;
 }
 
-void CameraFit::move(const Eigen::VectorXd &by) {
+void CameraFit::move(const Eigen::VectorXd &step) {
     for (size_t i = 0; i < cameras_.size(); i++)
         for (Eigen::Index k = 0; k < camera_unknowns; k++)
-            if (const Eigen::Index c = column(i, k); c >= 0) value(cameras_[i], k) += by[c];
+            if (const Eigen::Index c = column(i, k); c >= 0) value(cameras_[i], k) += step[c];
 }
 
 // Sums over all links on all cores, in their order, so that the number of threads does not matter.
@@ -409,9 +409,9 @@ bool CameraFit::step(double scale, double &damping) {
         Eigen::SparseMatrix<double> damped = matrix;
         damped.diagonal() = diagonal * (1.0 + damping) + Eigen::VectorXd::Constant(columns_, 1e-9);
         Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(damped);
-        const Eigen::VectorXd by = solver.solve(right);
-        if (solver.info() == Eigen::Success && by.allFinite()) {
-            move(by);
+        const Eigen::VectorXd step = solver.solve(right);
+        if (solver.info() == Eigen::Success && step.allFinite()) {
+            move(step);
             const bool is_valid = std::all_of(cameras_.begin(), cameras_.end(), [](const lensprof_camera &c) {
                 return lensprof_camera_validate(&c) == LENSPROF_OK && c.hfov_deg > 1e-3;
             });
@@ -504,8 +504,8 @@ FoundCameras CameraFit::run() {
         start(hfov_);
         start_before_plane();
         if (by_turns < fit(true)) cameras_ = moved;
-        const std::vector<double> now = residuals();
-        if (median(now) < 0.6 * median(off)) return {SceneKind::plane, cameras_, now};
+        const std::vector<double> current = residuals();
+        if (median(current) < 0.6 * median(off)) return {SceneKind::plane, cameras_, current};
         cameras_ = turned;
     }
     level();

@@ -12,7 +12,7 @@ namespace {
 constexpr uint32_t all_pairs_up_to = 8;  // pictures
 constexpr uint32_t next_to = 2;          // pictures before and after
 constexpr size_t enough_links = 20;      // maximum further candidates per picture
-constexpr uint32_t most_alike = 12;      // pictures most like one
+constexpr uint32_t max_similar = 12;     // pictures most like one
 constexpr int words = 64;
 constexpr size_t sample_size = 20000;  // descriptors that the visual words are made from
 constexpr int rounds = 10;             // of k-means
@@ -71,12 +71,12 @@ Eigen::VectorXf aggregate(const Rows &centres, const Features &picture) {
         }
     }
     for (int w = 0; w < words; w++) sum.row(w).normalize();  // a word without descriptors stays 0
-    Eigen::VectorXf whole = Eigen::Map<Eigen::VectorXf>(sum.data(), sum.size());
-    whole.normalize();
-    return whole;
+    Eigen::VectorXf descriptor = Eigen::Map<Eigen::VectorXf>(sum.data(), sum.size());
+    descriptor.normalize();
+    return descriptor;
 }
 
-void add_most_alike(const std::vector<Features> &pictures, std::set<PicturePair> &pairs) {
+void add_most_similar(const std::vector<Features> &pictures, std::set<PicturePair> &pairs) {
     const Rows centres = find_words(pictures);
     if (centres.rows() == 0) return;
     const auto count = static_cast<uint32_t>(pictures.size());
@@ -87,11 +87,11 @@ void add_most_alike(const std::vector<Features> &pictures, std::set<PicturePair>
     });
     std::vector<uint32_t> order(count);
     for (uint32_t i = 0; i < count; i++) {
-        const Eigen::VectorXf alike = all * all.row(i).transpose();
+        const Eigen::VectorXf similarity = all * all.row(i).transpose();
         std::iota(order.begin(), order.end(), 0u);
-        const auto end = order.begin() + std::min(count, most_alike + 1);  // including itself
+        const auto end = order.begin() + std::min(count, max_similar + 1);  // including itself
         std::partial_sort(order.begin(), end, order.end(), [&](uint32_t a, uint32_t b) {
-            return alike[a] > alike[b] || (alike[a] == alike[b] && a < b);
+            return similarity[a] > similarity[b] || (similarity[a] == similarity[b] && a < b);
         });
         for (auto j = order.begin(); j != end; ++j)
             if (*j != i) pairs.insert(std::minmax(i, *j));
@@ -106,7 +106,7 @@ std::vector<PicturePair> candidate_pairs(const std::vector<Features> &pictures) 
     std::set<PicturePair> pairs;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t j = i + 1; j < count && j - i <= reach; j++) pairs.emplace(i, j);
-    if (count > all_pairs_up_to) add_most_alike(pictures, pairs);
+    if (count > all_pairs_up_to) add_most_similar(pictures, pairs);
     return {pairs.begin(), pairs.end()};
 }
 
@@ -115,11 +115,11 @@ std::vector<PicturePair> further_pairs(uint32_t pictures, const std::vector<Pict
     std::vector<std::vector<uint32_t>> others(pictures);
     for (const auto &[a, b] : linked) others[a].push_back(b), others[b].push_back(a);
     std::set<PicturePair> pairs;
-    for (const auto &near : others) {
-        if (near.size() >= enough_links) continue;
-        for (size_t m = 0; m < near.size(); m++)
-            for (size_t n = m + 1; n < near.size(); n++) {
-                const PicturePair pair = std::minmax(near[m], near[n]);
+    for (const auto &linked_pictures : others) {
+        if (linked_pictures.size() >= enough_links) continue;
+        for (size_t m = 0; m < linked_pictures.size(); m++)
+            for (size_t n = m + 1; n < linked_pictures.size(); n++) {
+                const PicturePair pair = std::minmax(linked_pictures[m], linked_pictures[n]);
                 if (!std::binary_search(tried.begin(), tried.end(), pair)) pairs.insert(pair);
             }
     }

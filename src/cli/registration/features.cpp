@@ -80,7 +80,7 @@ uint32_t most_features_of(size_t pictures) {
     return static_cast<uint32_t>(std::clamp(of_all / std::max<size_t>(pictures, 1), fewest, usual));
 }
 
-Features find_features(const std::string &file, uint32_t most) {
+Features find_features(const std::string &file, uint32_t max_count) {
     PictureReader reader(file);
     const Picture &header = reader.header();
     Features found;
@@ -92,7 +92,8 @@ Features find_features(const std::string &file, uint32_t most) {
                                    header.sample == LENSPROF_SAMPLE_F32 || header.traits.format == FileFormat::raw);
     std::vector<cv::KeyPoint> points;
     cv::Mat descriptors;
-    cv::SIFT::create(static_cast<int>(most), 3, contrast)->detectAndCompute(grey, cv::noArray(), points, descriptors);
+    cv::SIFT::create(static_cast<int>(max_count), 3, contrast)
+        ->detectAndCompute(grey, cv::noArray(), points, descriptors);
     // A strict order, so that the result does not depend on the detector's order.
     std::vector<int> order(points.size());
     std::iota(order.begin(), order.end(), 0);

@@ -27,8 +27,8 @@ inline Descriptors descriptors_of(const Features &picture) {
 // Maximum number of features per picture of `pictures`: 3000 for few and 800 for many, which take 400 kB.
 uint32_t most_features_of(size_t pictures);
 
-// Features of a picture, about `most` of them, largest first. Failure for an unreadable picture.
-Features find_features(const std::string &file, uint32_t most);
+// Features of a picture, about `max_count` of them, largest first. Failure for an unreadable picture.
+Features find_features(const std::string &file, uint32_t max_count);
 
 // The square roots of descriptors, scaled to sum 1 (Arandjelovic & Zisserman 2012): Euclidean distances between them
 // are Hellinger distances between the histograms.

@@ -19,7 +19,7 @@ constexpr double tolerance = 0.003;  // of the longer side: maximum distance of 
 // Brown & Lowe 2007, equation 13, with our own shares: for unrelated pictures no homography held more than 7 of 90
 // matches; for related ones with little overlap 10 to 20.
 constexpr size_t fewest_matches = 10;
-constexpr double fewest_by_chance = 6.0, share_of_matches = 0.1;
+constexpr double min_above_chance = 6.0, share_of_matches = 0.1;
 constexpr double still = 0.002;       // of the longer side: less than the movement by a camera that moves or rotates
 constexpr size_t still_by_moved = 3;  // ratio of stationary to moving matches for a stationary camera
 constexpr int most_draws = 3000;      // of four matches for a homography
@@ -43,14 +43,14 @@ std::vector<Match> match(const Features &first, const Features &second) {
         for (Eigen::Index i = 0; i < rows; i++) {
             const float *row = products.row(i).data();
             float best = -2.0f, next = -2.0f;
-            size_t at = 0;
+            size_t best_index = 0;
             for (size_t j = 0; j < taken.size(); j++)
                 if (row[j] > best)
-                    next = best, best = row[j], at = j;
+                    next = best, best = row[j], best_index = j;
                 else if (row[j] > next)
                     next = row[j];
-            if (1.0f - best < ratio * ratio * (1.0f - next) && best > nearest[at])
-                nearest[at] = best, taken[at] = static_cast<int>(begin + i);
+            if (1.0f - best < ratio * ratio * (1.0f - next) && best > nearest[best_index])
+                nearest[best_index] = best, taken[best_index] = static_cast<int>(begin + i);
         }
     }
     for (size_t to = 0; to < taken.size(); to++)
@@ -74,7 +74,7 @@ std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matche
         if (follows[m]) found.matches.push_back(matches[m]);
     const auto count = static_cast<double>(found.matches.size());
     const bool is_chance = found.matches.size() < fewest_matches
-                           || count <= fewest_by_chance + share_of_matches * static_cast<double>(matches.size());
+                           || count <= min_above_chance + share_of_matches * static_cast<double>(matches.size());
     return is_chance ? std::nullopt : std::optional(std::move(found));
 }
 
@@ -154,7 +154,7 @@ void drop_chance(size_t pictures, std::vector<PictureLink> &links) {
 }
 
 // Removes still links of pictures connected by moving ones: the camera was not stationary.
-void drop_still(size_t pictures, std::vector<PictureLink> &links) {
+void drop_static(size_t pictures, std::vector<PictureLink> &links) {
     std::vector<bool> moves(pictures);
     for (const PictureLink &link : links)
         for (uint32_t picture : link.picture)
@@ -181,7 +181,7 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progr
         pairs = further_pairs(static_cast<uint32_t>(pictures.size()), linked, tried);
     }
     drop_chance(pictures.size(), links);
-    drop_still(pictures.size(), links);
+    drop_static(pictures.size(), links);
     std::sort(links.begin(), links.end(), [](const PictureLink &a, const PictureLink &b) {
         return std::tie(a.picture[0], a.picture[1]) < std::tie(b.picture[0], b.picture[1]);
     });

@@ -23,7 +23,7 @@ namespace {
 constexpr double unfit = 0.005;         // median residual of a link not explained by the cameras, of the longer side
 constexpr size_t points_per_link = 10;  // given to a project
 // Maximum matches of a link compared at matches, and of all links of a project.
-constexpr size_t fewest_matches_kept = 20, most_matches = 200, most_in_all = 200000;
+constexpr size_t fewest_matches_kept = 20, most_matches = 200, max_total_matches = 200000;
 constexpr double smallest_turn = 0.05;  // maximum determinant (or inverse) of a map between two pictures of a scene
 
 std::optional<double> hfov_by_metadata(const PictureMetadata &metadata, const Features &picture) {
@@ -44,15 +44,15 @@ void add_points(const PictureLink &link, std::vector<ControlPoint> &points) {
 }
 
 // The matches of a link, with the derivative of the homography at each: how the surroundings are rotated and scaled.
-void add_matches(const PictureLink &link, size_t most, std::vector<lensprof_match> &matches) {
+void add_matches(const PictureLink &link, size_t max_count, std::vector<lensprof_match> &matches) {
     const cv::Matx33d &h = link.homography;
-    const size_t count = link.matches.size(), wanted = std::min(count, most);
+    const size_t count = link.matches.size(), wanted = std::min(count, max_count);
     for (size_t n = 0; n < wanted; n++) {
         const auto &[from, to] = link.matches[n * count / wanted];
-        const cv::Vec3d at = h * cv::Vec3d(from.x, from.y, 1.0);
+        const cv::Vec3d mapped = h * cv::Vec3d(from.x, from.y, 1.0);
         lensprof_match match{{link.picture[0], link.picture[1]}, {{from.x, from.y}, {to.x, to.y}}, {}};
         for (int e = 0; e < 2; e++)
-            for (int d = 0; d < 2; d++) match.map[e][d] = (h(e, d) - at[e] / at[2] * h(2, d)) / at[2];
+            for (int d = 0; d < 2; d++) match.map[e][d] = (h(e, d) - mapped[e] / mapped[2] * h(2, d)) / mapped[2];
         const double turns = match.map[0][0] * match.map[1][1] - match.map[0][1] * match.map[1][0];
         if (turns > smallest_turn && turns < 1.0 / smallest_turn) matches.push_back(match);
     }
@@ -73,13 +73,14 @@ FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<Picture
     std::vector<double> residuals;
     const auto fits_link = [&](size_t n) { return found.link_residuals[n] <= unfit; };
     for (size_t n = 0; n < links.size(); n++) project.unfit += !fits_link(n);
-    const size_t most = std::clamp(most_in_all / std::max<size_t>(1, links.size()), fewest_matches_kept, most_matches);
+    const size_t max_per_link =
+        std::clamp(max_total_matches / std::max<size_t>(1, links.size()), fewest_matches_kept, most_matches);
     // Scenes are only nearly planar: what stands out is shifted, and matches have the actual positions.
     project.by_matches = found.kind == SceneKind::plane || !project.cameras_fit();
     for (size_t n = 0; n < links.size(); n++) {
         const bool fits = fits_link(n);
         if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], project.points);
-        if (!fits || project.by_matches) add_matches(links[n], most, project.matches);
+        if (!fits || project.by_matches) add_matches(links[n], max_per_link, project.matches);
     }
     project.residual = median(residuals);
     return project;
@@ -107,11 +108,11 @@ struct RegisteredPicture {
 // Metadata and features per picture.
 std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, Progress &progress) {
     std::vector<RegisteredPicture> pictures(files.size());
-    const uint32_t most = most_features_of(files.size());
+    const uint32_t max_features = most_features_of(files.size());
     for_each_parallel(static_cast<uint32_t>(files.size()), "finding features", progress, [&](uint32_t i) {
         try {
             pictures[i].metadata = read_metadata(files[i]);
-            pictures[i].features = find_features(files[i], most);
+            pictures[i].features = find_features(files[i], max_features);
         } catch (const Failure &failure) {
             if (failure.code != ExitCode::unreadable) throw;
             pictures[i].features = {};
@@ -146,9 +147,9 @@ std::vector<uint32_t> lenses_of(const std::vector<RegisteredPicture> &pictures, 
     std::vector<uint32_t> lenses;
     for (uint32_t i : numbers) {
         const lensprof_profile_key &key = pictures[i].metadata.key;
-        const Features &own = pictures[i].features;
-        const Setting setting(key.camera_maker, key.camera_model, key.lens, key.focal_mm, key.processing, own.width,
-                              own.height);
+        const Features &features = pictures[i].features;
+        const Setting setting(key.camera_maker, key.camera_model, key.lens, key.focal_mm, key.processing,
+                              features.width, features.height);
         lenses.push_back(found.emplace(setting, static_cast<uint32_t>(found.size())).first->second);
     }
     return lenses;
@@ -200,10 +201,10 @@ private:
 };
 
 // Pictures that overlap another.
-std::vector<bool> which_meet(size_t pictures, const std::vector<PictureLink> &links) {
-    std::vector<bool> meets(pictures);
-    for (const PictureLink &link : links) meets[link.picture[0]] = meets[link.picture[1]] = true;
-    return meets;
+std::vector<bool> find_linked(size_t pictures, const std::vector<PictureLink> &links) {
+    std::vector<bool> is_linked(pictures);
+    for (const PictureLink &link : links) is_linked[link.picture[0]] = is_linked[link.picture[1]] = true;
+    return is_linked;
 }
 
 // Removes links between raw files and others: no project mixes them.
@@ -215,14 +216,14 @@ void part_raw(const std::vector<std::string> &files, std::vector<PictureLink> &l
 }
 
 // Pictures in no project, by what they overlap.
-void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, const std::vector<bool> &meets,
+void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, const std::vector<bool> &is_linked,
                  const std::vector<RegisteredPicture> &pictures, Registration &result) {
     std::set<uint32_t> taken;  // bodies
     for (uint32_t i = 0; i < bodies.size(); i++)
         if (grouping.takes(i)) taken.insert(bodies[i]);
     for (uint32_t i = 0; i < bodies.size(); i++) {
         if (grouping.takes(i) || !pictures[i].failure.empty()) continue;
-        (!meets[i] ? result.alone : taken.count(bodies[i]) ? result.apart : result.foreign).push_back(i);
+        (!is_linked[i] ? result.alone : taken.count(bodies[i]) ? result.apart : result.foreign).push_back(i);
     }
 }
 
@@ -236,18 +237,18 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Prog
     }
     std::vector<PictureLink> links = find_links(features, progress);
     const std::vector<uint32_t> bodies = bodies_of(files, pictures, as_one);
-    const std::vector<uint32_t> wholes = groups_of(pictures.size(), links);
-    const std::vector<bool> meets = which_meet(pictures.size(), links);
+    const std::vector<uint32_t> components = groups_of(pictures.size(), links);
+    const std::vector<bool> is_linked = find_linked(pictures.size(), links);
     part_raw(files, links);
     const Grouping grouping(bodies, links);
-    name_single(grouping, bodies, meets, pictures, result);
+    name_single(grouping, bodies, is_linked, pictures, result);
     std::map<uint32_t, std::vector<uint32_t>> members;
     for (uint32_t i = 0; i < pictures.size(); i++)
         if (grouping.takes(i)) members[grouping.group(i)].push_back(i);
     for (const auto &[group, numbers] : members) {
         progress.update("finding cameras", static_cast<double>(group) / static_cast<double>(members.size()));
         result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
-        result.projects.back().whole = wholes[numbers[0]];
+        result.projects.back().whole = components[numbers[0]];
         for (const uint32_t i : numbers) result.projects.back().bodies.push_back(bodies[i]);
     }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
