@@ -16,7 +16,7 @@ constexpr uint64_t kMostBytes = uint64_t(8) << 30;
 constexpr const char *kHeader = "# Bundle file";
 
 // list.txt next to it, or the name of the file with the extension of a list.
-std::string list_beside(const std::string &path) {
+std::string neighbouring_list(const std::string &path) {
     const std::filesystem::path file(path);
     std::vector<std::string> tried;
     for (const std::string &name : {file.filename().string() + ".list.txt", file.stem().string() + ".list.txt",
@@ -48,9 +48,10 @@ std::string without_last_word(std::string line) {
 // A line of the list without the 0 and the focal length that Bundler appends to a name; names may contain blanks.
 std::string name_of(std::string line) {
     line.erase(line.find_last_not_of(" \t") + 1);
-    const std::string one_less = without_last_word(line), two_less = without_last_word(one_less);
-    if (!two_less.empty() && last_word(one_less) == "0" && is_number(last_word(line))) return two_less;
-    return !one_less.empty() && last_word(line) == "0" ? one_less : line;
+    const std::string without_last = without_last_word(line), without_last_two = without_last_word(without_last);
+    if (!without_last_two.empty() && last_word(without_last) == "0" && is_number(last_word(line)))
+        return without_last_two;
+    return !without_last.empty() && last_word(line) == "0" ? without_last : line;
 }
 
 std::vector<std::string> read_list(const std::string &path) {
@@ -79,16 +80,16 @@ void read_point(FieldReader &fields, Reconstruction &found) {
     for (double &x : position) x = fields.number();
     if (!fields.next_line_of_values()) fields.fail("points are missing");
     if (!fields.next_line_of_values()) fields.fail("points are missing");
-    for (auto views = fields.whole<uint32_t>(); views > 0; views--) {
-        TrackObservation own;
-        own.point = static_cast<uint32_t>(found.points.size());
-        own.image = fields.whole<uint32_t>();
-        if (own.image >= found.images.size()) fields.fail("it refers to a camera that does not exist");
-        own.feature = static_cast<uint32_t>(fields.whole<int32_t>());  // -1 if it has no index
-        own.xy[0] = static_cast<float>(fields.number());
-        own.xy[1] = -static_cast<float>(fields.number());
+    for (auto views = fields.integer<uint32_t>(); views > 0; views--) {
+        TrackObservation observation;
+        observation.point = static_cast<uint32_t>(found.points.size());
+        observation.image = fields.integer<uint32_t>();
+        if (observation.image >= found.images.size()) fields.fail("it refers to a camera that does not exist");
+        observation.feature = static_cast<uint32_t>(fields.integer<int32_t>());  // -1 if it has no index
+        observation.xy[0] = static_cast<float>(fields.number());
+        observation.xy[1] = -static_cast<float>(fields.number());
         if (found.observations.size() == most_observations) fields.fail("it has too many observations");
-        found.observations.push_back(own);
+        found.observations.push_back(observation);
     }
     found.points.push_back(position);
 }
@@ -104,13 +105,13 @@ Reconstruction read_bundler(const std::string &path) {
     found.kind = "Bundler file", found.path = path;
     found.coordinates = ImageCoordinates::stored_centred_px;
     found.cameras.emplace_back();
-    const std::string list = list_beside(path);
+    const std::string list = neighbouring_list(path);
     for (const std::string &name : read_list(list)) found.images.push_back({name, 0, false, {}});
     FieldReader fields(path, '\0', kMostBytes);
     if (!fields.next_line() || fields.rest() != kHeader + std::string(" v0.3"))
         fields.fail("it is not version 0.3, which has the feature positions");
     if (!fields.next_line_of_values()) fields.fail("the number of cameras is missing");
-    const auto cameras = fields.whole<uint32_t>(), points = fields.whole<uint32_t>();
+    const auto cameras = fields.integer<uint32_t>(), points = fields.integer<uint32_t>();
     if (cameras != found.images.size())
         throw Failure(ExitCode::unreadable, path + ": has " + std::to_string(cameras) + " cameras, but " + list
                                                 + " has " + std::to_string(found.images.size())

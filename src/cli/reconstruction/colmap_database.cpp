@@ -40,7 +40,7 @@ public:
         check(code == SQLITE_ROW || code == SQLITE_DONE);
         return code == SQLITE_ROW;
     }
-    int64_t whole(int column) const { return sqlite3_column_int64(statement_, column); }
+    int64_t integer(int column) const { return sqlite3_column_int64(statement_, column); }
     std::string text(int column) const {
         const auto *text = reinterpret_cast<const char *>(sqlite3_column_text(statement_, column));
         return text ? std::string(text, static_cast<size_t>(sqlite3_column_bytes(statement_, column))) : std::string();
@@ -108,8 +108,8 @@ Database open_database(const std::string &path) {
     return database;
 }
 
-[[noreturn]] void fail_damaged(const std::string &path, const std::string &what) {
-    throw Failure(ExitCode::unreadable, path + ": " + what + "; give an intact COLMAP database");
+[[noreturn]] void fail_damaged(const std::string &path, const std::string &problem) {
+    throw Failure(ExitCode::unreadable, path + ": " + problem + "; give an intact COLMAP database");
 }
 
 struct Content {
@@ -132,20 +132,20 @@ void read_images(Content &content) {
     std::map<int64_t, uint32_t> camera_of;
     Rows cameras(content.database.get(), content.path, "SELECT camera_id, width, height FROM cameras");
     while (cameras.next()) {
-        const int64_t width = cameras.whole(1), height = cameras.whole(2);
+        const int64_t width = cameras.integer(1), height = cameras.integer(2);
         if (width < 1 || height < 1 || width > most_image_side || height > most_image_side)
             fail_damaged(content.path,
                          "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
-        if (!camera_of.emplace(cameras.whole(0), static_cast<uint32_t>(content.found.cameras.size())).second)
+        if (!camera_of.emplace(cameras.integer(0), static_cast<uint32_t>(content.found.cameras.size())).second)
             fail_damaged(content.path, "has two cameras with the same id");
         content.found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
     }
     Rows images(content.database.get(), content.path, "SELECT image_id, name, camera_id FROM images ORDER BY name");
     while (images.next()) {
-        const auto camera = camera_of.find(images.whole(2));
+        const auto camera = camera_of.find(images.integer(2));
         if (camera == camera_of.end()) fail_damaged(content.path, "has an image without a camera");
         if (content.found.images.size() == most_images) fail_damaged(content.path, "has too many images");
-        if (!content.image_of.emplace(images.whole(0), static_cast<uint32_t>(content.found.images.size())).second)
+        if (!content.image_of.emplace(images.integer(0), static_cast<uint32_t>(content.found.images.size())).second)
             fail_damaged(content.path, "has two images with the same id");
         ReconstructionImage image;
         image.name = images.text(1), image.camera = camera->second;
@@ -175,10 +175,10 @@ struct Keypoints {
     }
 };
 
-void check_table(const std::string &path, int64_t rows, int64_t columns, size_t bytes, const char *what) {
+void check_table(const std::string &path, int64_t rows, int64_t columns, size_t bytes, const char *table) {
     if (rows < 0 || columns < 0 || rows > int64_t(kMostFeatures) || columns > 64
         || uint64_t(rows) * uint64_t(columns) * 4 != bytes)
-        fail_damaged(path, std::string("has ") + what + " that are truncated");
+        fail_damaged(path, std::string("has ") + table + " that are truncated");
 }
 
 // Maximum content of the pages of a file; its log may add more.
@@ -190,17 +190,17 @@ void count_features(Content &content) {
     uint64_t left = most_bytes(content.path);
     Rows rows(content.database.get(), content.path, "SELECT image_id, rows, cols, length(data) FROM keypoints");
     while (rows.next()) {
-        check_table(content.path, rows.whole(1), rows.whole(2), static_cast<size_t>(rows.whole(3)), "keypoints");
-        if (rows.whole(2) != 2 && rows.whole(2) != 4 && rows.whole(2) != 6 && rows.whole(1) > 0)
-            fail_damaged(content.path, "has keypoints with " + std::to_string(rows.whole(2)) + " columns");
-        const uint32_t image = content.image_at(rows.whole(0));
+        check_table(content.path, rows.integer(1), rows.integer(2), static_cast<size_t>(rows.integer(3)), "keypoints");
+        if (rows.integer(2) != 2 && rows.integer(2) != 4 && rows.integer(2) != 6 && rows.integer(1) > 0)
+            fail_damaged(content.path, "has keypoints with " + std::to_string(rows.integer(2)) + " columns");
+        const uint32_t image = content.image_at(rows.integer(0));
         if (is_counted[image]) fail_damaged(content.path, "has the keypoints of an image twice");
-        const auto bytes = static_cast<uint64_t>(rows.whole(3));
+        const auto bytes = static_cast<uint64_t>(rows.integer(3));
         if (bytes > left) fail_damaged(content.path, "is too short for its keypoints");
-        is_counted[image] = true, count[image] = static_cast<uint64_t>(rows.whole(1)), left -= bytes;
+        is_counted[image] = true, count[image] = static_cast<uint64_t>(rows.integer(1)), left -= bytes;
     }
     content.first_feature.assign(1, 0);
-    for (const uint64_t own : count) content.first_feature.push_back(content.first_feature.back() + own);
+    for (const uint64_t features : count) content.first_feature.push_back(content.first_feature.back() + features);
     if (content.first_feature.back() > kMostFeatures) fail_damaged(content.path, "has too many keypoints");
 }
 
@@ -211,12 +211,12 @@ JoinedSets join_matches(const Content &content) {
               format("SELECT pair_id, rows, cols, data FROM two_view_geometries WHERE rows > 0 AND config IN (%s)",
                      kVerified));
     while (rows.next()) {
-        const int64_t id = rows.whole(0);
+        const int64_t id = rows.integer(0);
         const uint32_t image[2] = {content.image_at(id / kPairBase), content.image_at(id % kPairBase)};
         size_t bytes = 0;
         const uint8_t *data = rows.bytes(3, bytes);
-        check_table(content.path, rows.whole(1), rows.whole(2), bytes, "matches");
-        if (rows.whole(2) != 2) fail_damaged(content.path, "has matches that are not pairs");
+        check_table(content.path, rows.integer(1), rows.integer(2), bytes, "matches");
+        if (rows.integer(2) != 2) fail_damaged(content.path, "has matches that are not pairs");
         for (size_t row = 0; row < bytes / 8; row++) {
             uint32_t feature[2];
             std::memcpy(feature, data + 8 * row, 8);
@@ -235,9 +235,9 @@ JoinedSets join_matches(const Content &content) {
 // Reads the keypoints of a row of image_id, cols, data, already checked by count_features.
 Keypoints keypoints_of(const Rows &rows, const Content &content) {
     size_t bytes = 0;
-    const Keypoints keypoints{rows.bytes(2, bytes), static_cast<size_t>(rows.whole(1))};
-    const uint64_t count = content.feature_count(content.image_at(rows.whole(0)));
-    check_table(content.path, static_cast<int64_t>(count), rows.whole(1), bytes, "keypoints");
+    const Keypoints keypoints{rows.bytes(2, bytes), static_cast<size_t>(rows.integer(1))};
+    const uint64_t count = content.feature_count(content.image_at(rows.integer(0)));
+    check_table(content.path, static_cast<int64_t>(count), rows.integer(1), bytes, "keypoints");
     return keypoints;
 }
 
@@ -249,7 +249,7 @@ void take_tracks(Content &content, JoinedSets joined) {
         if (const uint32_t root = joined.of(n); root != n) is_matched[root] = is_matched[n] = true;
     Rows rows(content.database.get(), content.path, "SELECT image_id, cols, data FROM keypoints");
     while (rows.next()) {
-        const uint32_t image = content.image_at(rows.whole(0));
+        const uint32_t image = content.image_at(rows.integer(0));
         const Keypoints keypoints = keypoints_of(rows, content);
         content.found.has_rotations = content.found.has_rotations || keypoints.columns > 2;
         for (uint64_t n = content.first_feature[image]; n < content.first_feature[image + 1]; n++) {
@@ -283,7 +283,7 @@ bool is_colmap_database(const std::string &path) {
         Rows tables(database.get(), path,
                     "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('cameras', 'images', "
                     "'keypoints', 'two_view_geometries')");
-        return tables.next() && tables.whole(0) == 4;
+        return tables.next() && tables.integer(0) == 4;
     } catch (const Failure &) {
         return true;  // possibly; reading it reports the error
     }
@@ -314,7 +314,7 @@ bool take_shapes(const std::string &database, Reconstruction &model) {
     while (rows.next()) {
         const Keypoints keypoints = keypoints_of(rows, content);
         has_shapes = has_shapes || keypoints.columns > 2;
-        for (const size_t n : of_image[content.image_at(rows.whole(0))]) {
+        for (const size_t n : of_image[content.image_at(rows.integer(0))]) {
             TrackObservation feature;
             keypoints.read(model.observations[n].feature, feature);
             for (int d = 0; d < 2; d++)

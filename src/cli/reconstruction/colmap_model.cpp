@@ -20,8 +20,8 @@ constexpr uint64_t kMostBytes = uint64_t(4) << 30;
 // Number of parameters of the camera models 0, 1, 2, ... (COLMAP, src/colmap/sensor/models.h).
 constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4, 6, 2};
 
-[[noreturn]] void fail_damaged(const std::string &file, const std::string &what) {
-    throw Failure(ExitCode::unreadable, file + ": " + what + "; give an intact COLMAP model");
+[[noreturn]] void fail_damaged(const std::string &file, const std::string &problem) {
+    throw Failure(ExitCode::unreadable, file + ": " + problem + "; give an intact COLMAP model");
 }
 
 // Reads numbers of a little-endian binary file.
@@ -36,31 +36,31 @@ public:
         return number;
     }
     std::string next_text() {
-        const size_t end = content_.find('\0', at_);
+        const size_t end = content_.find('\0', offset_);
         if (end == std::string::npos) fail_damaged(file_, "is truncated");
-        const std::string text = content_.substr(at_, end - at_);
-        at_ = end + 1;
+        const std::string text = content_.substr(offset_, end - offset_);
+        offset_ = end + 1;
         return text;
     }
     // Reads the number of following items, of at least `bytes_each`.
     uint64_t next_count(uint64_t bytes_each) {
         const auto count = next<uint64_t>();
-        if (count > (content_.size() - at_) / bytes_each)
+        if (count > (content_.size() - offset_) / bytes_each)
             fail_damaged(file_, "declares " + std::to_string(count) + " items, but is too short for them");
         return count;
     }
     const char *take(size_t bytes) {
-        if (bytes > content_.size() - at_) fail_damaged(file_, "is truncated");
-        at_ += bytes;
-        return content_.data() + at_ - bytes;
+        if (bytes > content_.size() - offset_) fail_damaged(file_, "is truncated");
+        offset_ += bytes;
+        return content_.data() + offset_ - bytes;
     }
     void demand_end() const {
-        if (at_ != content_.size()) fail_damaged(file_, "has more data than its counts declare");
+        if (offset_ != content_.size()) fail_damaged(file_, "has more data than its counts declare");
     }
 
 private:
     std::string file_, content_;
-    size_t at_ = 0;
+    size_t offset_ = 0;
 };
 
 struct PosedImage {
@@ -92,10 +92,10 @@ void place(const std::array<double, 4> &q, const std::array<double, 3> &t, Recon
     const auto cross = [](const auto &a, const auto &b) {
         return std::array<double, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     };
-    auto once = cross(v, t);
-    for (int d = 0; d < 3; d++) once[d] += w / n * t[d];
-    const auto twice = cross(v, once);
-    for (int d = 0; d < 3; d++) image.centre[d] = -(t[d] + 2.0 * twice[d]);
+    auto cross1 = cross(v, t);
+    for (int d = 0; d < 3; d++) cross1[d] += w / n * t[d];
+    const auto cross2 = cross(v, cross1);
+    for (int d = 0; d < 3; d++) image.centre[d] = -(t[d] + 2.0 * cross2[d]);
     image.has_centre = is_finite(image.centre);
 }
 
@@ -132,12 +132,12 @@ void read_binary_images(const std::string &file, Model &model) {
         std::array<double, 3> t;
         for (double &x : q) x = bytes.next<double>();
         for (double &x : t) x = bytes.next<double>();
-        PosedImage &own = add_image(file, id, model);
-        own.camera_id = bytes.next<uint32_t>();
-        own.image.name = bytes.next_text();
-        place(q, t, own.image);
-        own.places.resize(bytes.next_count(24));
-        for (auto &xy : own.places) {
+        PosedImage &image = add_image(file, id, model);
+        image.camera_id = bytes.next<uint32_t>();
+        image.image.name = bytes.next_text();
+        place(q, t, image.image);
+        image.places.resize(bytes.next_count(24));
+        for (auto &xy : image.places) {
             for (double &x : xy) x = bytes.next<double>();
             bytes.next<uint64_t>();  // its point, also given by points3D
         }
@@ -164,9 +164,9 @@ void read_binary_points(const std::string &file, const Add &add) {
 void read_text_cameras(const std::string &file, Model &model) {
     FieldReader fields(file, '\0', kMostBytes);
     while (fields.next_line_of_values()) {
-        const auto id = fields.whole<uint32_t>();
+        const auto id = fields.integer<uint32_t>();
         fields.text();  // the name of its model
-        const auto width = fields.whole<uint64_t>(), height = fields.whole<uint64_t>();
+        const auto width = fields.integer<uint64_t>(), height = fields.integer<uint64_t>();
         add_camera(file, id, camera_of(file, width, height), model);
     }
 }
@@ -174,20 +174,20 @@ void read_text_cameras(const std::string &file, Model &model) {
 void read_text_images(const std::string &file, Model &model) {
     FieldReader fields(file, '\0', kMostBytes);
     while (fields.next_line_of_values()) {
-        const auto id = fields.whole<uint32_t>();
+        const auto id = fields.integer<uint32_t>();
         std::array<double, 4> q;
         std::array<double, 3> t;
         for (double &x : q) x = fields.number();
         for (double &x : t) x = fields.number();
-        PosedImage &own = add_image(file, id, model);
-        own.camera_id = fields.whole<uint32_t>();
-        own.image.name = fields.rest();
-        place(q, t, own.image);
+        PosedImage &image = add_image(file, id, model);
+        image.camera_id = fields.integer<uint32_t>();
+        image.image.name = fields.rest();
+        place(q, t, image.image);
         if (!fields.next_line()) fields.fail("the line of its features is missing");  // which may be empty
         while (fields.has_more()) {
             const double x = fields.number(), y = fields.number();
             fields.text();  // its point, or -1
-            own.places.push_back({x, y});
+            image.places.push_back({x, y});
         }
     }
 }
@@ -203,8 +203,8 @@ void read_text_points(const std::string &file, const Add &add) {
         fields.text();                                // error, which may be nan
         std::vector<Sight> sights;
         while (fields.has_more()) {
-            const auto image = fields.whole<uint32_t>();
-            sights.push_back({image, fields.whole<uint32_t>()});
+            const auto image = fields.integer<uint32_t>();
+            sights.push_back({image, fields.integer<uint32_t>()});
         }
         add(position, sights);
     }
@@ -232,12 +232,12 @@ void take_images(const Model &model, const std::string &file, Reconstruction &fo
     std::sort(order.begin(), order.end(),
               [&](uint32_t a, uint32_t b) { return model.images.at(a).image.name < model.images.at(b).image.name; });
     for (const uint32_t id : order) {
-        const PosedImage &own = model.images.at(id);
-        if (!camera_of.count(own.camera_id))
-            fail_damaged(file, own.image.name + " refers to a camera that does not exist");
+        const PosedImage &image = model.images.at(id);
+        if (!camera_of.count(image.camera_id))
+            fail_damaged(file, image.image.name + " refers to a camera that does not exist");
         image_of[id] = static_cast<uint32_t>(found.images.size());
-        found.images.push_back(own.image);
-        found.images.back().camera = camera_of[own.camera_id];
+        found.images.push_back(image.image);
+        found.images.back().camera = camera_of[image.camera_id];
     }
 }
 
@@ -261,8 +261,8 @@ Reconstruction read_colmap_model(const std::string &folder) {
     take_images(model, images, found, image_of);
     const auto add = [&](const std::array<double, 3> &position, const std::vector<Sight> &sights) {
         for (const Sight &sight : sights) {
-            const auto own = model.images.find(sight.image);
-            if (own == model.images.end() || sight.feature >= own->second.places.size())
+            const auto image = model.images.find(sight.image);
+            if (image == model.images.end() || sight.feature >= image->second.places.size())
                 fail_damaged(points, "refers to feature " + std::to_string(sight.feature) + " of image "
                                          + std::to_string(sight.image) + ", which does not exist");
             if (found.observations.size() == most_observations) fail_damaged(points, "has too many observations");
@@ -270,7 +270,7 @@ Reconstruction read_colmap_model(const std::string &folder) {
             observation.point = static_cast<uint32_t>(found.points.size());
             observation.image = image_of.at(sight.image), observation.feature = sight.feature;
             for (int d = 0; d < 2; d++)  // COLMAP: the centre of the first pixel is (.5, .5)
-                observation.xy[d] = static_cast<float>(own->second.places[sight.feature][d] - 0.5);
+                observation.xy[d] = static_cast<float>(image->second.places[sight.feature][d] - 0.5);
             found.observations.push_back(observation);
         }
         found.points.push_back(position);

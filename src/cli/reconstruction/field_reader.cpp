@@ -24,37 +24,37 @@ bool FieldReader::next_line() {
         return false;
     }
     if (!line_.empty() && line_.back() == '\r') line_.pop_back();
-    at_ = 0, number_++;
+    position_ = 0, number_++;
     skip_blanks();
     return true;
 }
 
 bool FieldReader::next_line_of_values() {
     while (next_line())
-        if (has_more() && line_[at_] != '#') return true;
+        if (has_more() && line_[position_] != '#') return true;
     return false;
 }
 
-bool FieldReader::has_more() const { return at_ < line_.size(); }
+bool FieldReader::has_more() const { return position_ < line_.size(); }
 
 void FieldReader::skip_blanks() {
     if (!separator_)
-        while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t')) at_++;
+        while (position_ < line_.size() && (line_[position_] == ' ' || line_[position_] == '\t')) position_++;
 }
 
 std::string FieldReader::text() {
     if (!has_more()) fail("it has too few fields");
-    const size_t end = separator_ ? line_.find(separator_, at_) : line_.find_first_of(" \t", at_);
-    const std::string field = line_.substr(at_, end - at_);
-    at_ = end == std::string::npos ? line_.size() : end + (separator_ ? 1 : 0);
+    const size_t end = separator_ ? line_.find(separator_, position_) : line_.find_first_of(" \t", position_);
+    const std::string field = line_.substr(position_, end - position_);
+    position_ = end == std::string::npos ? line_.size() : end + (separator_ ? 1 : 0);
     skip_blanks();
     return field;
 }
 
 std::string FieldReader::rest() {
     if (!has_more()) fail("it has too few fields");
-    const std::string field = line_.substr(at_);
-    at_ = line_.size();
+    const std::string field = line_.substr(position_);
+    position_ = line_.size();
     return field;
 }
 
@@ -71,9 +71,9 @@ void FieldReader::fail_at(const std::string &field, const char *wanted) const {
     fail("'" + short_name(field) + "' is not " + wanted);
 }
 
-void FieldReader::fail(const std::string &what) const {
+void FieldReader::fail(const std::string &problem) const {
     throw Failure(ExitCode::unreadable,
-                  file_ + ": line " + std::to_string(number_) + ": " + what + "; give an intact file");
+                  file_ + ": line " + std::to_string(number_) + ": " + problem + "; give an intact file");
 }
 
 }  // namespace lensprof

@@ -23,7 +23,7 @@ public:
     double number();     // finite
 
     template <class Whole>
-    Whole whole() {
+    Whole integer() {
         const std::string field = text();
         Whole number = 0;
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
@@ -31,7 +31,7 @@ public:
         return number;
     }
 
-    [[noreturn]] void fail(const std::string &what) const;
+    [[noreturn]] void fail(const std::string &problem) const;
 
 private:
     [[noreturn]] void fail_at(const std::string &field, const char *wanted) const;
@@ -41,7 +41,7 @@ private:
     char separator_;
     std::ifstream stream_;
     std::string line_;
-    size_t at_ = 0;
+    size_t position_ = 0;
     uint64_t number_ = 0;
 };
 

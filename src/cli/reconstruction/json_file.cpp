@@ -50,13 +50,13 @@ std::array<double, 3> vector_at(const SceneJson &object, const char *name) {
 }
 
 const SceneJson &object_at(const SceneJson &object, const char *name) {
-    static const SceneJson none = SceneJson::object();
-    return object.is_object() && object.contains(name) && object[name].is_object() ? object[name] : none;
+    static const SceneJson empty = SceneJson::object();
+    return object.is_object() && object.contains(name) && object[name].is_object() ? object[name] : empty;
 }
 
 const SceneJson &list_at(const SceneJson &object, const char *name) {
-    static const SceneJson none = SceneJson::array();
-    return object.is_object() && object.contains(name) && object[name].is_array() ? object[name] : none;
+    static const SceneJson empty = SceneJson::array();
+    return object.is_object() && object.contains(name) && object[name].is_array() ? object[name] : empty;
 }
 
 }  // namespace lensprof

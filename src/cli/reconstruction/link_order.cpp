@@ -31,8 +31,8 @@ std::vector<uint32_t> order_by_links(uint32_t images, const LinkWeights &links) 
         neighbours[link.first].push_back({weight, link.second});
         neighbours[link.second].push_back({weight, link.first});
     }
-    for (auto &own : neighbours)
-        std::sort(own.begin(), own.end(), [](const Neighbour &a, const Neighbour &b) {
+    for (auto &list : neighbours)
+        std::sort(list.begin(), list.end(), [](const Neighbour &a, const Neighbour &b) {
             return a.weight != b.weight ? a.weight > b.weight : a.image < b.image;
         });
     std::vector<uint32_t> order;

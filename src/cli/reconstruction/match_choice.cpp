@@ -31,9 +31,9 @@ double fraction_of(uint64_t value) {
 class Shares {
 public:
     explicit Shares(const Reconstruction &r) : points_(r.images.size()), common_(common_points(r)) {
-        for (const TrackObservation &own : r.observations) points_[own.image]++;
+        for (const TrackObservation &observation : r.observations) points_[observation.image]++;
     }
-    double of(uint32_t i, uint32_t j) const {
+    double overlap(uint32_t i, uint32_t j) const {
         const auto found = common_.find(std::minmax(i, j));
         const uint32_t least = std::min(points_[i], points_[j]);
         return found == common_.end() || !least ? 0.0 : std::min(1.0, found->second / double(least));
@@ -63,10 +63,10 @@ class ViewDistance {
 public:
     explicit ViewDistance(const Reconstruction &r) : r_(r), shares_(r) {}
 
-    double of(const ObservationPair &pair) const {
+    double distance(const ObservationPair &pair) const {
         const TrackObservation &a = r_.observations[pair.first], &b = r_.observations[pair.second];
         if (const auto angle = view_angle(r_, a, b)) return *angle / kUsualAngle;
-        return kUsualShare / std::max(1e-6, shares_.of(a.image, b.image));
+        return kUsualShare / std::max(1e-6, shares_.overlap(a.image, b.image));
     }
 
 private:
@@ -77,20 +77,20 @@ private:
 // The pairs of each image with the highest rank.
 class Choice {
 public:
-    Choice(size_t images, size_t most) : best_(images), most_(most) {}
+    Choice(size_t images, size_t max_pairs) : best_(images), most_(max_pairs) {}
 
     void offer(const ObservationPair &pair, uint32_t i, uint32_t j, double order) {
         for (const uint32_t image : {i, j}) {
-            auto &own = best_[image];
-            if (own.size() == most_ && !(order < own.top().order)) continue;
-            own.push({order, pair});
-            if (own.size() > most_) own.pop();
+            auto &queue = best_[image];
+            if (queue.size() == most_ && !(order < queue.top().order)) continue;
+            queue.push({order, pair});
+            if (queue.size() > most_) queue.pop();
         }
     }
     std::vector<ObservationPair> taken() {
         std::vector<ObservationPair> all;
-        for (auto &own : best_)
-            for (; !own.empty(); own.pop()) all.push_back(own.top().pair);
+        for (auto &queue : best_)
+            for (; !queue.empty(); queue.pop()) all.push_back(queue.top().pair);
         return all;
     }
 
@@ -167,10 +167,10 @@ void thin_links(const Reconstruction &r, const ViewDistance &distance, std::vect
     std::vector<double> weights;
     std::vector<uint32_t> link_of_pair;
     for (const ObservationPair &pair : pairs) {
-        const std::pair<uint32_t, uint32_t> own{r.observations[pair.first].image, r.observations[pair.second].image};
-        if (links.empty() || links.back() != own) links.push_back(own), weights.push_back(0.0);
-        const double far = distance.of(pair);
-        weights.back() += 1.0 / (1.0 + far * far);
+        const std::pair<uint32_t, uint32_t> link{r.observations[pair.first].image, r.observations[pair.second].image};
+        if (links.empty() || links.back() != link) links.push_back(link), weights.push_back(0.0);
+        const double view_distance = distance.distance(pair);
+        weights.back() += 1.0 / (1.0 + view_distance * view_distance);
         link_of_pair.push_back(static_cast<uint32_t>(links.size() - 1));
     }
     const std::set<uint32_t> kept = links_to_keep(links, weights, r.images.size());
@@ -186,9 +186,11 @@ std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_i
     const ViewDistance distance(r);
     const auto &all = r.observations;
     const auto order_of = [&](const ObservationPair &pair) {
-        const double far = distance.of(pair);
+        const double view_distance = distance.distance(pair);
         const double chance = fraction_of((uint64_t{seed} << 32) + all[pair.first].point);  // of all pairs of a point
-        return -std::log(chance) * (1.0 + far * far);  // by weights, without replacement (Efraimidis and Spirakis 2006)
+        return -std::log(chance)
+               * (1.0
+                  + view_distance * view_distance);  // by weights, without replacement (Efraimidis and Spirakis 2006)
     };
     Choice choice(r.images.size(), std::max(1u, of_image));
     for (size_t first = 0, last = 0; first < all.size(); first = last) {
@@ -215,7 +217,7 @@ std::map<std::pair<uint32_t, uint32_t>, double> view_distances(const Reconstruct
     std::map<std::pair<uint32_t, uint32_t>, double> sums, counts, means;
     for (const ObservationPair &pair : pairs) {
         const auto link = std::minmax(r.observations[pair.first].image, r.observations[pair.second].image);
-        sums[link] += distance.of(pair), counts[link]++;
+        sums[link] += distance.distance(pair), counts[link]++;
     }
     for (const auto &[link, sum] : sums) means[link] = sum / counts[link];
     return means;

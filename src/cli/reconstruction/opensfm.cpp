@@ -60,23 +60,24 @@ void read_tracks(const std::string &path, Tracks &tracks) {
     bool is_first = read_head(path, std::strlen(kHeader)) == kHeader;
     while (fields.next_line()) {
         if (std::exchange(is_first, false) || !fields.has_more()) continue;
-        TrackObservation own;
+        TrackObservation observation;
         const std::string image = fields.text();
-        own.image = number_of(image, tracks.image_of);
-        if (own.image == found.images.size()) {
+        observation.image = number_of(image, tracks.image_of);
+        if (observation.image == found.images.size()) {
             if (found.images.size() == most_images) fields.fail("it has too many images");
             found.images.push_back({image, 0, false, {}});
         }
-        own.point = number_of(fields.text(), tracks.point_of);
-        own.feature = static_cast<uint32_t>(fields.whole<int32_t>());
-        for (float &x : own.xy) {
+        observation.point = number_of(fields.text(), tracks.point_of);
+        observation.feature = static_cast<uint32_t>(fields.integer<int32_t>());
+        for (float &x : observation.xy) {
             x = static_cast<float>(fields.number());
             if (std::fabs(x) > 0.5001f) fields.fail("its position is outside the picture");
         }
-        if (version > 0) own.shape[0][0] = own.shape[1][1] = std::max(0.0f, static_cast<float>(fields.number()));
-        own.colour = colour_of(fields);
+        if (version > 0)
+            observation.shape[0][0] = observation.shape[1][1] = std::max(0.0f, static_cast<float>(fields.number()));
+        observation.colour = colour_of(fields);
         if (found.observations.size() == most_observations) fields.fail("it has too many observations");
-        found.observations.push_back(own);
+        found.observations.push_back(observation);
     }
 }
 

@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::string> candidate_folders(const Reconstruction &r) {
-    const fs::path own = is_folder(r.path) ? fs::path(r.path) : fs::path(r.path).parent_path();
+    const fs::path own_folder = is_folder(r.path) ? fs::path(r.path) : fs::path(r.path).parent_path();
     std::vector<std::string> folders;
     if (!r.folder.empty()) folders.push_back(r.folder);
-    for (const fs::path &base : {own, own / "..", own / "../.."})
+    for (const fs::path &base : {own_folder, own_folder / "..", own_folder / "../.."})
         for (const char *below : {"", "images"}) folders.push_back((base / below).lexically_normal().string());
     return folders;
 }
@@ -76,50 +76,52 @@ Frame frame_of(const Reconstruction &r, const ReconstructionImage &image, const 
                                                    "with --images");
     Frame frame{{header.frame_width, header.frame_height}, 1};
     if (r.coordinates == ImageCoordinates::upright_centred) frame.orientation = metadata.orientation;
-    const ReconstructionCamera own = upright_size(frame.stored, frame.orientation);
-    if (stated.width && (stated.width != own.width || stated.height != own.height))
+    const ReconstructionCamera size = upright_size(frame.stored, frame.orientation);
+    if (stated.width && (stated.width != size.width || stated.height != size.height))
         throw Failure(ExitCode::unreadable,
-                      file + format(": is %u x %u pixels, but ", own.width, own.height) + r.path
+                      file + format(": is %u x %u pixels, but ", size.width, size.height) + r.path
                           + format(" states %u x %u: it was resized or rotated since; give the pictures that were "
                                    "matched",
                                    stated.width, stated.height));
     return frame;
 }
 
-void settle(const Reconstruction &r, const Frame &frame, TrackObservation &own) {
+void convert_to_stored_px(const Reconstruction &r, const Frame &frame, TrackObservation &observation) {
     const ReconstructionCamera upright = upright_size(frame.stored, frame.orientation);
     const float size[2] = {float(upright.width), float(upright.height)};
     const float unit = r.coordinates == ImageCoordinates::upright_centred ? std::max(size[0], size[1]) : 1.0f;
     for (int d = 0; d < 2 && r.coordinates != ImageCoordinates::stored_px; d++)
-        own.xy[d] = own.xy[d] * unit + (size[d] - 1.0f) / 2.0f;
-    for (auto &row : own.shape)
+        observation.xy[d] = observation.xy[d] * unit + (size[d] - 1.0f) / 2.0f;
+    for (auto &row : observation.shape)
         for (float &value : row) value *= unit;
     for (int d = 0; d < 2; d++)
-        if (!(own.xy[d] >= -1.0f && own.xy[d] <= size[d]))
-            throw Failure(ExitCode::unreadable,
-                          r.path + format(": has a feature at %.1f, %.1f in ", double(own.xy[0]), double(own.xy[1]))
-                              + r.images[own.image].name
-                              + format(", which has only %u x %u pixels; give the pictures that were matched",
-                                       upright.width, upright.height));
-    turn_back(upright, frame.orientation, own.xy);
+        if (!(observation.xy[d] >= -1.0f && observation.xy[d] <= size[d]))
+            throw Failure(
+                ExitCode::unreadable,
+                r.path
+                    + format(": has a feature at %.1f, %.1f in ", double(observation.xy[0]), double(observation.xy[1]))
+                    + r.images[observation.image].name
+                    + format(", which has only %u x %u pixels; give the pictures that were matched", upright.width,
+                             upright.height));
+    turn_back(upright, frame.orientation, observation.xy);
 }
 
 }  // namespace
 
 std::string picture_of_name(const std::string &folder, const std::string &name) {
-    const std::string whole = (fs::path(folder) / name).string();  // an absolute name unchanged
+    const std::string path = (fs::path(folder) / name).string();  // an absolute name unchanged
     const std::string last = (fs::path(folder) / fs::path(name).filename()).string();
-    const bool is_elsewhere = fs::path(name).is_absolute() || !is_regular_file(whole);
-    return is_elsewhere && is_regular_file(last) ? last : whole;
+    const bool is_elsewhere = fs::path(name).is_absolute() || !is_regular_file(path);
+    return is_elsewhere && is_regular_file(last) ? last : path;
 }
 
-std::vector<std::string> find_pictures(const Reconstruction &r, const std::string &folder, bool may_lack) {
+std::vector<std::string> find_pictures(const Reconstruction &r, const std::string &folder, bool allow_missing) {
     const std::vector<std::string> folders = folder.empty() ? candidate_folders(r) : std::vector<std::string>{folder};
     std::string best = folders[0];
-    size_t most = 0;
+    size_t max_count = 0;
     for (const std::string &candidate : folders)
-        if (const size_t found = count_found(r, candidate); found > most) most = found, best = candidate;
-    if (!most && may_lack) return {};
+        if (const size_t found = count_found(r, candidate); found > max_count) max_count = found, best = candidate;
+    if (!max_count && allow_missing) return {};
     std::vector<std::string> files;
     std::string missing;
     for (const ReconstructionImage &image : r.images) {
@@ -130,12 +132,14 @@ std::vector<std::string> find_pictures(const Reconstruction &r, const std::strin
         check_each_once(r, files);
         return files;
     }
-    const std::string counts = format(": %zu of its %zu pictures, the first ", r.images.size() - most, r.images.size());
-    throw Failure(ExitCode::unreadable,
-                  r.path + counts + missing + ", are not in "
-                      + (most || !folder.empty() ? best : std::string("its folder or the images folder next to it"))
-                      + (folder.empty() ? "; give their folder with --images" : "; give the folder that contains all")
-                      + (most ? ", or list the images to use with --image-list" : ""));
+    const std::string counts =
+        format(": %zu of its %zu pictures, the first ", r.images.size() - max_count, r.images.size());
+    throw Failure(
+        ExitCode::unreadable,
+        r.path + counts + missing + ", are not in "
+            + (max_count || !folder.empty() ? best : std::string("its folder or the images folder next to it"))
+            + (folder.empty() ? "; give their folder with --images" : "; give the folder that contains all")
+            + (max_count ? ", or list the images to use with --image-list" : ""));
 }
 
 void settle_coordinates(Reconstruction &r, const std::vector<std::string> &files) {
@@ -144,7 +148,8 @@ void settle_coordinates(Reconstruction &r, const std::vector<std::string> &files
         stop_if_interrupted();
         frames.push_back(frame_of(r, r.images[i], files.empty() ? std::string() : files[i]));
     }
-    for (TrackObservation &own : r.observations) settle(r, frames[own.image], own);
+    for (TrackObservation &observation : r.observations)
+        convert_to_stored_px(r, frames[observation.image], observation);
     r.cameras.clear();
     for (uint32_t i = 0; i < r.images.size(); i++) {
         r.images[i].camera = i;

@@ -14,8 +14,9 @@ std::string picture_of_name(const std::string &folder, const std::string &name);
 
 // The file per image. Names are relative to `folder`; if that is empty, to the folder stated by the reconstruction, its
 // own folder, or `images` in or above that, whichever contains most. Failure (unreadable) for missing pictures; with
-// `may_lack` the result is empty if none exists.
-std::vector<std::string> find_pictures(const Reconstruction &reconstruction, const std::string &folder, bool may_lack);
+// `allow_missing` the result is empty if none exists.
+std::vector<std::string> find_pictures(const Reconstruction &reconstruction, const std::string &folder,
+                                       bool allow_missing);
 
 // Converts the image coordinates to px of the stored pictures, and gives each image a camera of the stored size.
 // Without files the sizes are those of the cameras. Failure (unreadable) for a picture of another size than the

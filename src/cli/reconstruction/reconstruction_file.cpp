@@ -34,12 +34,12 @@ std::string below(const std::string &folder, const std::string &name) {
 // The largest of the models in folder/0, folder/1, ...; empty if not found. `models` is their number.
 std::string numbered_model(const std::string &folder, size_t &models) {
     std::string best;
-    uint64_t most = 0;
+    uint64_t max_points = 0;
     for (models = 0;; models++) {
-        const std::string own = below(folder, std::to_string(models));
-        if (!is_colmap_model(own)) return best;
-        const uint64_t bytes = file_bytes(own + "/images.bin") + file_bytes(own + "/images.txt");
-        if (best.empty() || bytes > most) best = own, most = bytes;
+        const std::string model_folder = below(folder, std::to_string(models));
+        if (!is_colmap_model(model_folder)) return best;
+        const uint64_t bytes = file_bytes(model_folder + "/images.bin") + file_bytes(model_folder + "/images.txt");
+        if (best.empty() || bytes > max_points) best = model_folder, max_points = bytes;
     }
 }
 
@@ -84,9 +84,9 @@ bool is_reconstruction(const std::string &path) {
 
 std::vector<std::string> files_of_reconstruction(const std::string &path) {
     namespace fs = std::filesystem;
-    const std::string own = is_folder(path) ? path : fs::path(path).parent_path().string();
+    const std::string own_folder = is_folder(path) ? path : fs::path(path).parent_path().string();
     size_t models = 0;
-    std::vector<std::string> files{path}, folders{own.empty() ? "." : own};
+    std::vector<std::string> files{path}, folders{own_folder.empty() ? "." : own_folder};
     for (const char *above : {"..", "../.."}) folders.push_back(below(folders[0], above));
     if (is_folder(path) && !model_folder(path, models).empty()) folders.push_back(model_folder(path, models));
     for (const std::string &folder : folders)

@@ -13,8 +13,8 @@
 namespace lensprof {
 namespace {
 
-[[noreturn]] void fail_damaged(const std::string &path, const std::string &what) {
-    throw Failure(ExitCode::unreadable, path + ": " + what + "; export it again, with structure and observations");
+[[noreturn]] void fail_damaged(const std::string &path, const std::string &problem) {
+    throw Failure(ExitCode::unreadable, path + ": " + problem + "; export it again, with structure and observations");
 }
 
 struct Views {
@@ -44,16 +44,16 @@ void add_observation(const std::string &view, int64_t feature, const SceneJson &
     const auto image = views.image_of.find(view);
     if (image == views.image_of.end())
         fail_damaged(found.path, "has an observation in view " + short_name(view) + ", which does not exist");
-    TrackObservation own;
-    own.point = static_cast<uint32_t>(found.points.size()), own.image = image->second;
-    own.feature = feature < 0 ? 0 : static_cast<uint32_t>(feature);
+    TrackObservation result;
+    result.point = static_cast<uint32_t>(found.points.size()), result.image = image->second;
+    result.feature = feature < 0 ? 0 : static_cast<uint32_t>(feature);
     for (size_t d = 0; d < 2; d++) {
         const double x = d < place.size() ? real_of(place[d]) : NAN;
         if (!std::isfinite(x)) fail_damaged(found.path, "has an observation without a position");
-        own.xy[d] = static_cast<float>(x);  // as in VLFeat's SIFT: the centre of the first pixel is (0, 0)
+        result.xy[d] = static_cast<float>(x);  // as in VLFeat's SIFT: the centre of the first pixel is (0, 0)
     }
-    if (scale > 0.0) own.shape[0][0] = own.shape[1][1] = static_cast<float>(scale);
-    found.observations.push_back(own);
+    if (scale > 0.0) result.shape[0][0] = result.shape[1][1] = static_cast<float>(scale);
+    found.observations.push_back(result);
 }
 
 void place_images(Views &views) {
@@ -106,9 +106,10 @@ Reconstruction read_alicevision(const std::string &path) {
         views.centre_of[text_at(pose, "poseId")] = vector_at(object_at(object_at(pose, "pose"), "transform"), "center");
     const SceneJson &structure = list_at(all, "structure");
     for (const SceneJson &point : structure) {
-        for (const SceneJson &own : list_at(point, "observations"))
-            add_observation(text_at(own, "observationId"), whole_at(own, "featureId"), list_at(own, "x"),
-                            own.is_object() && own.contains("scale") ? real_of(own["scale"]) : 0.0, views);
+        for (const SceneJson &observation : list_at(point, "observations"))
+            add_observation(
+                text_at(observation, "observationId"), whole_at(observation, "featureId"), list_at(observation, "x"),
+                observation.is_object() && observation.contains("scale") ? real_of(observation["scale"]) : 0.0, views);
         views.found.points.push_back(vector_at(point, "X"));
     }
     return finished(views, structure);
@@ -139,9 +140,9 @@ Reconstruction read_openmvg(const std::string &path) {
     const SceneJson &structure = list_at(all, "structure");
     for (const SceneJson &point : structure) {
         const SceneJson &value = object_at(point, "value");
-        for (const SceneJson &own : list_at(value, "observations"))
-            add_observation(text_at(own, "key"), whole_at(object_at(own, "value"), "id_feat"),
-                            list_at(object_at(own, "value"), "x"), 0.0, views);
+        for (const SceneJson &observation : list_at(value, "observations"))
+            add_observation(text_at(observation, "key"), whole_at(object_at(observation, "value"), "id_feat"),
+                            list_at(object_at(observation, "value"), "x"), 0.0, views);
         views.found.points.push_back(vector_at(value, "X"));
     }
     views.found.folder = root;

@@ -15,8 +15,8 @@ namespace {
 
 // Requires valid, unique file names and numeric positions.
 void check(const Reconstruction &r) {
-    const auto fail = [&](const std::string &what) {
-        throw Failure(ExitCode::unreadable, r.path + ": " + what + "; give an intact file");
+    const auto fail = [&](const std::string &message) {
+        throw Failure(ExitCode::unreadable, r.path + ": " + message + "; give an intact file");
     };
     if (r.images.size() > most_images) fail("has " + std::to_string(r.images.size()) + " images, more than supported");
     std::unordered_set<std::string> names;
@@ -24,9 +24,10 @@ void check(const Reconstruction &r) {
         if (image.name.empty() || image.name.find('\0') != std::string::npos) fail("has an image without a name");
         if (!names.insert(image.name).second) fail("has the image " + short_name(image.name) + " twice");
     }
-    for (const TrackObservation &own : r.observations)
-        if (!std::isfinite(own.xy[0]) || !std::isfinite(own.xy[1]))
-            fail("has a feature in " + short_name(r.images[own.image].name) + " whose position is not a number");
+    for (const TrackObservation &observation : r.observations)
+        if (!std::isfinite(observation.xy[0]) || !std::isfinite(observation.xy[1]))
+            fail("has a feature in " + short_name(r.images[observation.image].name)
+                 + " whose position is not a number");
 }
 
 }  // namespace
@@ -72,7 +73,7 @@ void sort_images(Reconstruction &reconstruction) {
         sorted.push_back(images[order[n]]);
     }
     images = std::move(sorted);
-    for (TrackObservation &own : reconstruction.observations) own.image = number[own.image];
+    for (TrackObservation &observation : reconstruction.observations) observation.image = number[observation.image];
     std::sort(reconstruction.observations.begin(), reconstruction.observations.end(),
               [](const TrackObservation &a, const TrackObservation &b) {
                   return std::tuple(a.point, a.image) < std::tuple(b.point, b.image);
@@ -87,9 +88,10 @@ void keep_images(const std::vector<uint32_t> &kept, Reconstruction &reconstructi
         images.push_back(reconstruction.images[image]);
     }
     auto &all = reconstruction.observations;
-    for (TrackObservation &own : all) own.image = number[own.image];
-    all.erase(std::remove_if(all.begin(), all.end(), [](const auto &own) { return own.image == UINT32_MAX; }),
-              all.end());
+    for (TrackObservation &observation : all) observation.image = number[observation.image];
+    all.erase(
+        std::remove_if(all.begin(), all.end(), [](const auto &observation) { return observation.image == UINT32_MAX; }),
+        all.end());
     reconstruction.images = std::move(images);
     settle_tracks(reconstruction);
 }
