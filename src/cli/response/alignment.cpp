@@ -35,9 +35,9 @@ void read_channel(const Picture &picture, int y, size_t channels, size_t channel
     const uint8_t *bytes = picture.pixels.data() + size_t(y) * picture.row_bytes;
     const auto *words = reinterpret_cast<const uint16_t *>(bytes);
     for (size_t x = 0; x < row.size(); x++) {
-        const size_t at = x * channels + channel;
-        row[x] = picture.sample == LENSPROF_SAMPLE_U16 ? static_cast<float>(words[at]) / 65535.0f
-                                                       : static_cast<float>(bytes[at]) / 255.0f;
+        const size_t index = x * channels + channel;
+        row[x] = picture.sample == LENSPROF_SAMPLE_U16 ? static_cast<float>(words[index]) / 65535.0f
+                                                       : static_cast<float>(bytes[index]) / 255.0f;
     }
 }
 
@@ -129,7 +129,7 @@ Level level_of(const Picture &raw, const Picture &rendered, int side) {
 double correlation_of(const Level &level, const Alignment &alignment) {
     const Plane &t = level.rendered, &raw = level.raw;
     const double rho = half_diagonal(t), raw_rho = half_diagonal(raw);
-    double both = 0.0, own = 0.0, other = 0.0, place[2], value[3];
+    double product = 0.0, first_square = 0.0, second_square = 0.0, place[2], value[3];
     size_t inside = 0;
     for (int y = 0; y < t.height; y++)
         for (int x = 0; x < t.width; x++) {
@@ -137,11 +137,14 @@ double correlation_of(const Level &level, const Alignment &alignment) {
             if (!sample(raw, 0.5 * (raw.width - 1) + raw_rho * place[0], 0.5 * (raw.height - 1) + raw_rho * place[1],
                         value))
                 continue;
-            both += t.at(x, y) * value[0], own += t.at(x, y) * t.at(x, y), other += value[0] * value[0];
+            product += t.at(x, y) * value[0], first_square += t.at(x, y) * t.at(x, y),
+                second_square += value[0] * value[0];
             inside++;
         }
     const double share = double(inside) / double(std::max<size_t>(t.values.size(), 1));
-    return own > 0.0 && other > 0.0 ? both / std::sqrt(own * other) * std::min(1.0, share / 0.8) : 0.0;
+    return first_square > 0.0 && second_square > 0.0
+               ? product / std::sqrt(first_square * second_square) * std::min(1.0, share / 0.8)
+               : 0.0;
 }
 
 // The scale at which the rendered picture is as wide, or as high, as the frame: the smaller one.
@@ -244,8 +247,8 @@ Alignment align_coarsely(const Picture &raw, const Picture &rendered) {
 
 Alignment align_pictures(const Picture &raw, const Picture &rendered) {
     Alignment alignment = align_coarsely(raw, rendered);
-    const int most = static_cast<int>(std::max(rendered.width, rendered.height));
-    for (int side = 2 * coarse_side; side / 2 < std::min(most, fine_side); side *= 2) {
+    const int longer_side = static_cast<int>(std::max(rendered.width, rendered.height));
+    for (int side = 2 * coarse_side; side / 2 < std::min(longer_side, fine_side); side *= 2) {
         const Level level = level_of(raw, rendered, std::min(side, fine_side));
         alignment.correlation = correlation_of(level, alignment);
         refine(level, side > 2 * coarse_side, alignment);

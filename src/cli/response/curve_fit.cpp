@@ -45,12 +45,12 @@ double radial(const Rendering &rendering, double r2) {
 
 // Up to 2 knots and 3 of A's row per channel, 3 of q, s.
 struct Row {
-    std::array<int, 3 * 5 + 4> at{};
+    std::array<int, 3 * 5 + 4> column{};
     std::array<double, 3 * 5 + 4> slope{};
     int count = 0;
     void add(int index, double value) {
         if (index < 0 || value == 0.0) return;
-        at[static_cast<size_t>(count)] = index;
+        column[static_cast<size_t>(count)] = index;
         slope[static_cast<size_t>(count++)] = value;
     }
 };
@@ -90,9 +90,9 @@ private:
         default: return region_of(place) != request_.left_out;
         }
     }
-    void add_curve(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel, double share,
+    void add_curve(const CurveFit &fit, const Place &place, const Prediction &prediction, size_t channel, double share,
                    Row &row) const;
-    Row row_of(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel) const;
+    Row row_of(const CurveFit &fit, const Place &place, const Prediction &prediction, size_t channel) const;
     double cost_of(const CurveFit &fit) const;
     double prior_cost(const CurveFit &fit) const;
     void equations(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const;
@@ -131,9 +131,9 @@ CurveFit Solver::start() const {
 }
 
 // Adds `share` of the derivatives of f in a channel, without those of q.
-void Solver::add_curve(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel, double share,
-                       Row &row) const {
-    const double x = at.light[channel], slope = at.slope[channel];
+void Solver::add_curve(const CurveFit &fit, const Place &place, const Prediction &prediction, size_t channel,
+                       double share, Row &row) const {
+    const double x = prediction.light[channel], slope = prediction.slope[channel];
     if (x >= 1.0) {
         row.add(curve_knots - 2, -share * (x - 1.0) * slope / std::max(rise(fit, curve_knots - 1), 1e-9));
     } else {
@@ -147,7 +147,7 @@ void Solver::add_curve(const CurveFit &fit, const Place &place, const Prediction
         row.add(first + static_cast<int>(k), gain * place.raw[k] * gains_[place.picture][k]);
 }
 
-Row Solver::row_of(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel) const {
+Row Solver::row_of(const CurveFit &fit, const Place &place, const Prediction &prediction, size_t channel) const {
     Row row;
     const double s = fit.renderings[place.picture].saturation;
     const int first = inner + of_picture * static_cast<int>(place.picture);
@@ -155,12 +155,12 @@ Row Solver::row_of(const CurveFit &fit, const Place &place, const Prediction &at
     for (size_t k = 0; k < request_.channels; k++) {
         const double share = (k == channel ? 1.0 + s : 0.0) - s * grey_weights[k];
         if (share == 0.0) continue;
-        add_curve(fit, place, at, k, share, row);
-        by_gain += share * at.slope[k] * at.light[k];
+        add_curve(fit, place, prediction, k, share, row);
+        by_gain += share * prediction.slope[k] * prediction.light[k];
     }
     double r2 = place.r2;
     for (int n = 0; n < 3; n++, r2 *= place.r2) row.add(first + 9 + n, by_gain * r2);
-    if (request_.channels == 3) row.add(first + 12, at.curve[channel] - at.grey);
+    if (request_.channels == 3) row.add(first + 12, prediction.curve[channel] - prediction.grey);
     return row;
 }
 
@@ -191,10 +191,10 @@ double Solver::cost_of(const CurveFit &fit) const {
     double sum = prior_cost(fit);
     for (const Place &place : request_.places) {
         if (!counts(place)) continue;
-        const Prediction at = fit.predict(place);
+        const Prediction prediction = fit.predict(place);
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
-            if (fit.weight(place, at, c, &residual) == 0.0) continue;
+            if (fit.weight(place, prediction, c, &residual) == 0.0) continue;
             const double z = residual / fit.sigma(place);
             sum += robust_at * robust_at * std::log1p(z * z / (robust_at * robust_at));
         }
@@ -247,17 +247,17 @@ void Solver::equations(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd 
     g.setZero(size_);
     for (const Place &place : request_.places) {
         if (!counts(place)) continue;
-        const Prediction at = fit.predict(place);
+        const Prediction prediction = fit.predict(place);
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
-            const double weight = fit.weight(place, at, c, &residual);
+            const double weight = fit.weight(place, prediction, c, &residual);
             if (weight == 0.0) continue;
-            const Row row = row_of(fit, place, at, c);
+            const Row row = row_of(fit, place, prediction, c);
             for (int a = 0; a < row.count; a++) {
                 const double along = weight * row.slope[static_cast<size_t>(a)];
-                g(row.at[static_cast<size_t>(a)]) += along * residual;
+                g(row.column[static_cast<size_t>(a)]) += along * residual;
                 for (int b = 0; b < row.count; b++)
-                    h(row.at[static_cast<size_t>(a)], row.at[static_cast<size_t>(b)]) +=
+                    h(row.column[static_cast<size_t>(a)], row.column[static_cast<size_t>(b)]) +=
                         along * row.slope[static_cast<size_t>(b)];
             }
         }
@@ -279,13 +279,13 @@ CurveFit Solver::moved(const CurveFit &fit, const Eigen::VectorXd &step) const {
     for (size_t p = 0; p < fit.renderings.size(); p++)
         for (int i = 0; i < of_picture; i++) {
             const auto n = static_cast<size_t>(i);
-            const double by = share * step(inner + of_picture * static_cast<int>(p) + i);
+            const double delta = share * step(inner + of_picture * static_cast<int>(p) + i);
             if (i < 9)
-                to.renderings[p].colour[n] += by * gains_[p][n % 3];
+                to.renderings[p].colour[n] += delta * gains_[p][n % 3];
             else if (i < 12)
-                to.renderings[p].falloff[n - 9] += by;
+                to.renderings[p].falloff[n - 9] += delta;
             else
-                to.renderings[p].saturation += by;
+                to.renderings[p].saturation += delta;
         }
     return to;
 }
@@ -323,10 +323,10 @@ void Solver::solve(CurveFit &fit, int rounds) const {
 void Solver::estimate_noise(CurveFit &fit) const {
     std::array<std::vector<double>, chroma_bins> left;
     for (const Place &place : request_.places) {
-        const Prediction at = fit.predict(place);
+        const Prediction prediction = fit.predict(place);
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
-            if (fit.weight(place, at, c, &residual) != 0.0 && place.use[c] == Place::grey)
+            if (fit.weight(place, prediction, c, &residual) != 0.0 && place.use[c] == Place::grey)
                 left[static_cast<size_t>(chroma_bin(place))].push_back(std::fabs(residual) / rough_factor(place));
         }
     }
@@ -361,17 +361,18 @@ double CurveFit::eval(double x, double *slope) const {
 }
 
 Prediction CurveFit::predict(const Place &place) const {
-    Prediction at;
+    Prediction prediction;
     const Rendering &r = renderings[place.picture];
     const double gain = radial(r, place.r2);
     for (size_t c = 0; c < 3; c++) {
         const double *row = &r.colour[3 * c];
-        at.light[c] = gain * (row[0] * place.raw[0] + row[1] * place.raw[1] + row[2] * place.raw[2]);
-        at.curve[c] = eval(at.light[c], &at.slope[c]);
-        at.grey += grey_weights[c] * at.curve[c];
+        prediction.light[c] = gain * (row[0] * place.raw[0] + row[1] * place.raw[1] + row[2] * place.raw[2]);
+        prediction.curve[c] = eval(prediction.light[c], &prediction.slope[c]);
+        prediction.grey += grey_weights[c] * prediction.curve[c];
     }
-    for (size_t c = 0; c < 3; c++) at.grey_value[c] = at.curve[c] + r.saturation * (at.curve[c] - at.grey);
-    return at;
+    for (size_t c = 0; c < 3; c++)
+        prediction.grey_value[c] = prediction.curve[c] + r.saturation * (prediction.curve[c] - prediction.grey);
+    return prediction;
 }
 
 double CurveFit::sigma(const Place &place) const {
@@ -379,13 +380,14 @@ double CurveFit::sigma(const Place &place) const {
 }
 
 // White only shows that the response has reached its maximum.
-double CurveFit::weight(const Place &place, const Prediction &at, size_t channel, double *residual) const {
+double CurveFit::weight(const Place &place, const Prediction &prediction, size_t channel, double *residual) const {
     *residual = 0.0;
     if (place.use[channel] == Place::none) return 0.0;
-    *residual = at.grey_value[channel] - (place.use[channel] == Place::white ? white_edge : place.grey_value[channel]);
+    *residual =
+        prediction.grey_value[channel] - (place.use[channel] == Place::white ? white_edge : place.grey_value[channel]);
     if (place.use[channel] == Place::white && *residual >= 0.0) return 0.0;
-    const double own = sigma(place), z = *residual / (robust_at * own);
-    return 1.0 / (own * own * (1.0 + z * z));
+    const double place_sigma = sigma(place), z = *residual / (robust_at * place_sigma);
+    return 1.0 / (place_sigma * place_sigma * (1.0 + z * z));
 }
 
 lensprof_response CurveFit::response() const {
@@ -414,9 +416,9 @@ double CurveFit::gauge_sigma() const {
     std::array<double, inner> slope{};
     CurveFit moved = *this;
     for (size_t i = 0; i < slope.size(); i++) {
-        const double by = 1e-6 * (knots[i + 1] - knots[i]);
-        moved.knots[i + 1] = knots[i + 1] - by;
-        slope[i] = (gauge() - moved.gauge()) / by;
+        const double step = 1e-6 * (knots[i + 1] - knots[i]);
+        moved.knots[i + 1] = knots[i + 1] - step;
+        slope[i] = (gauge() - moved.gauge()) / step;
         moved.knots[i + 1] = knots[i + 1];
     }
     double variance = 0.0;

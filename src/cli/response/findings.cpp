@@ -81,17 +81,17 @@ struct HalfMaps {
     };
     std::array<std::array<Sums, map_columns * map_rows>, 2> half{};
 
-    void add(const CurveFit &fit, const Place &place, size_t which, uint32_t channels) {
+    void add(const CurveFit &fit, const Place &place, size_t half_index, uint32_t channels) {
         const int column = std::clamp(static_cast<int>(place.across * map_columns), 0, map_columns - 1);
         const int row = std::clamp(static_cast<int>(place.down * map_rows), 0, map_rows - 1);
-        Sums &sums = half[which][static_cast<size_t>(row * map_columns + column)];
-        const Prediction at = fit.predict(place);
+        Sums &sums = half[half_index][static_cast<size_t>(row * map_columns + column)];
+        const Prediction prediction = fit.predict(place);
         for (size_t c = 0; c < channels; c++) {
             double residual = 0.0;
-            const double weight = fit.weight(place, at, c, &residual);
+            const double weight = fit.weight(place, prediction, c, &residual);
             if (weight == 0.0 || place.use[c] != Place::grey) continue;
             sums.levels -= weight * 255.0 * residual;
-            sums.ev -= weight * residual / std::max(at.slope[c] * at.light[c] * std::log(2.0), 1e-3);
+            sums.ev -= weight * residual / std::max(prediction.slope[c] * prediction.light[c] * std::log(2.0), 1e-3);
             sums.weight += weight, sums.count++;
         }
     }
@@ -113,8 +113,8 @@ double white_ev_of(const Rendering &rendering, uint32_t channels) {
     if (channels == 1) return std::log2(std::max(rendering.colour[0], 1e-9));
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> colour(rendering.colour.data());
     const Eigen::Vector3d neutral = colour.inverse() * Eigen::Vector3d::Ones();
-    const double most = neutral.maxCoeff();
-    return most > 0.0 && std::isfinite(most) ? -std::log2(most) : 0.0;
+    const double largest = neutral.maxCoeff();
+    return largest > 0.0 && std::isfinite(largest) ? -std::log2(largest) : 0.0;
 }
 
 void describe_file(const CurveFit &fit, const std::vector<Place> &places, uint32_t picture, FileFindings &file) {
@@ -150,7 +150,7 @@ void describe_levels(const std::vector<Place> &places, uint32_t channels, Respon
     report.shows_white = white >= 20;
 }
 
-std::string few_text(const FileFindings &file) {
+std::string too_few_message(const FileFindings &file) {
     const PlacesOf &f = file.from;
     return file.file
            + format(
@@ -201,7 +201,8 @@ void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_res
         FileFindings &file = report.files[i];
         float r2 = 0.0f;
         for (const Place &place : places[i]) r2 = std::max(r2, place.r2), file.places += is_used(place);
-        if (file.places < least_places) throw Failure(ExitCode::not_usable, few_text(file), LENSPROF_REASON_FEW_PAIRS);
+        if (file.places < least_places)
+            throw Failure(ExitCode::not_usable, too_few_message(file), LENSPROF_REASON_FEW_PAIRS);
         file.radius = std::min(1.0, std::sqrt(double(r2)));
         radii.push_back(file.radius);
         all.insert(all.end(), places[i].begin(), places[i].end());
@@ -213,7 +214,8 @@ void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_res
     report.response = fit.response();
     report.gamma = gamma_of(fit.gauge());
     describe_levels(all, channels, report);
-    const double own = std::hypot(std::max(spread.gauge, fit.gauge_sigma()), common_sigma, unseen_sigma(report));
+    const double curve_sigma =
+        std::hypot(std::max(spread.gauge, fit.gauge_sigma()), common_sigma, unseen_sigma(report));
     const double scatter = places.size() > 1 ? scatter_of_files(places, prior, report) : 0.0;
     size_t corrected = 0;
     for (size_t i = 0; i < places.size(); i++) {
@@ -222,7 +224,7 @@ void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_res
         corrected += report.files[i].is_corrected();
     }
     const double local = by_pattern * most_patterned(report).pattern_ev;
-    report.log_gamma_sigma = std::sqrt(own * own + local * local + scatter / double(places.size()));
+    report.log_gamma_sigma = std::sqrt(curve_sigma * curve_sigma + local * local + scatter / double(places.size()));
     if (places.size() == 1) report.files[0].gamma = report.gamma, report.files[0].gamma_sigma = report.log_gamma_sigma;
     report.is_corrected = 2 * corrected > places.size();
     judge(report);

@@ -29,7 +29,7 @@ struct Candidate {
 // The area of the raw frame covered by a square.
 struct RawPart {
     double mean[3] = {0, 0, 0};
-    double least = 1e9, most = 0.0;  // of green
+    double lowest = 1e9, highest = 0.0;  // of green
     bool is_inside = true, is_saturated = false;
 };
 
@@ -60,7 +60,7 @@ void add_sample(const Picture &raw, uint32_t channels, double x, double y, RawPa
         const double value =
             (corner[0] * (1 - u) + corner[1] * u) * (1 - v) + (corner[2] * (1 - u) + corner[3] * u) * v;
         part.mean[c] += value / 65535.0;
-        if (c == channels / 2) part.least = std::min(part.least, value), part.most = std::max(part.most, value);
+        if (c == channels / 2) part.lowest = std::min(part.lowest, value), part.highest = std::max(part.highest, value);
     }
 }
 
@@ -90,20 +90,20 @@ private:
         for (uint32_t c = 0; c < 3; c++) {
             const size_t channel = std::min<size_t>(c, step - 1);
             uint32_t sum = 0;
-            uint8_t least = 255, most = 0;
+            uint8_t lowest = 255, highest = 0;
             for (uint32_t y = row_ * grid_.side; y < (row_ + 1) * grid_.side; y++) {
-                const uint8_t *at = rendered_.pixels.data() + y * rendered_.row_bytes + channel;
+                const uint8_t *sample = rendered_.pixels.data() + y * rendered_.row_bytes + channel;
                 for (uint32_t x = column_ * grid_.side; x < (column_ + 1) * grid_.side; x++) {
-                    const uint8_t v = at[x * step];
-                    sum += v, least = std::min(least, v), most = std::max(most, v);
+                    const uint8_t v = sample[x * step];
+                    sum += v, lowest = std::min(lowest, v), highest = std::max(highest, v);
                 }
             }
             const double mean = double(sum) / (grid_.side * grid_.side);
             place.grey_value[c] = static_cast<float>(mean / 255.0);
-            const bool is_grey = mean <= last_grey && most < first_white && mean >= least_grey && least > 0;
-            place.use[c] = is_grey ? Place::grey : least == 255 ? Place::white : Place::none;
+            const bool is_grey = mean <= last_grey && highest < first_white && mean >= least_grey && lowest > 0;
+            place.use[c] = is_grey ? Place::grey : lowest == 255 ? Place::white : Place::none;
             any |= place.use[c] != Place::none;
-            black |= mean < least_grey || least == 0;
+            black |= mean < least_grey || lowest == 0;
         }
         if (!any) (black ? counts.black : counts.white)++;
         const auto ends = std::minmax_element(place.grey_value.begin(), place.grey_value.end());
@@ -133,7 +133,7 @@ private:
         out.place.r2 = static_cast<float>(place[0] * place[0] + place[1] * place[1]);
         out.place.across = static_cast<float>(0.5 + place[0] * raw_rho_ / raw_.width);
         out.place.down = static_cast<float>(0.5 + place[1] * raw_rho_ / raw_.height);
-        out.place.roughness = static_cast<float>((part.most - part.least) / (65535.0 * out.place.raw[1] + 64.0));
+        out.place.roughness = static_cast<float>((part.highest - part.lowest) / (65535.0 * out.place.raw[1] + 64.0));
         return true;
     }
 
@@ -151,14 +151,14 @@ void add_surroundings(const Grid &grid, std::vector<Candidate> &candidates) {
     std::vector<float> green(size_t(grid.columns) * grid.rows, -1.0f);
     for (const Candidate &c : candidates) green[size_t(c.row) * grid.columns + c.column] = c.place.raw[1];
     for (Candidate &c : candidates) {
-        float least = c.place.raw[1], most = least;
+        float lowest = c.place.raw[1], highest = lowest;
         for (uint32_t y = std::max(c.row, 1u) - 1; y <= std::min(c.row + 1, grid.rows - 1); y++)
             for (uint32_t x = std::max(c.column, 1u) - 1; x <= std::min(c.column + 1, grid.columns - 1); x++) {
                 const float v = green[size_t(y) * grid.columns + x];
                 if (v < 0.0f) continue;
-                least = std::min(least, v), most = std::max(most, v);
+                lowest = std::min(lowest, v), highest = std::max(highest, v);
             }
-        c.place.roughness = std::max(c.place.roughness, (most - least) / (c.place.raw[1] + 0.001f));
+        c.place.roughness = std::max(c.place.roughness, (highest - lowest) / (c.place.raw[1] + 0.001f));
     }
 }
 
@@ -196,10 +196,10 @@ int find_turn(const Picture &raw, const Picture &rendered) {
     const Alignment as_is = align_coarsely(raw, rendered);
     if (as_is.correlation > 0.6 || as_is.texture < least_texture) return 0;
     int best = 0;
-    double most = as_is.correlation + 0.1;
+    double min_correlation = as_is.correlation + 0.1;
     for (int quarters = 1; quarters < 4; quarters++) {
         const double correlation = align_coarsely(raw, turned(rendered, quarters)).correlation;
-        if (correlation > most) most = correlation, best = quarters;
+        if (correlation > min_correlation) min_correlation = correlation, best = quarters;
     }
     return best;
 }

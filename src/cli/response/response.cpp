@@ -54,7 +54,7 @@ void check_options(const Options &o) {
 }
 
 // A JPEG in the same folder with the base name of the raw file; empty = none.
-std::string jpeg_beside(const std::string &raw) {
+std::string neighbouring_jpeg(const std::string &raw) {
     std::error_code ignored;
     for (const char *end : {".JPG", ".jpg", ".JPEG", ".jpeg"}) {
         const std::string file = std::filesystem::path(raw).replace_extension(end).string();
@@ -77,10 +77,10 @@ Picture read_jpeg(const std::string &file) {
 bool is_large_enough(const Picture &picture) { return std::max(picture.width, picture.height) >= least_rendered_side; }
 
 // The JPEG of --jpeg, else the embedded one, else (none, or not much larger than an icon) the JPEG next to the raw
-// file, whose name `beside` receives.
-Picture read_rendered(const Options &o, size_t i, std::string &beside, Streams &streams) {
-    if (!o.jpegs.empty()) return read_jpeg(beside = o.jpegs[i]);
-    const std::string other = jpeg_beside(o.files[i]);
+// file, whose name `jpeg_file` receives.
+Picture read_rendered(const Options &o, size_t i, std::string &jpeg_file, Streams &streams) {
+    if (!o.jpegs.empty()) return read_jpeg(jpeg_file = o.jpegs[i]);
+    const std::string other = neighbouring_jpeg(o.files[i]);
     try {
         Picture picture = read_raw_preview(o.files[i]);
         if (is_large_enough(picture) || other.empty()) return picture;
@@ -90,7 +90,7 @@ Picture read_rendered(const Options &o, size_t i, std::string &beside, Streams &
         if (other.empty()) throw Failure(failure.code, failure.what() + std::string(", and give it with --jpeg"));
     }
     note(streams, o.files[i] + ": has no large enough JPEG preview; using " + other);
-    return read_jpeg(beside = other);
+    return read_jpeg(jpeg_file = other);
 }
 
 // Cells of 2 x 2 pixels: nothing is interpolated.
