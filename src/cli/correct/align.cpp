@@ -286,8 +286,8 @@ int run(const Options &o, Streams &streams) {
         return align(o, streams);
     } catch (const Failure &failure) {
         if (o.json && failure.code == ExitCode::not_usable) {
-            const BuildReport none = no_fit({}, failure);
-            print_json(report(o, none.fit, none.verdict, {}, {}), streams.out);
+            const BuildReport empty = no_fit({}, failure);
+            print_json(report(o, empty.fit, empty.verdict, {}, {}), streams.out);
         }
         throw;
     }

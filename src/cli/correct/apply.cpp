@@ -296,7 +296,7 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
 [[noreturn]] void fail_refused(const std::vector<NotThisOne> &refused, size_t count, Streams &streams) {
     if (refused.size() == 1)
         throw Failure(refused[0].code, refused[0].what() + std::string(count > 1 ? "; or skip it with --skip" : ""));
-    for (const NotThisOne &one : refused) tell(streams, one.what());
+    for (const NotThisOne &failure : refused) tell(streams, failure.what());
     throw Failure(refused[0].code, std::to_string(refused.size()) + " of " + counted(count, "picture")
                                        + " cannot be corrected, and nothing was written; use --skip to leave them out");
 }
@@ -404,28 +404,28 @@ Json left_out_json(const Work &work) {
 }
 
 // Prints each note once, with the first picture it applies to; for pictures with the same answer the largest error.
-void say_notes(const std::vector<Correction> &jobs, Streams &streams) {
+void print_notes(const std::vector<Correction> &jobs, Streams &streams) {
     struct Answer {
-        const Correction *first, *least_sure;
+        const Correction *first, *least_certain;
         size_t count;
     };
     std::vector<std::string> order;
     std::map<std::string, Answer> answers;
-    std::set<std::string> said;
+    std::set<std::string> printed;
     for (const Correction &job : jobs) {
-        if (!job.note.empty() && said.insert(job.note).second) note(streams, job.source + ": " + job.note);
+        if (!job.note.empty() && printed.insert(job.note).second) note(streams, job.source + ": " + job.note);
         if (!job.lookup) continue;
         const auto [found, is_new] = answers.try_emplace(describe_briefly(*job.lookup), Answer{&job, &job, 0});
         if (is_new) order.push_back(found->first);
         Answer &answer = found->second;
         answer.count++;
-        if (job.lookup->how.sigma > answer.least_sure->lookup->how.sigma) answer.least_sure = &job;
+        if (job.lookup->how.sigma > answer.least_certain->lookup->how.sigma) answer.least_certain = &job;
     }
     for (const std::string &text : order) {
         const Answer &answer = answers.at(text);
         const std::string others = answer.count > 1 ? " and " + std::to_string(answer.count - 1) + " more" : "";
         note(streams, answer.first->source + others + ": " + text + "; " + (answer.count > 1 ? "at most, " : "")
-                          + describe_error(answer.least_sure->lookup->how));
+                          + describe_error(answer.least_certain->lookup->how));
     }
 }
 
@@ -463,16 +463,16 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
     if (source.project && chosen != Exposure::keep && !o.kind.linear && !o.kind.simulate)
         encode_alike(source, work.jobs, streams);
     if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);
-    make_folder(o.output);
-    Progress progress(streams, o.progress);
     if (!o.sheet.empty() && work.jobs.size() > ContactSheet::most_pictures)
         throw Failure(
             ExitCode::usage,
             o.sheet
                 + format(": a contact sheet holds at most %zu pictures, but %zu are given; correct them in parts",
                          ContactSheet::most_pictures, work.jobs.size()));
+    make_folder(o.output);
+    Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());
-    say_notes(work.jobs, streams);
+    print_notes(work.jobs, streams);
     Corrected written = o.merge ? merge(o, source, work, progress)
                                 : write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
     progress.clear();
@@ -528,7 +528,7 @@ int run(Options &o, Streams &streams) {
     }
     list_left_out(work, streams);
     const bool all_done = std::all_of(work.left_out.begin(), work.left_out.end(),
-                                      [](const LeftOut &one) { return one.corrected_already; });
+                                      [](const LeftOut &left_out) { return left_out.corrected_already; });
     if (work.jobs.empty() && work.left_out.empty()) return static_cast<int>(ExitCode::not_usable);
     return static_cast<int>(all_done ? ExitCode::done : ExitCode::not_found);
 }

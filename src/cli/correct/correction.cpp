@@ -55,8 +55,8 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
         const auto folder_of = [](const std::string &file) {
             return one_name(std::filesystem::path(absolute_path(file)).parent_path().string());
         };
-        const bool is_beside = folder_of(job.target) == folder_of(job.source);  // next to somebody's pictures
-        if (!mark && (!replaces_unmarked || is_beside) && path_exists(job.target))
+        const bool is_same_folder = folder_of(job.target) == folder_of(job.source);  // next to somebody's pictures
+        if (!mark && (!replaces_unmarked || is_same_folder) && path_exists(job.target))
             throw Failure(ExitCode::usage, job.target + ": exists and was not written by lensprof; give another "
                                                         "folder with -o or another name, or use --overwrite");
         if (!mark || mark->digest.empty() || mark->digest == digest_of(job.source)) continue;

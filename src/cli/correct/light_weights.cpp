@@ -27,9 +27,9 @@ double grey_at(const lensprof_image &rows, uint32_t y, size_t n) {
 
 double largest_grey(const lensprof_image &rows, uint32_t x, uint32_t y) {
     const size_t samples = lensprof_layout_samples(rows.layout);
-    double most = 0.0;
-    for (size_t c = 0; c < samples; c++) most = std::max(most, grey_at(rows, y, x * samples + c));
-    return most;
+    double largest = 0.0;
+    for (size_t c = 0; c < samples; c++) largest = std::max(largest, grey_at(rows, y, x * samples + c));
+    return largest;
 }
 
 double trust_of(double largest) {

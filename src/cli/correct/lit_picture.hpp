@@ -25,8 +25,8 @@ struct PixelScale {
     PixelScale(const Picture &picture, const lensprof_camera &camera)
         : x(static_cast<double>(picture.width) / camera.width),
           y(static_cast<double>(picture.height) / camera.height) {}
-    static double to_picture(double at, double scale) { return (at + 0.5) * scale - 0.5; }
-    static double to_frame(double at, double scale) { return (at + 0.5) / scale - 0.5; }
+    static double to_picture(double position, double scale) { return (position + 0.5) * scale - 0.5; }
+    static double to_frame(double position, double scale) { return (position + 0.5) / scale - 0.5; }
 };
 
 // A full-size picture and its irradiance.

@@ -98,7 +98,8 @@ void check_merged_name(const std::string &target) {
                                                 "or .exr");
 }
 
-void write_merged(const std::vector<Correction> &jobs, size_t like, const std::string &target, Progress &progress) {
+void write_merged(const std::vector<Correction> &jobs, size_t reference, const std::string &target,
+                  Progress &progress) {
     CorrectionKind kind;
     kind.linear = true;
     Frames frames;
@@ -107,8 +108,8 @@ void write_merged(const std::vector<Correction> &jobs, size_t like, const std::s
         if (frame->samples() != frames[0]->samples())
             throw Failure(ExitCode::usage,
                           jobs[0].source + ": some frames are grey and others in colour; give frames of one kind");
-    const Picture header = header_of_result(frames[like]->header(), LENSPROF_SAMPLE_F32);
-    PictureWriter writer(target, header, write_options(jobs[like], kind));
+    const Picture header = header_of_result(frames[reference]->header(), LENSPROF_SAMPLE_F32);
+    PictureWriter writer(target, header, write_options(jobs[reference], kind));
     std::stable_sort(frames.begin(), frames.end(), [](const auto &a, const auto &b) { return a->ev() < b->ev(); });
     std::vector<float> merged;
     for (uint32_t first = 0; first < header.height; first += strip_rows) {
@@ -123,7 +124,7 @@ void write_merged(const std::vector<Correction> &jobs, size_t like, const std::s
                       header.layout});
         progress.update("merging", static_cast<double>(first + rows) / header.height);
     }
-    Correction merged_job = jobs[like];
+    Correction merged_job = jobs[reference];
     merged_job.target = target;
     const bool with_metadata = writer.finish();
     writer.commit();

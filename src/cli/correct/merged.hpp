@@ -12,9 +12,10 @@ namespace lensprof {
 // `wanted`, brighter irradiance is larger. Frames are weighted by how reliably they measure a pixel: noise is assumed
 // equal at all grey values, so the weight is 1/f'^2 of the response times the exposure; it fades towards black and
 // white and is zero if a channel is clipped. A pixel that is white in all frames gets the value of the darkest frame, a
-// lower bound; a pixel that is black in all frames gets that of the brightest. Metadata are those of frame `like`.
+// lower bound; a pixel that is black in all frames gets that of the brightest. Metadata are those of frame `reference`.
 // Failure (usage) for frames with transparency.
-void write_merged(const std::vector<Correction> &frames, size_t like, const std::string &target, Progress &progress);
+void write_merged(const std::vector<Correction> &frames, size_t reference, const std::string &target,
+                  Progress &progress);
 
 // Failure (usage) if the name of `target` has neither extension.
 void check_merged_name(const std::string &target);

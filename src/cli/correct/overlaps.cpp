@@ -33,38 +33,42 @@ constexpr uint32_t strip_rows = 4 * block_px;  // processed by a thread at a tim
 class Merge {
 public:
     Merge(const PlacedCorrection &placed, const CorrectionKind &kind, const Project &project)
-        : kind_(kind), own_(placed, kind, project), sums_(size_t(own_.width()) * own_.height() * own_.samples()) {
+        : kind_(kind),
+          picture_(placed, kind, project),
+          sums_(size_t(picture_.width()) * picture_.height() * picture_.samples()) {
         in_strips([&](uint32_t x, uint32_t y) {
             double weight[3];
-            own_.weights(x, y, ends_in_white(x, y) ? 0.0 : own_.trust(x, y), weight);
-            add(x, y, own_.light(x, y), weight);
+            picture_.weights(x, y, ends_in_white(x, y) ? 0.0 : picture_.trust(x, y), weight);
+            add(x, y, picture_.light(x, y), weight);
         });
     }
 
-    LitPicture &own() { return own_; }
+    LitPicture &picture() { return picture_; }
 
     void add(LitPicture &other) {
-        const PlaceMap map(own_, other);
-        std::vector<Agreement> agreement(size_t(own_.width()) * own_.height(), Agreement::unseen);
-        const uint32_t columns = own_.width() / block_px + 1;
-        std::vector<Block> blocks(size_t(columns) * (own_.height() / block_px + 1));
-        const auto at = [&](uint32_t x, uint32_t y) -> Agreement & { return agreement[size_t(y) * own_.width() + x]; };
+        const PlaceMap map(picture_, other);
+        std::vector<Agreement> agreement(size_t(picture_.width()) * picture_.height(), Agreement::unseen);
+        const uint32_t columns = picture_.width() / block_px + 1;
+        std::vector<Block> blocks(size_t(columns) * (picture_.height() / block_px + 1));
+        const auto agreement_at = [&](uint32_t x, uint32_t y) -> Agreement & {
+            return agreement[size_t(y) * picture_.width() + x];
+        };
         in_strips([&](uint32_t x, uint32_t y) {
             double xy[2];
             Reading reading;
             if (!map.find(x, y, xy) || !read_at(other, xy, reading)) return;
             double more[3];
             differences(x, y, reading, more);
-            at(x, y) = agreement_of(x, y, more);
-            if (reading.trust == 0.0) return;     // clipped: not a measurement
-            const size_t c = own_.samples() / 2;  // green, or grey
+            agreement_at(x, y) = agreement_of(x, y, more);
+            if (reading.trust == 0.0) return;         // clipped: not a measurement
+            const size_t c = picture_.samples() / 2;  // green, or grey
             Block &block = blocks[size_t(y / block_px) * columns + x / block_px];
             block.difference += std::min(more[c], 1.0 - clamped_grey(x, y, c)), block.pixels++;
         });
         in_strips([&](uint32_t x, uint32_t y) {
             double xy[2];
             Reading reading;
-            const bool may_be = at(x, y) == Agreement::near || at(x, y) == Agreement::same;
+            const bool may_be = agreement_at(x, y) == Agreement::near || agreement_at(x, y) == Agreement::same;
             if (may_be && most_are_same(agreement, x, y) && map.find(x, y, xy) && read_at(other, xy, reading))
                 add(x, y, other, reading);
         });
@@ -79,10 +83,10 @@ public:
     const std::vector<float> &result() {
         in_strips([&](uint32_t x, uint32_t y) {
             Sum *sum = &sums_[index(x, y)];
-            for (size_t c = 0; c < own_.samples(); c++)
-                if (sum[c].weight > 0.0f) own_.light(x, y)[c] = sum[c].light / sum[c].weight;
+            for (size_t c = 0; c < picture_.samples(); c++)
+                if (sum[c].weight > 0.0f) picture_.light(x, y)[c] = sum[c].light / sum[c].weight;
         });
-        return own_.all_light();
+        return picture_.all_light();
     }
 
 private:
@@ -103,15 +107,15 @@ private:
         float light = 0.0f, weight = 0.0f;
     };
 
-    size_t index(uint32_t x, uint32_t y) const { return (size_t(y) * own_.width() + x) * own_.samples(); }
+    size_t index(uint32_t x, uint32_t y) const { return (size_t(y) * picture_.width() + x) * picture_.samples(); }
 
     template <class Work>
     void in_strips(const Work &work) {
-        const uint32_t strips = (own_.height() + strip_rows - 1) / strip_rows;
+        const uint32_t strips = (picture_.height() + strip_rows - 1) / strip_rows;
         const auto strip = [&](uint32_t n) {
-            const uint32_t end = std::min(own_.height(), (n + 1) * strip_rows);
+            const uint32_t end = std::min(picture_.height(), (n + 1) * strip_rows);
             for (uint32_t y = n * strip_rows; y < end; y++)
-                for (uint32_t x = 0; x < own_.width(); x++) work(x, y);
+                for (uint32_t x = 0; x < picture_.width(); x++) work(x, y);
         };
         for_each_in_order(strips, thread_count(kind_.threads), strip, [](uint32_t) {});
     }
@@ -119,7 +123,7 @@ private:
     template <class Light>
     void add(uint32_t x, uint32_t y, const Light *light, const double weight[3]) {
         Sum *sum = &sums_[index(x, y)];
-        for (size_t c = 0; c < own_.samples(); c++) {
+        for (size_t c = 0; c < picture_.samples(); c++) {
             sum[c].light += static_cast<float>(weight[c] * static_cast<double>(light[c]));
             sum[c].weight += static_cast<float>(weight[c]);
         }
@@ -130,42 +134,42 @@ private:
             double weight[3];
             other.weights(reading.x, reading.y, reading.trust, weight);
             add(x, y, reading.light, weight);
-        } else if (reading.is_white && is_white(own_.largest(x, y))) {
+        } else if (reading.is_white && is_white(picture_.largest(x, y))) {
             // White in both: at least as bright as in the darker picture.
-            for (size_t c = 0; c < own_.samples(); c++)
-                own_.light(x, y)[c] = std::max(own_.light(x, y)[c], static_cast<float>(reading.light[c]));
+            for (size_t c = 0; c < picture_.samples(); c++)
+                picture_.light(x, y)[c] = std::max(picture_.light(x, y)[c], static_cast<float>(reading.light[c]));
         }
     }
 
     // Whether a channel is white: by its grey value, or almost white next to white ones.
     bool ends_in_white(uint32_t x, uint32_t y, size_t c) const {
-        if (is_white(own_.grey(x, y, c))) return true;
-        if (own_.grey(x, y, c) < almost_white) return false;
-        for (uint32_t py = y - (y > 0); py <= std::min(y + 1, own_.height() - 1); py++)
-            for (uint32_t px = x - (x > 0); px <= std::min(x + 1, own_.width() - 1); px++)
-                if (is_white(own_.grey(px, py, c))) return true;
+        if (is_white(picture_.grey(x, y, c))) return true;
+        if (picture_.grey(x, y, c) < almost_white) return false;
+        for (uint32_t py = y - (y > 0); py <= std::min(y + 1, picture_.height() - 1); py++)
+            for (uint32_t px = x - (x > 0); px <= std::min(x + 1, picture_.width() - 1); px++)
+                if (is_white(picture_.grey(px, py, c))) return true;
         return false;
     }
 
     bool ends_in_white(uint32_t x, uint32_t y) const {
-        for (size_t c = 0; c < own_.samples(); c++)
+        for (size_t c = 0; c < picture_.samples(); c++)
             if (ends_in_white(x, y, c)) return true;
         return false;
     }
 
-    double clamped_grey(uint32_t x, uint32_t y, size_t c) const { return std::clamp(own_.grey(x, y, c), 0.0, 1.0); }
+    double clamped_grey(uint32_t x, uint32_t y, size_t c) const { return std::clamp(picture_.grey(x, y, c), 0.0, 1.0); }
 
     // Difference between the grey value this picture would have recorded for this irradiance and its actual value.
     void differences(uint32_t x, uint32_t y, const Reading &reading, double more[3]) const {
-        const double falloff = own_.falloff(x, y);
-        for (size_t c = 0; c < own_.samples(); c++)
-            more[c] = own_.recorded(c, reading.light[c], falloff) - clamped_grey(x, y, c);
+        const double falloff = picture_.falloff(x, y);
+        for (size_t c = 0; c < picture_.samples(); c++)
+            more[c] = picture_.recorded(c, reading.light[c], falloff) - clamped_grey(x, y, c);
     }
 
     // White is consistent with any brighter value.
     Agreement agreement_of(uint32_t x, uint32_t y, const double more[3]) const {
         Agreement all = Agreement::same;
-        for (size_t c = 0; c < own_.samples(); c++) {
+        for (size_t c = 0; c < picture_.samples(); c++) {
             if (more[c] > 0.0 && ends_in_white(x, y, c)) continue;
             if (!(std::fabs(more[c]) <= same_grey)) return Agreement::other;
             if (std::fabs(more[c]) > same_in_black + same_share * clamped_grey(x, y, c)) all = Agreement::near;
@@ -175,45 +179,46 @@ private:
 
     // An edge in shadows is as small as noise at one pixel, but not in its surroundings.
     bool most_are_same(const std::vector<Agreement> &agreement, uint32_t x, uint32_t y) const {
-        const auto width = static_cast<int>(own_.width()), height = static_cast<int>(own_.height());
+        const auto width = static_cast<int>(picture_.width()), height = static_cast<int>(picture_.height());
         const auto left = std::max(static_cast<int>(x) - about_px, 0),
                    top = std::max(static_cast<int>(y) - about_px, 0);
         int seen = 0, same = 0;
         for (int py = top; py <= std::min(static_cast<int>(y) + about_px, height - 1); py++)
             for (int px = left; px <= std::min(static_cast<int>(x) + about_px, width - 1); px++) {
-                const Agreement one = agreement[static_cast<size_t>(py) * own_.width() + static_cast<size_t>(px)];
-                seen += one != Agreement::unseen, same += one == Agreement::same;
+                const Agreement agreement_here =
+                    agreement[static_cast<size_t>(py) * picture_.width() + static_cast<size_t>(px)];
+                seen += agreement_here != Agreement::unseen, same += agreement_here == Agreement::same;
             }
         return same >= most_agree * seen;
     }
 
     const CorrectionKind &kind_;
-    LitPicture own_;
+    LitPicture picture_;
     std::vector<Sum> sums_;
     uint64_t seen_ = 0, same_ = 0;  // blocks of other pictures in this one
 };
 
 // Whether a picture shows any of the sample positions of another one, including its edges.
-bool shows_any(const lensprof_camera &one, const lensprof_camera &other) {
+bool shows_any(const lensprof_camera &first, const lensprof_camera &second) {
     double direction[2], xy[2];
     for (int v = 0; v <= sight_steps; v++)
         for (int u = 0; u <= sight_steps; u++)
-            if (lensprof_camera_unproject(&other, u * (other.width - 1.0) / sight_steps,
-                                          v * (other.height - 1.0) / sight_steps, direction)
-                && lensprof_camera_project(&one, direction[0], direction[1], xy) && xy[0] >= -0.5 && xy[1] >= -0.5
-                && xy[0] <= one.width - 0.5 && xy[1] <= one.height - 0.5)
+            if (lensprof_camera_unproject(&second, u * (second.width - 1.0) / sight_steps,
+                                          v * (second.height - 1.0) / sight_steps, direction)
+                && lensprof_camera_project(&first, direction[0], direction[1], xy) && xy[0] >= -0.5 && xy[1] >= -0.5
+                && xy[0] <= first.width - 0.5 && xy[1] <= first.height - 0.5)
                 return true;
     return false;
 }
 
 // One picture may lie between the sample positions of the other.
-bool overlap(const lensprof_camera &one, const lensprof_camera &other) {
-    return shows_any(one, other) || shows_any(other, one);
+bool overlap(const lensprof_camera &first, const lensprof_camera &second) {
+    return shows_any(first, second) || shows_any(second, first);
 }
 
 void write_light(const Correction &job, const CorrectionKind &kind, Merge &merge, Progress &progress) {
     make_folder(std::filesystem::path(absolute_path(job.target)).parent_path().string());
-    const Picture header = header_of_result(merge.own().header(), LENSPROF_SAMPLE_F32);
+    const Picture header = header_of_result(merge.picture().header(), LENSPROF_SAMPLE_F32);
     PictureWriter writer(job.target, header, write_options(job, kind));
     const std::vector<float> &light = merge.result();
     writer.write({const_cast<float *>(light.data()), static_cast<ptrdiff_t>(header.row_bytes), header.width,
@@ -246,7 +251,7 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
         uint32_t overlapping = 0;
         for (PlacedCorrection other : all) {
             stop_if_interrupted();
-            if (other.image == placed.image || !overlap(merge.own().camera(), project.images[other.image].camera))
+            if (other.image == placed.image || !overlap(merge.picture().camera(), project.images[other.image].camera))
                 continue;
             other.job.wanted = placed.job.wanted;
             LitPicture lit(other, kind, project);

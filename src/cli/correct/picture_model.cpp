@@ -72,15 +72,17 @@ void PictureModels::take_profile(const PictureMetadata &metadata, Correction &jo
     check(lensprof_store_get(databases_.store(0), options_.profile, &profile, &error), databases_.file(0), &error);
     job.profile_id = options_.profile;
     const lensprof_profile_key key = key_of(metadata);
-    const uint32_t own = key.processing, its = profile.key.processing;
-    if (own == its) return;
+    const uint32_t processing = key.processing, profile_processing = profile.key.processing;
+    if (processing == profile_processing) return;
     if (is_corrected(key, metadata)) fail_corrected(job.source, metadata);
-    if (options_.response && own != LENSPROF_PROCESSING_CORRECTED && its != LENSPROF_PROCESSING_CORRECTED) return;
-    const std::string is = processing_name(own), of = processing_name(its);
-    throw NotThisOne(ExitCode::usage, job.source + ": is treated as " + is + ", but profile "
-                                          + std::to_string(options_.profile) + " is for " + of
-                                          + " pictures; give --processing " + of + " if this picture is " + of
-                                          + ", or its response, such as --response srgb");
+    if (options_.response && processing != LENSPROF_PROCESSING_CORRECTED
+        && profile_processing != LENSPROF_PROCESSING_CORRECTED)
+        return;
+    const std::string processing_text = processing_name(processing), profile_text = processing_name(profile_processing);
+    throw NotThisOne(ExitCode::usage, job.source + ": is treated as " + processing_text + ", but profile "
+                                          + std::to_string(options_.profile) + " is for " + profile_text
+                                          + " pictures; give --processing " + profile_text + " if this picture is "
+                                          + profile_text + ", or its response, such as --response srgb");
 }
 
 // Suggests the options for data missing from the picture; if none is missing, the lens may be stored under another
@@ -99,21 +101,21 @@ static std::string missing_options(const lensprof_profile_key &key) {
 void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
     const lensprof_profile_key key = key_of(metadata);
     const lensprof_lookup_options options = options_.lookup.options();
-    lensprof_lookup how;
-    lensprof_lookup_init(&how);
-    const lensprof_status status = databases_.look_up(key, options, profile, how);
+    lensprof_lookup lookup;
+    lensprof_lookup_init(&lookup);
+    const lensprof_status status = databases_.look_up(key, options, profile, lookup);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_corrected(key, metadata)) fail_corrected(job.source, metadata);
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw NotThisOne(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "
-                                                  + databases_.names() + " (" + how.reason
-                                                  + describe_nearest(nearest_names(databases_, key, how))
+                                                  + databases_.names() + " (" + lookup.reason
+                                                  + describe_nearest(nearest_names(databases_, key, lookup))
                                                   + "); make one with `lensprof build`, give " + missing_options(key)
                                                   + ", or give a profile with --profile");
-    if (how.exact && how.falloff_store == 0)
-        job.profile_id = how.id[0];
+    if (lookup.exact && lookup.falloff_store == 0)
+        job.profile_id = lookup.id[0];
     else
-        job.lookup = std::make_shared<Found>(options_.response ? with_response_given({how, databases_.files()})
-                                                               : Found{how, databases_.files()});
+        job.lookup = std::make_shared<Found>(options_.response ? with_response_given({lookup, databases_.files()})
+                                                               : Found{lookup, databases_.files()});
 }
 
 void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {

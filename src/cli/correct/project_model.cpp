@@ -24,7 +24,7 @@ static uint32_t joined_reference(const Project &project) {
 std::shared_ptr<const lensprof_response> common_encoding(const Project &project) {
     const uint32_t reference = joined_reference(project);
     const auto &first = project.images[reference];
-    const bool is_one =
+    const bool has_one_encoding =
         project.models.empty()
             ? std::all_of(project.images.begin(), project.images.end(),
                           [&](const lensprof_pto_image &image) {
@@ -35,7 +35,7 @@ std::shared_ptr<const lensprof_response> common_encoding(const Project &project)
                   const auto &table = model->response[0].table;
                   return std::equal(std::begin(table), std::end(table), project.models[reference]->response[0].table);
               });
-    if (is_one) return nullptr;
+    if (has_one_encoding) return nullptr;
     return std::make_shared<lensprof_response>(model_of_project(project, reference)->response[0]);
 }
 

@@ -39,10 +39,10 @@ void seed_exif(std::vector<Correction> &jobs, const Project &project, const std:
     const double offset =
         offsets.empty() ? usual - mean_exposure(joined_exposures(project, exposures)).ev : median(std::move(offsets));
     for (Correction &job : jobs) {
-        const PictureMetadata own = read_metadata(job.source);
+        const PictureMetadata metadata = read_metadata(job.source);
         auto seeded = std::make_shared<PictureMetadata>(unknown_metadata());
-        const double aperture = own.f_number.value_or(usual_aperture),
-                     iso = std::min(own.iso.value_or(usual_iso), most_iso);
+        const double aperture = metadata.f_number.value_or(usual_aperture),
+                     iso = std::min(metadata.iso.value_or(usual_iso), most_iso);
         seeded->key.aperture = aperture, seeded->iso = iso;
         seeded->exposure_time_s = std::exp2(job.wanted.ev + offset) * 100.0 / iso * aperture * aperture;
         job.exif = std::move(seeded);
