@@ -26,17 +26,17 @@ uint32_t lp_crc32(const uint8_t *bytes, size_t count) {
 
 /* The rest of the input. */
 typedef struct reader {
-    const uint8_t *at;
+    const uint8_t *position;
     size_t left;
 } reader;
 
 /* The next `count` bytes; NULL if fewer remain. */
 static const uint8_t *take(reader *r, size_t count) {
     if (count > r->left) return NULL;
-    const uint8_t *at = r->at;
-    r->at += count;
+    const uint8_t *bytes = r->position;
+    r->position += count;
     r->left -= count;
-    return at;
+    return bytes;
 }
 
 /* ---- parts ---- */
@@ -114,11 +114,11 @@ static int open_grid(lp_blob *blob, reader *r) {
 static int open_covariance(lp_blob *blob, reader *r) {
     const uint32_t n = blob->bytes[LP_BLOB_COVARIANCE];
     if (n > LENSPROF_COVARIANCE_MAX) return 0;
-    const uint8_t *at = blob->covariance = take(r, 8 * n * (n + 1) / 2);
-    if (!at) return 0;
+    const uint8_t *entry = blob->covariance = take(r, 8 * n * (n + 1) / 2);
+    if (!entry) return 0;
     for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = i; j < n; j++, at += 8)
-            if (!isfinite(lp_f64_at(at)) || (i == j && !(lp_f64_at(at) >= 0.0))) return 0;
+        for (uint32_t j = i; j < n; j++, entry += 8)
+            if (!isfinite(lp_f64_at(entry)) || (i == j && !(lp_f64_at(entry) >= 0.0))) return 0;
     return 1;
 }
 

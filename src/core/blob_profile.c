@@ -4,20 +4,20 @@
 
 /* ---- writing ---- */
 
-static void put(uint8_t **at, uint64_t value, uint32_t bytes) {
-    for (uint32_t i = 0; i < bytes; i++) *(*at)++ = (uint8_t)(value >> 8 * i);
+static void put(uint8_t **to, uint64_t value, uint32_t bytes) {
+    for (uint32_t i = 0; i < bytes; i++) *(*to)++ = (uint8_t)(value >> 8 * i);
 }
 
-static void put_f32(uint8_t **at, float value) {
+static void put_f32(uint8_t **to, float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
-    put(at, bits, 4);
+    put(to, bits, 4);
 }
 
-static void put_f64(uint8_t **at, double value) {
+static void put_f64(uint8_t **to, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
-    put(at, bits, 8);
+    put(to, bits, 8);
 }
 
 static int has_samples(const lensprof_response *r) {
@@ -60,50 +60,50 @@ static size_t bytes_of(const lensprof_profile *p, uint32_t covariance) {
     return bytes;
 }
 
-static void put_fixed(uint8_t **at, const lensprof_profile *p, uint32_t covariance, size_t bytes) {
+static void put_fixed(uint8_t **to, const lensprof_profile *p, uint32_t covariance, size_t bytes) {
     const texts t = texts_of(p);
-    put(at, 0x4652504C, 4); /* "LPRF" */
-    put(at, LP_BLOB_LAYOUT, 4);
-    put(at, bytes, 4);
-    put(at, p->key.processing, 1);
-    put(at, p->responses, 1);
-    put(at, p->vignettings, 1);
-    put(at, p->grid.channels, 1);
-    put(at, p->grid.columns, 1);
-    put(at, p->grid.rows, 1);
-    put(at, covariance, 2);
-    for (int i = 0; i < 5; i++) put(at, t.length[i], 1);
-    put(at, 0, 3);
-    put_f64(at, p->key.focal_mm);
-    put_f64(at, p->key.aperture);
-    put_f64(at, p->key.distance_m);
-    for (int d = 0; d < 2; d++) put_f64(at, p->vignetting[0].center[d]);
-    put(at, (uint64_t)p->provenance.created_unix_s, 8);
-    put(at, p->provenance.images, 4);
-    put(at, p->provenance.pairs, 4);
-    put_f64(at, p->provenance.heldout_rms);
-    put_f64(at, p->provenance.inlier_share);
+    put(to, 0x4652504C, 4); /* "LPRF" */
+    put(to, LP_BLOB_LAYOUT, 4);
+    put(to, bytes, 4);
+    put(to, p->key.processing, 1);
+    put(to, p->responses, 1);
+    put(to, p->vignettings, 1);
+    put(to, p->grid.channels, 1);
+    put(to, p->grid.columns, 1);
+    put(to, p->grid.rows, 1);
+    put(to, covariance, 2);
+    for (int i = 0; i < 5; i++) put(to, t.length[i], 1);
+    put(to, 0, 3);
+    put_f64(to, p->key.focal_mm);
+    put_f64(to, p->key.aperture);
+    put_f64(to, p->key.distance_m);
+    for (int d = 0; d < 2; d++) put_f64(to, p->vignetting[0].center[d]);
+    put(to, (uint64_t)p->provenance.created_unix_s, 8);
+    put(to, p->provenance.images, 4);
+    put(to, p->provenance.pairs, 4);
+    put_f64(to, p->provenance.heldout_rms);
+    put_f64(to, p->provenance.inlier_share);
 }
 
-static void put_response(uint8_t **at, const lensprof_response *r) {
-    put(at, r->kind, 1);
-    put(at, modes_of(r), 3);
-    if (r->kind == LENSPROF_RESPONSE_GAMMA) put_f64(at, r->gamma);
-    for (uint32_t l = 0; l < modes_of(r); l++) put_f64(at, r->emor[l]);
-    for (uint32_t j = 0; has_samples(r) && j < LENSPROF_RESPONSE_SAMPLES; j++) put_f32(at, (float)r->table[j]);
+static void put_response(uint8_t **to, const lensprof_response *r) {
+    put(to, r->kind, 1);
+    put(to, modes_of(r), 3);
+    if (r->kind == LENSPROF_RESPONSE_GAMMA) put_f64(to, r->gamma);
+    for (uint32_t l = 0; l < modes_of(r); l++) put_f64(to, r->emor[l]);
+    for (uint32_t j = 0; has_samples(r) && j < LENSPROF_RESPONSE_SAMPLES; j++) put_f32(to, (float)r->table[j]);
 }
 
-static void put_rest(uint8_t **at, const lensprof_profile *p, uint32_t covariance) {
+static void put_rest(uint8_t **to, const lensprof_profile *p, uint32_t covariance) {
     const texts t = texts_of(p);
     const uint32_t nodes = p->grid.channels * p->grid.rows * p->grid.columns;
     for (uint32_t c = 0; c < p->vignettings; c++)
-        for (int n = 0; n < 3; n++) put_f64(at, p->vignetting[c].k[n]);
-    for (uint32_t c = 0; c < p->responses; c++) put_response(at, &p->response[c]);
-    for (uint32_t i = 0; i < nodes; i++) put_f32(at, p->grid.attenuation[i]);
+        for (int n = 0; n < 3; n++) put_f64(to, p->vignetting[c].k[n]);
+    for (uint32_t c = 0; c < p->responses; c++) put_response(to, &p->response[c]);
+    for (uint32_t i = 0; i < nodes; i++) put_f32(to, p->grid.attenuation[i]);
     for (uint32_t i = 0; i < covariance; i++)
-        for (uint32_t j = i; j < covariance; j++) put_f64(at, p->covariance[i * covariance + j]);
+        for (uint32_t j = i; j < covariance; j++) put_f64(to, p->covariance[i * covariance + j]);
     for (int i = 0; i < 5; i++)
-        for (size_t n = 0; n < t.length[i]; n++) put(at, (uint8_t)t.text[i][n], 1);
+        for (size_t n = 0; n < t.length[i]; n++) put(to, (uint8_t)t.text[i][n], 1);
 }
 
 lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags, void *data, size_t capacity,
@@ -115,10 +115,10 @@ lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t 
     const size_t bytes = bytes_of(profile, covariance);
     if (count) *count = bytes;
     if (capacity < bytes) return capacity ? LENSPROF_ERROR_CAPACITY : LENSPROF_OK;
-    uint8_t *at = data;
-    put_fixed(&at, profile, covariance, bytes);
-    put_rest(&at, profile, covariance);
-    put(&at, lp_crc32(data, bytes - 4), 4);
+    uint8_t *to = data;
+    put_fixed(&to, profile, covariance, bytes);
+    put_rest(&to, profile, covariance);
+    put(&to, lp_crc32(data, bytes - 4), 4);
     return LENSPROF_OK;
 }
 
@@ -137,10 +137,10 @@ static void copy_response(const lp_blob *blob, uint32_t c, lensprof_response *r)
 
 static void copy_covariance(const lp_blob *blob, lensprof_profile *profile) {
     const uint32_t n = profile->covariance_size = blob->bytes[LP_BLOB_COVARIANCE];
-    const uint8_t *at = blob->covariance;
+    const uint8_t *entry = blob->covariance;
     for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = i; j < n; j++, at += 8)
-            profile->covariance[i * n + j] = profile->covariance[j * n + i] = lp_f64_at(at);
+        for (uint32_t j = i; j < n; j++, entry += 8)
+            profile->covariance[i * n + j] = profile->covariance[j * n + i] = lp_f64_at(entry);
 }
 
 lensprof_status lensprof_profile_unpack(const void *data, size_t size, lensprof_profile *profile) {

@@ -16,9 +16,9 @@ static int begins(const char *text, const char *word) {
 /* Whether a text contains a word or words of a list as whole words: not adjacent to another letter. */
 static int has_word(const char *text, const char *const *words, size_t count) {
     for (size_t w = 0; w < count; w++)
-        for (const char *at = text; *at; at++) {
-            if ((at > text && is_letter(at[-1])) || !begins(at, words[w])) continue;
-            const char *end = at;
+        for (const char *start = text; *start; start++) {
+            if ((start > text && is_letter(start[-1])) || !begins(start, words[w])) continue;
+            const char *end = start;
             for (const char *c = words[w]; *c; c++) end++;
             if (!is_letter(end[-1]) || !is_letter(*end)) return 1;
         }

@@ -23,8 +23,8 @@ double lp_falloff_variance(const double *covariance, uint32_t n, uint32_t first,
 static inline double lp_corner_variance(const double *covariance, uint32_t n, uint32_t first, uint32_t curves) {
     double largest = LENSPROF_UNKNOWN;
     for (uint32_t curve = 0; curve < curves; curve++) {
-        const double own = lp_falloff_variance(covariance, n, lp_covariance_index(first, curve), 1.0);
-        if (own > largest) largest = own;
+        const double variance = lp_falloff_variance(covariance, n, lp_covariance_index(first, curve), 1.0);
+        if (variance > largest) largest = variance;
     }
     return largest;
 }

@@ -89,8 +89,9 @@ static void approach_white(const uint32_t *value, int32_t *gain) {
     const uint32_t t = share_of(ramp(brightest, 117963, 83888051), ramp(darkest, 78642, 20971861));
     for (uint32_t c = 0; c < 3 && t; c++) {
         const int32_t off = gain[c] - largest;
-        const uint32_t whole = (uint32_t)(-(off >> LP_LOG_SHIFT));
-        const uint32_t share = whole > 30 ? 0 : exp2_of((uint32_t)off & FRACTION) >> whole; /* of the largest gain */
+        const uint32_t octaves = (uint32_t)(-(off >> LP_LOG_SHIFT));
+        const uint32_t share =
+            octaves > 30 ? 0 : exp2_of((uint32_t)off & FRACTION) >> octaves; /* of the largest gain */
         const uint32_t raised = share + share_of((1u << 30) - share, t);
         gain[c] = largest + log2_of(raised) - (30 << LP_LOG_SHIFT);
     }
@@ -118,10 +119,10 @@ static uint8_t code_of(const int32_t *thresholds, int32_t light) {
 
 /* A linear 16-bit code times 2^gain, rounded to nearest, clipped. */
 static uint16_t multiplied(uint32_t code, int32_t gain) {
-    const int32_t whole = gain >> LP_LOG_SHIFT; /* towards minus infinity */
-    if (whole < -17 || !code) return 0;
-    if (whole > 15) return 65535;
-    const uint32_t shift = (uint32_t)(30 - whole);
+    const int32_t octaves = gain >> LP_LOG_SHIFT; /* towards minus infinity */
+    if (octaves < -17 || !code) return 0;
+    if (octaves > 15) return 65535;
+    const uint32_t shift = (uint32_t)(30 - octaves);
     const uint64_t result = ((uint64_t)code * exp2_of((uint32_t)gain & FRACTION) + (1ull << (shift - 1))) >> shift;
     return result < 65535 ? (uint16_t)result : 65535;
 }

@@ -31,8 +31,8 @@ static int is_reach_sound(const lensprof_fixed_plan *plan) {
     uint64_t r2 = 0;
     for (int d = 0; d < 2; d++) {
         if (!size[d] || size[d] > LP_LARGEST_SIDE || plan->center[d] <= -(1 << 30)) return 0;
-        const int64_t before = plan->center[d], behind = ((int64_t)(size[d] - 1) << LP_CENTER_SHIFT) - before;
-        const uint64_t reach = (uint64_t)(before > behind ? before : behind);
+        const int64_t before = plan->center[d], after = ((int64_t)(size[d] - 1) << LP_CENTER_SHIFT) - before;
+        const uint64_t reach = (uint64_t)(before > after ? before : after);
         r2 += reach * reach;
     }
     return plan->reach_shift < 44 && !(r2 >> (63 - plan->reach_shift));

@@ -116,9 +116,10 @@ static lensprof_status validate(const lensprof_apply_options *given, lensprof_ap
 }
 
 size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options) {
-    lensprof_apply_options own;
+    lensprof_apply_options local_options;
     lp_model model;
-    return options && validate(options, &own, &model, NULL) == LENSPROF_OK ? bytes_of(&own, &model) : 0;
+    return options && validate(options, &local_options, &model, NULL) == LENSPROF_OK ? bytes_of(&local_options, &model)
+                                                                                     : 0;
 }
 
 static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
@@ -150,12 +151,12 @@ static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_option
 lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lensprof_apply_options *given,
                                          const lensprof_fixed_plan **result, lensprof_error *error) {
     if (!memory || !given || !result) return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "memory, options or plan is NULL");
-    lensprof_apply_options own;
-    const lensprof_apply_options *options = &own;
+    lensprof_apply_options local_options;
+    const lensprof_apply_options *options = &local_options;
     lensprof_fixed_plan head;
     memset(&head, 0, sizeof head);
     lp_model model;
-    const lensprof_status status = validate(given, &own, &model, error);
+    const lensprof_status status = validate(given, &local_options, &model, error);
     if (status != LENSPROF_OK) return status;
     prepare_layout(&head, options, &model);
     if (!prepare_falloffs(&head, options, &model))

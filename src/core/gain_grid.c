@@ -10,9 +10,9 @@ void lensprof_gain_grid_init(lensprof_gain_grid *grid) { memset(grid, 0, sizeof 
 
 lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid) {
     if (!grid || grid->reserved) return LENSPROF_ERROR_ARGUMENT;
-    int none = !grid->columns && !grid->rows;
-    if (!none && (!lp_is_grid_side(grid->columns) || !lp_is_grid_side(grid->rows))) return LENSPROF_ERROR_SIZE;
-    if (none ? grid->channels != 0 : grid->channels != 1 && grid->channels != 3) return LENSPROF_ERROR_ARGUMENT;
+    int is_empty = !grid->columns && !grid->rows;
+    if (!is_empty && (!lp_is_grid_side(grid->columns) || !lp_is_grid_side(grid->rows))) return LENSPROF_ERROR_SIZE;
+    if (is_empty ? grid->channels != 0 : grid->channels != 1 && grid->channels != 3) return LENSPROF_ERROR_ARGUMENT;
     uint32_t used = grid->channels * grid->rows * grid->columns;
     for (uint32_t i = 0; i < used; i++) {
         if (!isfinite(grid->attenuation[i])) return LENSPROF_ERROR_NOT_FINITE;

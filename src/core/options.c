@@ -34,9 +34,9 @@ lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *optio
     return LENSPROF_OK;
 }
 
-lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *own) {
-    lensprof_apply_options_init(own);
-    return lp_sized_take(own, given, FIRST_OPTIONS) ? LENSPROF_ERROR_STRUCT_SIZE : LENSPROF_OK;
+lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *options) {
+    lensprof_apply_options_init(options);
+    return lp_sized_take(options, given, FIRST_OPTIONS) ? LENSPROF_ERROR_STRUCT_SIZE : LENSPROF_OK;
 }
 
 static void view_response(struct lp_model_response *view, const lensprof_response *response) {
@@ -172,14 +172,14 @@ static lensprof_status validate_options(const lensprof_apply_options *o, lenspro
     return status == LENSPROF_OK && !o->blob ? validate_structs(o, error) : status;
 }
 
-lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model,
-                                    lensprof_error *error) {
-    lensprof_apply_options_init(own);
-    const char *wrong = lp_sized_take(own, given, FIRST_OPTIONS);
+lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *options,
+                                    lp_model *model, lensprof_error *error) {
+    lensprof_apply_options_init(options);
+    const char *wrong = lp_sized_take(options, given, FIRST_OPTIONS);
     if (wrong) return lp_fail(error, LENSPROF_ERROR_STRUCT_SIZE, wrong);
-    lensprof_status status = validate_options(own, error);
+    lensprof_status status = validate_options(options, error);
     if (status != LENSPROF_OK) return status;
-    status = lp_options_model(own, model);
-    if (status == LENSPROF_OK) return validate_responses(own->output_response, own->output_responses, error);
-    return lp_fail(error, status, own->blob ? "invalid blob, or blob and curves" : "grid or output is invalid");
+    status = lp_options_model(options, model);
+    if (status == LENSPROF_OK) return validate_responses(options->output_response, options->output_responses, error);
+    return lp_fail(error, status, options->blob ? "invalid blob, or blob and curves" : "grid or output is invalid");
 }

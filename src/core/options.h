@@ -12,15 +12,15 @@
 #define LP_MEMORY_TEXT "memory is too small or unaligned"
 
 /* Converts the caller's options, of any version, to this library's: OK or STRUCT_SIZE. */
-lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *own);
+lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *options);
 
 /* The model. For structs, checks only what its size depends on; the vignetting may not be set yet. */
 lensprof_status lp_options_model(const lensprof_apply_options *options, lp_model *model);
 
 /* The status and text that lensprof_plan_init returns for the caller's options; also these options in this library's
  * version, and their model. */
-lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model,
-                                    lensprof_error *error);
+lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *options,
+                                    lp_model *model, lensprof_error *error);
 
 /* The response with which pixels are encoded, for input and for output. Grey is treated as green. */
 enum lp_end {

@@ -52,16 +52,16 @@ static double white_of(uint32_t sample, uint32_t curve) {
 static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m, uint32_t channel) {
     const double w = o->frame_width, h = o->frame_height, per_rho2 = 4.0 / (w * w + h * h);
     const double *k = m->vignetting[m->vignettings == 3 ? channel : 0].k;
-    const uint32_t at = plan->channels == 1 ? 0 : channel; /* grey is treated as green */
+    const uint32_t row = plan->channels == 1 ? 0 : channel; /* grey is treated as green */
     double scale = plan->columns ? 1.0 : o->strength;
-    for (int n = 0; n < 3; n++) plan->k[at][n] = (float)(k[n] * (scale *= per_rho2));
+    for (int n = 0; n < 3; n++) plan->k[row][n] = (float)(k[n] * (scale *= per_rho2));
     const double units =
         (plan->encode == LP_CURVE_TABLE ? LENSPROF_RESPONSE_SAMPLES - 1 : white_of(o->target_sample, plan->encode))
         / white_of(o->source_sample, plan->decode);
     const double ratio = lp_exposure_ratio(o, channel);
-    plan->factor[at] = (float)(plan->simulate ? ratio / units : ratio * units);
-    plan->times[at] = 1.0f;
-    if (at != channel) plan->nodes[at] = plan->nodes[channel];
+    plan->factor[row] = (float)(plan->simulate ? ratio / units : ratio * units);
+    plan->times[row] = 1.0f;
+    if (row != channel) plan->nodes[row] = plan->nodes[channel];
 }
 
 /* Channels that differ only in their factors share one division per pixel, if the rounding has no visible effect. */
@@ -99,10 +99,10 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, 
 lensprof_status lensprof_plan_init(void *memory, size_t size, const lensprof_apply_options *given,
                                    const lensprof_plan **result, lensprof_error *error) {
     if (!memory || !given || !result) return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "memory, options or plan is NULL");
-    lensprof_apply_options own;
-    const lensprof_apply_options *options = &own;
+    lensprof_apply_options local_options;
+    const lensprof_apply_options *options = &local_options;
     lp_model model;
-    const lensprof_status status = lp_options_validate(given, &own, &model, error);
+    const lensprof_status status = lp_options_validate(given, &local_options, &model, error);
     if (status != LENSPROF_OK) return status;
     if (size < bytes_of(options, &model) || (uintptr_t)memory % 8)
         return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);

@@ -10,11 +10,11 @@
 static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     uint32_t kind = LP_CURVE_NONE;
     for (uint32_t c = 0; c < lp_curves(o, m); c++) {
-        uint32_t own = lp_response(o, m, end, c)->kind;
-        own = own == LENSPROF_RESPONSE_LINEAR  ? LP_CURVE_CLIP
-              : own == LENSPROF_RESPONSE_GAMMA ? LP_CURVE_POWER
-                                               : LP_CURVE_TABLE;
-        kind = c && own != kind ? (uint32_t)LP_CURVE_MIXED : own;
+        uint32_t curve_kind = lp_response(o, m, end, c)->kind;
+        curve_kind = curve_kind == LENSPROF_RESPONSE_LINEAR  ? LP_CURVE_CLIP
+                     : curve_kind == LENSPROF_RESPONSE_GAMMA ? LP_CURVE_POWER
+                                                             : LP_CURVE_TABLE;
+        kind = c && curve_kind != kind ? (uint32_t)LP_CURVE_MIXED : curve_kind;
         if (kind == LP_CURVE_MIXED) break;
     }
     return kind;
@@ -110,10 +110,11 @@ float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, c
         plan->inverse_exponent[c] = lp_is_power(in) ? (float)in->gamma : 0.0f;
         if (codes) fill_inverse(in, codes, inverse + c * codes);
         float *to = memory + c * forward; /* f of the output, then that of the input if it has another table */
-        const struct lp_model_response *of = out;
+        const struct lp_model_response *response = out;
         for (size_t left = forward, end = 0; end < 2; end++) { /* not read if there is an exponent */
-            for (size_t j = 0; j < left; j++) to[j] = lp_is_power(of) ? 0.0f : (float)lp_model_sample(of, (uint32_t)j);
-            to = memory + plan->curves * forward + c * backward, of = in, left = backward;
+            for (size_t j = 0; j < left; j++)
+                to[j] = lp_is_power(response) ? 0.0f : (float)lp_model_sample(response, (uint32_t)j);
+            to = memory + plan->curves * forward + c * backward, response = in, left = backward;
         }
         memset(start + c * starts, 0, starts * sizeof *start);
         if (starts && !lp_is_power(in))

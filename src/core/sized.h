@@ -30,24 +30,25 @@ static inline int lp_sized_begin(void *given, size_t size, size_t first) {
     return size >= first;
 }
 
-/* NULL if a struct of this library (`own` bytes) is compatible with the given one, else why not and what to do. */
-static inline const char *lp_sized_wrong(const void *given, size_t first, size_t own) {
+/* NULL if a struct of this library (`current_bytes`) is compatible with the given one, else why not and what to do. */
+static inline const char *lp_sized_wrong(const void *given, size_t first, size_t current_bytes) {
     const uint32_t bytes = lp_sized_bytes(given);
     if (bytes < first) return "struct_size is not set; call the struct's _init function first";
-    if (bytes > own) return "struct_size is that of a newer lensprof than this library; install the newer library";
+    if (bytes > current_bytes)
+        return "struct_size is that of a newer lensprof than this library; install the newer library";
     return NULL;
 }
 
 /* Copies the members that both have, except struct_size. */
 static inline void lp_sized_copy(void *to, const void *from) {
-    const uint32_t there = lp_sized_bytes(to), here = lp_sized_bytes(from), head = sizeof here;
-    memcpy((char *)to + head, (const char *)from + head, (there < here ? there : here) - head);
+    const uint32_t to_bytes = lp_sized_bytes(to), from_bytes = lp_sized_bytes(from), head = sizeof from_bytes;
+    memcpy((char *)to + head, (const char *)from + head, (to_bytes < from_bytes ? to_bytes : from_bytes) - head);
 }
 
-/* Copies the given members into `own`, which is initialised. Returns NULL, or the error of lp_sized_wrong. */
-static inline const char *lp_sized_take(void *own, const void *given, size_t first) {
-    const char *wrong = lp_sized_wrong(given, first, lp_sized_bytes(own));
-    if (!wrong) lp_sized_copy(own, given);
+/* Copies the given members into `target`, which is initialised. Returns NULL, or the error of lp_sized_wrong. */
+static inline const char *lp_sized_take(void *target, const void *given, size_t first) {
+    const char *wrong = lp_sized_wrong(given, first, lp_sized_bytes(target));
+    if (!wrong) lp_sized_copy(target, given);
     return wrong;
 }
 

@@ -27,9 +27,12 @@ static uint32_t most_lanes(void) {
 }
 
 lp_row_kernel *lp_row_best(uint32_t lanes) {
-    uint32_t most = most_lanes();
-    if (lanes && lanes < most) most = lanes;
-    return most >= 16 ? lp_row_avx512 : most >= 8 ? lp_row_avx2 : most >= 4 ? lp_row_sse41 : lp_row_scalar;
+    uint32_t max_lanes = most_lanes();
+    if (lanes && lanes < max_lanes) max_lanes = lanes;
+    return max_lanes >= 16  ? lp_row_avx512
+           : max_lanes >= 8 ? lp_row_avx2
+           : max_lanes >= 4 ? lp_row_sse41
+                            : lp_row_scalar;
 }
 #elif defined(__aarch64__) && defined(LENSPROF_KERNELS)
 lp_row_kernel *lp_row_best(uint32_t lanes) { return lanes == 0 || lanes >= 4 ? lp_row_neon : lp_row_scalar; }

@@ -27,8 +27,8 @@ ALWAYS_INLINE lane_f power(lane_f x, lane_f e) {
 }
 
 /* Clamps to 0..most; 0 for NaN. `is_light`: numbers not below 0. */
-ALWAYS_INLINE lane_f cut(lane_f x, int is_light, float most) {
-    return f_min(is_light ? x : f_max(x, f_set(0.0f)), f_set(most));
+ALWAYS_INLINE lane_f cut(lane_f x, int is_light, float limit) {
+    return f_min(is_light ? x : f_max(x, f_set(0.0f)), f_set(limit));
 }
 
 /* f(position / LAST) from its samples, 0 <= position <= LAST. One extra number follows them. */
@@ -49,10 +49,10 @@ ALWAYS_INLINE lane_i cell_of(lane_f b, lane_i channel) {
 /* g(b) from the four samples of f at place `low` and after, one of which is the last below b: the smallest x with
  * f(x) >= b. */
 ALWAYS_INLINE lane_f between_four(const lane_f four[4], lane_i low, lane_f b) {
-    const lane_b one = f_less(four[1], b), two = f_less(four[2], b);
-    const lane_f below = f_pick(two, four[2], f_pick(one, four[1], four[0]));
-    const lane_f above = f_pick(two, four[3], f_pick(one, four[2], four[1]));
-    const lane_f on = f_pick(two, f_set(2.0f), f_pick(one, f_set(1.0f), f_set(0.0f)));
+    const lane_b is_second = f_less(four[1], b), is_third = f_less(four[2], b);
+    const lane_f below = f_pick(is_third, four[2], f_pick(is_second, four[1], four[0]));
+    const lane_f above = f_pick(is_third, four[3], f_pick(is_second, four[2], four[1]));
+    const lane_f on = f_pick(is_third, f_set(2.0f), f_pick(is_second, f_set(1.0f), f_set(0.0f)));
     const lane_f rise = f_sub(above, below);
     const lane_f share = f_div(f_sub(b, below), f_pick(f_less(f_set(0.0f), rise), rise, f_set(1.0f)));
     const lane_f x = f_mul(f_add(f_add(f_of_i(low), on), share), f_set(1.0f / (float)LAST));
@@ -63,17 +63,17 @@ ALWAYS_INLINE lane_f between_four(const lane_f four[4], lane_i low, lane_f b) {
 ONCE_IN_SCALAR lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel) {
     const float *samples = plan->backward;
     const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
-    int32_t at[LANES];
+    int32_t index[LANES];
     lane_f four[4];
-    i_store(at, cell_of(b, channel));
-    for (uint32_t i = 0; i < LANES; i++) at[i] = plan->start[at[i]];
-    lane_i low = i_load(at);
+    i_store(index, cell_of(b, channel));
+    for (uint32_t i = 0; i < LANES; i++) index[i] = plan->start[index[i]];
+    lane_i low = i_load(index);
     for (int32_t step = plan->step; step > 0; step /= 2) {
         const lane_i next = i_min(i_add(low, i_set(step)), i_set(LAST - 3));
         low = i_pick(f_less(f_gather(samples, i_add(next, first)), b), next, low);
     }
-    i_store(at, i_add(low, first));
-    f_fours(samples, at, four);
+    i_store(index, i_add(low, first));
+    f_fours(samples, index, four);
     return between_four(four, low, b);
 }
 

@@ -4,9 +4,9 @@
  * precision loses less. */
 static void blend_rows(const lensprof_plan *plan, uint32_t y, strip *s) {
     uint32_t last = plan->rows - 1, pixels = plan->frame_height > 1 ? plan->frame_height - 1 : 1;
-    uint32_t at = y * last, node = at / pixels;
+    uint32_t position = y * last, node = position / pixels;
     if (node >= last) node = last - 1;
-    float v = (float)(at - node * pixels) / (float)pixels;
+    float v = (float)(position - node * pixels) / (float)pixels;
     for (uint32_t c = 0; c < plan->gains; c++) {
         const float *above = plan->nodes[c] + node * plan->columns, *below = above + plan->columns;
         for (uint32_t i = 0; i < plan->columns; i++) s->grid[c][i] = above[i] + v * (below[i] - above[i]);
@@ -57,13 +57,13 @@ static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint
         for (uint32_t c = 0; c < LP_CHANNELS; c++)
             for (uint32_t i = 0; i < count; i++) s->factor[c * (STRIP + LANES) + i] = gain[c][i] * plan->times[c];
     } else if (plan->samples == 1) { /* grey and mosaics */
-        const float *of[2];
+        const float *site_gain[2];
         float times[2];
         for (uint32_t parity = 0; parity < 2; parity++) {
             const uint32_t c = plan->site[y & 1][(x + parity) & 1];
-            of[parity] = gain[c], times[parity] = plan->times[c];
+            site_gain[parity] = gain[c], times[parity] = plan->times[c];
         }
-        for (uint32_t i = 0; i < count; i++) s->factor[i] = of[i & 1][i] * times[i & 1];
+        for (uint32_t i = 0; i < count; i++) s->factor[i] = site_gain[i & 1][i] * times[i & 1];
     } else if (plan->samples == 3) {
         const uint8_t *channel = plan->channel_of_sample;
         const lane_f times[3] = {f_set(plan->times[channel[0]]), f_set(plan->times[channel[1]]),

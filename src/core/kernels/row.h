@@ -28,9 +28,9 @@ static void approach_white(strip *s, uint32_t count, uint32_t pitch, uint32_t st
         const float *value = s->light + i * step;
         float *gain = s->factor + i * step, brightest = 0.0f, darkest = 1.0f, largest = 0.0f;
         for (uint32_t c = 0; c < 3; c++) {
-            float one = value[c * pitch] / unit;
-            if (one > brightest) brightest = one;
-            if (!(one > darkest)) darkest = one;
+            float sample = value[c * pitch] / unit;
+            if (sample > brightest) brightest = sample;
+            if (!(sample > darkest)) darkest = sample;
             if (gain[c * pitch] > largest) largest = gain[c * pitch];
         }
         float t = ramp(brightest, 0.9f) * ramp(darkest, 0.6f);
@@ -114,19 +114,19 @@ ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t
 
 ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample,
                             uint32_t curve) {
-    lensprof_plan own = *shared; /* which no store can change */
-    const lensprof_plan *plan = &own;
+    lensprof_plan local_plan = *shared; /* which no store can change */
+    const lensprof_plan *plan = &local_plan;
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
     const int is_inside = sample != LENSPROF_SAMPLE_F32 && curve != LP_CURVE_NONE;
     uint32_t i = 0;
-    own.curves = 1, own.dither = 0, own.encode = curve;
+    local_plan.curves = 1, local_plan.dither = 0, local_plan.encode = curve;
     for (; i + LANES <= r->count; i += LANES) {
         const lane_f light = through(plan, s, sample, curve, r->at + i, r->from + i * bytes);
         store_vector(plan, sample, is_inside, s, r->at + i, light, r->to + i * bytes);
     }
     if (i < r->count) {
-        float room[2][LANES] = {{0.0f}, {0.0f}};
-        uint8_t *in = (uint8_t *)room[0], *out = (uint8_t *)room[1];
+        float buffer[2][LANES] = {{0.0f}, {0.0f}};
+        uint8_t *in = (uint8_t *)buffer[0], *out = (uint8_t *)buffer[1];
         memcpy(in, r->from + i * bytes, (r->count - i) * bytes);
         store_vector(plan, sample, is_inside, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out);
         memcpy(r->to + i * bytes, out, (r->count - i) * bytes);
@@ -156,14 +156,14 @@ static int do_one_pass(const lensprof_plan *plan, const run *r, strip *s) {
 
 /* The largest value; 0 if all are NaN. */
 static float largest_value(const float *values, uint32_t count) {
-    lane_f mosts = f_set(0.0f);
-    float each[LANES], most = 0.0f;
+    lane_f maxima = f_set(0.0f);
+    float lanes[LANES], largest = 0.0f;
     uint32_t i = 0;
-    for (; LANES > 1 && i + LANES <= count; i += LANES) mosts = f_max(f_load(values + i), mosts);
-    f_store(each, mosts);
-    for (; i < count; i++) most = values[i] > most ? values[i] : most;
-    for (i = 0; i < LANES; i++) most = each[i] > most ? each[i] : most;
-    return most;
+    for (; LANES > 1 && i + LANES <= count; i += LANES) maxima = f_max(f_load(values + i), maxima);
+    f_store(lanes, maxima);
+    for (; i < count; i++) largest = values[i] > largest ? values[i] : largest;
+    for (i = 0; i < LANES; i++) largest = lanes[i] > largest ? lanes[i] : largest;
+    return largest;
 }
 
 /* The largest of the codes or values of a run; 0 if all are NaN. Written so that compilers vectorise it. */
@@ -221,12 +221,12 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
     for (uint32_t p = 0; p < planes; p++) {
         run r = runs[p];
 #if CAN_STREAM
-        ALIGNED_TO_VECTORS uint8_t room[4 * MOST_SAMPLES];
-        if (stream) r.to = room;
+        ALIGNED_TO_VECTORS uint8_t buffer[4 * MOST_SAMPLES];
+        if (stream) r.to = buffer;
 #endif
         do_run(plan, &r, near_white, s);
 #if CAN_STREAM
-        if (stream) stream_copy(runs[p].to, room, r.count * lensprof_sample_type_bytes(plan->target_sample));
+        if (stream) stream_copy(runs[p].to, buffer, r.count * lensprof_sample_type_bytes(plan->target_sample));
 #endif
     }
     (void)stream;

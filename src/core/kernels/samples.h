@@ -54,15 +54,15 @@ ALWAYS_INLINE lane_f load_values(uint32_t sample, const uint8_t *p) {
 }
 
 ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t count, float *light) {
-    const uint32_t bytes = lensprof_sample_type_bytes(sample), whole = count - count % LANES;
-    for (uint32_t i = 0; i < whole; i += LANES) {
+    const uint32_t bytes = lensprof_sample_type_bytes(sample), in_vectors = count - count % LANES;
+    for (uint32_t i = 0; i < in_vectors; i += LANES) {
         f_store(light + i, load_values(sample, from + i * bytes));
     }
-    if (whole < count) {
-        float room[LANES] = {0.0f};
-        uint8_t *last = (uint8_t *)room;
-        memcpy(last, from + whole * bytes, (count - whole) * bytes);
-        f_store(light + whole, load_values(sample, last));
+    if (in_vectors < count) {
+        float buffer[LANES] = {0.0f};
+        uint8_t *last = (uint8_t *)buffer;
+        memcpy(last, from + in_vectors * bytes, (count - in_vectors) * bytes);
+        f_store(light + in_vectors, load_values(sample, last));
     }
 }
 
@@ -117,8 +117,8 @@ ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, con
     for (; i + LANES <= count; i += LANES)
         store_vector(plan, sample, 0, s, at + i, f_load(s->light + at + i), to + i * bytes);
     if (i < count) {
-        float room[LANES];
-        uint8_t *last = (uint8_t *)room;
+        float buffer[LANES];
+        uint8_t *last = (uint8_t *)buffer;
         store_vector(plan, sample, 0, s, at + i, f_load(s->light + at + i), last);
         memcpy(to + i * bytes, last, (count - i) * bytes);
     }

@@ -55,17 +55,17 @@ static void values_by_table(const lensprof_plan *plan, const run *r, strip *s) {
 /* Light times gain to samples. First finds each position in the table: the sample before it and the fraction of the
  * way to the next; then reads the table. A fraction of NaN stays NaN. */
 ALWAYS_INLINE void light_by_table(const lensprof_plan *shared, const run *r, strip *s, uint32_t sample) {
-    lensprof_plan own = *shared; /* which no store can change */
-    const lensprof_plan *plan = &own;
+    lensprof_plan local_plan = *shared; /* which no store can change */
+    const lensprof_plan *plan = &local_plan;
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
     const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
-    const lane_f most = f_set((float)LAST);
+    const lane_f last_index = f_set((float)LAST);
     float *light = s->light + r->at, last[LANES] = {0.0f};
     int32_t *place = s->place + r->at;
-    own.dither = 0, own.encode = LP_CURVE_TABLE;
+    local_plan.dither = 0, local_plan.encode = LP_CURVE_TABLE;
     for (uint32_t i = 0; i < r->count; i += LANES) {
         const lane_f x = f_mul(f_load(light + i), f_load(s->factor + r->at + i));
-        const lane_f position = f_min(most, is_light ? x : f_max(f_set(0.0f), x));
+        const lane_f position = f_min(last_index, is_light ? x : f_max(f_set(0.0f), x));
         const lane_i j = i_least(i_of_f(position), i_set(LAST));
         f_store(light + i, f_sub(position, f_of_i(j)));
         i_store(place + i, j);
