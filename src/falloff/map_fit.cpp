@@ -15,7 +15,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kMostSamples = 128;   // of a map, a side: more tell a polynomial nothing
+constexpr uint32_t kMaxSamples = 128;    // of a map, a side: more tell a polynomial nothing
 constexpr double kGridFrom = 0.002;      // relative error of a radial falloff that a grid is for
 constexpr uint32_t kGridNodes = 24;      // along the longer side
 constexpr size_t kFewValues = 4;         // of a map, a node
@@ -29,7 +29,7 @@ struct Sample {
     double x, y, value;
 };
 
-// The known values of a channel over its largest, at most kMostSamples a side.
+// The known values of a channel over its largest, at most kMaxSamples a side.
 struct Channel {
     double largest;
     std::vector<Sample> samples;
@@ -40,7 +40,7 @@ Channel channel_of(const FalloffMap &map, uint32_t index) {
     const double *values = map.attenuation.data() + size * index;
     Channel channel{*std::max_element(values, values + size), {}};
     if (!(channel.largest > 0.0)) fail("the map has no value above 0; correct it");
-    const uint32_t across = std::min(map.columns, kMostSamples), down = std::min(map.rows, kMostSamples);
+    const uint32_t across = std::min(map.columns, kMaxSamples), down = std::min(map.rows, kMaxSamples);
     for (uint32_t b = 0; b < down; b++)
         for (uint32_t a = 0; a < across; a++) {
             const uint32_t i = static_cast<uint32_t>((2 * uint64_t(a) + 1) * map.columns / (2 * across));
@@ -265,7 +265,7 @@ void place_as_cells(FalloffMap &map) {
 FalloffMap sampled_map(uint32_t width, uint32_t height, uint32_t channels, const Attenuation &attenuation) {
     const double longer = std::max(width, height);
     const auto cells = [&](uint32_t side) {
-        return std::min(side, static_cast<uint32_t>(std::ceil(kMostSamples * (side / longer))));
+        return std::min(side, static_cast<uint32_t>(std::ceil(kMaxSamples * (side / longer))));
     };
     FalloffMap map{width, height, cells(width), cells(height), channels, 0, 0, 0, 0, {}};
     place_as_cells(map);

@@ -10,7 +10,7 @@ namespace lensprof {
 
 PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
                       PowerSample (*sample_at)(const void *context, int i), const void *context) {
-    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostPowers, kMostPowers>;
+    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxPowers, kMaxPowers>;
     Matrix normal = Matrix::Zero(count, count);
     PowerTerms terms = PowerTerms::Zero(count), right(count), row(count);
     Eigen::LDLT<Matrix> factor;

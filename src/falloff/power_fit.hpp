@@ -20,12 +20,12 @@ struct PowerSample {
     double r2, value, weight;
 };
 
-constexpr int kMostPowers = 6;
+constexpr int kMaxPowers = 6;
 
 // Bounded, which keeps it off the heap.
-using PowerTerms = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostPowers, 1>;
+using PowerTerms = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPowers, 1>;
 
-// c for the powers p[count], 1 <= count <= kMostPowers, of the samples sample_at(of, 0), ..., sample_at(of, samples -
+// c for the powers p[count], 1 <= count <= kMaxPowers, of the samples sample_at(of, 0), ..., sample_at(of, samples -
 // 1).
 PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
                       PowerSample (*sample_at)(const void *context, int i), const void *context);

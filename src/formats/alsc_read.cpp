@@ -13,8 +13,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double kMostGain = 1000.0;
-constexpr size_t kMostValues = 65536;
+constexpr double kMaxGain = 1000.0;
+constexpr size_t kMaxValues = 65536;
 
 // The algorithm's object: the text itself, a member of it, or one of the algorithms of a tuning file.
 JsonValue find_alsc(const JsonValue &root) {
@@ -44,9 +44,9 @@ void find_shape(const JsonValue &table, size_t count, uint32_t &columns, uint32_
 }
 
 std::vector<double> gains_of(const JsonValue &table) {
-    const std::vector<double> gains = table.numbers(4, kMostValues);
+    const std::vector<double> gains = table.numbers(4, kMaxValues);
     for (size_t i = 0; i < gains.size(); i++)
-        if (!(gains[i] >= 1.0 / kMostGain && gains[i] <= kMostGain))
+        if (!(gains[i] >= 1.0 / kMaxGain && gains[i] <= kMaxGain))
             table.fail(
                 "has " + number_text(gains[i]) + " at " + std::to_string(i) + ", which is not a gain; correct it",
                 LENSPROF_ERROR_VIGNETTING);

@@ -14,7 +14,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kMostSide = 256;
+constexpr uint32_t kMaxSide = 256;
 constexpr double kSigma = 0.005;  // what the tuning tool writes for a single colour temperature
 
 struct Shape {
@@ -65,7 +65,7 @@ void write_tables(JsonWriter &json, const std::vector<double> &attenuation, doub
 std::string alsc_text(const lensprof_profile &profile, double ct, const Shape &shape) {
     check_profile(profile);
     check_frame(shape.width, shape.height);
-    if (shape.columns < 2 || shape.rows < 2 || shape.columns > kMostSide || shape.rows > kMostSide)
+    if (shape.columns < 2 || shape.rows < 2 || shape.columns > kMaxSide || shape.rows > kMaxSide)
         throw FormatFailure{LENSPROF_ERROR_SIZE, "tables of " + std::to_string(shape.columns) + " x "
                                                      + std::to_string(shape.rows) + "; give 16 x 12 or 32 x 32"};
     JsonWriter json;

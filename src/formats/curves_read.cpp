@@ -11,7 +11,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kMostBytes = size_t{64} << 20;
+constexpr size_t kMaxBytes = size_t{64} << 20;
 constexpr double kEven = 1e-4;  // of a step, that the first column may be off by rounding
 
 struct Row {
@@ -44,7 +44,7 @@ std::vector<std::string_view> split(std::string_view line) {
 class CurveText {
 public:
     explicit CurveText(std::string_view text) {
-        if (text.size() > kMostBytes)
+        if (text.size() > kMaxBytes)
             throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB; give a table of a response"};
         LineReader lines(text);
         while (lines.next()) add_line(lines.line, lines.number);
@@ -80,7 +80,7 @@ private:
         if (!rows.empty() && rows[0].values.size() != row.values.size())
             fail_at_line(number, std::to_string(row.values.size()) + " columns, but the first row has "
                                      + std::to_string(rows[0].values.size()) + "; correct it");
-        if (rows.size() == kMostCurveRows)
+        if (rows.size() == kMaxCurveRows)
             fail_at_line(number, "over 65536 rows; give a shorter table", LENSPROF_ERROR_SIZE);
         rows.push_back(std::move(row));
     }

@@ -51,7 +51,7 @@ lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32
                                       uint32_t rows, void *data, size_t capacity, size_t *count,
                                       lensprof_error *error) {
     if (!responses || (response_count != 1 && response_count != 3) || curve > LENSPROF_CURVE_FORWARD || rows < 2
-        || rows > kMostCurveRows || (!data && capacity)) {
+        || rows > kMaxCurveRows || (!data && capacity)) {
         set_error(error,
                   "lensprof_curves_write: give 1 or 3 responses, a lensprof_curve, 2 to 65536 rows and a buffer");
         return LENSPROF_ERROR_ARGUMENT;

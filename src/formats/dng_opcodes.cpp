@@ -12,8 +12,8 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t kTrimBounds = 6;
-constexpr size_t kMostGains = 64;
-constexpr uint64_t kMostPoints = 1u << 20;
+constexpr size_t kMaxGains = 64;
+constexpr uint64_t kMaxPoints = 1u << 20;
 constexpr const char *kNames[] = {nullptr,
                                   "WarpRectilinear",
                                   "WarpFisheye",
@@ -159,7 +159,7 @@ private:
         const bool gain = id == kFixVignetteRadial || id == kGainMap;
         demand(!gain || !trimmed_, "a gain after TrimBounds, which lensprof does not support; remove it",
                LENSPROF_ERROR_UNSUPPORTED);
-        demand(!gain || gains_.radial.size() + gains_.maps.size() < kMostGains, "over 64 gains; leave some out",
+        demand(!gain || gains_.radial.size() + gains_.maps.size() < kMaxGains, "over 64 gains; leave some out",
                LENSPROF_ERROR_SIZE);
         if (id == kFixVignetteRadial)
             gains_.radial.push_back(read_radial(payload));
@@ -173,7 +173,7 @@ private:
     BigEndian bytes_;
     OpcodeGains gains_{};
     std::string name_;
-    uint64_t points_left_ = kMostPoints;
+    uint64_t points_left_ = kMaxPoints;
     bool trimmed_ = false;
 };
 

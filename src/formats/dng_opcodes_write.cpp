@@ -14,9 +14,9 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kMostPoints = 33;  // of a map, along the longer side of the frame
-constexpr uint32_t kLeastPoints = 9;  // along the shorter one
-constexpr uint32_t kChecked = 131;    // places a side that the largest error is looked for at
+constexpr uint32_t kMaxPoints = 33;  // of a map, along the longer side of the frame
+constexpr uint32_t kMinPoints = 9;   // along the shorter one
+constexpr uint32_t kChecked = 131;   // places a side that the largest error is looked for at
 
 void demand(bool holds, const std::string &text, lensprof_status status = LENSPROF_ERROR_ARGUMENT) {
     if (!holds) throw FormatFailure{status, text};
@@ -91,7 +91,7 @@ double write_radial(const lensprof_profile &profile, PixelFrame frame, OpcodeByt
 GainMap whole_map(PixelFrame frame, uint32_t planes) {
     const double longer = std::max(frame.width, frame.height);
     const auto points = [&](uint32_t side) {
-        return std::max(kLeastPoints, static_cast<uint32_t>(std::lround((kMostPoints - 1) * (side / longer))) + 1);
+        return std::max(kMinPoints, static_cast<uint32_t>(std::lround((kMaxPoints - 1) * (side / longer))) + 1);
     };
     GainMap map{};
     map.bottom = frame.height, map.right = frame.width;

@@ -26,8 +26,8 @@ struct Space {
 
 constexpr Space kCamera = {"pix4d.com/camera", "Camera"}, kDji = {"dji.com/drone-dji", "drone-dji"},
                 kSentera = {"sentera.com/camera", "Sentera"}, kTiff = {"ns.adobe.com/tiff", "tiff"};
-constexpr size_t kMostTerms = 16;   // of a radial polynomial
-constexpr size_t kMost2d = 64;      // of one in x and y
+constexpr size_t kMaxTerms = 16;    // of a radial polynomial
+constexpr size_t kMaxTerms2d = 64;  // of one in x and y
 constexpr double kGridFrom = 0.01;  // relative error of a radial falloff of even powers that a grid is for
 
 struct PixelSize {
@@ -233,13 +233,13 @@ bool DroneXmpReader::is_of_sentera() const {
 
 // Properties under the maker's own name come first; no terms if nothing is found.
 Written DroneXmpReader::read_radial() const {
-    Written written{packet_.numbers(kDji, "VignettingData", kMostTerms),
+    Written written{packet_.numbers(kDji, "VignettingData", kMaxTerms),
                     packet_.numbers(kDji, "CalibratedOpticalCenterX", 1), "CalibratedOpticalCenter"};
     const std::vector<double> below = packet_.numbers(kDji, "CalibratedOpticalCenterY", 1);
     written.center.insert(written.center.end(), below.begin(), below.end());
     if (!written.terms.empty()) return written;
     for (const Space &space : {kSentera, kCamera}) {
-        Written found{packet_.numbers(space, "VignettingPolynomial", kMostTerms),
+        Written found{packet_.numbers(space, "VignettingPolynomial", kMaxTerms),
                       packet_.numbers(space, "VignettingCenter", 2), "VignettingCenter"};
         if (is_of_sentera()) std::reverse(found.terms.begin(), found.terms.end());  // the highest power comes first
         if (!found.terms.empty()) return found;
@@ -258,8 +258,8 @@ std::array<double, 2> DroneXmpReader::center(const std::vector<double> &given, c
 }
 
 double DroneXmpReader::read_2d(lensprof_profile &profile) const {
-    const std::vector<double> powers = packet_.numbers(kCamera, "VignettingPolynomial2DName", 2 * kMost2d),
-                              terms = packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d);
+    const std::vector<double> powers = packet_.numbers(kCamera, "VignettingPolynomial2DName", 2 * kMaxTerms2d),
+                              terms = packet_.numbers(kCamera, "VignettingPolynomial2D", kMaxTerms2d);
     if (powers.size() != 2 * terms.size())
         packet_.fail(packet_.first(),
                      "VignettingPolynomial2DName does not have two powers for each number of "
@@ -290,7 +290,7 @@ std::string DroneXmpReader::read(const char *source, lensprof_profile &profile) 
     if (!radial.terms.empty()) {
         const std::array<double, 2> c = center(radial.center, radial.center_name);
         worst = fit_radial({radial.terms, {c[0], c[1]}, dji}, frame_, profile);
-    } else if (!packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d).empty()) {
+    } else if (!packet_.numbers(kCamera, "VignettingPolynomial2D", kMaxTerms2d).empty()) {
         worst = read_2d(profile);
     } else {
         throw FormatFailure{

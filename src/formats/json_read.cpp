@@ -14,7 +14,7 @@ namespace lensprof {
 namespace {
 
 constexpr double kSameCurve = 1e-6;  // between samples and the curve of their kind: blobs hold singles
-constexpr size_t kMostSamples = 65536;
+constexpr size_t kMaxSamples = 65536;
 
 void check(lensprof_status status, const JsonValue &value, const char *item) {
     if (status != LENSPROF_OK)
@@ -115,7 +115,7 @@ void read_curve(const JsonValue &object, const JsonValue &samples, lensprof_resp
     const uint32_t kind = read_word(object.required("kind"), kJsonResponseKinds);
     if (kind == LENSPROF_RESPONSE_TABLE) {
         if (!samples) object.fail("has no \"values\"; add them");
-        const std::vector<double> values = samples.numbers(2, kMostSamples);
+        const std::vector<double> values = samples.numbers(2, kMaxSamples);
         return check(lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size())),
                      samples, "not a response that rises from 0 to 1");
     }

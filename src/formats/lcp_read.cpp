@@ -23,7 +23,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kMostEntries = 20000, kMostKnots = 1000;
+constexpr size_t kMaxEntries = 20000, kMaxKnots = 1000;
 
 // A radius in focal lengths and the attenuation there.
 using Knot = std::pair<double, double>;
@@ -66,7 +66,7 @@ public:
             [](const pugi::xml_node &node) { return local_name(node.name()) == "CameraProfiles"; });
         if (!list) fail(xml_.root(), "no photoshop:CameraProfiles; give a lens profile (.lcp)");
         items_ = rdf_items(list);
-        if (items_.size() > kMostEntries) fail(list, "over 20000 entries; split the file", LENSPROF_ERROR_SIZE);
+        if (items_.size() > kMaxEntries) fail(list, "over 20000 entries; split the file", LENSPROF_ERROR_SIZE);
     }
 
     // Calls use(profile, falloff, remark) for every entry with a falloff until it does not return OK.
@@ -168,7 +168,7 @@ std::vector<Knot> LcpReader::read_knots(const RdfResource &model) const {
         if (r < 0.0 || (!knots.empty() && !(r > knots.back().first)))
             fail(model.node(), "VignetteModelPiecewiseParam: the radius of " + in_quotes(item)
                                    + " is not above the one before; sort them");
-        if (knots.size() == kMostKnots)
+        if (knots.size() == kMaxKnots)
             fail(model.node(), "VignetteModelPiecewiseParam: over 1000 knots; leave some out", LENSPROF_ERROR_SIZE);
         knots.emplace_back(r, value);
     }

@@ -11,7 +11,7 @@ namespace {
 constexpr size_t kRows = 256;
 constexpr double kFull = 255.0;
 // Between two values: six units of single precision, in which they are read, at 255.
-constexpr double kLeastStep = 1e-4;
+constexpr double kMinStep = 1e-4;
 
 lensprof_response read_pcalib(std::string_view text) {
     std::vector<double> values;
@@ -22,7 +22,7 @@ lensprof_response read_pcalib(std::string_view text) {
             if (!read_number(word, value))
                 fail_at_line(lines.number, "value " + std::to_string(values.size()) + " is " + in_quotes(word)
                                                + ", not a finite number; interpolate missing grey values");
-            if (values.size() == kMostCurveRows)
+            if (values.size() == kMaxCurveRows)
                 throw FormatFailure{LENSPROF_ERROR_SIZE, "over 65536 values; give one per grey value"};
             values.push_back(value);
         }
@@ -45,10 +45,10 @@ std::string pcalib_text(const lensprof_response &response) {
     check_response(response, "the response");
     std::vector<double> values = irradiances_of(response, kRows);
     values[0] = 0.0;
-    for (size_t i = 1; i < kRows; i++) values[i] = std::max(values[i] * kFull, values[i - 1] + kLeastStep);
+    for (size_t i = 1; i < kRows; i++) values[i] = std::max(values[i] * kFull, values[i - 1] + kMinStep);
     values[kRows - 1] = kFull;
-    for (size_t i = kRows - 1; i-- > 0 && values[i + 1] - values[i] < kLeastStep / 2.0;)
-        values[i] = values[i + 1] - kLeastStep;
+    for (size_t i = kRows - 1; i-- > 0 && values[i + 1] - values[i] < kMinStep / 2.0;)
+        values[i] = values[i + 1] - kMinStep;
     std::string text;
     for (size_t i = 0; i < kRows; i++) text += (i ? " " : "") + number_text(values[i]);
     return text + "\n";

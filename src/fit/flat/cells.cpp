@@ -11,12 +11,12 @@ namespace lensprof {
 namespace {
 
 constexpr int kCells = 96;               // along the longer side
-constexpr int kFewestPixels = 8;         // of the smallest view, along a cell
+constexpr int kMinPixels = 8;            // of the smallest view, along a cell
 constexpr double kSmallestPart = 0.9;    // of a cell's pixels that must be on the card
 constexpr double kLargestBeyond = 0.01;  // of a cell's pixels beyond black or white: more would bias its mean
 constexpr float kCut = 3.0f;             // sigmas from the median that the mean includes
 constexpr float kFar = 5.0f;             // sigmas: not noise
-constexpr double kFewestLow = 4.0;       // pixels far below the rest: fewer occur by chance, or are single dead pixels
+constexpr double kMinLowPixels = 4.0;    // pixels far below the rest: fewer occur by chance, or are single dead pixels
 constexpr size_t kNoiseLevels = 8;       // grey levels of a noise curve
 
 // One step of the samples: the smallest difference of two neighbours that are not equal.
@@ -55,7 +55,7 @@ Robust robust_mean_of(std::vector<float> &values, float noise) {
         low += v < center - kFar * spread;
     }
     return {center + static_cast<float>(sum / std::max(kept, 1.0)),
-            low < kFewestLow ? 0.0f : static_cast<float>(low / static_cast<double>(values.size()))};
+            low < kMinLowPixels ? 0.0f : static_cast<float>(low / static_cast<double>(values.size()))};
 }
 
 // First pixel of each cell in one direction, in pixels of the view.
@@ -165,7 +165,7 @@ CellGrid make_cell_grid(const lensprof_flat_image *images, uint32_t count) {
     uint32_t longer = UINT32_MAX;
     for (uint32_t i = 0; i < count; i++)
         longer = std::min(longer, std::max(images[i].view.width, images[i].view.height));
-    int along = std::max(1, std::min(kCells, static_cast<int>(longer) / kFewestPixels));
+    int along = std::max(1, std::min(kCells, static_cast<int>(longer) / kMinPixels));
     double side = static_cast<double>(std::max(grid.width, grid.height)) / along;
     grid.columns = std::max(1, static_cast<int>(std::lround(grid.width / side)));
     grid.rows = std::max(1, static_cast<int>(std::lround(grid.height / side)));

@@ -9,7 +9,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kFewestCells = 60;
+constexpr uint32_t kMinCells = 60;
 constexpr double kSmallestRadius = 0.6, kWholeRadius = 0.9;   // half diagonals
 constexpr double kMuchClipped = 0.2, kSomeClipped = 0.005;    // of the card, white or black in every exposure
 constexpr double kLargestCornerSigma = 0.01;                  // of M
@@ -98,7 +98,7 @@ bool lacks_light(const FlatFit &fit, lensprof_flat_result &r) {
     if (black.value > kMuchClipped) return refuse(r, of_shot(LENSPROF_REASON_FLAT_BLACK, black.shot, {black.value}));
     uint32_t number;
     if (lacks_card(fit, number)) return refuse(r, of_shot(LENSPROF_REASON_FLAT_NO_CARD, number));
-    if (r.cells < kFewestCells) return refuse(r, {LENSPROF_REASON_FLAT_FEW_CELLS, {double(r.cells)}});
+    if (r.cells < kMinCells) return refuse(r, {LENSPROF_REASON_FLAT_FEW_CELLS, {double(r.cells)}});
     if (r.radius < kSmallestRadius) return refuse(r, {LENSPROF_REASON_FLAT_SMALL_RADIUS, {r.radius}});
     return false;
 }

@@ -28,7 +28,7 @@ Prediction predict(const FlatModel &model, const Eigen::VectorXd &u, int shot, i
     double half = lensprof_half_diagonal(grid.width, grid.height), cosine = model.turn[static_cast<size_t>(shot)][0];
     double dx = (x - 0.5 * (grid.width - 1.0)) / half, dy = (y - 0.5 * (grid.height - 1.0)) / half;
     double sine = model.turn[static_cast<size_t>(shot)][1], qx = cosine * dx - sine * dy, qy = sine * dx + cosine * dy;
-    const double basis[kMostLightTerms] = {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy};
+    const double basis[kMaxLightTerms] = {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy};
     for (int j = 0; j < model.light_terms; j++) log_light += u[model.light(shot, channel) + j] * basis[j];
     const double light = std::exp(log_light);
     p.value = light * p.falloff;

@@ -11,7 +11,7 @@
 
 namespace lensprof {
 
-constexpr int kMostLightTerms = 4;  // x, y, x^2 - y^2, 2 x y
+constexpr int kMaxLightTerms = 4;  // x, y, x^2 - y^2, 2 x y
 
 // Layout of the vector of unknowns: curves, centre, levels, light.
 struct FlatModel {
@@ -40,11 +40,11 @@ void set_falloff(const FlatModel &model, const lensprof_vignetting &vignetting, 
 
 // A prediction and its derivatives by the unknowns it depends on.
 struct Prediction {
-    static constexpr int kMost = 3 + 2 + 2 + kMostLightTerms;
+    static constexpr int kMaxEntries = 3 + 2 + 2 + kMaxLightTerms;
     double value = 0.0, falloff = 0.0;
     int count = 0;
-    std::array<int, kMost> index;
-    std::array<double, kMost> derivative;
+    std::array<int, kMaxEntries> index;
+    std::array<double, kMaxEntries> derivative;
 
     void add(int i, double slope) {
         index[static_cast<size_t>(count)] = i;

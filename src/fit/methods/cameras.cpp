@@ -331,7 +331,7 @@ bool CamerasFit::attach_image(uint32_t image, const std::vector<uint32_t> &pairs
         other_variance += std::pow(quality_[pair.image[other]].ev_sigma, 2);
     }
     const size_t count = log_exposure[0].size();
-    if (count < kFewestJoining) return false;
+    if (count < kMinJoiningPairs) return false;
     double found[3] = {}, sigma[3] = {};
     for (uint32_t c = 0; c < options_.channels; c++) {
         found[c] = median(log_exposure[c]);

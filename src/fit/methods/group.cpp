@@ -13,8 +13,8 @@
 namespace lensprof {
 namespace {
 
-constexpr int kMostFits = 6;
-constexpr size_t kFewestPairs = 10;     // of a link that is able to contradict the others
+constexpr int kMaxFits = 6;
+constexpr size_t kMinPairs = 10;        // of a link that is able to contradict the others
 constexpr double kSmallestShare = 0.2;  // of a link's pairs that agree
 
 class GroupFit {
@@ -142,7 +142,7 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fi
         size_t agree = 0;
         for (size_t p = edge.first; p < edge.last; p++) agree += chi2[p] < inlier_limit(judged.channels);
         const size_t pairs = edge.last - edge.first;
-        if (pairs < kFewestPairs || static_cast<double>(agree) > kSmallestShare * static_cast<double>(pairs)) continue;
+        if (pairs < kMinPairs || static_cast<double>(agree) > kSmallestShare * static_cast<double>(pairs)) continue;
         group_.broken.insert({edge.image[0], edge.image[1]});
         any = true;
     }
@@ -252,7 +252,7 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
         note_quality(result);
         const Group before = group_;
         const std::vector<uint32_t> component = component_;
-        if (!may_leave_out || n == kMostFits || !leave_out(exposures, result)) break;
+        if (!may_leave_out || n == kMaxFits || !leave_out(exposures, result)) break;
         join_all();
         if (take_largest(problem())) continue;
         group_ = before, component_ = component;

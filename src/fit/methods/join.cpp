@@ -100,7 +100,7 @@ void Join::take_reached(const std::vector<bool> &may_join) {
         any = false;
         for (const auto &[ends, pairs] : between) {
             Joint &a = joints_[ends[0]], &b = joints_[ends[1]];
-            if (pairs < kFewestJoining || a.joined == b.joined || !may_join[ends[0]] || !may_join[ends[1]]) continue;
+            if (pairs < kMinJoiningPairs || a.joined == b.joined || !may_join[ends[0]] || !may_join[ends[1]]) continue;
             a.joined = b.joined = any = true;
         }
     }
@@ -338,7 +338,7 @@ std::vector<LightPair> agreeing(const std::vector<LightPair> &pairs) {
         between[{std::min(pair.camera[0], pair.camera[1]), std::max(pair.camera[0], pair.camera[1])}].push_back(&pair);
     std::vector<LightPair> kept;
     for (const auto &[cameras, joining] : between)
-        if (joining.size() >= kFewestJoining && may_agree(joining))
+        if (joining.size() >= kMinJoiningPairs && may_agree(joining))
             for (const LightPair *pair : joining) kept.push_back(*pair);
     return kept;
 }

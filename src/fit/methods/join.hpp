@@ -18,7 +18,7 @@
 
 namespace lensprof {
 
-constexpr size_t kFewestJoining = 30;             // pairs needed to join a camera or an image
+constexpr size_t kMinJoiningPairs = 30;           // pairs needed to join a camera or an image
 constexpr double kLargestLightDifference = 0.25;  // median difference of the light at their ends, natural logarithm
 
 // The light of one scene point in two cameras, according to their own fits.

@@ -45,7 +45,7 @@ public:
           stored_(stored_prior(options, profile, all_ = problem_(thinned(split_.all)))),
           gauge_(options, all_, stored_.get()) {
         if (split_.has_heldout()) heldout_ = problem_(thinned(split_.heldout));
-        has_heldout_ = heldout_.pairs.size() >= kFewestHeldout;
+        has_heldout_ = heldout_.pairs.size() >= kMinHeldout;
         train_ = problem_(thinned(has_heldout_ ? split_.train : split_.all));
         control_.max_iterations = static_cast<int>(options.max_iterations);
         control_.cancelled = [this, from, to] { return is_cancelled(from + (to - from) * done_); };
@@ -281,7 +281,7 @@ void Fit::free_response(const Gauge &requested, Loss &used, Candidate &best, Est
 }
 
 void Fit::run() {
-    bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMostRefinedImages;
+    bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMaxRefinedImages;
     const Gauge requested = gauge_;
     if (frees) gauge_ = gauge_.by_prior();
     used_ = loss();

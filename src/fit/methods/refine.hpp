@@ -10,7 +10,7 @@
 
 namespace lensprof {
 
-constexpr uint32_t kMostRefinedImages = 256;  // their exposures are solved for densely
+constexpr uint32_t kMaxRefinedImages = 256;  // their exposures are solved for densely
 
 // Refines the response and the exposures of an estimate that has an EMoR response: its response becomes a table. `loss`
 // provides the noise. gamma, which no pair determines, stays.

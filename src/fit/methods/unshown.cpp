@@ -20,7 +20,7 @@ namespace {
 // EV. At .06 EV the differences between shapes of responses, some 5 levels, move grey values by .2 to .4 levels, as
 // much as rounding and interpolation do.
 constexpr double kSmallestSpread = 0.06;
-constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one determines nothing at all
+constexpr double kMinGreys = 2.0;  // tenths of the grey values: one determines nothing at all
 
 // The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
 template <class Part>  // the result, or one of its settings
@@ -79,7 +79,7 @@ void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t i
     const bool is_narrow = r.reason_code == LENSPROF_REASON_FEW_GREYS;
     const bool is_even = r.light_spread_ev < kSmallestSpread && r.reason_code != LENSPROF_REASON_EXPOSURES_ALIKE;
     if (r.response_from != LENSPROF_FIT_RESPONSE_PICTURES || !(options.prior_weight > 0.0)) return;
-    if (is_narrow ? r.reason_value[0] < kFewestGreys || !(options.free & kFalloff) : !is_even) return;
+    if (is_narrow ? r.reason_value[0] < kMinGreys || !(options.free & kFalloff) : !is_even) return;
     if (options.profile && holds_response(*options.profile, r))
         r.response_from = LENSPROF_FIT_RESPONSE_PROFILE;
     else

@@ -9,11 +9,11 @@
 namespace lensprof {
 namespace {
 
-constexpr double kDoubtful = 3.0;       // known exposures farther off, in standard errors, have less weight
-constexpr double kSmallestSlope = 0.1;  // and its inverse: beyond, known exposures belong to something else
-constexpr double kContradiction = 5.0;  // standard errors from the level of most images
-constexpr size_t kFew = 4;              // one in four at most is wrong: with more it is unclear which are
-constexpr size_t kFewestOfLevels = 6;   // known exposures: with fewer, it is unclear which one is wrong
+constexpr double kDoubtful = 3.0;         // known exposures farther off, in standard errors, have less weight
+constexpr double kSmallestSlope = 0.1;    // and its inverse: beyond, known exposures belong to something else
+constexpr double kContradiction = 5.0;    // standard errors from the level of most images
+constexpr size_t kFew = 4;                // one in four at most is wrong: with more it is unclear which are
+constexpr size_t kMinKnownForLevels = 6;  // known exposures: with fewer, it is unclear which one is wrong
 
 // Known exposures are repeatable to less than kRepeatable, EV. The pairs between two pictures share errors that no
 // model describes (falloff that is not radial, bias by noise). With more than kLinkPairs pairs these errors add up
@@ -105,7 +105,8 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     known_weight_.assign(count, 1.0);
     level_offset_.assign(count, 0.0);
     for (int round = 0; round < 8; round++) {
-        if (round > 0 && known.members.size() >= kFewestOfLevels) level = neighbours.levels(off, known.sigma, scatter_);
+        if (round > 0 && known.members.size() >= kMinKnownForLevels)
+            level = neighbours.levels(off, known.sigma, scatter_);
         const Regression regression(known, level, known_weight_, scatter_);
         const double excess = regression.yy > 0.0 ? std::max(0.0, 1.0 - regression.trust / regression.yy) : 0.0;
         const bool is_informative = open_ && excess > 0.0 && regression.xy > kSmallestSlope * regression.xx
@@ -142,7 +143,7 @@ void Gauge::leave_out(const Problem &problem, const std::vector<double> &off) {
         const double limit = kContradiction * scatter_ * known_sigma(problem.images[i]);
         if (std::abs(off[i]) > limit) known_left_out_.insert(i);
     }
-    if (count < kFewestOfLevels || known_left_out_.size() * kFew > count) known_left_out_.clear();
+    if (count < kMinKnownForLevels || known_left_out_.size() * kFew > count) known_left_out_.clear();
 }
 
 void Gauge::put_known(const Problem &problem, Prior &prior) const {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kChanceScatter = 2.0;  // standard errors: a scatter up to this may be chance
 constexpr double kJump = 4.0;           // standard errors of a difference between neighbours that agree
 constexpr int kReach = 6;               // neighbours that an image is compared with, one after the other
-constexpr size_t kFewest = 3;           // distances needed
+constexpr size_t kMinDistances = 3;     // distances needed
 
 using Tree = std::vector<std::vector<uint32_t>>;
 
@@ -50,7 +50,7 @@ uint32_t end_of(const Problem &problem, const Tree &tree) {
 }  // namespace
 
 double scatter_of(std::vector<double> distances, size_t parameters) {
-    if (distances.size() < kFewest || distances.size() <= parameters) return 1.0;
+    if (distances.size() < kMinDistances || distances.size() <= parameters) return 1.0;
     auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
     std::nth_element(distances.begin(), middle, distances.end());
     const double count = static_cast<double>(distances.size());
@@ -85,7 +85,7 @@ double KnownNeighbours::scatter(const std::vector<double> &off, const std::vecto
         const uint32_t i = visit.image, k = visits_[static_cast<size_t>(visit.before)].image;
         distances.push_back(std::abs(off[i] - off[k]) / std::hypot(sigma[i], sigma[k]));
     }
-    return distances.size() < kFewest ? std::numeric_limits<double>::infinity() : scatter_of(distances, 0);
+    return distances.size() < kMinDistances ? std::numeric_limits<double>::infinity() : scatter_of(distances, 0);
 }
 
 std::vector<int> KnownNeighbours::levels(const std::vector<double> &off, const std::vector<double> &sigma,

@@ -168,9 +168,9 @@ void StoredPrior::find_gamma_errors(const Problem &problem, const lensprof_profi
 }
 
 double StoredPrior::gamma_offset(const Estimate &estimate, double &sigma, bool &by_falloff) const {
-    constexpr double kLeast = 0.05;  // of the ratio: below it, the falloffs are unrelated
+    constexpr double kMinRatio = 0.05;  // of the ratio: below it, the falloffs are unrelated
     const double of_response = gamma_position(estimate.curve.table.data()) - response_position_,
-                 of_falloff = std::log(std::max(falloff_ratio(estimate.vignetting[0][1]), kLeast));
+                 of_falloff = std::log(std::max(falloff_ratio(estimate.vignetting[0][1]), kMinRatio));
     by_falloff = !has_response() || (has_falloff() && falloff_sigma_ < response_sigma_);
     sigma = by_falloff ? falloff_sigma_ : response_sigma_;
     if (!has_response() || !has_falloff()) return by_falloff ? of_falloff : of_response;

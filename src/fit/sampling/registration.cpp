@@ -48,28 +48,28 @@ namespace lensprof {
 namespace {
 
 constexpr int kColumns = 24, kRows = 18;  // places of the first image that are examined, if the second sees them
-constexpr size_t kFewest = 8;             // blocks required if each is matched separately,
-constexpr size_t kFewestTogether = 3;     // and if they are matched together
-constexpr double kMatchOfFew = 0.75;      // mean correlation of fewer than kFewest blocks: some shift matches by chance
-constexpr int kCell = 2;                  // neighbouring places, of which one is used, so that no single object decides
-constexpr int kFarthest = 12;             // coarse pixels by which the project may be off,
-constexpr int kFarthestBlock = 24;        // and by which one block may be
-constexpr int kSearch = 3;                // level pixels around the expected place of a block
-constexpr double kMatch = 0.5;            // smallest correlation of blocks that show the same,
-constexpr double kFarMatch = 0.6;         // and of those found over a wide area: the best of many
-constexpr double kOfCoarse = 0.5;         // texture of a block on the fine level, relative to that on the coarse one,
-constexpr double kFineTexture = 0.0075;   // or standard deviation, grey value 0..1
-constexpr double kRight = 0.85;           // mean correlation of a project that is right
-constexpr double kInPlace = 0.6;          // the same, if blocks show that no small correction is needed
-constexpr double kSmallestShift = 0.5;    // fine pixels: smaller corrections are not made
-constexpr double kBetter = 0.02;          // mean correlation by which a correction must be better than none,
-constexpr double kClearlyBetter = 0.1;    // the same, if many blocks show things that moved or are at other distances
-constexpr double kPreferred = 0.05;       // significant difference of correlations
+constexpr size_t kMinBlocks = 8;          // blocks required if each is matched separately,
+constexpr size_t kMinJointBlocks = 3;     // and if they are matched together
+constexpr double kMatchOfFew = 0.75;  // mean correlation of fewer than kMinBlocks blocks: some shift matches by chance
+constexpr int kCell = 2;              // neighbouring places, of which one is used, so that no single object decides
+constexpr int kFarthest = 12;         // coarse pixels by which the project may be off,
+constexpr int kFarthestBlock = 24;    // and by which one block may be
+constexpr int kSearch = 3;            // level pixels around the expected place of a block
+constexpr double kMatch = 0.5;        // smallest correlation of blocks that show the same,
+constexpr double kFarMatch = 0.6;     // and of those found over a wide area: the best of many
+constexpr double kOfCoarse = 0.5;     // texture of a block on the fine level, relative to that on the coarse one,
+constexpr double kFineTexture = 0.0075;  // or standard deviation, grey value 0..1
+constexpr double kRight = 0.85;          // mean correlation of a project that is right
+constexpr double kInPlace = 0.6;         // the same, if blocks show that no small correction is needed
+constexpr double kSmallestShift = 0.5;   // fine pixels: smaller corrections are not made
+constexpr double kBetter = 0.02;         // mean correlation by which a correction must be better than none,
+constexpr double kClearlyBetter = 0.1;   // the same, if many blocks show things that moved or are at other distances
+constexpr double kPreferred = 0.05;      // significant difference of correlations
 constexpr double kTrust = 0.01;      // radians: expected error of a project, for rotations that blocks do not determine
 constexpr double kBendTrust = 0.02;  // the same of a homography's elements
 constexpr double kLargestBend = 0.25;     // rotation or change of scale of a first guess
 constexpr double kFollows = 2.0;          // coarse pixels within which a block follows a guess
-constexpr double kFewestFollow = 0.2;     // share of the blocks that follow a guess
+constexpr double kMinFollowing = 0.2;     // share of the blocks that follow a guess
 constexpr double kDerivativeStep = 1e-4;  // radians
 constexpr double kNoShift[2] = {0.0, 0.0};
 
@@ -241,7 +241,7 @@ void Matcher::common_shift(double shift[2]) const {
     for (int k = 0; k < size * size; k++) {
         auto n = static_cast<size_t>(k);
         double mean =
-            count[n] >= std::max(kFewestTogether, places.size() / 4) ? sum[n] / static_cast<double>(count[n]) : 0.0;
+            count[n] >= std::max(kMinJointBlocks, places.size() / 4) ? sum[n] / static_cast<double>(count[n]) : 0.0;
         if (mean > best) best = mean, shift[0] = offset(k % size), shift[1] = offset(k / size);
     }
 }
@@ -335,7 +335,7 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
         return false;
     };
     matches.erase(std::remove_if(matches.begin(), matches.end(), is_lost), matches.end());
-    if (matches.size() < kFewest) return false;
+    if (matches.size() < kMinBlocks) return false;
     const Eigen::VectorXd change = robust_step(matches, pixel / kTrust, pixel);
     for (int d = 0; d < 3; d++) rotation[static_cast<size_t>(d)] += change[d];
     return change.allFinite();
@@ -345,7 +345,7 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
 bool Matcher::refine_bend(size_t n, Correction &correction) const {
     const double pixel = second_grey.level[n].pixel, scale = lensprof_half_diagonal(second.width, second.height);
     std::vector<Match> matches = look(n, kNoShift, kSearch, 1, kMatch, correction);
-    if (matches.size() < kFewest) return false;
+    if (matches.size() < kMinBlocks) return false;
     for (Match &m : matches) {
         const Eigen::Vector2d s = frame_place(second, m.expected.x, m.expected.y);
         m.rows.resize(2, 8);
@@ -363,7 +363,7 @@ bool Matcher::refine_bend(size_t n, Correction &correction) const {
 // The similarity that most blocks follow, among those defined by two blocks; false if too few follow any. Tries all
 // pairs of blocks, or evenly chosen ones.
 bool Matcher::guess_bend(Correction &correction) const {
-    constexpr size_t kMostGuesses = 4000;
+    constexpr size_t kMaxGuesses = 4000;
     const double pixel = second_grey.level[0].pixel, scale = lensprof_half_diagonal(second.width, second.height);
     const std::vector<Match> matches = look(0, kNoShift, kFarthestBlock, 2, kFarMatch, correction);
     using Complex = std::complex<double>;
@@ -373,7 +373,7 @@ bool Matcher::guess_bend(Correction &correction) const {
         from.emplace_back(s[0], s[1]), off.emplace_back(m.off[0] / scale, m.off[1] / scale);
     }
     const size_t count = matches.size(), guesses = count * (count - 1) / 2;
-    const size_t step = 1 + guesses / kMostGuesses;
+    const size_t step = 1 + guesses / kMaxGuesses;
     double best = 0.0;
     Complex turn, shift;
     size_t guess = 0;
@@ -387,7 +387,7 @@ bool Matcher::guess_bend(Correction &correction) const {
                 follow += std::abs(off[m] - moved - factor * from[m]) * scale < kFollows * pixel;
             if (follow > best) best = follow, turn = factor, shift = moved;
         }
-    if (best < std::max(double(kFewest), kFewestFollow * static_cast<double>(count))) return false;
+    if (best < std::max(double(kMinBlocks), kMinFollowing * static_cast<double>(count))) return false;
     Eigen::Matrix3d bend;
     bend << 1.0 + turn.real(), -turn.imag(), shift.real(), turn.imag(), 1.0 + turn.real(), shift.imag(), 0.0, 0.0, 1.0;
     correction.bend = Bend(bend);
@@ -426,7 +426,8 @@ bool Matcher::is_better(const Correction &correction, const Correlations &correl
                         const Correlations &without) const {
     size_t compared, found_in;
     const double before = mean_of(without, compared), found = mean_of(correlations, found_in);
-    const bool is_match = found_in < kFewest ? found > kMatchOfFew : found > kMatch || found > before + kClearlyBetter;
+    const bool is_match =
+        found_in < kMinBlocks ? found > kMatchOfFew : found > kMatch || found > before + kClearlyBetter;
     return 2 * found_in > compared && is_match && found > before + kBetter && most_prefer(correlations, without)
            && median_shift(reference, correction) > kSmallestShift * second_grey.level[1].pixel;
 }
@@ -438,7 +439,8 @@ bool Matcher::is_in_place(const Correlations &uncorrected) const {
     const double mean = mean_of(uncorrected, compared);
     Rotation turned{};
     Correction bent{turned, Bend(Eigen::Matrix3d::Identity())};
-    if (compared < kFewest || !(mean > kInPlace) || !refine(1, kNoShift, turned) || !refine_bend(1, bent)) return false;
+    if (compared < kMinBlocks || !(mean > kInPlace) || !refine(1, kNoShift, turned) || !refine_bend(1, bent))
+        return false;
     const double max_shift = kSmallestShift * second_grey.level[1].pixel;
     return median_shift({}, {turned, {}}) < max_shift && median_shift({}, bent) < max_shift;
 }
@@ -464,13 +466,13 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
                         const GreyLevels &second_grey) {
     Matcher matcher{first, second, first_grey, second_grey, {}};
     matcher.find_places();
-    if (matcher.places.size() < kFewestTogether) return {};
+    if (matcher.places.size() < kMinJointBlocks) return {};
     Correction found;
     Correlations correlations = matcher.correlations(1, found);
     auto is_right = [&] {
         size_t compared;
         const double mean = mean_of(correlations, compared);
-        return compared < kFewestTogether || mean > kRight;
+        return compared < kMinJointBlocks || mean > kRight;
     };
     auto take_if_better = [&](const Correction &other) {
         const Correlations other_correlations = matcher.correlations(1, other);

@@ -22,9 +22,9 @@ constexpr double kMinAlike = 0.4, kMinClearlyAlike = 0.05, kAboveChance = 2.8;
 constexpr double kDisplacement = 12.0;  // coarse pixels
 constexpr uint32_t kMinTextured = 20;
 constexpr double kMostlySmooth = 0.25;  // of the places with texture: smooth places tolerate a shift of a few pixels
-constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap
+constexpr size_t kMaxNeighbours = 8;    // of an image that are registered, those with the largest overlap
 constexpr double kShareOfRegistration = 0.5;  // of the progress that is shown
-constexpr size_t kMostRefused = 4;            // pairs of places per wanted candidate, before the search ends
+constexpr size_t kMaxRefused = 4;             // pairs of places per wanted candidate, before the search ends
 
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -159,7 +159,7 @@ void Sampler::register_neighbours() {
     std::stable_sort(edges.begin(), edges.end(), [](const Edge &a, const Edge &b) { return a.overlap > b.overlap; });
     std::vector<size_t> registered(count, 0);
     auto is_left_out = [&](const Edge &e) {
-        bool wanted = e.overlap > 0 && std::min(registered[e.i], registered[e.j]) < kMostNeighbours;
+        bool wanted = e.overlap > 0 && std::min(registered[e.i], registered[e.j]) < kMaxNeighbours;
         if (wanted) registered[e.i]++, registered[e.j]++;
         return !wanted;
     };
@@ -289,7 +289,7 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
     auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
     const uint32_t max_rounds = 102400 / chunk, max_empty_rounds = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
     const double before = shown_;  // of the progress
-    for (uint32_t round = 0; round < max_rounds && all.size() < wanted && refused_ < kMostRefused * wanted
+    for (uint32_t round = 0; round < max_rounds && all.size() < wanted && refused_ < kMaxRefused * wanted
                              && !(round > max_empty_rounds && all.empty());
          round++) {
         std::vector<std::vector<Candidate>> found(views_.size() * pieces);

@@ -15,7 +15,7 @@ constexpr double kPi = 3.141592653589793;
 constexpr uint32_t kPiece = 64;           // points that a thread processes as a unit,
 constexpr uint32_t kRound = 4096;         // and all threads together, before counting whether there are enough
 constexpr uint32_t kMaxEmptyRounds = 64;  // rounds without any track
-constexpr uint32_t kMostRounds = 4096;
+constexpr uint32_t kMaxRounds = 4096;
 constexpr size_t kPerWanted = 8;                  // candidates per wanted point,
 constexpr double kCells = 2.0;                    // and cells; each cell contributes its quietest candidates
 constexpr double kBinSlack = 1.5;                 // an even spread has priority over a balance of radius and grey level
@@ -88,7 +88,7 @@ bool Sampler::find_track(const Aim &aim, uint32_t number, TrackCandidate &found)
 std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim) {
     std::vector<TrackCandidate> all;
     const double before = shown_;  // of the progress
-    for (uint32_t round = 0; round < kMostRounds && all.size() < wanted && !(round > kMaxEmptyRounds && all.empty());
+    for (uint32_t round = 0; round < kMaxRounds && all.size() < wanted && !(round > kMaxEmptyRounds && all.empty());
          round++) {
         std::vector<std::vector<TrackCandidate>> found(kRound / kPiece);
         auto work = [&](uint32_t piece) {

@@ -8,14 +8,14 @@
 
 namespace lensprof {
 
-constexpr size_t kFewestHeldout = 20;
+constexpr size_t kMinHeldout = 20;
 
 // Splits all pairs or tracks by their numbers: four fifths to fit, one fifth held out, and a few of the former for
 // first fits. The split is deterministic.
 struct Split {
     std::vector<uint32_t> all, train, heldout, brief;
 
-    bool has_heldout() const { return heldout.size() >= kFewestHeldout; }
+    bool has_heldout() const { return heldout.size() >= kMinHeldout; }
 };
 Split split_pairs(uint32_t count, uint32_t images);
 

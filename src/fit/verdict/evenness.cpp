@@ -14,7 +14,7 @@ namespace {
 // Levels of 255.
 constexpr double kEven = 2.0;     // between pictures that look alike,
 constexpr double kOfNoise = 1.5;  // this much above the effect of noise,
-constexpr double kMostNoise = 4.0;
+constexpr double kMaxNoise = 4.0;
 constexpr double kUneven = 6.0;   // and between those that do not
 constexpr double kSeen = 3.0;     // a seam that is comparable to the texture around it,
 constexpr double kGrown = 1.25;   // or this many times its size before;
@@ -22,9 +22,9 @@ constexpr double kOddLink = 5.0;  // of a link that contradicts the result, and 
 constexpr double kOddNoise = 4.0;
 constexpr double kGain = 0.5;  // unless it is at most this many times its size before
 constexpr double kLargestRms = 15.0;
-constexpr double kFewestAgree = 0.6;    // of all pairs: with fewer, only part of the picture is even;
-constexpr double kSmallestShare = 0.7;  // of the pairs that agree
-constexpr size_t kFewestPairs = 20;     // of a link that is informative
+constexpr double kMinInlierShare = 0.6;  // of all pairs: with fewer, only part of the picture is even;
+constexpr double kSmallestShare = 0.7;   // of the pairs that agree
+constexpr size_t kMinPairs = 20;         // of a link that is informative
 
 // Median difference of grey values, before and after the correction.
 struct Seam {
@@ -53,7 +53,7 @@ Seam median_of(const std::vector<Seam> &seams, size_t first, size_t last) {
 }
 
 bool is_even(const Seam &seam, double noise_levels) {
-    return seam.after <= std::clamp(kOfNoise * noise_levels, kEven, kMostNoise)
+    return seam.after <= std::clamp(kOfNoise * noise_levels, kEven, kMaxNoise)
            || (seam.after <= kGain * seam.before && seam.after <= kUneven);
 }
 
@@ -61,7 +61,7 @@ bool is_even(const Seam &seam, double noise_levels) {
 std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &seams, double noise_levels) {
     const double max_residual = std::max(kOddLink, kOddNoise * noise_levels);
     for (const Edge &edge : problem.edges) {
-        if (edge.last - edge.first < kFewestPairs) continue;
+        if (edge.last - edge.first < kMinPairs) continue;
         const Seam seam = median_of(seams, edge.first, edge.last);
         if (seam.after > std::max(kGrown * seam.before, kSeen)
             || (seam.after > max_residual && seam.after > kGain * seam.before))
@@ -91,7 +91,7 @@ void judge_evenness(const Found &found, lensprof_fit_result &r) {
     const std::vector<Seam> tested = seams_of(found.tested, found.train);
     const Seam overall = median_of(tested, 0, tested.size());
     const std::optional<Seam> odd = odd_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
-    r.evens = r.converged && r.inlier_share > kFewestAgree && is_even(overall, r.noise_levels) && !odd;
+    r.evens = r.converged && r.inlier_share > kMinInlierShare && is_even(overall, r.noise_levels) && !odd;
     if (!r.usable || r.reason_code != LENSPROF_REASON_NONE) return;
     if (r.inlier_share < kSmallestShare || r.heldout_rms > kLargestRms)
         warn(r, {LENSPROF_REASON_MANY_OUTLIERS, {1.0 - r.inlier_share, r.heldout_rms}});

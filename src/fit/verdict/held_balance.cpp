@@ -12,7 +12,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kFewestPairs = 30;   // of a link
+constexpr size_t kMinPairs = 30;      // of a link
 constexpr double kClearLevels = 1.5;  // of 255, and this many standard errors of a median
 constexpr double kClearly = 5.0;
 constexpr double kMedianError = 1.2533;  // sqrt(pi / 2): standard error of a median relative to that of a mean
@@ -35,7 +35,7 @@ HeldBalance held_balance_of(const Problem &problem, size_t k,
                             const std::vector<std::array<double, 2>> &relative_to_green) {
     std::vector<Sum> sums(problem.image_count);
     for (const Edge &edge : problem.edges) {
-        if (edge.last - edge.first < kFewestPairs) continue;
+        if (edge.last - edge.first < kMinPairs) continue;
         std::vector<double> values, distances;
         for (size_t p = edge.first; p < edge.last; p++) values.push_back(relative_to_green[p][k]);
         const double middle = median(values);

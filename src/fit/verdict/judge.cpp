@@ -16,9 +16,9 @@
 namespace lensprof {
 namespace {
 
-constexpr double kBlack = 0.004;                        // one level of 255
-constexpr uint32_t kFewestGreys = 4, kEnoughGreys = 8;  // tenths of the grey values that hold more than a few
-constexpr double kSmallestRadius = 0.6;                 // half diagonals: beyond it, k1..k3 extrapolate
+constexpr double kBlack = 0.004;                     // one level of 255
+constexpr uint32_t kMinGreys = 4, kEnoughGreys = 8;  // tenths of the grey values that hold more than a few
+constexpr double kSmallestRadius = 0.6;              // half diagonals: beyond it, k1..k3 extrapolate
 constexpr double kLargestNoise = 6.0;       // levels of 255: above the noise of any camera, so the model does not fit
 constexpr double kLargestImageShare = 0.2;  // of residual variance explained by separate maps of each image,
 constexpr double kSuspiciousImageShare = 0.1;  // and worth a warning; noise and moving things stay below
@@ -32,7 +32,7 @@ constexpr double kHarmfulStillPattern = 2.0;
 constexpr double kNotRadial = 0.3;           // share explained by one map over the frame
 constexpr double kLargestCornerSigma = 0.1;  // of M
 constexpr double kLargestEvSigma = 0.3;      // EV, without the error of gamma
-constexpr uint32_t kFewestInliers = 3;       // of an image: fewer agree by chance,
+constexpr uint32_t kMinInliers = 3;          // of an image: fewer agree by chance,
 constexpr double kSmallestShare = 0.2;       // or a smaller share of its pairs
 constexpr double kSmallestStillShare = 0.7;  // of all pairs, if equal places are compared,
 constexpr double kStillMedian = 1.5;         // and levels of 255 that half of them exceed
@@ -197,7 +197,7 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
     if (fits_response(estimate) && is_static(problem))
         if (const double spread = exposure_spread(problem, estimate); spread < kSmallestSpread)
             return refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {spread}});
-    if (fits_response(estimate) && covered_greys(problem, r) < kFewestGreys)
+    if (fits_response(estimate) && covered_greys(problem, r) < kMinGreys)
         return refuse(r, {LENSPROF_REASON_FEW_GREYS, {double(covered_greys(problem, r))}});
     if (frees_falloff(problem) && covered_radius(r) < kSmallestRadius)
         return refuse(r, {LENSPROF_REASON_SMALL_RADIUS, {covered_radius(r)}});
@@ -235,7 +235,7 @@ bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint3
     std::vector<uint32_t> owner_inliers(held + 1, 0u);
     for (uint32_t i = 0; i < problem.image_count; i++) owner_inliers[owner(i)] += r.image_quality[i].inliers;
     for (image = 0; image < problem.image_count; image++)
-        if (is_joined(problem, image) && (inliers = owner_inliers[owner(image)]) < kFewestInliers) return true;
+        if (is_joined(problem, image) && (inliers = owner_inliers[owner(image)]) < kMinInliers) return true;
     return false;
 }
 

@@ -10,8 +10,8 @@ namespace lensprof {
 namespace {
 
 constexpr size_t kFirstExport = LP_END_OF(lensprof_export_options, name);
-constexpr size_t kMostBytes = size_t{64} << 20;  // as lensprof_import
-constexpr double kNearEnough = 0.005;            // error of a radial opcode that is taken
+constexpr size_t kMaxBytes = size_t{64} << 20;  // as lensprof_import
+constexpr double kNearEnough = 0.005;           // error of a radial opcode that is taken
 constexpr uint32_t kColumns = 16, kRows = 12, kCurveRows = 256;
 
 // Where a file goes.
@@ -77,9 +77,9 @@ lensprof_status write_many(const lensprof_profile *const *profiles, uint32_t pro
             return lensprof_lcp_write(profiles, profile_count, o.width, o.height, data, capacity, count, out.error);
         return lensprof_json_write(profiles, profile_count, data, capacity, count, out.error);
     };
-    const lensprof_status status = write(out.data, std::min(out.capacity, kMostBytes), &size);
+    const lensprof_status status = write(out.data, std::min(out.capacity, kMaxBytes), &size);
     if (status != LENSPROF_OK && status != LENSPROF_ERROR_CAPACITY) return status;
-    if (size > kMostBytes) {
+    if (size > kMaxBytes) {
         set_error(out.error, "would be larger than 64 MiB, the limit for reading; write fewer profiles");
         return LENSPROF_ERROR_SIZE;
     }

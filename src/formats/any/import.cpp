@@ -16,7 +16,7 @@ namespace lensprof {
 namespace {
 
 constexpr size_t kFirstImport = LP_END_OF(lensprof_import_options, key);
-constexpr size_t kMostBytes = size_t{64} << 20;
+constexpr size_t kMaxBytes = size_t{64} << 20;
 
 // A file whose format is known.
 struct Input {
@@ -185,7 +185,7 @@ lensprof_status check_input(Input &in, lensprof_error *error) {
         if (in.options.map)
             throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "a map without the format MAP; set both or neither"};
         if (data.empty()) throw FormatFailure{LENSPROF_ERROR_SYNTAX, "is empty; copy it again"};
-        if (data.size() > kMostBytes)
+        if (data.size() > kMaxBytes)
             throw FormatFailure{LENSPROF_ERROR_SIZE, "is larger than 64 MiB; check that it is the right file"};
         if (!format) format = detect_format(data, in.options.name ? in.options.name : "");
         if (!format)

@@ -10,7 +10,7 @@
 
 namespace lensprof {
 
-constexpr size_t kMostCurveRows = 65536;
+constexpr size_t kMaxCurveRows = 65536;
 constexpr double kDarkest = 1e-6;  // of full irradiance: replaces 0 in formats that store its logarithm
 
 // First index whose value is below (strict: not above) the one before it; the size if there is no such index.

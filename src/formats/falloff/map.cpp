@@ -12,7 +12,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kMostSide = 65536;
+constexpr uint32_t kMaxSide = 65536;
 constexpr uint32_t kKeptSide = 1024;  // larger maps are averaged down first: more resolution does not help a profile
 
 [[noreturn]] void fail_at(uint32_t i, uint32_t j, const char *message, lensprof_status status) {
@@ -61,7 +61,7 @@ void fill(const MapValues &form, const float *values, Block side, FalloffMap &ma
 }  // namespace
 
 void check_frame(uint32_t width, uint32_t height) {
-    if (width < 2 || height < 2 || width > kMostSide || height > kMostSide)
+    if (width < 2 || height < 2 || width > kMaxSide || height > kMaxSide)
         throw FormatFailure{LENSPROF_ERROR_SIZE, std::to_string(width) + " x " + std::to_string(height)
                                                      + " values or pixels; give sides of 2 to 65536"};
 }

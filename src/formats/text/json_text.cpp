@@ -11,9 +11,9 @@ namespace lensprof {
 
 namespace {
 
-constexpr size_t kMostBytes = size_t{64} << 20;
-constexpr size_t kMostNodes = 4000000;  // of 24 bytes each
-constexpr size_t kMostLevels = 32;
+constexpr size_t kMaxBytes = size_t{64} << 20;
+constexpr size_t kMaxNodes = 4000000;  // of 24 bytes each
+constexpr size_t kMaxLevels = 32;
 
 }  // namespace
 
@@ -57,7 +57,7 @@ private:
     };
 
     JsonText::Node &add(JsonText::Kind kind) {
-        if (all_.nodes_.size() >= kMostNodes)
+        if (all_.nodes_.size() >= kMaxNodes)
             throw FormatFailure{LENSPROF_ERROR_SIZE, "over 4 million values of JSON; split the file"};
         const uint32_t index = static_cast<uint32_t>(all_.nodes_.size());
         JsonText::Node node{};
@@ -74,7 +74,7 @@ private:
     }
 
     bool open(JsonText::Kind kind) {
-        if (open_.size() >= kMostLevels)
+        if (open_.size() >= kMaxLevels)
             throw FormatFailure{LENSPROF_ERROR_SYNTAX, "JSON with over 32 levels; give a file of profiles or tables"};
         add(kind);
         open_.push_back({static_cast<uint32_t>(all_.nodes_.size() - 1), 0});
@@ -97,7 +97,7 @@ private:
 };
 
 JsonText::JsonText(std::string_view text) : texts_(sizeof(uint32_t), '\0') {
-    if (text.size() > kMostBytes) throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB of JSON; split the file"};
+    if (text.size() > kMaxBytes) throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB of JSON; split the file"};
     const size_t wrong = find_not_utf8(text);
     if (wrong < text.size()) {
         const std::string_view before = text.substr(0, wrong);

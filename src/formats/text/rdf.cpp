@@ -5,7 +5,7 @@
 namespace lensprof {
 namespace {
 
-constexpr int kMostLevels = 64;
+constexpr int kMaxLevels = 64;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ std::string_view namespace_of(const pugi::xml_node &node, std::string_view quali
     const std::string declaration =
         colon == std::string_view::npos ? "xmlns" : "xmlns:" + std::string(qualified.substr(0, colon));
     pugi::xml_node ancestor = node;
-    for (int level = 0; ancestor && level < kMostLevels; level++, ancestor = ancestor.parent())
+    for (int level = 0; ancestor && level < kMaxLevels; level++, ancestor = ancestor.parent())
         if (const pugi::xml_attribute found = ancestor.attribute(declaration.c_str())) return found.value();
     return {};
 }

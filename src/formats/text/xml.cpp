@@ -5,14 +5,14 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kMostBytes = size_t{64} << 20;
+constexpr size_t kMaxBytes = size_t{64} << 20;
 // pugixml takes about 64 bytes an element and 40 an attribute, more than their text may have.
-constexpr ptrdiff_t kMostItems = 2000000;
+constexpr ptrdiff_t kMaxItems = 2000000;
 
 void check_size(std::string_view text) {
-    if (text.size() > kMostBytes) throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB of XML; split the file"};
+    if (text.size() > kMaxBytes) throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB of XML; split the file"};
     const auto count = [&](char c) { return std::count(text.begin(), text.end(), c); };
-    if (count('<') > kMostItems || count('=') > kMostItems)
+    if (count('<') > kMaxItems || count('=') > kMaxItems)
         throw FormatFailure{LENSPROF_ERROR_SIZE, "over 2 million elements or attributes; split the file"};
 }
 

@@ -22,7 +22,7 @@ constexpr int kFirstRounds = 6, kCandidateRounds = 2, kAgainRounds = 4, kLastRou
 constexpr double kStill = 1e-3;  // largest visible change in a round at convergence
 // Paths that flip between two neighbours make the rounds cycle: a change this small that no longer falls indicates it.
 constexpr double kCycle = 0.03;
-constexpr int kFewestRounds = 4;
+constexpr int kMinRounds = 4;
 constexpr double kHalf = 128.0 / 255.0;
 const double kPaperGrey = std::log(0.5);  // g(128) if nothing determines gamma (section 2.4)
 
@@ -179,7 +179,7 @@ int Fit::alternate(const Problem &problem, Gauge &gauge, bool find_gamma, int ro
         round++;
         fit_falloff(problem, gauge, state);
         double moved = largest_change(before, state.estimate);
-        bool cycles = round >= kFewestRounds && moved < kCycle && moved > 0.5 * last;
+        bool cycles = round >= kMinRounds && moved < kCycle && moved > 0.5 * last;
         is_still = moved < kStill || cycles || (!has_falloff_ && round > 1);
         last = moved;
     }
