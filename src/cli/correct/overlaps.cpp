@@ -17,7 +17,7 @@ namespace {
 // Allowed difference of irradiance from a pixel's grey value, and from those of most surrounding pixels, where noise
 // averages out.
 constexpr double same_grey = 0.03, same_in_black = 0.01, same_share = 0.04;
-constexpr double most_agree = 0.6;
+constexpr double min_same_share = 0.6;
 constexpr int about_px = 2;
 // Grey values near white that noise and coding may have made from white.
 constexpr double almost_white = 0.95;
@@ -189,7 +189,7 @@ private:
                     agreement[static_cast<size_t>(py) * picture_.width() + static_cast<size_t>(px)];
                 seen += agreement_here != Agreement::unseen, same += agreement_here == Agreement::same;
             }
-        return same >= most_agree * seen;
+        return same >= min_same_share * seen;
     }
 
     const CorrectionKind &kind_;

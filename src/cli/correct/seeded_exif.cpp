@@ -12,7 +12,7 @@ namespace lensprof {
 namespace {
 
 constexpr double usual_time_s = 1.0 / 60.0, usual_aperture = 2.8, usual_iso = 100.0,
-                 most_iso = 65535.0;  // of the EXIF tag
+                 max_iso = 65535.0;  // of the EXIF tag
 
 double exif_ev_of(double time_s, double aperture, double iso) {
     return std::log2(time_s * iso / 100.0 / (aperture * aperture));
@@ -42,7 +42,7 @@ void seed_exif(std::vector<Correction> &jobs, const Project &project, const std:
         const PictureMetadata metadata = read_metadata(job.source);
         auto seeded = std::make_shared<PictureMetadata>(unknown_metadata());
         const double aperture = metadata.f_number.value_or(usual_aperture),
-                     iso = std::min(metadata.iso.value_or(usual_iso), most_iso);
+                     iso = std::min(metadata.iso.value_or(usual_iso), max_iso);
         seeded->key.aperture = aperture, seeded->iso = iso;
         seeded->exposure_time_s = std::exp2(job.wanted.ev + offset) * 100.0 / iso * aperture * aperture;
         job.exif = std::move(seeded);

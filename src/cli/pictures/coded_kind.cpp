@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr size_t most_start = 512;  // of a file: enough for its first box with the brands
+constexpr size_t max_start = 512;  // of a file: enough for its first box with the brands
 
 // ISO/IEC 23008-12, annexes B and E, and AV1 Image File Format, 6: brands of still pictures and of sequences.
 constexpr struct {
@@ -48,7 +48,7 @@ std::optional<CodedKind> coded_kind(const std::string &path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
     std::ifstream file(path, std::ios::binary);
-    char bytes[most_start] = {};
+    char bytes[max_start] = {};
     file.read(bytes, sizeof bytes);
     const std::string_view start(bytes, static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
     if (start.substr(0, 4) == "RIFF"sv && start.size() >= 12 && start.substr(8, 4) == "WEBP"sv)

@@ -16,7 +16,7 @@ namespace codec {
 
 namespace {
 
-constexpr uint64_t most_meta_bytes = uint64_t(64) << 20;
+constexpr uint64_t max_meta_bytes = uint64_t(64) << 20;
 
 // Reads bytes from the front. Beyond the end it returns zeros and sets `is_short`.
 struct Bytes {
@@ -84,7 +84,7 @@ std::vector<uint8_t> read_meta(const std::string &path) {
         if (size < start || size > end - offset) break;
         if (is_meta) {
             std::vector<uint8_t> meta;
-            if (size > most_meta_bytes || !read_at(file.get(), offset + start, static_cast<size_t>(size - start), meta))
+            if (size > max_meta_bytes || !read_at(file.get(), offset + start, static_cast<size_t>(size - start), meta))
                 meta.clear();
             return meta;
         }

@@ -246,12 +246,12 @@ double read_pitched_crop(const Exiv2::ExifData &exif, PictureSize size) {
 // no equivalent, from the pitch. A small picture may have been resized by a program that updated its stated size: then
 // the pitch alone is not trusted.
 double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm, PictureSize size) {
-    constexpr double fewest_pixels = 3e6, same = 0.1;
+    constexpr double min_pixels = 3e6, same = 0.1;
     const double equivalent = read_number(exif, {"Exif.Photo.FocalLengthIn35mmFilm"}) / focal_mm;
     const double pitched = read_pitched_crop(exif, size);
     const auto is_plausible = [](double crop) { return crop > 0.2 && crop < 50.0; };
     const bool known = is_plausible(equivalent) && focal_mm > 0.0;
-    const bool is_whole = double(size.width) * size.height >= fewest_pixels;
+    const bool is_whole = double(size.width) * size.height >= min_pixels;
     if (is_plausible(pitched) && (known ? std::fabs(pitched / equivalent - 1.0) < same : is_whole)) return pitched;
     return known ? equivalent : LENSPROF_UNKNOWN;
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr uint16_t tag_subfile_type = 254, tag_width = 256, tag_height = 257, tag_photometric = 262, tag_samples = 277,
                    tag_cfa_repeat = 33421, tag_cfa_pattern = 33422, tag_active_area = 50829;
 constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892;
-constexpr uint32_t most_opcode_bytes = 64u << 20;
+constexpr uint32_t max_opcode_bytes = 64u << 20;
 
 const char *text_of(TiffDefect defect) {
     switch (defect) {
@@ -64,7 +64,7 @@ public:
     std::vector<uint8_t> bytes_of(uint16_t tag) {
         const TiffEntry *entry = image_.find(tag);
         if (!entry || (entry->type != tiff_undefined && entry->type != tiff_byte)) return {};
-        if (entry->count > most_opcode_bytes) fail("has an opcode list larger than 64 MiB; give another file");
+        if (entry->count > max_opcode_bytes) fail("has an opcode list larger than 64 MiB; give another file");
         return reader_->bytes(*entry);
     }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr size_t part_bytes = size_t(1) << 18;
 constexpr uint64_t working_max_bytes = uint64_t(2) << 30;  // libjxl decodes to floats, regardless of the output type
 constexpr size_t box_max_bytes = size_t(64) << 20;         // of EXIF or XMP, which may be compressed
-constexpr int most_boxes = 1000;                           // searched for a JPEG
+constexpr int max_boxes = 1000;                            // searched for a JPEG
 constexpr size_t box_first_bytes = size_t(64) << 10;
 
 uint64_t big_endian(const uint8_t *bytes, size_t count) {
@@ -34,7 +34,7 @@ bool has_jpeg(std::FILE *file) {
     std::vector<uint8_t> head;
     if (!read_at(file, 0, 4, head) || big_endian(head.data(), 4) != 12) return false;
     uint64_t offset = 12;
-    for (int boxes = 0; boxes < most_boxes && read_at(file, offset, 16, head); ++boxes) {
+    for (int boxes = 0; boxes < max_boxes && read_at(file, offset, 16, head); ++boxes) {
         if (std::memcmp(&head[4], "jbrd", 4) == 0) return true;
         uint64_t size = big_endian(head.data(), 4);
         if (size == 1) size = big_endian(&head[8], 8);

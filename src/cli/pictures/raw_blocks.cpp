@@ -19,7 +19,7 @@ constexpr uint16_t tag_width = 256, tag_height = 257, tag_compression = 259, tag
                    tag_tile_width = 322, tag_tile_height = 323, tag_tile_offsets = 324, tag_tile_bytes = 325;
 constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892, compression_jpeg = 7;
 constexpr uint8_t start_of_image = 0xd8, lossless_frame = 0xc3, huffman_table = 0xc4, start_of_scan = 0xda;
-constexpr int most_segments = 64;
+constexpr int max_segments = 64;
 
 struct JpegFrame {
     uint32_t width = 0, height = 0, components = 0;
@@ -114,7 +114,7 @@ private:
         JpegFrame frame;
         bool has_table = false;
         uint64_t segment = offset + 2;
-        for (int i = 0; i < most_segments && segment + 4 <= end && read(segment, head, 4) && head[0] == 0xff; ++i) {
+        for (int i = 0; i < max_segments && segment + 4 <= end && read(segment, head, 4) && head[0] == 0xff; ++i) {
             const uint64_t length = uint64_t(head[2]) << 8 | head[3];
             if (head[1] == lossless_frame) {
                 uint8_t f[6];

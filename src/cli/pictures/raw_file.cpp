@@ -19,9 +19,9 @@ namespace codec {
 
 namespace {
 
-constexpr unsigned most_memory_mb = 2048;
-constexpr uint64_t most_expansion = 1024;  // maximum pixels per byte of a file: Deflate of two bytes each
-constexpr uint32_t colour_period = 12;     // columns after which mosaics repeat: 2 (Bayer) and 6 (X-Trans)
+constexpr unsigned max_memory_mb = 2048;
+constexpr uint64_t max_expansion = 1024;  // maximum pixels per byte of a file: Deflate of two bytes each
+constexpr uint32_t colour_period = 12;    // columns after which mosaics repeat: 2 (Bayer) and 6 (X-Trans)
 constexpr uint16_t saturated = 65535;
 
 // Detects reads beyond the end, which LibRaw's bit readers answer with zeros, and how much of each block is read.
@@ -76,8 +76,7 @@ void on_data_error(void *, const char *, int) {}  // error_count() reports error
     case LIBRAW_UNSUFFICIENT_MEMORY: fail_memory(path);
     case LIBRAW_TOO_BIG:
     case LIBRAW_MEMPOOL_OVERFLOW:
-        fail_unsupported(path, "camera raw file (" + kind + ") that declares more than "
-                                   + std::to_string(most_memory_mb)
+        fail_unsupported(path, "camera raw file (" + kind + ") that declares more than " + std::to_string(max_memory_mb)
                                    + " MB of pixels; copy it again, or develop it to a linear 16 bit TIFF");
     case LIBRAW_FILE_UNSUPPORTED:
     case LIBRAW_NOT_IMPLEMENTED:
@@ -97,9 +96,9 @@ struct RawFile::Decoder {
         libraw.set_memerror_handler(on_memory_error, nullptr);
         libraw_output_params_t &o = libraw.imgdata.params;
 #if LIBRAW_COMPILE_CHECK_VERSION_NOTLESS(0, 21)
-        libraw.imgdata.rawparams.max_raw_memory_mb = most_memory_mb;
+        libraw.imgdata.rawparams.max_raw_memory_mb = max_memory_mb;
 #else
-        o.max_raw_memory_mb = most_memory_mb;
+        o.max_raw_memory_mb = max_memory_mb;
 #endif
         o.output_color = 0;   // the camera's own
         o.no_auto_scale = 1;  // values are linear by then
@@ -136,7 +135,7 @@ void RawFile::check_size() const {
     const libraw_image_sizes_t &s = decoder_->data().sizes;
     const uint64_t pixels = uint64_t(s.raw_width) * s.raw_height;
     check_stored(path_, size_text(s.raw_width, s.raw_height), pixels,
-                 static_cast<uint64_t>(std::max<INT64>(decoder_->stream.size(), 0)), most_expansion);
+                 static_cast<uint64_t>(std::max<INT64>(decoder_->stream.size(), 0)), max_expansion);
     if (s.width == 0 || s.height == 0) fail_damaged(path_, size_text(s.width, s.height));
 }
 

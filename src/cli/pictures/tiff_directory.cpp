@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint16_t tag_strip_offsets = 273, tag_strip_bytes = 279, tag_tile_offsets = 324, tag_tile_bytes = 325,
                    tag_sub_ifds = 330;
-constexpr uint32_t most_directories = 256;  // a longer chain is circular
+constexpr uint32_t max_directories = 256;  // a longer chain is circular
 constexpr size_t header_bytes = 8, entry_bytes = 12;
 
 }  // namespace
@@ -54,7 +54,7 @@ std::vector<uint8_t> TiffReader::read(uint64_t offset, uint64_t count) {
 }
 
 TiffDirectory TiffReader::directory(uint64_t pointer) {
-    if (++directories_ > most_directories) throw UnusableTiff(TiffDefect::circle);
+    if (++directories_ > max_directories) throw UnusableTiff(TiffDefect::circle);
     const uint64_t offset = order_.get(read(pointer, 4).data(), 4);
     const uint32_t count = order_.get(read(offset, 2).data(), 2);
     const std::vector<uint8_t> bytes = read(offset + 2, count * entry_bytes + 4);
@@ -75,7 +75,7 @@ std::vector<uint64_t> TiffReader::children(const TiffDirectory &directory) const
     std::vector<uint64_t> children;
     const TiffEntry *entry = directory.find(tag_sub_ifds);
     if (!entry || (entry->type != tiff_long && entry->type != tiff_ifd)) return children;
-    if (entry->count > most_directories) throw UnusableTiff(TiffDefect::circle);
+    if (entry->count > max_directories) throw UnusableTiff(TiffDefect::circle);
     const uint64_t first = place(*entry);
     for (uint32_t i = 0; i < entry->count; ++i) children.push_back(first + 4 * uint64_t(i));
     return children;

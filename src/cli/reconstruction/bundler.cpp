@@ -12,7 +12,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t(8) << 30;
+constexpr uint64_t kMaxBytes = uint64_t(8) << 30;
 constexpr const char *kHeader = "# Bundle file";
 
 // list.txt next to it, or the name of the file with the extension of a list.
@@ -55,7 +55,7 @@ std::string name_of(std::string line) {
 }
 
 std::vector<std::string> read_list(const std::string &path) {
-    FieldReader fields(path, '\0', kMostBytes);
+    FieldReader fields(path, '\0', kMaxBytes);
     std::vector<std::string> names;
     while (fields.next_line_of_values()) names.push_back(name_of(fields.rest()));
     return names;
@@ -88,7 +88,7 @@ void read_point(FieldReader &fields, Reconstruction &found) {
         observation.feature = static_cast<uint32_t>(fields.integer<int32_t>());  // -1 if it has no index
         observation.xy[0] = static_cast<float>(fields.number());
         observation.xy[1] = -static_cast<float>(fields.number());
-        if (found.observations.size() == most_observations) fields.fail("it has too many observations");
+        if (found.observations.size() == max_observations) fields.fail("it has too many observations");
         found.observations.push_back(observation);
     }
     found.points.push_back(position);
@@ -107,7 +107,7 @@ Reconstruction read_bundler(const std::string &path) {
     found.cameras.emplace_back();
     const std::string list = neighbouring_list(path);
     for (const std::string &name : read_list(list)) found.images.push_back({name, 0, false, {}});
-    FieldReader fields(path, '\0', kMostBytes);
+    FieldReader fields(path, '\0', kMaxBytes);
     if (!fields.next_line() || fields.rest() != kHeader + std::string(" v0.3"))
         fields.fail("it is not version 0.3, which has the feature positions");
     if (!fields.next_line_of_values()) fields.fail("the number of cameras is missing");

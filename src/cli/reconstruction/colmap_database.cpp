@@ -19,8 +19,8 @@
 namespace lensprof {
 namespace {
 
-constexpr int64_t kPairBase = 2147483647;     // pair_id = kPairBase * smaller image_id + larger image_id
-constexpr uint64_t kMostFeatures = 1u << 30;  // of all images
+constexpr int64_t kPairBase = 2147483647;    // pair_id = kPairBase * smaller image_id + larger image_id
+constexpr uint64_t kMaxFeatures = 1u << 30;  // of all images
 // Verified configurations of TwoViewGeometry: all but undefined, degenerate (0, 1) and watermark (7).
 constexpr const char *kVerified = "2, 3, 4, 5, 6, 8, 9";
 constexpr int kWait_ms = 1000;  // waiting for a program that writes to it
@@ -144,7 +144,7 @@ void read_images(Content &content) {
     while (images.next()) {
         const auto camera = camera_of.find(images.integer(2));
         if (camera == camera_of.end()) fail_damaged(content.path, "has an image without a camera");
-        if (content.found.images.size() == most_images) fail_damaged(content.path, "has too many images");
+        if (content.found.images.size() == max_images) fail_damaged(content.path, "has too many images");
         if (!content.image_of.emplace(images.integer(0), static_cast<uint32_t>(content.found.images.size())).second)
             fail_damaged(content.path, "has two images with the same id");
         ReconstructionImage image;
@@ -176,7 +176,7 @@ struct Keypoints {
 };
 
 void check_table(const std::string &path, int64_t rows, int64_t columns, size_t bytes, const char *table) {
-    if (rows < 0 || columns < 0 || rows > int64_t(kMostFeatures) || columns > 64
+    if (rows < 0 || columns < 0 || rows > int64_t(kMaxFeatures) || columns > 64
         || uint64_t(rows) * uint64_t(columns) * 4 != bytes)
         fail_damaged(path, std::string("has ") + table + " that are truncated");
 }
@@ -201,7 +201,7 @@ void count_features(Content &content) {
     }
     content.first_feature.assign(1, 0);
     for (const uint64_t features : count) content.first_feature.push_back(content.first_feature.back() + features);
-    if (content.first_feature.back() > kMostFeatures) fail_damaged(content.path, "has too many keypoints");
+    if (content.first_feature.back() > kMaxFeatures) fail_damaged(content.path, "has too many keypoints");
 }
 
 // Sets of features.
@@ -254,7 +254,7 @@ void take_tracks(Content &content, JoinedSets joined) {
         content.found.has_rotations = content.found.has_rotations || keypoints.columns > 2;
         for (uint64_t n = content.first_feature[image]; n < content.first_feature[image + 1]; n++) {
             if (!is_matched[n]) continue;
-            if (content.found.observations.size() == most_observations)
+            if (content.found.observations.size() == max_observations)
                 fail_damaged(content.path, "has too many matched keypoints");
             TrackObservation observation;
             observation.point = joined.of(static_cast<uint32_t>(n)), observation.image = image;

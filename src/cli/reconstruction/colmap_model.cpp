@@ -16,7 +16,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t(4) << 30;
+constexpr uint64_t kMaxBytes = uint64_t(4) << 30;
 // Number of parameters of the camera models 0, 1, 2, ... (COLMAP, src/colmap/sensor/models.h).
 constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4, 6, 2};
 
@@ -27,7 +27,7 @@ constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4
 // Reads numbers of a little-endian binary file.
 class Bytes {
 public:
-    explicit Bytes(const std::string &file) : file_(file), content_(read_text(file, kMostBytes)) {}
+    explicit Bytes(const std::string &file) : file_(file), content_(read_text(file, kMaxBytes)) {}
 
     template <class Number>
     Number next() {
@@ -162,7 +162,7 @@ void read_binary_points(const std::string &file, const Add &add) {
 }
 
 void read_text_cameras(const std::string &file, Model &model) {
-    FieldReader fields(file, '\0', kMostBytes);
+    FieldReader fields(file, '\0', kMaxBytes);
     while (fields.next_line_of_values()) {
         const auto id = fields.integer<uint32_t>();
         fields.text();  // the name of its model
@@ -172,7 +172,7 @@ void read_text_cameras(const std::string &file, Model &model) {
 }
 
 void read_text_images(const std::string &file, Model &model) {
-    FieldReader fields(file, '\0', kMostBytes);
+    FieldReader fields(file, '\0', kMaxBytes);
     while (fields.next_line_of_values()) {
         const auto id = fields.integer<uint32_t>();
         std::array<double, 4> q;
@@ -194,7 +194,7 @@ void read_text_images(const std::string &file, Model &model) {
 
 template <class Add>
 void read_text_points(const std::string &file, const Add &add) {
-    FieldReader fields(file, '\0', kMostBytes);
+    FieldReader fields(file, '\0', kMaxBytes);
     while (fields.next_line_of_values()) {
         fields.text();  // its number
         std::array<double, 3> position;
@@ -265,7 +265,7 @@ Reconstruction read_colmap_model(const std::string &folder) {
             if (image == model.images.end() || sight.feature >= image->second.places.size())
                 fail_damaged(points, "refers to feature " + std::to_string(sight.feature) + " of image "
                                          + std::to_string(sight.image) + ", which does not exist");
-            if (found.observations.size() == most_observations) fail_damaged(points, "has too many observations");
+            if (found.observations.size() == max_observations) fail_damaged(points, "has too many observations");
             TrackObservation observation;
             observation.point = static_cast<uint32_t>(found.points.size());
             observation.image = image_of.at(sight.image), observation.feature = sight.feature;

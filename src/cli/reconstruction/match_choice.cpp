@@ -19,7 +19,7 @@ constexpr double kUsualAngle = 0.2618;  // 15 degrees, in radians
 constexpr double kUsualShare = 0.05;    // share of common points whose views are downweighted as much
 constexpr size_t kLongTrack = 12;       // an observation of a longer track is paired only with some of the others:
 constexpr size_t kFewImages = 300;      // whose links are all kept; of more
-constexpr uint32_t kMostLinks = 20;     // the strongest links of an image, and a few
+constexpr uint32_t kMaxLinks = 20;      // the strongest links of an image, and a few
 constexpr size_t kNext = 3, kFar = 6;   // the next ones in image order, and others
 
 // A pseudo-random number in (0, 1] for another number.
@@ -152,7 +152,7 @@ std::set<uint32_t> links_to_keep(const std::vector<std::pair<uint32_t, uint32_t>
     std::set<uint32_t> kept;
     for (const uint32_t link : order) {
         const auto [i, j] = links[link];
-        if (joined.of(i) == joined.of(j) && kept_of[i] >= kMostLinks && kept_of[j] >= kMostLinks) continue;
+        if (joined.of(i) == joined.of(j) && kept_of[i] >= kMaxLinks && kept_of[j] >= kMaxLinks) continue;
         joined.join(i, j);
         kept_of[i]++, kept_of[j]++;
         kept.insert(link);

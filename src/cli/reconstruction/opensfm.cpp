@@ -20,7 +20,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t(64) << 30;  // of tracks.csv, which is read line by line
+constexpr uint64_t kMaxBytes = uint64_t(64) << 30;  // of tracks.csv, which is read line by line
 constexpr const char *kHeader = "OPENSFM_TRACKS_VERSION_v";
 
 // Version 0 has no feature size, 1 has one, and 2 has segmentation and instance after the colour.
@@ -55,7 +55,7 @@ std::array<uint8_t, 3> colour_of(FieldReader &fields) {
 
 void read_tracks(const std::string &path, Tracks &tracks) {
     const int version = version_of(path);
-    FieldReader fields(path, '\t', kMostBytes);
+    FieldReader fields(path, '\t', kMaxBytes);
     Reconstruction &found = tracks.found;
     bool is_first = read_head(path, std::strlen(kHeader)) == kHeader;
     while (fields.next_line()) {
@@ -64,7 +64,7 @@ void read_tracks(const std::string &path, Tracks &tracks) {
         const std::string image = fields.text();
         observation.image = number_of(image, tracks.image_of);
         if (observation.image == found.images.size()) {
-            if (found.images.size() == most_images) fields.fail("it has too many images");
+            if (found.images.size() == max_images) fields.fail("it has too many images");
             found.images.push_back({image, 0, false, {}});
         }
         observation.point = number_of(fields.text(), tracks.point_of);
@@ -76,7 +76,7 @@ void read_tracks(const std::string &path, Tracks &tracks) {
         if (version > 0)
             observation.shape[0][0] = observation.shape[1][1] = std::max(0.0f, static_cast<float>(fields.number()));
         observation.colour = colour_of(fields);
-        if (found.observations.size() == most_observations) fields.fail("it has too many observations");
+        if (found.observations.size() == max_observations) fields.fail("it has too many observations");
         found.observations.push_back(observation);
     }
 }

@@ -67,8 +67,8 @@ void keep_images(const std::vector<uint32_t> &kept, Reconstruction &reconstructi
 bool is_finite(const std::array<double, 3> &vector);
 
 // Maximum number of images and of observations of a reconstruction.
-constexpr uint32_t most_images = 1u << 20;
+constexpr uint32_t max_images = 1u << 20;
 constexpr int64_t most_image_side = 1 << 20;  // px
-constexpr uint64_t most_observations = uint64_t(1) << 28;
+constexpr uint64_t max_observations = uint64_t(1) << 28;
 
 }  // namespace lensprof

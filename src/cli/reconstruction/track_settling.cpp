@@ -18,7 +18,7 @@ void check(const Reconstruction &r) {
     const auto fail = [&](const std::string &message) {
         throw Failure(ExitCode::unreadable, r.path + ": " + message + "; give an intact file");
     };
-    if (r.images.size() > most_images) fail("has " + std::to_string(r.images.size()) + " images, more than supported");
+    if (r.images.size() > max_images) fail("has " + std::to_string(r.images.size()) + " images, more than supported");
     std::unordered_set<std::string> names;
     for (const ReconstructionImage &image : r.images) {
         if (image.name.empty() || image.name.find('\0') != std::string::npos) fail("has an image without a name");

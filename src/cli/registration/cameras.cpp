@@ -17,7 +17,7 @@ namespace lensprof {
 namespace {
 
 constexpr double degrees = 180.0 / M_PI;
-constexpr size_t most_matches = 40;   // matches used per link, spread over its overlap
+constexpr size_t max_matches = 40;    // matches used per link, spread over its overlap
 constexpr double widest_deg = 140.0;  // maximum angle of view of a rectilinear lens
 constexpr double last_scale = 0.001;  // of the loss, as a share of the longer side
 constexpr double fits = 0.0012;       // of the same: a panorama with larger residuals may be a plane
@@ -29,14 +29,14 @@ using Matches = std::vector<Match>;
 Matches spread(const Matches &matches, const PictureOptics &first) {
     constexpr int cells = 8;
     Matches left = matches, chosen;
-    while (chosen.size() < most_matches && !left.empty()) {
+    while (chosen.size() < max_matches && !left.empty()) {
         bool taken[cells * cells] = {};
         Matches rest;
         for (const auto &m : left) {
             const int across = std::clamp(int(m.first.x / first.width * cells), 0, cells - 1);
             const int down = std::clamp(int(m.first.y / first.height * cells), 0, cells - 1);
             bool &is_taken = taken[down * cells + across];
-            (is_taken || chosen.size() == most_matches ? rest : chosen).push_back(m);
+            (is_taken || chosen.size() == max_matches ? rest : chosen).push_back(m);
             is_taken = true;
         }
         left = std::move(rest);
@@ -195,7 +195,7 @@ void CameraFit::find_angles_of_view() {
             hfov_[lens] = std::min(median(known[lens]), widest_deg), hfov_sigma_[lens] = known_hfov;
     const bool all_known = std::none_of(known.begin(), known.end(), [](const auto &k) { return k.empty(); });
     constexpr double guess_scale = 0.01;
-    constexpr size_t most_links = 300, match_step = 4;  // an even selection suffices
+    constexpr size_t max_links = 300, match_step = 4;  // an even selection suffices
     choose_unknowns(false, false);
     double least = 1e300;
     for (double factor = all_known ? 0.9 : 0.07; factor < (all_known ? 1.1 : 3.0); factor *= 1.01) {
@@ -203,7 +203,7 @@ void CameraFit::find_angles_of_view() {
         for (uint32_t lens = 0; lens < lenses_; lens++)
             if (known[lens].empty() || all_known) guess[lens] = std::min(guess[lens] * factor, widest_deg);
         start(guess);
-        const double misfit = cost(guess_scale, 1 + links_.size() / most_links, match_step);
+        const double misfit = cost(guess_scale, 1 + links_.size() / max_links, match_step);
         if (misfit < least) least = misfit, first_hfov_ = guess;
     }
 }

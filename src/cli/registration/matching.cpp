@@ -18,12 +18,12 @@ constexpr float ratio = 0.8f;        // Lowe's ratio of the distances to the nea
 constexpr double tolerance = 0.003;  // of the longer side: maximum distance of a match from the homography
 // Brown & Lowe 2007, equation 13, with our own shares: for unrelated pictures no homography held more than 7 of 90
 // matches; for related ones with little overlap 10 to 20.
-constexpr size_t fewest_matches = 10;
+constexpr size_t min_matches = 10;
 constexpr double min_above_chance = 6.0, share_of_matches = 0.1;
 constexpr double still = 0.002;       // of the longer side: less than the movement by a camera that moves or rotates
 constexpr size_t still_by_moved = 3;  // ratio of stationary to moving matches for a stationary camera
-constexpr int most_draws = 3000;      // of four matches for a homography
-constexpr int most_rounds = 5;        // of matching: links found determine the next candidates
+constexpr int max_draws = 3000;       // of four matches for a homography
+constexpr int max_rounds = 5;         // of matching: links found determine the next candidates
 
 using Match = std::pair<int, int>;
 
@@ -62,18 +62,18 @@ using Places = std::vector<std::pair<cv::Point2d, cv::Point2d>>;
 
 // The homography supported by most matches; empty if chance explains as many.
 std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matches, double longer_side) {
-    if (matches.size() < fewest_matches) return std::nullopt;
+    if (matches.size() < min_matches) return std::nullopt;
     std::vector<cv::Point2d> from, to;
     for (const auto &[a, b] : matches) from.push_back(a), to.push_back(b);
     std::vector<uint8_t> follows;
     const cv::Mat homography =
-        cv::findHomography(from, to, cv::USAC_MAGSAC, tolerance * longer_side, follows, most_draws, 0.999);
+        cv::findHomography(from, to, cv::USAC_MAGSAC, tolerance * longer_side, follows, max_draws, 0.999);
     if (homography.empty()) return std::nullopt;
     PictureLink found{{pair.first, pair.second}, {}, homography, false};
     for (size_t m = 0; m < matches.size(); m++)
         if (follows[m]) found.matches.push_back(matches[m]);
     const auto count = static_cast<double>(found.matches.size());
-    const bool is_chance = found.matches.size() < fewest_matches
+    const bool is_chance = found.matches.size() < min_matches
                            || count <= min_above_chance + share_of_matches * static_cast<double>(matches.size());
     return is_chance ? std::nullopt : std::optional(std::move(found));
 }
@@ -92,7 +92,7 @@ cv::Rect2d box_of(const Places &places) {
 // the moved ones, which then come from repetitive objects. Something fixed to the frame, such as a dashboard, occupies
 // its own part of it.
 bool is_still_scene(const Places &stayed, const Places &moved, const Features &picture) {
-    if (stayed.size() < fewest_matches || stayed.size() < still_by_moved * moved.size()) return false;
+    if (stayed.size() < min_matches || stayed.size() < still_by_moved * moved.size()) return false;
     const cv::Rect2d box = box_of(stayed);
     const auto outside =
         std::count_if(moved.begin(), moved.end(), [&](const auto &place) { return !box.contains(place.first); });
@@ -170,7 +170,7 @@ void drop_static(size_t pictures, std::vector<PictureLink> &links) {
 std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progress &progress) {
     std::vector<PictureLink> links;
     std::vector<PicturePair> tried, linked, pairs = candidate_pairs(pictures);
-    for (int round = 0; round < most_rounds && !pairs.empty(); round++) {
+    for (int round = 0; round < max_rounds && !pairs.empty(); round++) {
         std::vector<std::optional<PictureLink>> found(pairs.size());
         for_each_parallel(static_cast<uint32_t>(pairs.size()), "matching pictures", progress,
                           [&](uint32_t n) { found[n] = link(pictures, pairs[n]); });

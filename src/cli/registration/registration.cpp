@@ -23,7 +23,7 @@ namespace {
 constexpr double unfit = 0.005;         // median residual of a link not explained by the cameras, of the longer side
 constexpr size_t points_per_link = 10;  // given to a project
 // Maximum matches of a link compared at matches, and of all links of a project.
-constexpr size_t fewest_matches_kept = 20, most_matches = 200, max_total_matches = 200000;
+constexpr size_t min_matches_kept = 20, max_matches = 200, max_total_matches = 200000;
 constexpr double smallest_turn = 0.05;  // maximum determinant (or inverse) of a map between two pictures of a scene
 
 std::optional<double> hfov_by_metadata(const PictureMetadata &metadata, const Features &picture) {
@@ -74,7 +74,7 @@ FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<Picture
     const auto fits_link = [&](size_t n) { return found.link_residuals[n] <= unfit; };
     for (size_t n = 0; n < links.size(); n++) project.unfit += !fits_link(n);
     const size_t max_per_link =
-        std::clamp(max_total_matches / std::max<size_t>(1, links.size()), fewest_matches_kept, most_matches);
+        std::clamp(max_total_matches / std::max<size_t>(1, links.size()), min_matches_kept, max_matches);
     // Scenes are only nearly planar: what stands out is shifted, and matches have the actual positions.
     project.by_matches = found.kind == SceneKind::plane || !project.cameras_fit();
     for (size_t n = 0; n < links.size(); n++) {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double perceptual = 1.0 / 2.2;
 constexpr int coarse_side = 80, fine_side = 1024;
-constexpr int half_window = 6;           // px: side of a level, and of the window for normalising structure
-constexpr float least_contrast = 0.01f;  // on the perceptual scale: below it is noise
+constexpr int half_window = 6;         // px: side of a level, and of the window for normalising structure
+constexpr float min_contrast = 0.01f;  // on the perceptual scale: below it is noise
 
 double half_diagonal(const Plane &p) { return 0.5 * std::hypot(p.width, p.height); }
 
@@ -94,9 +94,9 @@ Plane normalised(const Plane &plane, double *texture) {
         for (int x = 0; x < plane.width; x++) {
             const double mean = sums.mean(x, y);
             const auto contrast = static_cast<float>(std::sqrt(std::max(0.0, squares.mean(x, y) - mean * mean)));
-            textured += contrast > 2.0f * least_contrast;
+            textured += contrast > 2.0f * min_contrast;
             out.values[size_t(y) * size_t(plane.width) + size_t(x)] =
-                (plane.at(x, y) - static_cast<float>(mean)) / (contrast + least_contrast);
+                (plane.at(x, y) - static_cast<float>(mean)) / (contrast + min_contrast);
         }
     if (texture) *texture = double(textured) / double(std::max<size_t>(plane.values.size(), 1));
     return out;

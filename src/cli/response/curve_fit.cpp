@@ -14,8 +14,8 @@ namespace {
 
 constexpr int inner = curve_knots - 1;
 constexpr double power = 2.2;
-constexpr double least_light = 1e-7;
-constexpr double least_noise = 0.25 / 255.0;  // of a mean over a square: from JPEG coding
+constexpr double min_light = 1e-7;
+constexpr double min_noise = 0.25 / 255.0;  // of a mean over a square: from JPEG coding
 constexpr double white_edge = 254.0 / 255.0;
 constexpr double robust_at = 3.0;  // in units of the noise
 constexpr double rough_at = 0.3;   // range over mean of irradiance in an area
@@ -32,7 +32,7 @@ struct Interval {
 };
 
 Interval interval_of(double x) {
-    const double light = std::max(x, least_light), t = std::pow(light, 1.0 / power);
+    const double light = std::max(x, min_light), t = std::pow(light, 1.0 / power);
     const double position = t * curve_knots;
     const int index = std::min(static_cast<int>(position), curve_knots - 1);
     return {index, x > 0.0 ? position - index : 0.0, t / (power * light)};
@@ -330,7 +330,7 @@ void Solver::estimate_noise(CurveFit &fit) const {
                 left[static_cast<size_t>(chroma_bin(place))].push_back(std::fabs(residual) / rough_factor(place));
         }
     }
-    double least = least_noise;
+    double least = min_noise;
     for (size_t i = 0; i < left.size(); i++) {
         if (left[i].size() >= 30) least = std::max(least, 1.4826 * median(left[i]));
         fit.noise[i] = least;

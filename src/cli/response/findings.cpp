@@ -13,13 +13,13 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t least_places = 300;  // with a grey value
-constexpr size_t least_in_region = 20;
+constexpr uint32_t min_places = 300;  // with a grey value
+constexpr size_t min_in_region = 20;
 constexpr int map_columns = 12, map_rows = 9;
-constexpr double least_in_cell = 8.0;  // values, of each half
+constexpr double min_in_cell = 8.0;  // values, of each half
 // Error of ln gamma per EV of the map left by local tone mapping: the curve absorbs the rest (measured: 1.4 to 2.2).
 constexpr double by_pattern = 2.0;
-constexpr double least_correction = 0.02;  // of irradiance
+constexpr double min_correction = 0.02;  // of irradiance
 // Errors common to all areas, which a jackknife does not show: block-wise rendering, rounding of colours, denoising by
 // the camera.
 constexpr double common_sigma = 0.004;
@@ -50,7 +50,7 @@ Spread leave_out(const FitRequest &request, const CurveFit &fit, const std::vect
     for (const Place &place : request.places) counts[static_cast<size_t>(region_of(place))]++;
     std::vector<CurveFit> fits;
     for (int region = 0; region < region_count; region++) {
-        if (counts[static_cast<size_t>(region)] < least_in_region) continue;
+        if (counts[static_cast<size_t>(region)] < min_in_region) continue;
         FitRequest without{request.places, request.pictures, request.channels, request.prior, &fit, region};
         fits.push_back(fit_curve(without));
     }
@@ -101,7 +101,7 @@ struct HalfMaps {
         double sum = 0.0, count = 0.0;
         for (size_t i = 0; i < half[0].size(); i++) {
             const Sums &a = half[0][i], &b = half[1][i];
-            if (a.count < least_in_cell || b.count < least_in_cell) continue;
+            if (a.count < min_in_cell || b.count < min_in_cell) continue;
             sum += (a.count + b.count) * (a.*value / a.weight) * (b.*value / b.weight);
             count += a.count + b.count;
         }
@@ -192,7 +192,7 @@ double scatter_of_files(const std::vector<std::vector<Place>> &places, const len
 
 }  // namespace
 
-bool FileFindings::is_corrected() const { return std::log(corner) > std::max(3.0 * corner_sigma, least_correction); }
+bool FileFindings::is_corrected() const { return std::log(corner) > std::max(3.0 * corner_sigma, min_correction); }
 
 void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_response &prior, ResponseReport &report) {
     std::vector<Place> all;
@@ -201,7 +201,7 @@ void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_res
         FileFindings &file = report.files[i];
         float r2 = 0.0f;
         for (const Place &place : places[i]) r2 = std::max(r2, place.r2), file.places += is_used(place);
-        if (file.places < least_places)
+        if (file.places < min_places)
             throw Failure(ExitCode::not_usable, too_few_message(file), LENSPROF_REASON_FEW_PAIRS);
         file.radius = std::min(1.0, std::sqrt(double(r2)));
         radii.push_back(file.radius);

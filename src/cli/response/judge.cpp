@@ -9,8 +9,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double most_scatter = 6.0;  // levels
-constexpr double most_gamma_sigma = 0.1;
+constexpr double max_scatter = 6.0;  // levels
+constexpr double max_gamma_sigma = 0.1;
 
 void refuse(ResponseReport &report, uint32_t code, const std::string &text, std::vector<double> values) {
     report.usable = false;
@@ -42,7 +42,7 @@ void judge(ResponseReport &report) {
                    "brightnesses",
                    report.tenths),
             {double(report.tenths)});
-    if (noise > most_scatter)
+    if (noise > max_scatter)
         return refuse(report, LENSPROF_REASON_SCATTER,
                       format("the rendered picture deviates by %.1f levels from any curve of the raw values; it may "
                              "be another shot, or developed differently",
@@ -57,7 +57,7 @@ void judge(ResponseReport &report) {
                     "Auto Lighting Optimizer, DRO, HDR and similar functions",
                     pattern.pattern_levels),
             {pattern.pattern_ev, pattern.pattern_levels});
-    if (report.log_gamma_sigma > most_gamma_sigma)
+    if (report.log_gamma_sigma > max_gamma_sigma)
         return refuse(report, LENSPROF_REASON_UNDETERMINED,
                       format("the exponent is known only to %.0f %%; take a picture with all brightnesses",
                              100.0 * report.log_gamma_sigma),

@@ -11,14 +11,14 @@ namespace lensprof {
 namespace {
 
 constexpr double squares_across = 240.0;  // on the longer side, if the picture has 4 px for each
-constexpr uint32_t least_square = 4;      // px
+constexpr uint32_t min_square = 4;        // px
 constexpr int level_bins = 24;
-constexpr size_t most_a_bin = 1200;  // places
-constexpr double least_agreement = 0.4, least_texture = 0.02;
-constexpr uint8_t first_white = 254;    // JPEG rings at the edge of white
-constexpr float most_chroma = 0.7f;     // beyond it, a channel may have been clipped at 0 by the colour conversion
-constexpr float most_roughness = 1.0f;  // range of the raw green over its mean
-constexpr double last_grey = 250.0, least_grey = 1.5;  // means of a square
+constexpr size_t max_per_bin = 1200;  // places
+constexpr double min_agreement = 0.4, min_texture = 0.02;
+constexpr uint8_t first_white = 254;   // JPEG rings at the edge of white
+constexpr float max_chroma = 0.7f;     // beyond it, a channel may have been clipped at 0 by the colour conversion
+constexpr float max_roughness = 1.0f;  // range of the raw green over its mean
+constexpr double last_grey = 250.0, min_grey = 1.5;  // means of a square
 
 // A square that is not left out so far.
 struct Candidate {
@@ -39,7 +39,7 @@ struct Grid {
 
 Grid grid_of(const Picture &rendered) {
     const uint32_t longer = std::max(rendered.width, rendered.height);
-    const uint32_t side = std::max(least_square, static_cast<uint32_t>(std::lround(longer / squares_across)));
+    const uint32_t side = std::max(min_square, static_cast<uint32_t>(std::lround(longer / squares_across)));
     return {side, rendered.width / side, rendered.height / side};
 }
 
@@ -100,16 +100,16 @@ private:
             }
             const double mean = double(sum) / (grid_.side * grid_.side);
             place.grey_value[c] = static_cast<float>(mean / 255.0);
-            const bool is_grey = mean <= last_grey && highest < first_white && mean >= least_grey && lowest > 0;
+            const bool is_grey = mean <= last_grey && highest < first_white && mean >= min_grey && lowest > 0;
             place.use[c] = is_grey ? Place::grey : lowest == 255 ? Place::white : Place::none;
             any |= place.use[c] != Place::none;
-            black |= mean < least_grey || lowest == 0;
+            black |= mean < min_grey || lowest == 0;
         }
         if (!any) (black ? counts.black : counts.white)++;
         const auto ends = std::minmax_element(place.grey_value.begin(), place.grey_value.end());
         place.chroma = *ends.second > 0.0f ? 1.0f - *ends.first / *ends.second : 0.0f;
-        if (place.chroma > most_chroma) counts.colourful++;
-        return any && place.chroma <= most_chroma;
+        if (place.chroma > max_chroma) counts.colourful++;
+        return any && place.chroma <= max_chroma;
     }
 
     bool read_raw(Candidate &out, PlacesOf &counts) const {
@@ -166,7 +166,7 @@ void add_surroundings(const Grid &grid, std::vector<Candidate> &candidates) {
 std::vector<Place> smoothest(std::vector<Candidate> &candidates, uint32_t &rough) {
     std::vector<std::vector<const Candidate *>> bins(level_bins);
     for (const Candidate &c : candidates) {
-        if (c.place.roughness > most_roughness) {
+        if (c.place.roughness > max_roughness) {
             rough++;
             continue;
         }
@@ -174,7 +174,7 @@ std::vector<Place> smoothest(std::vector<Candidate> &candidates, uint32_t &rough
     }
     std::vector<Place> places;
     for (auto &bin : bins) {
-        const size_t keep = std::min(most_a_bin, (bin.size() + 1) / 2);
+        const size_t keep = std::min(max_per_bin, (bin.size() + 1) / 2);
         std::stable_sort(bin.begin(), bin.end(), [](const Candidate *a, const Candidate *b) {
             return a->place.roughness < b->place.roughness;
         });
@@ -194,7 +194,7 @@ std::vector<Place> smoothest(std::vector<Candidate> &candidates, uint32_t &rough
 // The rotation of the rendered picture: that of the frame, unless another fits clearly better.
 int find_turn(const Picture &raw, const Picture &rendered) {
     const Alignment as_is = align_coarsely(raw, rendered);
-    if (as_is.correlation > 0.6 || as_is.texture < least_texture) return 0;
+    if (as_is.correlation > 0.6 || as_is.texture < min_texture) return 0;
     int best = 0;
     double min_correlation = as_is.correlation + 0.1;
     for (int quarters = 1; quarters < 4; quarters++) {
@@ -205,12 +205,12 @@ int find_turn(const Picture &raw, const Picture &rendered) {
 }
 
 void check_kinds(const Picture &raw, const Picture &rendered, const std::string &name) {
-    if (std::max(rendered.width, rendered.height) < least_rendered_side)
+    if (std::max(rendered.width, rendered.height) < min_rendered_side)
         throw Failure(ExitCode::not_usable,
                       name
                           + format(": %u x %u px are too few to compare with the raw file (the longer side needs %u); "
                                    "give the camera's JPEG of the same picture with --jpeg",
-                                   rendered.width, rendered.height, least_rendered_side),
+                                   rendered.width, rendered.height, min_rendered_side),
                       LENSPROF_REASON_FEW_PAIRS);
     if (raw.layout != LENSPROF_LAYOUT_GREY && rendered.layout == LENSPROF_LAYOUT_GREY)
         throw Failure(ExitCode::not_usable,
@@ -228,7 +228,7 @@ PlacesOf places_of(const Picture &raw, Picture rendered, uint32_t picture, const
     rendered = turned(rendered, found.quarter_turns);
     found.width = rendered.width, found.height = rendered.height;
     found.alignment = align_pictures(raw, rendered);
-    if (found.alignment.texture >= least_texture && found.alignment.correlation < least_agreement)
+    if (found.alignment.texture >= min_texture && found.alignment.correlation < min_agreement)
         throw Failure(ExitCode::not_usable,
                       name
                           + format(": does not match the raw file (correlation of their structure %.2f); give the "

@@ -40,7 +40,7 @@ struct PlacesOf {
     uint32_t channels = 3;
 };
 
-constexpr uint32_t least_rendered_side = 256;  // px, of the longer side
+constexpr uint32_t min_rendered_side = 256;  // px, of the longer side
 
 // Aligns both and selects smooth areas, where sharpening and a small misalignment do not matter. `name` is the name of
 // the rendered picture in a Failure (not_usable): if the two do not match, or there are too few areas.

@@ -21,8 +21,8 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t most_files = 16;
-constexpr uint32_t least_raw_side = 64;  // px, of the cells of a frame
+constexpr size_t max_files = 16;
+constexpr uint32_t min_raw_side = 64;  // px, of the cells of a frame
 
 struct Options {
     StoreOptions store;
@@ -48,9 +48,9 @@ void check_options(const Options &o) {
         for (size_t k = 0; k < i; k++)
             if (is_same_file(o.files[i], o.files[k]))
                 throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
-    if (o.files.size() > most_files)
+    if (o.files.size() > max_files)
         throw Failure(ExitCode::usage, format("%zu files are too many (maximum %zu), and a few suffice; give fewer",
-                                              o.files.size(), most_files));
+                                              o.files.size(), max_files));
 }
 
 // A JPEG in the same folder with the base name of the raw file; empty = none.
@@ -74,7 +74,7 @@ Picture read_jpeg(const std::string &file) {
     return picture;
 }
 
-bool is_large_enough(const Picture &picture) { return std::max(picture.width, picture.height) >= least_rendered_side; }
+bool is_large_enough(const Picture &picture) { return std::max(picture.width, picture.height) >= min_rendered_side; }
 
 // The JPEG of --jpeg, else the embedded one, else (none, or not much larger than an icon) the JPEG next to the raw
 // file, whose name `jpeg_file` receives.
@@ -99,7 +99,7 @@ Picture read_cells(const std::string &file) {
     if (header.traits.format != FileFormat::raw)
         throw Failure(ExitCode::unreadable, file + ": is not a camera raw file; give one, and its JPEG with --jpeg");
     const uint32_t longer = std::max(header.width, header.height);
-    if (std::min(header.width, header.height) < 2 * least_raw_side)
+    if (std::min(header.width, header.height) < 2 * min_raw_side)
         throw Failure(ExitCode::not_usable,
                       file + format(": %u x %u px are too few; give a larger raw file", header.width, header.height),
                       LENSPROF_REASON_FEW_PAIRS);
