@@ -123,6 +123,15 @@ Finished copy_dng(const Correction &job) {
     return {nullptr, std::move(output), true};
 }
 
+// The orientation of a picture that was read, for its thumbnails; 1 if its metadata are damaged.
+uint16_t orientation_of(const std::string &file) {
+    try {
+        return read_metadata(file).orientation;
+    } catch (const Failure &) {
+        return 1;
+    }
+}
+
 }  // namespace
 
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
@@ -142,7 +151,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         PictureCorrection picture(jobs[i], kind, sheet ? sheet->side() : 0);
         finished[i] = picture.run(threads / 2 >= count, throughput);
         if (!sheet) return;
-        const uint16_t orientation = read_metadata(jobs[i].source).orientation;
+        const uint16_t orientation = orientation_of(jobs[i].source);
         sheet->put(i, {picture.before.upright(orientation), picture.after.upright(orientation),
                        std::filesystem::path(jobs[i].source).filename().string(), correction_note(jobs[i])});
     };
