@@ -91,6 +91,9 @@ lensprof_fit_result result_of(const BuildReport &report, const SettingReport &se
 // Whether the result of a fit uses its prior profile, or a part of it.
 bool holds_prior(const lensprof_fit_result &fit);
 
+// Whether the fit left out an image, which then has no exposure.
+bool is_left_out(const BuildReport &report, size_t image);
+
 // Prints one line. File names need not be UTF-8, but JSON must be: invalid bytes become U+FFFD, and a member `x` with
 // such a text is followed by `x_bytes`, its bytes in hexadecimal digits.
 void print_json(const Json &json, std::ostream &out);
@@ -121,6 +124,7 @@ Json number_or_null(double value);  // null: unknown or not a number
 Json covariance_json(const double *values, uint32_t n);
 Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count);
 Json response_json(const lensprof_response *responses, uint32_t count);
+Json samples_json(const lensprof_response *responses, uint32_t count);  // curve samples for plotting, for any kind
 
 void print_vignettings(const lensprof_profile &profile, std::ostream &out);
 void print_response(const lensprof_response &r, std::ostream &out);

@@ -1,0 +1,28 @@
+// Parts of the report of `build` that its JSON object and its table share.
+#include "cli/program/library.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+
+bool holds_prior(const lensprof_fit_result &fit) {
+    return fit.profile_prior != LENSPROF_PROFILE_PRIOR_NONE && fit.profile_prior != LENSPROF_PROFILE_PRIOR_OVERRULED;
+}
+
+bool is_left_out(const BuildReport &report, size_t image) {
+    return report.fit.left_out && image < report.quality.size() && !report.quality[image].joined;
+}
+
+lensprof_fit_result result_of(const BuildReport &report, const SettingReport &setting) {
+    lensprof_fit_result own = report.fit;
+    lensprof_error error{};
+    if (!report.cameras.empty() && report.cameras[setting.camera].found.images)
+        check(lensprof_fit_result_take_camera(&own, &report.cameras[setting.camera].found, &error), "fit", &error);
+    check(lensprof_fit_result_take_setting(&own, &setting.found, &error), "fit", &error);
+    return own;
+}
+
+const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit) {
+    return fit.vignetting[fit.vignettings == 3 ? 1 : 0];
+}
+
+}  // namespace lensprof

@@ -1,0 +1,100 @@
+// Response, falloff and covariance, the parts that fits and profiles share, as JSON and as rows of a table.
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program/format.hpp"
+#include "cli/report/falloff.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+
+Json number_or_null(double value) { return value == LENSPROF_UNKNOWN || !std::isfinite(value) ? Json() : Json(value); }
+
+Json covariance_json(const double *values, uint32_t n) {
+    Json rows = Json::array();
+    for (uint32_t i = 0; i < n; i++) rows.push_back(std::vector<double>(values + i * n, values + (i + 1) * n));
+    return rows;
+}
+
+Json samples_json(const lensprof_response *responses, uint32_t count) {
+    Json values = Json::array();
+    for (uint32_t c = 0; c < count; c++)
+        values.push_back(std::vector<double>(responses[c].table, responses[c].table + LENSPROF_RESPONSE_SAMPLES));
+    return values;
+}
+
+Json response_json(const lensprof_response *responses, uint32_t count) {
+    static const char *const kinds[] = {"linear", "gamma", "emor", "table"};
+    Json json;
+    json["kind"] = kinds[responses[0].kind];
+    if (responses[0].kind == LENSPROF_RESPONSE_EMOR)
+        json["emor"] = std::vector<double>(responses[0].emor, responses[0].emor + responses[0].modes);
+    if (responses[0].kind == LENSPROF_RESPONSE_GAMMA) json["gamma"] = responses[0].gamma;
+    json["values"] = samples_json(responses, count);
+    return json;
+}
+
+Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
+    Json json, k = Json::array();
+    for (uint32_t c = 0; c < count; c++) k.push_back(std::vector<double>(vignettings[c].k, vignettings[c].k + 3));
+    json["k"] = k;
+    json["center"] = {vignettings[0].center[0], vignettings[0].center[1]};
+    return json;
+}
+
+namespace {
+
+double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
+
+// 100 M at r, " +- " and its standard error if known; an error is never printed as 0.0.
+std::string light_at(const lensprof_profile &profile, uint32_t curve, double r, bool &is_known) {
+    double sigma;
+    const double m = lensprof_profile_radial_falloff(&profile, curve, r, &sigma), percent = 100.0 * sigma;
+    is_known = sigma > 0.0;
+    return format("%.1f", 100.0 * m) + (is_known ? format(percent < 0.05 ? " +- %.1g" : " +- %.1f", percent) : "");
+}
+
+}  // namespace
+
+void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
+    static const char *const channels[3] = {" of red", " of green", " of blue"};
+    for (uint32_t c = 0; c < profile.vignettings; c++) {
+        const lensprof_vignetting &v = profile.vignetting[c];
+        const char *channel = profile.vignettings == 3 ? channels[c] : "";
+        if (!has_falloff(v)) {
+            out << "falloff" << channel << "   none: not measured, or fixed at zero\n";
+            continue;
+        }
+        out << "falloff" << channel
+            << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
+                      v.center[0], v.center[1]);
+        bool is_known;
+        const std::string middle = light_at(profile, c, 0.5, is_known), end = light_at(profile, c, 1.0, is_known);
+        out << format("          light at r = 0.5: %s %%, in the corner: %s %% (%.2f stops)%s\n", middle.c_str(),
+                      end.c_str(), -std::log2(corner(v)), is_known ? "" : ", error unknown");
+    }
+}
+
+void print_response(const lensprof_response &r, std::ostream &out) {
+    static const char *const kinds[] = {"linear", "gamma", "EMoR", "table"};
+    std::string kind = kinds[r.kind];
+    if (r.kind == LENSPROF_RESPONSE_EMOR) kind += format(", %u modes", r.modes);
+    if (r.kind == LENSPROF_RESPONSE_GAMMA) kind += format(" %.3g", r.gamma);
+    out << "response  " << kind << ";  grey value (of 255) at irradiance";
+    for (double x : {0.01, 0.05, 0.2, 0.5})
+        out << format("  %g: %.1f", x, 255.0 * lensprof_response_eval(&r, x, nullptr));
+    out << "\n";
+}
+
+const char *gamma_name(uint32_t from) {
+    static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile", "falloff", "cameras"};
+    return from <= LENSPROF_GAMMA_CAMERAS ? names[from] : "unknown";
+}
+
+const char *camera_kind_name(uint32_t kind) {
+    static const char *const names[] = {"any", "film", "digital", "camera", "phone", "linear"};
+    return kind <= LENSPROF_CAMERA_LINEAR ? names[kind] : "unknown";
+}
+
+}  // namespace lensprof

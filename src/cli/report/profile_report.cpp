@@ -1,0 +1,69 @@
+// A profile as JSON and as a table.
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
+    if (!grid.columns) return;
+    const float *end = grid.attenuation + grid.channels * grid.rows * grid.columns;
+    const auto range = std::minmax_element(grid.attenuation, end);
+    out << format("gain grid %u x %u nodes, %s; multiplies the falloff by %.3f to %.3f\n", grid.columns, grid.rows,
+                  grid.channels == 3 ? "one grid per channel" : "all channels", double(*range.first),
+                  double(*range.second));
+}
+
+}  // namespace
+
+Json provenance_json(const lensprof_provenance &p) {
+    return {{"method", p.method},
+            {"software", p.software},
+            {"source", p.source},
+            {"created_unix_s", p.created_unix_s},
+            {"images", p.images},
+            {"pairs", p.pairs},
+            {"heldout_rms", number_or_null(p.heldout_rms)},
+            {"inlier_share", number_or_null(p.inlier_share)},
+            {"doubt", p.doubt},
+            {"prior_id", p.prior_id ? Json(p.prior_id) : Json()},
+            {"forced", p.forced != 0},
+            {"gamma_sigma", p.gamma_sigma > 0.0 ? Json(p.gamma_sigma) : Json()}};
+}
+
+Json profile_json(int64_t id, const lensprof_profile &profile) {
+    const lensprof_profile *const pointer = &profile;
+    const auto write = [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
+        return lensprof_json_write(&pointer, 1, text, capacity, count, error);
+    };
+    Json json = Json::parse(written("profile as JSON", write));
+    json["response"]["values"] = samples_json(profile.response, profile.responses);
+    if (id) json["id"] = id;
+    return json;
+}
+
+void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
+    const auto &p = profile.provenance;
+    out << "profile   " << (id ? std::to_string(id) + ": " : std::string()) << describe_key(profile.key) << "\n";
+    if (*profile.key.unit) out << "unit      " << profile.key.unit << " only\n";
+    if (profile.key.color_temperature_k != LENSPROF_UNKNOWN)
+        out << format("light     %g K\n", profile.key.color_temperature_k);
+    if (*profile.key.style) out << "style     " << profile.key.style << "\n";
+    print_vignettings(profile, out);
+    print_gain_grid(profile.grid, out);
+    for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
+    out << "source    " << (*p.method ? p.method : "unknown method");
+    if (p.prior_id) out << ", with profile " << p.prior_id << " as its prior";
+    if (p.forced) out << ", stored with --force though not usable";
+    out << ", " << p.images << " images, " << p.pairs << " pairs";
+    if (p.heldout_rms != LENSPROF_UNKNOWN) out << format(", residual %.2f levels", p.heldout_rms);
+    out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
+    if (*p.doubt) out << "doubt     " << p.doubt << "\n";
+}
+
+}  // namespace lensprof
