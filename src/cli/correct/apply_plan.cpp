@@ -1,0 +1,257 @@
+#include "cli/correct/apply_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "cli/fitting/exposure_file.hpp"
+#include "cli/pictures/coded_kind.hpp"
+#include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/raw_kind.hpp"
+#include "cli/profiles/foreign_file.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/message.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/program/shard.hpp"
+
+namespace lensprof {
+namespace {
+
+// A DNG stays a DNG with the falloff as an opcode, unless the options need more than an opcode can express.
+bool becomes_dng(const ApplyOptions &o, const std::string &raw) {
+    const CorrectionKind &kind = o.kind;
+    const bool is_plain = !kind.linear && !kind.simulate && kind.strength == 1.0 && kind.gain_cap == 0.0
+                          && o.project().empty() && o.sheet.empty();
+    if (o.raw_output == RawOutput::dng && raw != "DNG")
+        throw Failure(ExitCode::usage, "--raw-output dng: needs DNG files, but one is a " + raw
+                                           + "; convert it to DNG first, or omit the option");
+    if (o.raw_output == RawOutput::dng && !is_plain)
+        throw Failure(ExitCode::usage,
+                      "--raw-output dng: an opcode stores only the falloff; omit --linear, --simulate, --strength, "
+                      "--gain-cap, --pto and --contact-sheet, or use --raw-output tif");
+    return raw == "DNG" && is_plain && o.raw_output != RawOutput::tif;
+}
+
+// `named`: the name of the picture, with its folders below the output folder.
+std::string target_name(const ApplyOptions &o, const NamedPicture &picture, const std::filesystem::path &named) {
+    std::filesystem::path name = named;
+    const auto raw = raw_kind(picture.file);
+    if (o.kind.linear)
+        name.replace_extension(o.linear_end.empty() ? ".tif" : o.linear_end);
+    else if ((raw && !becomes_dng(o, *raw)) || (!raw && is_read_alone(picture.file)))
+        name.replace_extension(".tif");
+    if (raw && becomes_dng(o, *raw)) name.replace_extension(".dng");
+    return (std::filesystem::path(o.output) / name).string();
+}
+
+// A picture with another aspect ratio is not one the project was made with; another size is accepted.
+void check_shape(const Project &project, uint32_t image, const std::string &file) {
+    const auto &camera = project.images[image].camera;
+    PictureSize size = read_size(file);
+    const double expected = static_cast<double>(camera.width) / camera.height,
+                 shape = static_cast<double>(size.width) / size.height;
+    const bool is_same = size.width == camera.width && size.height == camera.height;
+    if (project.models.empty() ? std::abs(shape / expected - 1.0) > 0.01 : !is_same)
+        throw Failure(ExitCode::unreadable,
+                      file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
+                          + format(" states %u x %u; use the pictures that the project was made with", camera.width,
+                                   camera.height));
+}
+
+// A project without a result would change nothing; nobody wants that.
+void check_has_result(const Project &project) {
+    for (const auto &image : project.images) {
+        bool response = std::any_of(image.emor, image.emor + 5, [](double a) { return a != 0.0; });
+        bool falloff = std::any_of(image.vignetting.k, image.vignetting.k + 3, [](double k) { return k != 0.0; });
+        if (response || falloff || image.response_type == 1) return;
+    }
+    throw Failure(
+        ExitCode::usage,
+        project.path + ": has neither response nor falloff; give the project that `lensprof build --pto-out` wrote");
+}
+
+// If no profile is looked up, an error in the metadata is ignored here: reading the pixels reports it.
+PictureMetadata metadata_of(const ApplyOptions &o, const std::string &file) {
+    try {
+        return read_metadata(file);
+    } catch (const Failure &) {
+        if (!o.model.profile && o.project().empty()) throw;
+        return unknown_metadata();
+    }
+}
+
+// NotThisOne for a picture already corrected by lensprof.
+void check_mark(const ApplyOptions &o, const std::string &file, const PictureMetadata &metadata) {
+    const auto &mark = metadata.mark;
+    if (o.model.force_falloff || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
+    throw NotThisOne(ExitCode::not_found,
+                     file + ": already corrected, " + metadata.corrected_by
+                         + "; give the original, or use --force-falloff to correct it again",
+                     true);
+}
+
+// NotThisOne for a DNG whose opcodes already correct the falloff.
+void check_opcodes(const ApplyOptions &o, const std::string &file) {
+    if (o.model.force_falloff || !has_falloff_opcode(file)) return;
+    throw NotThisOne(ExitCode::not_found,
+                     file + ": its opcodes already correct the falloff; use --raw-output tif, which ignores them",
+                     true);
+}
+
+// The name of a model's image, by which the model identifies the output; without folders if these lead outside.
+std::filesystem::path name_below(const std::string &name) {
+    const auto path = std::filesystem::path(name).lexically_normal();
+    const bool leads_out = path.is_absolute() || *path.begin() == "..";
+    return leads_out ? path.filename() : path;
+}
+
+Correction make_job(const ApplyOptions &o, const ApplySource &source, const NamedPicture &picture) {
+    Correction job;
+    job.source = picture.file;
+    std::filesystem::path named =
+        std::filesystem::path(picture.subfolder) / std::filesystem::path(picture.file).filename();
+    lensprof_exposure_init(&job.own);
+    if (source.project) {
+        const uint32_t image = source.images->at(picture.file, o.project_option());
+        check_shape(*source.project, image, picture.file);
+        job.own = source.exposures[image];
+        if (source.has_model) job.model = model_of_project(*source.project, image);
+        job.model_name = std::filesystem::path(o.project()).filename().string();
+        if (!source.project->models.empty()) named = name_below(source.project->names[image]);
+    }
+    job.target = target_name(o, picture, named);
+    const PictureMetadata metadata = metadata_of(o, picture.file);
+    check_mark(o, picture.file, metadata);
+    if (source.models->are_used()) source.models->choose(metadata, job);
+    job.copies_dng = is_dng_name(job.target);
+    if (job.copies_dng) check_opcodes(o, picture.file);
+    return job;
+}
+
+// Named pictures are all wanted: all reasons are printed, and nothing is written.
+[[noreturn]] void fail_refused(const std::vector<NotThisOne> &refused, size_t count, Streams &streams) {
+    if (refused.size() == 1)
+        throw Failure(refused[0].code, refused[0].what() + std::string(count > 1 ? "; or skip it with --skip" : ""));
+    for (const NotThisOne &failure : refused) tell(streams, failure.what());
+    throw Failure(refused[0].code, std::to_string(refused.size()) + " of " + counted(count, "picture")
+                                       + " cannot be corrected, and nothing was written; use --skip to leave them out");
+}
+
+// All images of the project in its result. An image that cannot be written itself still contributes; the reason is
+// printed.
+std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySource &source, const ApplyWork &work,
+                                            Streams &streams) {
+    std::vector<PlacedCorrection> placed;
+    std::optional<uint32_t> layout;
+    const Project &project = *source.project;
+    std::set<uint32_t> written;
+    for (const Correction &job : work.jobs) {
+        written.insert(source.images->at(job.source, "--pto"));
+        check_mergeable(job.source, layout);
+    }
+    for (uint32_t i = 0; i < project.images.size(); i++) {
+        const std::string &file = project.files[i];
+        if (project.images[i].left_out) continue;
+        try {
+            check_shape(project, i, file);
+            check_mark(o, file, metadata_of(o, file));
+            check_mergeable(file, layout);
+        } catch (const Failure &failure) {
+            if (written.count(i) || failure.code == ExitCode::interrupted) throw;
+            warn(streams, failure.what() + std::string("; it is not merged"));
+            continue;
+        }
+        Correction job;
+        job.source = file, job.own = source.exposures[i], job.model = model_of_project(project, i);
+        placed.push_back({job, i});
+    }
+    return placed;
+}
+
+void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
+    const size_t first = shard.first(pictures.size()), end = shard.end(pictures.size());
+    if (first == end && !pictures.empty())
+        throw Failure(ExitCode::usage, format("--shard %u/%u: contains none of the %zu pictures; use fewer parts",
+                                              shard.number, shard.count, pictures.size()));
+    pictures.erase(pictures.begin() + static_cast<std::ptrdiff_t>(end), pictures.end());
+    pictures.erase(pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+}  // namespace
+
+ApplySource open_source(const ApplyOptions &o) {
+    ApplySource source;
+    if (o.files.empty() && o.project().empty())
+        throw Failure(ExitCode::usage,
+                      "no pictures to correct; give pictures "
+                      "or folders");
+    source.models = std::make_unique<PictureModels>(o.model, o.project().empty());
+    const bool from_store = source.models->are_used();
+    if (!from_store && o.project().empty())
+        throw Failure(ExitCode::usage,
+                      "no correction given and no database found; give --profile ID, --from-db, --pto FILE or --model "
+                      "FILE");
+    if (!o.project().empty()) {
+        source.project =
+            std::make_unique<Project>(o.pto.empty() ? read_exposures(o.exposures, o.images) : read_project(o.pto));
+        source.images = std::make_unique<ImagesByFile>(*source.project);
+        source.exposures = relative_to_joined(*source.project);
+        source.has_model = !from_store;
+    } else if (o.exposure == OutputExposure::mean || o.exposure == OutputExposure::reference) {
+        throw Failure(ExitCode::usage, std::string("--output-exposure ")
+                                           + (o.exposure == OutputExposure::mean ? "mean" : "reference")
+                                           + " needs the exposures of a project; give the project with --pto or "
+                                             "--model");
+    }
+    return source;
+}
+
+ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &streams) {
+    std::vector<NamedPicture> pictures;
+    if (o.files.empty() && source.project)
+        for (const std::string &file : source.project->files) pictures.push_back({file, "", false});
+    else
+        pictures = named_pictures(o.files, o.output);
+    take_shard(shard_of(o.shard), pictures);
+    if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; give pictures or folders");
+    ApplyWork work;
+    lensprof_exposure_init(&work.mean);
+    if (source.project) work.mean = mean_exposure(joined_exposures(*source.project, source.exposures));
+    std::vector<std::string> inputs = source.project ? source.project->files : std::vector<std::string>();
+    std::vector<NotThisOne> refused;
+    for (const NamedPicture &picture : pictures) {
+        inputs.push_back(picture.file);
+        note_instead(picture, streams);
+        if (source.project && picture.in_folder && !source.images->find(picture.file)) {
+            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project(), false});
+            continue;
+        }
+        if (source.project && source.project->images[source.images->at(picture.file, o.project_option())].left_out) {
+            const std::string reason =
+                picture.file + ": not corrected: the project has no exposure for it; use the original";
+            warn(streams, reason);
+            work.unjoined.push_back({picture.file, reason, false});
+            continue;
+        }
+        try {
+            work.jobs.push_back(make_job(o, source, picture));
+        } catch (const NotThisOne &failure) {
+            if (o.skip || picture.in_folder)
+                work.left_out.push_back({picture.file, failure.what(), failure.corrected_already});
+            else
+                refused.push_back(failure);
+        }
+    }
+    if (!refused.empty()) fail_refused(refused, pictures.size(), streams);
+    if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
+    check_targets(work.jobs, inputs, o.sheet);
+    check_older_outputs(work.jobs, o.kind, o.has_output);
+    if (source.has_model && !o.pto.empty()) check_has_result(*source.project);
+    if (o.merge) work.lit = placed_images(o, source, work, streams);
+    return work;
+}
+
+}  // namespace lensprof

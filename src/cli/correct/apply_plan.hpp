@@ -1,0 +1,42 @@
+// Which pictures `lensprof apply` corrects, with which model and exposure, and which it leaves out.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/correct/apply_options.hpp"
+#include "cli/correct/correction.hpp"
+#include "cli/correct/overlaps.hpp"
+#include "cli/correct/picture_model.hpp"
+#include "cli/correct/project_model.hpp"
+
+namespace lensprof {
+
+// The project and, without --profile and --from-db, its model.
+struct ApplySource {
+    std::unique_ptr<Project> project;
+    std::unique_ptr<ImagesByFile> images;
+    std::vector<lensprof_exposure> exposures;
+    bool has_model = false;
+    std::unique_ptr<PictureModels> models;
+};
+
+struct LeftOut {
+    std::string file, reason;
+    bool corrected_already;
+};
+
+struct ApplyWork {
+    std::vector<Correction> jobs;
+    std::vector<LeftOut> left_out;
+    std::vector<LeftOut> unjoined;      // missing from the result of the project
+    std::vector<PlacedCorrection> lit;  // of --merge: all images that contribute
+    lensprof_exposure mean{};           // the target of --output-exposure mean
+};
+
+ApplySource open_source(const ApplyOptions &o);
+
+ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &streams);
+
+}  // namespace lensprof
