@@ -5,25 +5,21 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 
 #include "cli/program/interrupt.hpp"
 #include "cli/program/median.hpp"
+#include "cli/registration/camera_rotation.hpp"
 #include "threads/item_loop.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double degrees = 180.0 / M_PI;
 constexpr size_t max_matches = 40;    // matches used per link, spread over its overlap
 constexpr double widest_deg = 140.0;  // maximum angle of view of a rectilinear lens
 constexpr double last_scale = 0.001;  // of the loss, as a share of the longer side
 constexpr double fits = 0.0012;       // of the same: a panorama with larger residuals may be a plane
-
-using Match = std::pair<cv::Point2d, cv::Point2d>;
-using Matches = std::vector<Match>;
 
 // Every cell of a grid over the first frame contributes its first match, until there are enough.
 Matches spread(const Matches &matches, const PictureOptics &first) {
@@ -42,43 +38,6 @@ Matches spread(const Matches &matches, const PictureOptics &first) {
         left = std::move(rest);
     }
     return chosen;
-}
-
-double focal_px(const PictureOptics &picture, double hfov_deg) {
-    return picture.width / (2.0 * std::tan(0.5 * hfov_deg / degrees));
-}
-
-Eigen::Vector3d ray(const PictureOptics &picture, double hfov_deg, const cv::Point2d &pixel) {
-    const double focal = focal_px(picture, hfov_deg);
-    return Eigen::Vector3d((pixel.x - 0.5 * (picture.width - 1.0)) / focal,
-                           (pixel.y - 0.5 * (picture.height - 1.0)) / focal, 1.0)
-        .normalized();
-}
-
-// Rotation from the rays of the first picture to those of the second (Kabsch 1976).
-Eigen::Matrix3d rotation_between(const PictureOptics &first, double first_hfov, const PictureOptics &second,
-                                 double second_hfov, const Matches &matches) {
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const auto &m : matches)
-        sum += ray(second, second_hfov, m.second) * ray(first, first_hfov, m.first).transpose();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Vector3d sign(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0);
-    return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-}
-
-// The angles of the camera model, from the world-to-camera rotation.
-void set_angles(lensprof_camera &camera, const Eigen::Matrix3d &turn) {
-    camera.yaw_deg = std::atan2(turn(2, 0), turn(2, 2)) * degrees;
-    camera.pitch_deg = -std::asin(std::clamp(turn(2, 1), -1.0, 1.0)) * degrees;
-    camera.roll_deg = std::atan2(turn(0, 1), turn(1, 1)) * degrees;
-}
-
-Eigen::Matrix3d turn_of(const lensprof_camera &camera) {
-    const auto about = [](double angle_deg, const Eigen::Vector3d &axis) {
-        return Eigen::AngleAxisd(angle_deg / degrees, axis).toRotationMatrix();
-    };
-    return about(-camera.roll_deg, Eigen::Vector3d::UnitZ()) * about(-camera.pitch_deg, Eigen::Vector3d::UnitX())
-           * about(-camera.yaw_deg, Eigen::Vector3d::UnitY());
 }
 
 // The unknowns: angle of view and a, b, c per lens, angles and position per picture.
@@ -446,15 +405,6 @@ std::vector<double> CameraFit::residuals() const {
         result.push_back(median(off));
     }
     return result;
-}
-
-// From the stored picture to the upright one, by EXIF orientation.
-Eigen::Matrix3d upright(uint16_t orientation) {
-    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-    if (orientation == 3) turn << -1, 0, 0, 0, -1, 0, 0, 0, 1;
-    if (orientation == 6) turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-    if (orientation == 8) turn << 0, 1, 0, -1, 0, 0, 0, 0, 1;
-    return turn;
 }
 
 // Rotates all cameras so that their horizontal axes are level and their view is in front. A picture of the scene upside
