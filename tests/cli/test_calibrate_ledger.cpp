@@ -27,12 +27,12 @@ void test_ended_within(void **) {
     save_text(other, "by somebody else");
     Ledger ledger(work(""));
     assert_true(ledger.is_current(file, "1") && !ledger.is_current(file, "2"));
-    assert_false(ledger.is_in_the_way(file));
-    assert_true(ledger.is_in_the_way(other) && !ledger.is_current(other, "1"));
+    assert_false(ledger.is_foreign(file));
+    assert_true(ledger.is_foreign(other) && !ledger.is_current(other, "1"));
     ledger.save();
     save_text(file, "edited, and longer");
     Ledger again(work(""));
-    assert_true(again.is_in_the_way(file));
+    assert_true(again.is_foreign(file));
     assert_failure(ExitCode::usage, "a.png: was modified after", [&] { again.begin(file, "2"); });
     assert_failure(ExitCode::usage, "b.png: exists and was not written by calibrate", [&] { again.begin(other, "2"); });
     again.remove(file);
@@ -55,8 +55,8 @@ void test_begun_and_not_written(void **) {
         ledger.save();
     }
     const Ledger ledger(work(""));
-    assert_true(ledger.is_current(own, "1") && !ledger.is_in_the_way(own));
-    assert_true(ledger.is_in_the_way(other));
+    assert_true(ledger.is_current(own, "1") && !ledger.is_foreign(own));
+    assert_true(ledger.is_foreign(other));
 }
 
 void test_names(void **) {
@@ -100,16 +100,16 @@ void test_damaged_records(void **) {
         return Ledger(work("")).notes.is_null();
     };
     assert_true(with("/notes/groups/0/files", Json()) && with("/notes", 7) && with("/digest", Json()));
-    assert_false(Ledger(work("")).is_in_the_way(file));
+    assert_false(Ledger(work("")).is_foreign(file));
     for (const char *part : {"/files", "/files/a.png", "/files/a.png/of", "/files/a.png/stamp", "/begun", "/schema"}) {
         for (const Json &value : {Json(), Json(7), Json::array({1})}) {
             with(part, value);
-            (void)Ledger(work("")).is_in_the_way(file);
+            (void)Ledger(work("")).is_foreign(file);
         }
-        assert_true(with(part, 7) || Ledger(work("")).is_in_the_way(file) || std::string(part) == "/begun");
+        assert_true(with(part, 7) || Ledger(work("")).is_foreign(file) || std::string(part) == "/begun");
     }
     save_text(work(record), "{damaged");
-    assert_true(Ledger(work("")).is_in_the_way(file) && !has_ledger(work("")));
+    assert_true(Ledger(work("")).is_foreign(file) && !has_ledger(work("")));
 }
 
 // Edited files of every kind are kept, and named if their content would change.

@@ -82,8 +82,8 @@ std::map<std::string, Bytes> correct_by(const Words &files, bool linear, uint32_
         if (linear) name += ".tif";
         Correction job;
         job.source = file, job.target = out + "/" + name.string(), job.model = model, job.model_name = "lens";
-        lensprof_exposure_init(&job.own);
-        lensprof_exposure_init(&job.wanted);
+        lensprof_exposure_init(&job.exposure);
+        lensprof_exposure_init(&job.target_exposure);
         jobs.push_back(job);
     }
     std::ostringstream output, said;

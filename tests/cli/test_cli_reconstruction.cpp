@@ -110,7 +110,7 @@ void test_blocks(void **) {
     std::vector<uint32_t> points[2];
     for (const size_t n : {0u, 1u}) {
         uint32_t channels = 0;
-        const uint64_t block_bytes = n ? 2 * 3 * 400 * 300 : usual_block_bytes;
+        const uint64_t block_bytes = n ? 2 * 3 * 400 * 300 : default_block_bytes;
         pairs[n] = sample_in_blocks(project, options, 800, block_bytes, progress, links[n], points[n], &channels);
         assert_int_equal(channels, 3);
         assert_int_equal(points[n].size(), pairs[n].size());

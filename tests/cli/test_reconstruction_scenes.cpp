@@ -45,14 +45,14 @@ void test_opensfm(void **) {
         assert_int_equal(r.observations[1].colour[2], 7);
         assert_true((r.observations[1].shape[0][0] > 0.0f) == (version % 3 > 0));
         assert_false(r.images[0].has_centre);
-        assert_failure(ExitCode::unreadable, "does not state the size of a.jpg", [&] { settle_coordinates(r, {}); });
+        assert_failure(ExitCode::unreadable, "does not state the size of a.jpg", [&] { convert_coordinates(r, {}); });
     }
     save_text(in_folder("reconstruction.json"), opensfm_models);
     Reconstruction r = read_opensfm(path);
     assert_centre(r.images[0], 1, 2, 3);
     assert_centre(r.images[1], 4, 5, 6);
     assert_close(r.points[0][0], 7, 0);
-    settle_coordinates(r, {});
+    convert_coordinates(r, {});
     assert_true(r.coordinates == ImageCoordinates::stored_px);
     assert_place(r.observations[0], 19.5, 29.5);  // 80 / 4 and 80 / 8 from the middle, (39.5, 19.5)
     assert_place(r.observations[1], 59.5, 9.5);
@@ -138,7 +138,7 @@ void test_bundler(void **) {
         std::vector<std::string> files;
         for (size_t i = 0; i < 3; i++) files.push_back(in_folder("picture.png"));
         write_picture(files[0], make_smooth(10, 8, LENSPROF_LAYOUT_RGB));
-        settle_coordinates(r, files);
+        convert_coordinates(r, files);
         assert_place(r.observations[0], 0, 0);  // the middle of the first pixel
         assert_place(r.observations[1], 6, 6);
         assert_int_equal(r.cameras[r.images[2].camera].height, 8);
@@ -277,7 +277,7 @@ void test_orientations(void **) {
         Reconstruction r = read_opensfm(path);
         const std::vector<std::string> files = find_pictures(r, "", false);
         assert_string_equal(files[0].c_str(), file.c_str());
-        settle_coordinates(r, files);
+        convert_coordinates(r, files);
         for (size_t n = 0; n < 4; n++) {
             assert_close(r.observations[n].xy[0], n < 2 ? 0 : 47, 1e-3);
             assert_close(r.observations[n].xy[1], 0, 1e-3);
@@ -295,15 +295,15 @@ void test_pictures_of_other_sizes(void **) {
     Reconstruction r = read;
     assert_failure(ExitCode::unreadable,
                    in_folder("a.png") + ": is 320 x 240 pixels, but " + path + " states 100 x 200",
-                   [&] { settle_coordinates(r, files); });
+                   [&] { convert_coordinates(r, files); });
     write_picture(in_folder("a.png"), make_smooth(100, 200, LENSPROF_LAYOUT_RGB));
     r = read;
-    settle_coordinates(r, files);
+    convert_coordinates(r, files);
     assert_place(r.observations[2], 100, 110);
     r = read;
     r.observations[1].xy[0] = 100.5f;
     assert_failure(ExitCode::unreadable, path + ": has a feature at 100.5, 20.0 in a.png, which has only 100 x 200",
-                   [&] { settle_coordinates(r, files); });
+                   [&] { convert_coordinates(r, files); });
     fs::remove(in_folder("d.png"));
     assert_failure(ExitCode::unreadable, path + ": 1 of its 4 pictures, the first d.png, are not in ",
                    [&] { find_pictures(read, "", false); });

@@ -97,7 +97,7 @@ template <typename Read>
     if (!is_done([&] { r = read(); })) return false;
     check_scene(r);
     lensprof::matches_of(r, lensprof::choose_pairs(r, 2, 1));
-    is_done([&] { lensprof::settle_coordinates(r, {}); });
+    is_done([&] { lensprof::convert_coordinates(r, {}); });
     return true;
 }
 

@@ -5,7 +5,7 @@
 namespace lensprof {
 
 bool is_of_pictures(const Failure &failure) {
-    if (dynamic_cast<const InTheWay *>(&failure)) return false;
+    if (dynamic_cast<const ForeignFile *>(&failure)) return false;
     return failure.code == ExitCode::usage || failure.code == ExitCode::unreadable
            || failure.code == ExitCode::not_usable || failure.code == ExitCode::not_found;
 }

@@ -59,13 +59,13 @@ void declare(Command &command, CalibrateOptions &o) {
 }
 
 // Checks for files in the way of outputs before anything is computed.
-void check_in_the_way(const CalibrateOptions &o, const Inputs &inputs, const Ledger &ledger) {
-    std::vector<std::string> wanted = sheet_names(o, inputs.pictures.size());
-    wanted.insert(wanted.begin(), (std::filesystem::path(o.output) / summary_name).string());
-    for (const InputPicture &picture : inputs.pictures) wanted.push_back(picture.target);
-    for (const std::string &file : wanted) {
+void check_existing_files(const CalibrateOptions &o, const Inputs &inputs, const Ledger &ledger) {
+    std::vector<std::string> outputs = sheet_names(o, inputs.pictures.size());
+    outputs.insert(outputs.begin(), (std::filesystem::path(o.output) / summary_name).string());
+    for (const InputPicture &picture : inputs.pictures) outputs.push_back(picture.target);
+    for (const std::string &file : outputs) {
         if (is_folder(file)) throw Failure(ExitCode::usage, file + ": is a folder; give another output folder with -o");
-        if (!o.overwrite && !ledger.knows(file) && ledger.is_in_the_way(file))
+        if (!o.overwrite && !ledger.knows(file) && ledger.is_foreign(file))
             throw Failure(ExitCode::usage, file + ": exists and was not written by calibrate; give another folder "
                                                   "with -o, or use --overwrite");
     }
@@ -110,13 +110,13 @@ int run(const CalibrateOptions &o, Streams &streams) {
     const Inputs inputs = find_inputs(o.inputs, o.output, progress);
     if (has_ledger(o.output)) sweep_temporaries(o.output);
     Ledger ledger(o.output, o.overwrite);
-    check_in_the_way(o, inputs, ledger);
+    check_existing_files(o, inputs, ledger);
     if (inputs.pictures.empty() && inputs.unreadable)
         throw Failure(ExitCode::unreadable,
                       inputs.label + ": none of the pictures can be read; the first: " + inputs.left_out[0].reason);
     if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
     make_folder(o.output);
-    lock.take();
+    lock.acquire();
     Panoramas panoramas = find_panoramas(o, inputs, ledger, progress);
     forget_panoramas(o, panoramas, ledger);
     fit_panoramas(o, panoramas, ledger, progress);
@@ -141,9 +141,9 @@ int run(const CalibrateOptions &o, Streams &streams) {
         return p.summary["result"].is_object() && !p.summary["result"]["profile"].is_null();
     });
     if (!pictures.list.empty() || is_stored) return static_cast<int>(ExitCode::done);
-    tell(streams, inputs.label + ": nothing could be corrected; see the reasons in "
-                      + (std::filesystem::path(o.output) / summary_name).string()
-                      + ": give pictures that overlap by a third, or a database that contains the lens");
+    print_message(streams, inputs.label + ": nothing could be corrected; see the reasons in "
+                               + (std::filesystem::path(o.output) / summary_name).string()
+                               + ": give pictures that overlap by a third, or a database that contains the lens");
     return static_cast<int>(ExitCode::not_usable);
 }
 

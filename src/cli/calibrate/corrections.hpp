@@ -29,7 +29,7 @@ struct CorrectedPictures {
 // profile, as `apply` does.
 CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas);
 
-// Writes the copies missing from the ledger. A picture that cannot be corrected is left out. Throws InTheWay, before
+// Writes the copies missing from the ledger. A picture that cannot be corrected is left out. Throws ForeignFile, before
 // the first copy is written, if a copy was modified by somebody and its correction has changed.
 void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, Ledger &ledger, Progress &progress);
 

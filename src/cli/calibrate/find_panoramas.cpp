@@ -40,7 +40,7 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     // Converted through the ledger's text, so that a fit of recalled matches is identical to the byte.
     if (!read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches))
         throw Failure(ExitCode::failed, "internal error: matches of pictures are not finite; please report this");
-    group.facts = {{"camera", found.kind == SceneKind::still   ? stood_still
+    group.facts = {{"camera", found.kind == SceneKind::still   ? camera_stationary
                               : found.kind == SceneKind::plane ? "moved over a plane"
                                                                : "turned about one point"},
                    {"links", found.links},
@@ -74,27 +74,27 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
     }
     if (files.empty()) return groups;
     const Registration found = register_pictures(files, o.one_lens, progress);
-    for (const auto &[number, why] : found.unreadable) groups.unreadable[files[number]] = why;
+    for (const auto &[number, reason] : found.unreadable) groups.unreadable[files[number]] = reason;
     for (const uint32_t number : found.alone)
         groups.unjoined[files[number]] = files[number] + ": no overlap with another picture found";
     for (const uint32_t number : found.foreign)
         groups.unjoined[files[number]] = files[number] + ": overlaps others, but "
                                          + (o.one_lens ? "it is the only camera raw file among them, or the only "
                                                          "other picture"
-                                                       : of_another_body);
+                                                       : no_overlap_within_camera);
     for (const uint32_t number : found.apart)
-        groups.unjoined[files[number]] = files[number] + ": " + joined_by_another_body;
+        groups.unjoined[files[number]] = files[number] + ": " + linked_by_other_camera;
     for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));
     std::stable_sort(groups.list.begin(), groups.list.end(),
                      [](const Group &a, const Group &b) { return a.pictures.size() > b.pictures.size(); });
     return groups;
 }
 
-std::string noted(const std::string &file) { return ascii_path(one_name(file)); }
+std::string noted_name(const std::string &file) { return ascii_path(one_name(file)); }
 
 Json json_of(const std::map<std::string, std::string> &reasons) {
     Json list = Json::array();
-    for (const auto &[file, why] : reasons) list.push_back({noted(file), ascii_path(why)});
+    for (const auto &[file, reason] : reasons) list.push_back({noted_name(file), ascii_path(reason)});
     return list;
 }
 
@@ -102,7 +102,7 @@ Json json_of(const Groups &groups, const std::string &key) {
     Json list = Json::array();
     for (const Group &group : groups.list) {
         Json files = Json::array();
-        for (const InputPicture *picture : group.pictures) files.push_back(noted(picture->file));
+        for (const InputPicture *picture : group.pictures) files.push_back(noted_name(picture->file));
         list.push_back({{"files", files},
                         {"geometry", group.geometry},
                         {"matches", json_of(group.matches)},
@@ -117,16 +117,16 @@ Json json_of(const Groups &groups, const std::string &key) {
 using ByNotedFile = std::map<std::string, const InputPicture *>;
 
 bool recall_reasons(const Json &list, const ByNotedFile &by_file, std::map<std::string, std::string> &reasons) {
-    for (const Json &one : list) {
-        const auto picture = by_file.find(one[0].get<std::string>());
+    for (const Json &entry : list) {
+        const auto picture = by_file.find(entry[0].get<std::string>());
         if (picture == by_file.end()) return false;
-        reasons[picture->second->file] = path_of_ascii(one[1].get<std::string>());
+        reasons[picture->second->file] = path_of_ascii(entry[1].get<std::string>());
     }
     return true;
 }
 
 // A disk or network error may be temporary.
-bool is_readable_now(const std::string &file) {
+bool is_readable(const std::string &file) {
     ReadOptions options;
     options.max_side = 256;
     return why_not([&] { read_picture(file, options); }).empty();
@@ -139,7 +139,7 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
         return false;
     const Json &registration = notes["registration"];
     ByNotedFile by_file;
-    for (const InputPicture *picture : all) by_file[noted(picture->file)] = picture;
+    for (const InputPicture *picture : all) by_file[noted_name(picture->file)] = picture;
     for (const Json &known : registration["groups"]) {
         Group group;
         for (const Json &file : known["files"]) {
@@ -155,19 +155,19 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
     return recall_reasons(registration["unjoined"], by_file, groups.unjoined)
            && recall_reasons(registration["unreadable"], by_file, groups.unreadable)
            && std::none_of(groups.unreadable.begin(), groups.unreadable.end(),
-                           [](const auto &one) { return is_readable_now(one.first); });
+                           [](const auto &entry) { return is_readable(entry.first); });
 }
 
 // The name of an earlier panorama with this key or, with an empty `key`, with any of the pictures; "" if not found.
-std::string earlier_name(const Json &notes, const std::string &key, const Group &group,
-                         const std::set<std::string> &taken) {
+std::string name_in_earlier_run(const Json &notes, const std::string &key, const Group &group,
+                                const std::set<std::string> &taken) {
     if (!notes.is_object() || !notes.contains("results")) return {};
     for (const auto &[name, result] : notes["results"].items()) {
         if (taken.count(path_of_ascii(name))) continue;
         if (!key.empty() && result.value("key", "") == key) return path_of_ascii(name);
         for (const InputPicture *picture : group.pictures)
             for (const Json &file : result["files"])
-                if (key.empty() && file == noted(picture->file)) return path_of_ascii(name);
+                if (key.empty() && file == noted_name(picture->file)) return path_of_ascii(name);
     }
     return {};
 }
@@ -190,7 +190,7 @@ std::string new_name(const CalibrateOptions &o, const Group &group, const std::s
         bool is_free = !taken.count(name);
         for (const char *end : {".pto", ".jpg"}) {
             const std::string file = file_of(o, name, end);
-            is_free = is_free && !targets.count(file) && !ledger.is_in_the_way(file);
+            is_free = is_free && !targets.count(file) && !ledger.is_foreign(file);
         }
         if (is_free) return name;
     }
@@ -205,7 +205,7 @@ std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<G
     for (const bool is_exact : {true, false})
         for (size_t n = 0; n < names.size(); n++) {
             if (!names[n].empty()) continue;
-            const std::string name = earlier_name(ledger.notes, is_exact ? keys[n] : "", groups[n], taken);
+            const std::string name = name_in_earlier_run(ledger.notes, is_exact ? keys[n] : "", groups[n], taken);
             const bool is_copy = targets.count(file_of(o, name, ".pto")) || targets.count(file_of(o, name, ".jpg"));
             if (name.empty() || is_copy) continue;  // a new picture has this name
             names[n] = name;
@@ -222,7 +222,7 @@ std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<G
 std::string source_of(const Json &notes, const Group &group, const std::string &name) {
     const std::string known = ascii_path(name);
     if (notes.is_object() && notes.contains("results") && notes["results"].contains(known))
-        return path_of_ascii(notes["results"][known].value("source", noted(group.pictures[0]->file)));
+        return path_of_ascii(notes["results"][known].value("source", noted_name(group.pictures[0]->file)));
     return one_name(group.pictures[0]->file);
 }
 
@@ -251,11 +251,11 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
     }
     panoramas.unjoined = groups.unjoined;
     panoramas.unjoined.insert(groups.unreadable.begin(), groups.unreadable.end());
-    std::string asked = o.one_lens ? "one lens\n" : "\n";
-    if (o.store.no_store) asked += "no store\n";
-    for (const std::string &db : o.store.dbs) asked += one_name(db) + "\n";
+    std::string fit_options = o.one_lens ? "one lens\n" : "\n";
+    if (o.store.no_store) fit_options += "no store\n";
+    for (const std::string &db : o.store.dbs) fit_options += one_name(db) + "\n";
     std::vector<std::string> keys;
-    for (const Group &group : groups.list) keys.push_back(key_of(group.pictures, asked));
+    for (const Group &group : groups.list) keys.push_back(key_of(group.pictures, fit_options));
     const std::vector<std::string> names = names_of(o, groups.list, keys, targets, ledger);
     for (size_t n = 0; n < names.size(); n++) {
         const Group &group = groups.list[n];
@@ -277,11 +277,12 @@ void forget_panoramas(const CalibrateOptions &o, const Panoramas &panoramas, Led
     if (!ledger.notes.is_object() || !ledger.notes.contains("results")) return;
     Json kept = Json::object();
     for (const auto &[name, result] : ledger.notes["results"].items()) {
-        const std::string own = path_of_ascii(name);
-        if (std::any_of(panoramas.list.begin(), panoramas.list.end(), [&](const Panorama &p) { return p.name == own; }))
+        const std::string panorama_name = path_of_ascii(name);
+        if (std::any_of(panoramas.list.begin(), panoramas.list.end(),
+                        [&](const Panorama &p) { return p.name == panorama_name; }))
             kept[name] = result;
         else
-            for (const char *end : {".pto", ".jpg"}) ledger.remove(file_of(o, own, end));
+            for (const char *end : {".pto", ".jpg"}) ledger.remove(file_of(o, panorama_name, end));
     }
     ledger.notes["results"] = kept;
 }

@@ -51,8 +51,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     ProjectFitOptions options;
     options.store = o.store;
     options.one_lens = o.one_lens;
-    if (panorama.summary["camera"] == stood_still)
-        throw Failure(ExitCode::not_usable, panorama.name + no_falloff_of_still, LENSPROF_REASON_FEW_PAIRS);
+    if (panorama.summary["camera"] == camera_stationary)
+        throw Failure(ExitCode::not_usable, panorama.name + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
     check_pictures(project, options.max_side);
     const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
     const lensprof_profile_key &exif = metadata[project.reference].key;
@@ -65,7 +65,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     }
     const lensprof_profile_key key = profile_key(options, project, metadata, streams);
     const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
-    if (panorama.summary["cameras_fit"] == false) warn(streams, panorama.name + no_cameras_fit);
+    if (panorama.summary["cameras_fit"] == false) warn(streams, panorama.name + poor_cameras_note);
     ProjectFit done(progress);
     done.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
     fit_project(options, project, metadata, prior, done, streams);
@@ -115,7 +115,7 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
         {"source", ascii_path(panorama.source)},
         {"summary", panorama.summary},
         {"page", panorama.page},
-        {"project", ascii_path(read_text(panorama.project, largest_text))}};
+        {"project", ascii_path(read_text(panorama.project, max_text_bytes))}};
     ledger.save();
 }
 
@@ -162,7 +162,7 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
 
 // The mosaic shows the current project, which may have been edited since the fit.
 void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
-    const std::string text = read_text(panorama.project, largest_text), key = digest_of_text("preview\n" + text);
+    const std::string text = read_text(panorama.project, max_text_bytes), key = digest_of_text("preview\n" + text);
     if (ledger.is_current(panorama.preview, key)) return;
     const Project project = read_project(panorama.project);
     Fitted fitted;

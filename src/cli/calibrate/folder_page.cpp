@@ -45,18 +45,18 @@ Json facts_json(const Inputs &inputs, const Panoramas &panoramas, const Correcte
 void add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Progress &progress, Json &page) {
     Json views = Json::array();
     for (const Panorama &panorama : panoramas.list) {
-        if (!panorama.evens() || views.size() == most_views) continue;
+        if (!panorama.evens() || views.size() == max_views) continue;
         why_not([&] {
             const Mosaic mosaic = read_preview(panorama.preview);
             views.push_back(view_json(panorama.name + ", unblended", mosaic.before, mosaic.after));
         });
     }
-    const size_t all = pictures.list.size(), shown = std::min(all, most_views - views.size());
-    if (shown < all) page["views_note"] = views_note(shown, all);
-    const uint32_t side = view_side(shown);
-    std::vector<Json> copies(shown);
-    for_each_parallel(static_cast<uint32_t>(shown), "report", progress, [&](uint32_t n) {
-        const InputPicture &picture = *pictures.list[n * all / shown].picture;
+    const size_t picture_count = pictures.list.size(), view_count = std::min(picture_count, max_views - views.size());
+    if (view_count < picture_count) page["views_note"] = views_note(view_count, picture_count);
+    const uint32_t side = view_side(view_count);
+    std::vector<Json> copies(view_count);
+    for_each_parallel(static_cast<uint32_t>(view_count), "report", progress, [&](uint32_t n) {
+        const InputPicture &picture = *pictures.list[n * picture_count / view_count].picture;
         const Picture before = small_copy(picture.file, picture, side),
                       after = small_copy(picture.target, picture, side);
         if (before.width && after.width) copies[n] = view_json(picture.name, before, after);

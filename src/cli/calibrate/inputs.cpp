@@ -34,7 +34,7 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
 
 // Of pictures in one folder with the same copy name the first is used: img000.dng and img000.nef both become
 // img000.tif.
-void leave_out_doubles(Inputs &inputs) {
+void leave_out_duplicates(Inputs &inputs) {
     std::map<std::string, const InputPicture *> first;
     std::vector<InputPicture> kept;
     kept.reserve(inputs.pictures.size());
@@ -93,7 +93,7 @@ bool is_sheet(const InputPicture &picture, const std::string &output) {
 }
 
 // Sets metadata, identity and copy in `folder`; returns the reason to leave it out, or "".
-std::string look_at(InputPicture &picture, const fs::path &folder, bool &is_unreadable) {
+std::string examine_picture(InputPicture &picture, const fs::path &folder, bool &is_unreadable) {
     try {
         picture.is_raw = raw_kind(picture.file).has_value();
         picture.target = (folder / copy_name(picture)).string();
@@ -115,8 +115,8 @@ std::string look_at(InputPicture &picture, const fs::path &folder, bool &is_unre
 namespace {
 
 // Examines the pictures in parallel.
-void look_at_all(const Photographs &list, const std::vector<NamedPicture> &named, const std::string &output,
-                 Inputs &inputs, Progress &progress) {
+void examine_pictures(const Photographs &list, const std::vector<NamedPicture> &named, const std::string &output,
+                      Inputs &inputs, Progress &progress) {
     std::map<std::string, std::string> subfolders;
     for (const NamedPicture &picture : named) subfolders.emplace(picture.file, picture.subfolder);
     std::vector<InputPicture> all(list.files.size());
@@ -124,11 +124,11 @@ void look_at_all(const Photographs &list, const std::vector<NamedPicture> &named
     std::vector<char> unreadable(all.size(), 0);
     for_each_parallel(static_cast<uint32_t>(all.size()), "scanning pictures", progress, [&](uint32_t i) {
         all[i].file = list.files[i], all[i].name = list.names[i];
-        bool fails = false;
-        reasons[i] = look_at(all[i], fs::path(output) / subfolders.at(all[i].file), fails);
+        bool is_unreadable = false;
+        reasons[i] = examine_picture(all[i], fs::path(output) / subfolders.at(all[i].file), is_unreadable);
         if (reasons[i].empty() && is_sheet(all[i], output))
             reasons[i] = all[i].file + ": has the name of the contact sheet that calibrate writes; rename it";
-        unreadable[i] = fails;
+        unreadable[i] = is_unreadable;
     });
     for (size_t i = 0; i < all.size(); i++) {
         inputs.unreadable += unreadable[i] != 0;
@@ -140,7 +140,7 @@ void look_at_all(const Photographs &list, const std::vector<NamedPicture> &named
 }
 
 // Files replaced by another file with the same base name.
-void name_replaced(const std::vector<NamedPicture> &named, Inputs &inputs) {
+void list_replaced(const std::vector<NamedPicture> &named, Inputs &inputs) {
     std::set<std::string> known;
     for (const NamedPicture &picture : named)
         for (const std::string &name : picture.instead_of) {
@@ -167,11 +167,11 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
     Inputs inputs;
     inputs.label = list.label;
     inputs.found = list.files.size() + list.left_out.size();
-    look_at_all(list, named, output, inputs, progress);
-    leave_out_doubles(inputs);
-    name_replaced(named, inputs);
+    examine_pictures(list, named, output, inputs, progress);
+    leave_out_duplicates(inputs);
+    list_replaced(named, inputs);
     for (const auto &[file, why] : list.left_out) inputs.left_out.push_back({file, file + ": " + why});
-    for (const UnlistedFolder &one : unlisted) inputs.left_out.push_back({one.folder, one.reason});
+    for (const UnlistedFolder &folder : unlisted) inputs.left_out.push_back({folder.folder, folder.reason});
     check_targets(inputs, named);
     return inputs;
 }

@@ -75,7 +75,7 @@ bool has_ledger(const std::string &folder) {
     const std::string path = (fs::path(folder) / calibrate_records).string();
     if (!is_regular_file(path)) return false;
     return why_not([&] {
-               if (object_of(read_text(path, largest_text)).is_null())
+               if (object_of(read_text(path, max_text_bytes)).is_null())
                    throw Failure(ExitCode::unreadable, path + ": is not a record of calibrate; delete it, or give "
                                                               "another folder with -o");
            })
@@ -83,14 +83,14 @@ bool has_ledger(const std::string &folder) {
 }
 
 FolderLock::FolderLock(const std::string &folder) : folder_(folder) {
-    if (is_folder(folder)) take();
+    if (is_folder(folder)) acquire();
 }
 
 FolderLock::~FolderLock() {
     if (file_ >= 0) close(file_);
 }
 
-void FolderLock::take() {
+void FolderLock::acquire() {
     if (file_ >= 0) return;
     file_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
@@ -106,7 +106,7 @@ Ledger::Ledger(const std::string &folder, bool overwrite)
       overwrite_(overwrite) {
     if (!is_regular_file(path_)) return;
     try {
-        read(read_text(path_, largest_text));
+        read(read_text(path_, max_text_bytes));
     } catch (const Json::exception &) {
         files_.clear();
         notes = Json();
@@ -120,13 +120,13 @@ void Ledger::read(const std::string &text) {
     for (const auto &[file, entry] : json.at("files").items())
         files[file] = {entry.at("of").get<std::string>(), entry.at("stamp").get<std::string>()};
     files_ = std::move(files);
-    settle(json.at("begun"), text.substr(std::min(text.find('\n'), text.size())));
+    recover_files(json.at("begun"), text.substr(std::min(text.find('\n'), text.size())));
     if (json.at("digest") == digest_of_notes(json.at("notes"))) notes = json.at("notes");
     saved_ = text;
 }
 
 // Files started but not finished by a run belong to it if they have the stamp of a line; else they existed before.
-void Ledger::settle(const Json &begun, const std::string &lines) {
+void Ledger::recover_files(const Json &begun, const std::string &lines) {
     std::istringstream in(lines);
     std::map<std::string, std::string> stamps;
     for (std::string file, stamp; in >> file >> stamp;) stamps[file] = stamp;
@@ -146,18 +146,18 @@ bool Ledger::is_current(const std::string &file, const std::string &key) const {
     return entry != files_.end() && entry->second.key == key && is_regular_file(file);
 }
 
-bool Ledger::is_in_the_way(const std::string &file) const {
+bool Ledger::is_foreign(const std::string &file) const {
     if (!path_exists(file)) return false;
     const auto entry = files_.find(name_of(file));
     return entry == files_.end() || stamp_of(file) != entry->second.stamp;
 }
 
 void Ledger::begin(const std::string &file, const std::string &key) {
-    if (!overwrite_ && is_in_the_way(file))
-        throw InTheWay(ExitCode::usage, file + ": "
-                                            + (knows(file) ? "was modified after calibrate wrote it"
-                                                           : "exists and was not written by calibrate")
-                                            + "; move it away, or use --overwrite");
+    if (!overwrite_ && is_foreign(file))
+        throw ForeignFile(ExitCode::usage, file + ": "
+                                               + (knows(file) ? "was modified after calibrate wrote it"
+                                                              : "exists and was not written by calibrate")
+                                               + "; move it away, or use --overwrite");
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) fs::remove(file, ignored);
     begun_[name_of(file)] = {key, ""};
@@ -192,7 +192,7 @@ void Ledger::abandon(const std::string &file) { begun_.erase(name_of(file)); }
 
 void Ledger::remove(const std::string &file) {
     std::error_code ignored;
-    if (knows(file) && !is_in_the_way(file)) fs::remove(file, ignored);
+    if (knows(file) && !is_foreign(file)) fs::remove(file, ignored);
     files_.erase(name_of(file));
 }
 

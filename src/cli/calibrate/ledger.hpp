@@ -35,7 +35,7 @@ public:
     ~FolderLock();
     FolderLock(const FolderLock &) = delete;
     FolderLock &operator=(const FolderLock &) = delete;
-    void take();
+    void acquire();
 
 private:
     const std::string folder_;
@@ -43,7 +43,7 @@ private:
 };
 
 // Thrown for an output path with a file that calibrate did not write or that was modified since.
-struct InTheWay : Failure {
+struct ForeignFile : Failure {
     using Failure::Failure;
 };
 
@@ -61,11 +61,11 @@ public:
     bool is_current(const std::string &file, const std::string &key) const;
 
     // Whether a file exists at `file` that this command did not write or that was modified since.
-    bool is_in_the_way(const std::string &file) const;
+    bool is_foreign(const std::string &file) const;
 
     bool knows(const std::string &file) const { return files_.count(name_of(file)) != 0; }
 
-    // Records that `file` is about to be written; call save() before writing it. Throws InTheWay (usage) unless
+    // Records that `file` is about to be written; call save() before writing it. Throws ForeignFile (usage) unless
     // `overwrite`. A link is removed because its target is in another folder.
     void begin(const std::string &file, const std::string &key);
     void finish(const std::string &file);            // it was written
@@ -87,7 +87,7 @@ private:
 
     std::string name_of(const std::string &file) const;  // relative to the folder
     void read(const std::string &text);
-    void settle(const Json &begun, const std::string &lines);
+    void recover_files(const Json &begun, const std::string &lines);
     void note_commit(const std::string &file, const std::string &temporary);
 
     const std::string folder_, path_;

@@ -29,7 +29,7 @@ Json json_of(const NotedMatches &matches) {
         for (const auto &xy : m.xy)
             for (double coordinate : xy) list.push_back(rounded(coordinate, 100.0));
         for (const auto &row : m.map)
-            for (double by : row) list.push_back(rounded(by, 1e4));
+            for (double coefficient : row) list.push_back(rounded(coefficient, 1e4));
     }
     return {{"are_all", matches.are_all}, {"list", list}};
 }
@@ -42,13 +42,13 @@ bool read_noted(const Json &json, size_t images, NotedMatches &matches) {
     matches.are_all = json["are_all"].get<bool>();
     matches.list.assign(list.size() / kNumbers, lensprof_match{});
     auto next = list.begin();
-    const auto take = [&](auto &value) { (next++)->get_to(value); };
+    const auto read_next = [&](auto &value) { (next++)->get_to(value); };
     for (lensprof_match &m : matches.list) {
-        for (uint32_t &image : m.image) take(image);
+        for (uint32_t &image : m.image) read_next(image);
         for (auto &xy : m.xy)
-            for (double &coordinate : xy) take(coordinate);
+            for (double &coordinate : xy) read_next(coordinate);
         for (auto &row : m.map)
-            for (double &by : row) take(by);
+            for (double &coefficient : row) read_next(coefficient);
     }
     return true;
 }

@@ -21,7 +21,7 @@ struct CalibrateOptions {
     uint32_t threads = 0;
 };
 
-constexpr const char *stood_still = "stood still";  // value of `camera` in a summary: not a panorama, not fitted
+constexpr const char *camera_stationary = "stood still";  // value of `camera` in a summary: not a panorama, not fitted
 
 struct Panorama {
     std::string name;              // such as "img000", after its first picture when it was found

@@ -10,7 +10,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t most_panoramas = 4, most_names = 3;
+constexpr size_t max_panoramas = 4, max_names = 3;
 
 double corner_of(const Json &result) {
     double corner = 1.0;
@@ -33,8 +33,8 @@ std::string stored_text(const Json &result) {
 }
 
 std::string shortened(const std::string &line) {
-    constexpr size_t longest = 200;
-    return line.size() <= longest ? line : line.substr(0, utf8_cut(line, longest)) + "...";
+    constexpr size_t max_bytes = 200;
+    return line.size() <= max_bytes ? line : line.substr(0, utf8_cut(line, max_bytes)) + "...";
 }
 
 std::vector<LeftOutPicture> all_left_out(const Inputs &inputs, const CorrectedPictures &pictures) {
@@ -45,14 +45,14 @@ std::vector<LeftOutPicture> all_left_out(const Inputs &inputs, const CorrectedPi
 }
 
 void print_panoramas(const Panoramas &panoramas, std::ostream &out) {
-    size_t members = 0, evened = 0;
-    for (const Panorama &panorama : panoramas.list) members += panorama.pictures.size(), evened += panorama.evens();
+    size_t members = 0, corrected = 0;
+    for (const Panorama &panorama : panoramas.list) members += panorama.pictures.size(), corrected += panorama.evens();
     out << "panoramas " << panoramas.list.size();
-    if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << evened << " corrected";
+    if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << corrected << " corrected";
     out << "\n";
-    const size_t count = panoramas.list.size(), shown = count <= most_panoramas ? count : most_panoramas - 1;
-    for (size_t n = 0; n < shown; n++) out << shortened(one_line("  " + panorama_line(panoramas.list[n]))) << "\n";
-    if (shown < count) out << "  and " << count - shown << " more\n";
+    const size_t count = panoramas.list.size(), listed = count <= max_panoramas ? count : max_panoramas - 1;
+    for (size_t n = 0; n < listed; n++) out << shortened(one_line("  " + panorama_line(panoramas.list[n]))) << "\n";
+    if (listed < count) out << "  and " << count - listed << " more\n";
 }
 
 }  // namespace
@@ -82,16 +82,16 @@ Json summary_json(const CalibrateOptions &o, const Inputs &inputs, const Panoram
                  {"unreadable", inputs.unreadable}};
     json["panoramas"] = Json::array(), json["pictures"] = Json::array(), json["left_out"] = Json::array();
     for (const Panorama &panorama : panoramas.list) json["panoramas"].push_back(panorama.summary);
-    for (const CorrectedPicture &one : pictures.list) {
-        Json entry = {{"file", one.picture->file}, {"output", one.picture->target}};
-        entry["panorama"] = one.panorama.empty() ? Json() : Json(one.panorama);
-        entry["ev"] = one.ev ? Json(*one.ev) : Json();
-        if (one.job.profile_id) entry["profile"] = one.job.profile_id;
-        if (one.job.lookup) entry["lookup"] = lookup_json(*one.job.lookup);
+    for (const CorrectedPicture &picture : pictures.list) {
+        Json entry = {{"file", picture.picture->file}, {"output", picture.picture->target}};
+        entry["panorama"] = picture.panorama.empty() ? Json() : Json(picture.panorama);
+        entry["ev"] = picture.ev ? Json(*picture.ev) : Json();
+        if (picture.job.profile_id) entry["profile"] = picture.job.profile_id;
+        if (picture.job.lookup) entry["lookup"] = lookup_json(*picture.job.lookup);
         json["pictures"].push_back(entry);
     }
-    for (const LeftOutPicture &one : all_left_out(inputs, pictures))
-        json["left_out"].push_back({{"file", one.file}, {"reason", one.reason}});
+    for (const LeftOutPicture &entry : all_left_out(inputs, pictures))
+        json["left_out"].push_back({{"file", entry.file}, {"reason", entry.reason}});
     json["sheets"] = sheet_names(o, pictures.list.size());
     return json;
 }
@@ -103,7 +103,7 @@ void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panora
     out << "\n";
     print_panoramas(panoramas, out);
     size_t by_profile = 0;
-    for (const CorrectedPicture &one : pictures.list) by_profile += one.panorama.empty();
+    for (const CorrectedPicture &entry : pictures.list) by_profile += entry.panorama.empty();
     out << "corrected " << counted(pictures.list.size(), "picture");
     if (by_profile) out << ", " << by_profile << " of them with profiles of the databases";
     if (pictures.written < pictures.list.size())
@@ -113,8 +113,8 @@ void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panora
     const std::vector<LeftOutPicture> left_out = all_left_out(inputs, pictures);
     if (!left_out.empty()) {
         std::string text = "left out  " + counted(left_out.size(), "picture") + ": ";
-        for (size_t i = 0; i < std::min(most_names, left_out.size()); i++) text += (i ? ", " : "") + left_out[i].file;
-        if (left_out.size() > most_names) text += format(" and %zu more", left_out.size() - most_names);
+        for (size_t i = 0; i < std::min(max_names, left_out.size()); i++) text += (i ? ", " : "") + left_out[i].file;
+        if (left_out.size() > max_names) text += format(" and %zu more", left_out.size() - max_names);
         out << one_line(text) << "\n";
     }
     out << one_line("written   to " + o.output + ": " + summary_name + " (with all reasons)"

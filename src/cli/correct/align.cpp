@@ -189,7 +189,7 @@ Corrected write_all(const Options &o, const std::vector<Correction> &jobs,
         make_folder(o.folder());
         return write_corrected(jobs, o.kind, nullptr, progress);
     }
-    write_merged(jobs, frame_like(exposures, jobs[0].wanted), o.merge, progress);
+    write_merged(jobs, frame_like(exposures, jobs[0].target_exposure), o.merge, progress);
     Corrected corrected;
     for (const Correction &job : jobs) corrected.pictures.push_back({{"file", job.source}, {"output", o.merge}});
     return corrected;
@@ -249,10 +249,11 @@ int align(const Options &o, Streams &streams) {
         std::shared_ptr<const lensprof_profile> model = profile_of(fitted.result);
         for (size_t i = 0; i < jobs.size(); i++) {
             jobs[i].model = model;
-            jobs[i].own = exposures[i];
-            jobs[i].wanted = wanted_exposure(o, exposures);
+            jobs[i].exposure = exposures[i];
+            jobs[i].target_exposure = wanted_exposure(o, exposures);
             if (o.merge.empty())
-                warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
+                warn_of_limits(jobs[i].source, jobs[i].exposure.ev, jobs[i].target_exposure.ev, white_shares[frames[i]],
+                               streams);
         }
         written = write_all(o, jobs, exposures, progress);
     }
@@ -263,7 +264,7 @@ int align(const Options &o, Streams &streams) {
         if (fitted.corrects())
             warn(streams, item + ": " + verdict.text);
         else
-            tell(streams, item + ": not usable: " + verdict.text + "; nothing written");
+            print_message(streams, item + ": not usable: " + verdict.text + "; nothing written");
     }
     if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
     if (!o.json && !o.merge.empty() && !written.pictures.empty()) streams.out << o.merge << "\n";

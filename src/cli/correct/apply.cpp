@@ -25,9 +25,9 @@ namespace {
 
 void list_left_out(const ApplyWork &work, Streams &streams) {
     if (work.left_out.empty()) return;
-    tell(streams, std::to_string(work.left_out.size()) + " of "
-                      + counted(work.jobs.size() + work.left_out.size(), "picture") + " left out:");
-    for (const LeftOut &picture : work.left_out) tell(streams, "  " + picture.reason);
+    print_message(streams, std::to_string(work.left_out.size()) + " of "
+                               + counted(work.jobs.size() + work.left_out.size(), "picture") + " left out:");
+    for (const LeftOut &picture : work.left_out) print_message(streams, "  " + picture.reason);
 }
 
 Json left_out_json(const ApplyWork &work) {
@@ -56,13 +56,13 @@ void print_notes(const std::vector<Correction> &jobs, Streams &streams) {
         if (is_new) order.push_back(found->first);
         Answer &answer = found->second;
         answer.count++;
-        if (job.lookup->how.sigma > answer.least_certain->lookup->how.sigma) answer.least_certain = &job;
+        if (job.lookup->lookup.sigma > answer.least_certain->lookup->lookup.sigma) answer.least_certain = &job;
     }
     for (const std::string &text : order) {
         const Answer &answer = answers.at(text);
         const std::string others = answer.count > 1 ? " and " + std::to_string(answer.count - 1) + " more" : "";
         note(streams, answer.first->source + others + ": " + text + "; " + (answer.count > 1 ? "at most, " : "")
-                          + describe_error(answer.least_certain->lookup->how));
+                          + describe_error(answer.least_certain->lookup->lookup));
     }
 }
 
@@ -96,7 +96,9 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
                                   : o.project().empty()                    ? OutputExposure::keep
                                                                            : OutputExposure::mean;
     for (Correction &job : work.jobs)
-        job.wanted = chosen == OutputExposure::keep ? job.own : chosen == OutputExposure::mean ? work.mean : reference;
+        job.target_exposure = chosen == OutputExposure::keep   ? job.exposure
+                              : chosen == OutputExposure::mean ? work.mean
+                                                               : reference;
     if (source.project && chosen != OutputExposure::keep && !o.kind.linear && !o.kind.simulate)
         encode_alike(source, work.jobs, streams);
     if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);

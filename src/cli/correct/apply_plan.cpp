@@ -113,11 +113,11 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
     job.source = picture.file;
     std::filesystem::path named =
         std::filesystem::path(picture.subfolder) / std::filesystem::path(picture.file).filename();
-    lensprof_exposure_init(&job.own);
+    lensprof_exposure_init(&job.exposure);
     if (source.project) {
         const uint32_t image = source.images->at(picture.file, o.project_option());
         check_shape(*source.project, image, picture.file);
-        job.own = source.exposures[image];
+        job.exposure = source.exposures[image];
         if (source.has_model) job.model = model_of_project(*source.project, image);
         job.model_name = std::filesystem::path(o.project()).filename().string();
         if (!source.project->models.empty()) named = name_below(source.project->names[image]);
@@ -135,7 +135,7 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
 [[noreturn]] void fail_refused(const std::vector<NotThisOne> &refused, size_t count, Streams &streams) {
     if (refused.size() == 1)
         throw Failure(refused[0].code, refused[0].what() + std::string(count > 1 ? "; or skip it with --skip" : ""));
-    for (const NotThisOne &failure : refused) tell(streams, failure.what());
+    for (const NotThisOne &failure : refused) print_message(streams, failure.what());
     throw Failure(refused[0].code, std::to_string(refused.size()) + " of " + counted(count, "picture")
                                        + " cannot be corrected, and nothing was written; use --skip to leave them out");
 }
@@ -165,7 +165,7 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
             continue;
         }
         Correction job;
-        job.source = file, job.own = source.exposures[i], job.model = model_of_project(project, i);
+        job.source = file, job.exposure = source.exposures[i], job.model = model_of_project(project, i);
         placed.push_back({job, i});
     }
     return placed;

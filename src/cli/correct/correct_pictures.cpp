@@ -169,7 +169,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     for_each_in_order(count, threads, work, finish);
     corrected.seconds = throughput.seconds();
     corrected.megapixels = throughput.megapixels();
-    if (count > 1) progress.say("corrected " + throughput.summary());
+    if (count > 1) progress.print_line("corrected " + throughput.summary());
     return corrected;
 }
 

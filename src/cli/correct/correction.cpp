@@ -68,7 +68,7 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
 std::string correction_note(const Correction &job) {
     if (job.profile_id) return format("falloff by profile %lld", static_cast<long long>(job.profile_id));
     if (job.lookup) return "falloff predicted by a lookup";
-    return job.copies_dng ? "" : format("%+.2f EV", job.own.ev - job.wanted.ev);
+    return job.copies_dng ? "" : format("%+.2f EV", job.exposure.ev - job.target_exposure.ev);
 }
 
 void warn_of_written(const Correction &job, bool with_metadata, Progress &progress) {

@@ -23,7 +23,7 @@ struct Correction {
     std::string source, target;
     std::shared_ptr<const lensprof_profile> model;
     std::shared_ptr<const lensprof_response> encoding;  // encoding of the target; NULL = that of the source
-    lensprof_exposure own{}, wanted{};                  // exposure of the picture, and the wanted one
+    lensprof_exposure exposure{}, target_exposure{};    // exposure of the picture, and the wanted one
     int64_t profile_id = 0;                             // 0 = the model is not from a profile
     std::shared_ptr<const Found> lookup;                // how the model was predicted; NULL = not predicted
     uint64_t pixels = 0;                                // number of pixels of the source

@@ -41,7 +41,8 @@ double trust_of(double largest) {
 bool is_white(double largest) { return largest >= none_above; }
 
 double gain_of(const Correction &job, size_t channel) {
-    return std::exp2(job.own.ev - job.wanted.ev) * job.own.white_balance[channel] / job.wanted.white_balance[channel];
+    return std::exp2(job.exposure.ev - job.target_exposure.ev) * job.exposure.white_balance[channel]
+           / job.target_exposure.white_balance[channel];
 }
 
 LightWeights::LightWeights(const Correction &job) {

@@ -26,7 +26,7 @@ public:
 
     const Picture &header() const { return reader_.header(); }
     size_t samples() const { return samples_; }
-    double ev() const { return job_.own.ev; }
+    double ev() const { return job_.exposure.ev; }
 
     // Reads the next rows; `first` is the index of the first.
     void read(uint32_t first, uint32_t rows) {

@@ -253,7 +253,7 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
             stop_if_interrupted();
             if (other.image == placed.image || !overlap(merge.picture().camera(), project.images[other.image].camera))
                 continue;
-            other.job.wanted = placed.job.wanted;
+            other.job.target_exposure = placed.job.target_exposure;
             LitPicture lit(other, kind, project);
             merge.add(lit);
             overlapping++;
@@ -278,7 +278,7 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
     }
     corrected.seconds = throughput.seconds();
     corrected.megapixels = throughput.megapixels();
-    if (jobs.size() > 1) progress.say("merged " + throughput.summary());
+    if (jobs.size() > 1) progress.print_line("merged " + throughput.summary());
     return corrected;
 }
 

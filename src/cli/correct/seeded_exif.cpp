@@ -44,7 +44,7 @@ void seed_exif(std::vector<Correction> &jobs, const Project &project, const std:
         const double aperture = metadata.f_number.value_or(usual_aperture),
                      iso = std::min(metadata.iso.value_or(usual_iso), max_iso);
         seeded->key.aperture = aperture, seeded->iso = iso;
-        seeded->exposure_time_s = std::exp2(job.wanted.ev + offset) * 100.0 / iso * aperture * aperture;
+        seeded->exposure_time_s = std::exp2(job.target_exposure.ev + offset) * 100.0 / iso * aperture * aperture;
         job.exif = std::move(seeded);
     }
 }

@@ -54,7 +54,7 @@ private:
     LinkWeights matches_of_link_;
     std::vector<Block> blocks_;
     std::vector<uint32_t> block_of_;  // per image
-    std::string nothing_;             // why a sampling found nothing
+    std::string no_samples_reason_;   // why a sampling found nothing
 };
 
 BlockSampler::BlockSampler(const Project &project, const lensprof_sample_options &options, uint32_t max_side,
@@ -65,9 +65,9 @@ BlockSampler::BlockSampler(const Project &project, const lensprof_sample_options
     block_of_.resize(count);
     uint64_t bytes = block_bytes;  // so that the first image starts a block
     for (const uint32_t image : order_by_links(count, matches_of_link_)) {
-        const uint64_t own = bytes_of(image);
-        if (bytes + own > block_bytes) blocks_.emplace_back(), bytes = 0;
-        bytes += own;
+        const uint64_t image_bytes = bytes_of(image);
+        if (bytes + image_bytes > block_bytes) blocks_.emplace_back(), bytes = 0;
+        bytes += image_bytes;
         block_of_[image] = static_cast<uint32_t>(blocks_.size() - 1);
         blocks_.back().images.push_back(image);
     }
@@ -89,57 +89,58 @@ void BlockSampler::read(Block &block) {
 }
 
 BlockMatches BlockSampler::matches_between(Block &a, Block &b, const std::vector<uint32_t> &numbers) const {
-    BlockMatches own;
+    BlockMatches found;
     std::vector<uint32_t> number(project_.images.size());
     for (Block *block : {&a, &b}) {
         for (size_t n = 0; n < block->images.size(); n++) {
-            number[block->images[n]] = static_cast<uint32_t>(own.images.size());
-            own.images.push_back(block->images[n]);
-            own.views.push_back(sample_image(project_, block->images[n], block->pictures[n], {}));
+            number[block->images[n]] = static_cast<uint32_t>(found.images.size());
+            found.images.push_back(block->images[n]);
+            found.views.push_back(sample_image(project_, block->images[n], block->pictures[n], {}));
         }
         if (&a == &b) break;
     }
-    std::set<ImagePair> own_links;
+    std::set<ImagePair> linked_images;
     for (const uint32_t m : numbers) {
-        own.matches.push_back(project_.matches[m]);
-        own_links.insert(images_of(project_.matches[m]));
-        for (uint32_t &image : own.matches.back().image) image = number[image];
+        found.matches.push_back(project_.matches[m]);
+        linked_images.insert(images_of(project_.matches[m]));
+        for (uint32_t &image : found.matches.back().image) image = number[image];
     }
-    own.links = own_links.size();
-    return own;
+    found.links = linked_images.size();
+    return found;
 }
 
 void BlockSampler::sample(Block &a, Block &b, const std::vector<uint32_t> &numbers) {
-    const BlockMatches own = matches_between(a, b, numbers);
+    const BlockMatches input = matches_between(a, b, numbers);
     lensprof_sample_options options = options_;
-    const size_t wanted = options.pairs ? options.pairs : project_.matches.size();
-    options.pairs = static_cast<uint32_t>(std::max<size_t>(1, wanted * own.matches.size() / project_.matches.size()));
+    const size_t total_pairs = options.pairs ? options.pairs : project_.matches.size();
+    options.pairs =
+        static_cast<uint32_t>(std::max<size_t>(1, total_pairs * input.matches.size() / project_.matches.size()));
     std::vector<lensprof_pair> found(options.pairs);
     std::vector<uint32_t> match_of_pair(options.pairs);
-    std::vector<lensprof_link> own_links(own.links);
+    std::vector<lensprof_link> found_links(input.links);
     uint32_t count = 0, link_count = 0;
     options.match_of_pair = match_of_pair.data();
-    options.links = own_links.data(), options.link_capacity = static_cast<uint32_t>(own.links);
+    options.links = found_links.data(), options.link_capacity = static_cast<uint32_t>(input.links);
     options.link_count = &link_count;
     lensprof_error error{};
-    const lensprof_status status =
-        lensprof_sample_matches(&options, own.views.data(), static_cast<uint32_t>(own.views.size()), own.matches.data(),
-                                static_cast<uint32_t>(own.matches.size()), found.data(), options.pairs, &count, &error);
+    const lensprof_status status = lensprof_sample_matches(
+        &options, input.views.data(), static_cast<uint32_t>(input.views.size()), input.matches.data(),
+        static_cast<uint32_t>(input.matches.size()), found.data(), options.pairs, &count, &error);
     if (status == LENSPROF_ERROR_NO_SAMPLES || status == LENSPROF_ERROR_NO_OVERLAP) {
-        nothing_ = error.text;
+        no_samples_reason_ = error.text;
         return;
     }
     std::vector<std::string> names;
-    for (const uint32_t image : own.images) names.push_back(project_.names[image]);
+    for (const uint32_t image : input.images) names.push_back(project_.names[image]);
     check_named(status, project_.path, error, LENSPROF_ITEM_IMAGE, names);
     for (uint32_t p = 0; p < count; p++) {
-        for (uint32_t &image : found[p].image) image = own.images[image];
+        for (uint32_t &image : found[p].image) image = input.images[image];
         pairs.push_back(found[p]);
         points.push_back(project_.match_points[numbers[match_of_pair[p]]]);
     }
-    own_links.resize(std::min<size_t>(own_links.size(), link_count));
-    for (lensprof_link &link : own_links) {
-        const auto [first, second] = std::minmax(own.images[link.image[0]], own.images[link.image[1]]);
+    found_links.resize(std::min<size_t>(found_links.size(), link_count));
+    for (lensprof_link &link : found_links) {
+        const auto [first, second] = std::minmax(input.images[link.image[0]], input.images[link.image[1]]);
         links.push_back({{first, second}, link.state, link.pairs});
     }
 }
@@ -165,7 +166,8 @@ void BlockSampler::run() {
         if (&a != &b) b.pictures.clear();
         progress_.update("sampling", double(++done) / double(matches_of_blocks.size()));
     }
-    if (pairs.empty()) throw Failure(ExitCode::not_usable, project_.path + ": " + nothing_, LENSPROF_REASON_FEW_PAIRS);
+    if (pairs.empty())
+        throw Failure(ExitCode::not_usable, project_.path + ": " + no_samples_reason_, LENSPROF_REASON_FEW_PAIRS);
     std::sort(links.begin(), links.end(), [](const lensprof_link &a, const lensprof_link &b) {
         return std::pair(a.image[0], a.image[1]) < std::pair(b.image[0], b.image[1]);
     });

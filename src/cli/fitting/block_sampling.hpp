@@ -8,7 +8,7 @@
 namespace lensprof {
 
 // Maximum bytes of the pictures of a block.
-constexpr uint64_t usual_block_bytes = uint64_t(512) << 20;
+constexpr uint64_t default_block_bytes = uint64_t(512) << 20;
 
 // Measures pairs at the project's matches, for two blocks of pictures at a time: images that share matches are in few
 // blocks, so every picture is read only a few times. `links` receives the links of the images, `points` the scene point

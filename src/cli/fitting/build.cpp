@@ -114,7 +114,7 @@ void declare(Command &command, Options &o) {
 
 // A picture name for a text output is a mistake that could overwrite a photograph; so is a preview with the name of
 // one.
-void check_is_no_photograph(const std::string &output, bool is_preview) {
+void reject_photograph(const std::string &output, bool is_preview) {
     if (!is_preview && is_picture_name(output))
         throw Failure(ExitCode::usage,
                       output + ": is the name of a picture, but the output is text; give another name");
@@ -130,7 +130,7 @@ void check_is_no_photograph(const std::string &output, bool is_preview) {
 }
 
 // Files of exposures are next to reconstructions; nothing else must be overwritten by mistake.
-void check_is_no_other_file(const std::string &output) {
+void reject_other_file(const std::string &output) {
     if (!is_regular_file(output) || file_bytes(output) == 0 || is_exposure_file(output)) return;
     throw Failure(ExitCode::usage, output + ": exists and is not a file of exposures; give another name");
 }
@@ -143,17 +143,17 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
          {o.points_out, o.exposures_out, o.gain_chart, o.pto_out, o.project_out, o.preview, o.report}) {
         if (output.empty()) continue;
         check_not_taken(output, "output", taken);
-        check_is_no_photograph(output, output == o.preview || output == o.gain_chart);
-        if (output == o.exposures_out) check_is_no_other_file(output);
+        reject_photograph(output, output == o.preview || output == o.gain_chart);
+        if (output == o.exposures_out) reject_other_file(output);
         check_output_file(output);
         taken.push_back(output);
     }
 }
 
 // Reconstructions from film are rare. Sensors of phones are small.
-CameraKind usual_kind(const lensprof_profile_key &key) {
-    constexpr double least_crop_factor = 4.5;
-    const bool is_phone = key.crop_factor != LENSPROF_UNKNOWN && key.crop_factor >= least_crop_factor;
+CameraKind default_kind(const lensprof_profile_key &key) {
+    constexpr double min_phone_crop_factor = 4.5;
+    const bool is_phone = key.crop_factor != LENSPROF_UNKNOWN && key.crop_factor >= min_phone_crop_factor;
     return {is_phone ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_CAMERA, KindFrom::reconstruction};
 }
 
@@ -188,24 +188,24 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
 // Checks that need no overlaps, which take time to find.
 void check_photographs(const Options &o, const Photographs &list) {
     std::vector<std::string> inputs = list.files;
-    for (const auto &[file, why] : list.left_out) inputs.push_back(file);
+    for (const auto &[file, reason] : list.left_out) inputs.push_back(file);
     check_outputs(o, inputs);
     check_store(o.store);
     if (o.store.no_store) return;
     // One picture with camera or lens suffices as the reference; without any, the first one fails.
-    std::optional<Failure> unnamed;
+    std::optional<Failure> missing_name;
     for (const std::string &file : list.files) {
         try {
             const PictureMetadata metadata = read_metadata(file);
             override_key(metadata.key, metadata.size, o.store, file);
             return;
         } catch (const Failure &failure) {
-            if (!unnamed && failure.code == ExitCode::usage)
-                unnamed = failure;  // others are left out and reported
-                                    // later
+            if (!missing_name && failure.code == ExitCode::usage)
+                missing_name = failure;  // others are left out and reported
+                                         // later
         }
     }
-    if (unnamed) throw *unnamed;
+    if (missing_name) throw *missing_name;
 }
 
 // Refuses options that need a project with cameras.
@@ -239,7 +239,7 @@ Project open_project(const Options &o, Streams &streams) {
         throw Failure(ExitCode::usage, "--project-out: needs pictures, but " + o.inputs[0]
                                            + " is a project; omit the option, or use --pto-out");
     if (is_project) {
-        check_is_no_part(o.inputs[0]);
+        reject_reconstruction_part(o.inputs[0]);
         return read_project(o.inputs[0]);
     }
     if (!o.points.empty())
@@ -254,9 +254,9 @@ Project open_project(const Options &o, Streams &streams) {
 // The free parameters: by --free, else by the v lines; all if these have nothing photometric, as in a project that was
 // only aligned.
 void choose_unknowns(const Options &o, Project &project, Streams &streams) {
-    uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), asked = 0;
-    for (const auto &image : project.images) asked |= image.free;
-    if (!free && !asked) {
+    uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), free_in_project = 0;
+    for (const auto &image : project.images) free_in_project |= image.free;
+    if (!free && !free_in_project) {
         note(streams, project.path
                           + ": no photometric v lines; estimating response, falloff, exposures and white balances "
                             "(use --free to change this)");
@@ -285,11 +285,11 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     check_store(o.store);
     CameraKind kind = camera_kind_of(o.fit, key, metadata[project.reference]);
-    if (project.is_reconstruction && kind.from == KindFrom::none) kind = usual_kind(key);
+    if (project.is_reconstruction && kind.from == KindFrom::none) kind = default_kind(key);
     OutputFiles outputs;
     EarlierProfile prior;
-    if (takes_stored_prior(o.fit))
-        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, project.path);
+    if (uses_stored_prior(o.fit))
+        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_requested, key, project.path);
     Json page;
     BuildReport report = build(o, project, metadata, prior, kind, outputs, page, streams);
     int code =
@@ -298,9 +298,9 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     for (const std::string &file : {o.exposures_out, o.pto_out})
         if (!report.fit.usable && !report.fit.evens && !file.empty() && !o.store.force)
-            tell(streams, file + ": not written (use --force to write it anyway)");
+            print_message(streams, file + ": not written (use --force to write it anyway)");
     if (!report.fit.usable && !report.fit.evens && !o.preview.empty())
-        tell(streams, o.preview + ": not written: the result corrects nothing");
+        print_message(streams, o.preview + ": not written: the result corrects nothing");
     return code;
 }
 
@@ -316,7 +316,7 @@ int run(const Options &o, Streams &streams) {
         throw Failure(ExitCode::usage,
                       "--compare and --json exclude each other: --compare prints a table; give one "
                       "of them");
-    check_store_options(o.store, takes_stored_prior(o.fit), !o.pto_out.empty() || !o.exposures_out.empty());
+    check_store_options(o.store, uses_stored_prior(o.fit), !o.pto_out.empty() || !o.exposures_out.empty());
 
     std::vector<std::string> names;
     try {

@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint64_t most_bytes = uint64_t(1) << 30;
+constexpr uint64_t max_file_bytes = uint64_t(1) << 30;
 constexpr int schema = 1;
-constexpr double most_ev = 30.0;  // relative to the reference
+constexpr double max_ev = 30.0;  // relative to the reference
 
 // The response in its own form, and the irradiance of every 8 bit grey level.
 Json camera_json(const lensprof_response &response, const std::string &name) {
@@ -49,19 +49,19 @@ Json lenses_json(const ProjectFit &done, const Project &project, const std::vect
 }
 
 Json image_json(const ProjectFit &done, const Project &project, uint32_t i, const fs::path &folder) {
-    const lensprof_exposure &own = done.best.exposures[i];
+    const lensprof_exposure &exposure = done.best.exposures[i];
     const lensprof_camera &frame = project.images[i].camera;
     Json json = {{"name", project.names[i]}};
     if (path_exists(project.files[i]))
         json["file"] = fs::path(absolute_path(project.files[i])).lexically_proximate(folder).string();
     json["width"] = frame.width, json["height"] = frame.height;
     json["lens"] = done.settings.of_image[i];
-    if (std::isnan(own.ev)) {
+    if (std::isnan(exposure.ev)) {
         json["ev"] = Json();
         return json;
     }
-    json["ev"] = own.ev;
-    json["white_balance"] = own.white_balance;
+    json["ev"] = exposure.ev;
+    json["white_balance"] = exposure.white_balance;
     if (i < done.report.quality.size()) {
         json["ev_sigma"] = number_or_null(done.report.quality[i].ev_sigma);
         json["white_balance_sigma"] = done.report.quality[i].white_balance_sigma;
@@ -105,10 +105,10 @@ public:
             fail(std::string(name) + " is not a valid name");
         return value.get<std::string>();
     }
-    std::vector<double> numbers(const Json &object, const char *name, size_t most) const {
+    std::vector<double> numbers(const Json &object, const char *name, size_t max_count) const {
         std::vector<double> values;
         for (const Json &value : list(object, name)) values.push_back(number(value, name));
-        if (values.size() > most) fail(std::string(name) + " has too many numbers");
+        if (values.size() > max_count) fail(std::string(name) + " has too many numbers");
         return values;
     }
 
@@ -161,15 +161,15 @@ void Reader::vignetting(const Json &lens, lensprof_profile &model) const {
 }
 
 lensprof_exposure Reader::exposure(const Json &image) const {
-    lensprof_exposure own;
-    lensprof_exposure_init(&own);
-    own.ev = number(member(image, "ev"), "ev");
+    lensprof_exposure result;
+    lensprof_exposure_init(&result);
+    result.ev = number(member(image, "ev"), "ev");
     const std::vector<double> balance = numbers(image, "white_balance", 3);
-    if (balance.size() != 3 || std::fabs(own.ev) > most_ev) fail("an exposure is not valid");
+    if (balance.size() != 3 || std::fabs(result.ev) > max_ev) fail("an exposure is not valid");
     for (size_t c = 0; c < 3; c++)
         if (!(balance[c] >= 1e-6 && balance[c] <= 1e6)) fail("a white balance is not valid");
-    std::copy(balance.begin(), balance.end(), own.white_balance);
-    return own;
+    std::copy(balance.begin(), balance.end(), result.white_balance);
+    return result;
 }
 
 // One model per lens, shared by its images.
@@ -194,7 +194,7 @@ void add_image(const Reader &reader, const Json &json,
     const fs::path folder = fs::path(project.path).parent_path();
     const auto side = [&](const char *member) {
         const double value = reader.number(reader.member(json, member), member);
-        if (value < 1.0 || value > double(most_image_side) || value != std::floor(value))
+        if (value < 1.0 || value > double(max_image_side) || value != std::floor(value))
             reader.fail(name + " has no size");
         return static_cast<uint32_t>(value);
     };
@@ -240,7 +240,7 @@ bool is_exposure_file(const std::string &path) {
 
 Project read_exposures(const std::string &path, const std::string &images) {
     const Reader reader(path);
-    Json all = Json::parse(read_text(path, most_bytes), nullptr, false);
+    Json all = Json::parse(read_text(path, max_file_bytes), nullptr, false);
     if (all.is_discarded() || !all.is_object() || !all.contains("file") || all["file"] != "lensprof exposures")
         reader.fail("is not a file of exposures");
     if (reader.member(all, "schema") != schema) reader.fail("has another format version");

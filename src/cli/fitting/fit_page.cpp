@@ -81,14 +81,14 @@ Json facts_json(const BuildReport &report) {
 void add_views(const FitPageInput &input, Progress &progress, Json &page) {
     const Fitted &fitted = input.best;
     std::vector<uint32_t> images = images_with_exposure(fitted);
-    const size_t all = images.size();
+    const size_t image_count = images.size();
     if (!fitted.corrects()) page["views_note"] = "The result is not usable, so that no picture is corrected.";
     if (!fitted.corrects() || images.empty() || !is_regular_file(input.project.files[images[0]])) return;
-    if (all > most_views) {
-        std::vector<uint32_t> some;
-        for (size_t n = 0; n < most_views; n++) some.push_back(images[n * all / most_views]);
-        images = some;
-        page["views_note"] = views_note(most_views, all);
+    if (image_count > max_views) {
+        std::vector<uint32_t> shown_images;
+        for (size_t n = 0; n < max_views; n++) shown_images.push_back(images[n * image_count / max_views]);
+        images = shown_images;
+        page["views_note"] = views_note(max_views, image_count);
     }
     const uint32_t side = view_side(images.size());
     const bool has_mosaic = !input.project.is_reconstruction && images.size() <= 200;

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 constexpr double levels = 255.0;
 constexpr double darkest = 2.0 / levels, brightest = 250.0 / levels;
 constexpr int radius_bins = 20, grey_bins = 17, joint_bins = 48, frame_columns = 12;
-constexpr size_t least_in_bin = 5;
+constexpr size_t min_in_bin = 5;
 
 uint32_t channel_of(const Fitted &fitted, uint32_t image) { return fitted.falloff_curves_of(image) == 3 ? 1 : 0; }
 
@@ -43,16 +43,17 @@ double residual_of(const Fitted &fitted, const PairEnd &end, const PairEnd &othe
 }
 
 double quantile(std::vector<double> &values, double q) {
-    const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<size_t>(at)];
+    const auto index = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+    std::nth_element(values.begin(), values.begin() + index, values.end());
+    return values[static_cast<size_t>(index)];
 }
 
 // The median, half the distance of the quartiles, and the number of values; null without enough.
-Json spread_json(double at, std::vector<double> &values) {
-    if (values.size() < least_in_bin) return {{"at", at}, {"mean", nullptr}, {"spread", nullptr}, {"count", 0}};
+Json spread_json(double position, std::vector<double> &values) {
+    if (values.size() < min_in_bin) return {{"at", position}, {"mean", nullptr}, {"spread", nullptr}, {"count", 0}};
     const double low = quantile(values, 0.25), high = quantile(values, 0.75);
-    return {{"at", at}, {"mean", quantile(values, 0.5)}, {"spread", 0.5 * (high - low)}, {"count", values.size()}};
+    return {
+        {"at", position}, {"mean", quantile(values, 0.5)}, {"spread", 0.5 * (high - low)}, {"count", values.size()}};
 }
 
 Json bins_json(std::vector<std::vector<double>> &bins, double width) {
@@ -103,19 +104,19 @@ std::vector<PairEnds> ends_of_pairs(const FitInput &input, const Fitted &best, c
 }
 
 Json falloff_points(const std::vector<PairEnds> &all, const Fitted &best) {
-    constexpr double least_difference = 0.1;  // of radii: else a pair shows nothing of the falloff
+    constexpr double min_radius_difference = 0.1;  // of radii: else a pair shows nothing of the falloff
     std::vector<std::vector<double>> bins(radius_bins);
     for (const PairEnds &ends : all) {
         const bool second_is_far = ends.end[1].r > ends.end[0].r;
         const PairEnd &far = ends.end[second_is_far], &near = ends.end[!second_is_far];
         const bool is_own = best.falloff_of(far.image) == best.falloff_of(best.reference);
-        if (!is_own || far.r - near.r < least_difference) continue;
+        if (!is_own || far.r - near.r < min_radius_difference) continue;
         const double exposure = lensprof_exposure_factor(&best.exposures[far.image], 1);
         bins[bin_of(far.r, radius_bins)].push_back(far.light / near.light * far.attenuation / exposure);
     }
     Json json = Json::array();
     for (size_t i = 0; i < bins.size(); i++) {
-        if (bins[i].size() < least_in_bin) continue;
+        if (bins[i].size() < min_in_bin) continue;
         const double low = quantile(bins[i], 0.25), high = quantile(bins[i], 0.75);
         // Standard error of a median: 1.253 sigma / sqrt(n), and sigma is 0.741 times the distance of the quartiles.
         const double sigma = 1.253 * 0.741 * (high - low) / std::sqrt(static_cast<double>(bins[i].size()));
@@ -149,7 +150,7 @@ Json residual_figures(const std::vector<PairEnds> &all, const Fitted &best, cons
     Json means = Json::array(), counts = Json::array();
     for (auto &cell : by_place) {
         counts.push_back(cell.size());
-        means.push_back(cell.size() < least_in_bin ? Json() : Json(quantile(cell, 0.5)));
+        means.push_back(cell.size() < min_in_bin ? Json() : Json(quantile(cell, 0.5)));
     }
     return {
         {"joint_before", before.json()},

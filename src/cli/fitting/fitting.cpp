@@ -73,7 +73,7 @@ void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
         "--stored", "auto|none|ID",
         [&o](const std::string &word) {
             o.stored = word != "none";
-            o.stored_is_asked = o.stored;
+            o.stored_is_requested = o.stored;
             o.stored_id = !o.stored || word == "auto" ? 0 : profile_id_of(word);
         },
         "prior from the databases: auto (default), the profile stored for this lens and setting, else the known "
@@ -118,13 +118,13 @@ void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
                    "EXIF)");
 }
 
-bool takes_stored_prior(const FitOptions &o) {
+bool uses_stored_prior(const FitOptions &o) {
     return o.stored && o.prior_weight > 0.0
            && (o.method == LENSPROF_METHOD_TRANSFER || o.method == LENSPROF_METHOD_RADIANCE);
 }
 
 void check_fit_options(const FitOptions &o) {
-    if (o.stored_is_asked && !takes_stored_prior(o))
+    if (o.stored_is_requested && !uses_stored_prior(o))
         throw Failure(ExitCode::usage, "--stored: needs --method transfer or radiance, and a --prior above 0");
     if (o.gamma_from == LENSPROF_GAMMA_EXPOSURES && o.exif_sigma == 0.0)
         throw Failure(ExitCode::usage,
@@ -151,8 +151,9 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
     if (o.camera_kind) return {*o.camera_kind, KindFrom::option};
     key.processing = metadata.processing_before;
     const uint32_t kind = lensprof_camera_kind_of(&key);
-    const bool is_own = kind == LENSPROF_CAMERA_LINEAR || (kind != LENSPROF_CAMERA_ANY && metadata.is_of_camera);
-    if (!is_own) return {};  // anything but the camera's JPEG was developed by other software
+    const bool is_camera_output =
+        kind == LENSPROF_CAMERA_LINEAR || (kind != LENSPROF_CAMERA_ANY && metadata.is_of_camera);
+    if (!is_camera_output) return {};  // anything but the camera's JPEG was developed by other software
     return {kind, KindFrom::pictures};
 }
 
@@ -164,7 +165,7 @@ size_t joined_images(const std::vector<lensprof_exposure> &exposures) {
 }
 
 // For the results of lens settings and cameras.
-static void make_room(const std::vector<lensprof_fit_image> &images, Fitted &fitted) {
+static void allocate_results(const std::vector<lensprof_fit_image> &images, Fitted &fitted) {
     uint32_t last_setting = 0, last_camera = 0;
     for (const lensprof_fit_image &image : images) {
         fitted.setting_of.push_back(image.setting);
@@ -190,16 +191,18 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
         quality->resize(count);
         fitted.result.image_quality = quality->data();
     }
-    make_room(input.images, fitted);
+    allocate_results(input.images, fitted);
     input.options.progress = on_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
     const auto *images = input.images.data();
-    auto pairs = static_cast<uint32_t>(input.pairs.size()), tracked = static_cast<uint32_t>(input.observations.size());
-    lensprof_status status = tracked ? lensprof_fit_radiance(&input.options, images, count, input.observations.data(),
-                                                             tracked, fitted.exposures.data(), &fitted.result, &error)
-                                     : lensprof_fit_overlap(&input.options, images, count, input.pairs.data(), pairs,
-                                                            fitted.exposures.data(), &fitted.result, &error);
+    auto pairs = static_cast<uint32_t>(input.pairs.size()),
+         observations = static_cast<uint32_t>(input.observations.size());
+    lensprof_status status = observations
+                                 ? lensprof_fit_radiance(&input.options, images, count, input.observations.data(),
+                                                         observations, fitted.exposures.data(), &fitted.result, &error)
+                                 : lensprof_fit_overlap(&input.options, images, count, input.pairs.data(), pairs,
+                                                        fitted.exposures.data(), &fitted.result, &error);
     stop_if_interrupted();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
         throw Failure(ExitCode::usage, item + ": no parameter is estimated; give --free all");
@@ -229,7 +232,7 @@ BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure
 }
 
 // Reports the other images with wrong known exposures; the verdict reports the worst.
-void name_left_out(const BuildReport &report, Streams &streams) {
+void warn_of_wrong_exposures(const BuildReport &report, Streams &streams) {
     if (report.verdict.code != LENSPROF_REASON_KNOWN_WRONG) return;
     for (size_t i = 0; i < report.quality.size(); i++) {
         const auto &q = report.quality[i];
@@ -247,19 +250,19 @@ static bool is_camera_joined(const BuildReport &report, size_t image) {
 }
 
 // Reports the cameras that are not part of the result, with reasons.
-static void name_cameras(const BuildReport &report, const std::string &source, Streams &streams) {
+static void warn_of_unjoined_cameras(const BuildReport &report, const std::string &source, Streams &streams) {
     for (uint32_t k = 0; k < report.cameras.size(); k++) {
         const CameraReport &camera = report.cameras[k];
         if (camera.found.joined) continue;
-        const auto own =
+        const auto fitted_setting =
             std::find_if(report.settings.begin(), report.settings.end(),
                          [&](const SettingReport &setting) { return setting.camera == k && setting.found.images; });
         const std::string left_out = source + ": " + camera.label + ": left out: ";
         if (!camera.found.images)
             warn(streams, left_out + "no two of its pictures overlap enough; give more of them, or use --one-lens to "
                                      "treat all as one camera");
-        else if (!camera.found.evens && own != report.settings.end() && !own->found.usable)
-            warn(streams, left_out + "its pictures cannot be corrected: " + own->verdict.text);
+        else if (!camera.found.evens && fitted_setting != report.settings.end() && !fitted_setting->found.usable)
+            warn(streams, left_out + "its pictures cannot be corrected: " + fitted_setting->verdict.text);
         else
             warn(streams, left_out + "its overlap with pictures of the other cameras is too small or inconsistent; "
                                      "give more that overlap");
@@ -267,7 +270,7 @@ static void name_cameras(const BuildReport &report, const std::string &source, S
 }
 
 // Reports the images that disagree with the others, even if the verdict is about them.
-void name_unjoined(const BuildReport &report, Streams &streams) {
+void warn_of_unjoined_images(const BuildReport &report, Streams &streams) {
     for (size_t i = 0; i < report.quality.size() && report.fit.left_out; i++)
         if (!report.quality[i].joined && is_camera_joined(report, i))
             warn(streams, report.names[i]
@@ -283,16 +286,16 @@ std::string not_usable_text(const std::string &source, const Verdict &verdict, c
 namespace {
 
 // `own` is the result of one setting. The prior is that of the reference's setting.
-int64_t store_setting(const lensprof_fit_result &own, size_t images, const lensprof_profile_key &key, bool is_reference,
-                      const StoreOptions &store, const Finish &finish) {
+int64_t store_setting(const lensprof_fit_result &result, size_t images, const lensprof_profile_key &key,
+                      bool is_reference, const StoreOptions &store, const Finish &finish) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
     const EarlierProfile *prior = finish.prior;  // used by the response of all settings and by the falloff of one
     if (prior && is_reference) options.profile = prior->profile.get();
-    auto profile = profile_of(own, &options, images);
+    auto profile = profile_of(result, &options, images);
     profile->key = key;
-    const int64_t held = prior && holds_prior(own) && prior->is_own ? prior->id : 0;
-    return store_profile(store, *profile, {finish.method, finish.source, own.usable != 0, held});
+    const int64_t prior_id = prior && holds_prior(result) && prior->is_own ? prior->id : 0;
+    return store_profile(store, *profile, {finish.method, finish.source, result.usable != 0, prior_id});
 }
 
 // Stores the profiles of every usable lens setting, or of all with --force.
@@ -305,8 +308,8 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
     for (SettingReport &setting : report.settings) order.push_back(&setting);
     std::stable_partition(order.begin(), order.end(), [](const SettingReport *s) { return s->is_reference; });
     std::set<std::string> keys;
-    for (SettingReport *one : order) {
-        SettingReport &setting = *one;
+    for (SettingReport *entry : order) {
+        SettingReport &setting = *entry;
         if (!setting.found.images || !(setting.found.usable || store.force) || !setting.no_key.empty()) continue;
         setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
         if (setting.has_same_key) continue;  // a lookup could not distinguish them
@@ -319,16 +322,17 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
 // Prints where profiles were stored.
 void print_stored(const BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store,
                   std::ostream &out) {
-    const auto print = [&](int64_t id, const lensprof_profile_key &own) {
+    const auto print = [&](int64_t id, const lensprof_profile_key &stored_key) {
         if (id)
-            out << "stored    profile " << id << " in " << store_path(store.db) << ": " << describe_key(own) << "\n";
+            out << "stored    profile " << id << " in " << store_path(store.db) << ": " << describe_key(stored_key)
+                << "\n";
     };
     if (report.settings.empty()) print(report.profile_id, key);
     for (const SettingReport &setting : report.settings) print(setting.profile_id, setting.key);
 }
 
 // Reports which of several settings give no profile, and why.
-void name_unusable(const BuildReport &report, const std::string &source, Streams &streams) {
+void warn_of_unstored_settings(const BuildReport &report, const std::string &source, Streams &streams) {
     for (const SettingReport &setting : report.settings)
         if (setting.found.images && setting.found.usable && !setting.no_key.empty())
             warn(streams, source + ": " + setting.label + ": not stored: " + setting.no_key);
@@ -344,10 +348,10 @@ void name_unusable(const BuildReport &report, const std::string &source, Streams
 }
 
 // Warns if a result that corrects pictures without being a profile leaves much unexplained.
-void name_misfit(const BuildReport &report, const std::string &source, Streams &streams) {
-    constexpr double most_outliers = 0.3, most_levels = 15.0;  // the limits of the verdict for profiles
+void warn_of_misfit(const BuildReport &report, const std::string &source, Streams &streams) {
+    constexpr double max_outlier_share = 0.3, max_rms_levels = 15.0;  // the limits of the verdict for profiles
     const double outliers = 1.0 - report.fit.inlier_share, rms = report.fit.heldout_rms;
-    if (outliers <= most_outliers && rms <= most_levels) return;
+    if (outliers <= max_outlier_share && rms <= max_rms_levels) return;
     warn(streams,
          source
              + format(": %.0f %% of the pairs disagree with the result, and the residual is %.1f levels RMS, because "
@@ -362,22 +366,23 @@ bool is_any_usable(const BuildReport &report) {
 }
 
 // Everything that is wrong with a result, on standard error. Whether the command succeeds.
-bool name_doubts(const BuildReport &report, const StoreOptions &store, const Finish &finish, Streams &streams) {
+bool report_problems(const BuildReport &report, const StoreOptions &store, const Finish &finish, Streams &streams) {
     if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
     const bool evens = finish.evens_pictures && report.fit.evens;
-    if (report.fit.usable) name_left_out(report, streams);
-    if (report.fit.usable || evens) name_cameras(report, finish.source, streams), name_unjoined(report, streams);
+    if (report.fit.usable) warn_of_wrong_exposures(report, streams);
+    if (report.fit.usable || evens)
+        warn_of_unjoined_cameras(report, finish.source, streams), warn_of_unjoined_images(report, streams);
     const bool is_good = is_any_usable(report) || (store.no_store && evens);
     if (!report.fit.usable && is_good)
         warn(streams, finish.source
                           + (report.fit.evens ? ": corrects these pictures, but is not stored as a profile: "
                                               : ": the setting of the reference is not stored as a profile: ")
                           + report.verdict.text);
-    if (is_good) name_unusable(report, finish.source, streams);
-    if (!report.fit.usable && is_good) name_misfit(report, finish.source, streams);
+    if (is_good) warn_of_unstored_settings(report, finish.source, streams);
+    if (!report.fit.usable && is_good) warn_of_misfit(report, finish.source, streams);
     if (!is_good)
-        tell(streams, not_usable_text(finish.source, report.verdict, store)
-                          + (evens ? "; it does correct these pictures: use --no-store to accept it" : ""));
+        print_message(streams, not_usable_text(finish.source, report.verdict, store)
+                                   + (evens ? "; it does correct these pictures: use --no-store to accept it" : ""));
     return is_good;
 }
 
@@ -387,18 +392,18 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
                Streams &streams) {
     stop_if_interrupted();
     if (!store.no_store) store_result(report, key, store, finish);
-    std::ostringstream said;  // after the result, but known before the outputs are complete
-    Streams later = streams.with(streams.out, said);
-    const bool is_good = name_doubts(report, store, finish, later);
+    std::ostringstream messages;  // after the result, but known before the outputs are complete
+    Streams message_streams = streams.with(streams.out, messages);
+    const bool is_good = report_problems(report, store, finish, message_streams);
     if (!finish.report.empty())
-        finish.outputs->add(finish.report, fit_page(std::move(*finish.page), report, later.warnings));
+        finish.outputs->add(finish.report, fit_page(std::move(*finish.page), report, message_streams.warnings));
     if (finish.outputs) finish.outputs->commit();
     if (finish.json)
         print_json(build_json(report), streams.out);
     else
         print_build(report, streams.out);
     if (!finish.json) print_stored(report, key, store, streams.out);
-    streams.err << said.str();
+    streams.err << messages.str();
     return static_cast<int>(is_good ? ExitCode::done : ExitCode::not_usable);
 }
 

@@ -26,7 +26,7 @@ struct FitOptions {
     double prior_weight = 1.0, huber = 5.0;
     std::optional<double> exif_sigma;  // of all EXIF exposures, EV; 0: EXIF is not used; empty: chosen by EXIF
     bool stored = true;                // use what is stored for lens and camera as the prior
-    bool stored_is_asked = false;
+    bool stored_is_requested = false;
     int64_t stored_id = 0;  // profile to use as the prior; 0: that of a lookup
 };
 
@@ -39,7 +39,7 @@ struct FitChoices {
 void declare_fit(Command &command, FitOptions &o, FitChoices choices = {});
 
 // Whether stored profiles are the prior of this fit: the method must support it and the prior weight be above 0.
-bool takes_stored_prior(const FitOptions &o);
+bool uses_stored_prior(const FitOptions &o);
 
 // The name of a method, as in provenances.
 const char *method_name(uint32_t method);
@@ -81,14 +81,14 @@ struct Fitted {
         return settings.empty() ? result.vignetting : settings[setting_of[image]].vignetting;
     }
     uint32_t falloff_curves_of(uint32_t image) const {
-        return is_of_own_camera(image) ? cameras[camera_of[image]].vignettings : result.vignettings;
+        return has_camera_result(image) ? cameras[camera_of[image]].vignettings : result.vignettings;
     }
     const lensprof_response &response_of(uint32_t image) const {
-        return is_of_own_camera(image) ? cameras[camera_of[image]].response : result.response;
+        return has_camera_result(image) ? cameras[camera_of[image]].response : result.response;
     }
 
     // Whether the image belongs to one of several cameras.
-    bool is_of_own_camera(uint32_t image) const { return !cameras.empty() && cameras[camera_of[image]].images; }
+    bool has_camera_result(uint32_t image) const { return !cameras.empty() && cameras[camera_of[image]].images; }
 };
 
 // The number of images with an exposure in the result.

@@ -88,7 +88,7 @@ int on_progress(double done, void *progress) {
 }
 
 // JPEG rounds colours over blocks of 16 pixels, which averaging does not remove: no falloff per channel from JPEG.
-void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
+void handle_lossy_pictures(const FlatCommand &o, FlatInput &input, Streams &streams) {
     for (size_t i = 0; i < input.pictures.size(); i++) {
         if (!input.pictures[i].traits.is_lossy) continue;
         if (o.falloff_curves == 0) input.options.vignettings = 1;
@@ -118,7 +118,7 @@ FlatReport begin_report(const FlatInput &input) {
 }
 
 // The report if no fit was possible.
-FlatReport no_flat(const FlatInput &input, const Failure &failure) {
+FlatReport failed_report(const FlatInput &input, const Failure &failure) {
     FlatReport report = begin_report(input);
     report.fit.vignettings = 1;
     report.fit.corner_sigma = NAN;
@@ -131,7 +131,7 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
     auto clock = std::chrono::steady_clock::now();
     read_flat(o, progress, input);
     progress.clear();
-    mind_jpeg(o, input, streams);
+    handle_lossy_pictures(o, input, streams);
     stop_if_interrupted();
     FlatReport report = begin_report(input);
     report.load_s = lap(clock);
@@ -158,12 +158,13 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
     return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable != 0});
 }
 
-FlatReport measure_or_say_why_not(const FlatCommand &o, FlatInput &input, Streams &streams) {
+FlatReport measure_or_report_failure(const FlatCommand &o, FlatInput &input, Streams &streams) {
     Progress progress(streams, o.progress);
     try {
         return measure(o, input, progress, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_usable) print_json(flat_json(no_flat(input, failure)), streams.out);
+        if (o.json && failure.code == ExitCode::not_usable)
+            print_json(flat_json(failed_report(input, failure)), streams.out);
         throw;
     }
 }
@@ -173,13 +174,13 @@ int run(const FlatCommand &o, Streams &streams) {
     FlatInput input = prepare_flat(o, streams);
     check_report(o.report, o.files, o.store);
     check_store(o.store);
-    FlatReport report = measure_or_say_why_not(o, input, streams);
-    const bool good = report.fit.usable || o.store.force;
+    FlatReport report = measure_or_report_failure(o, input, streams);
+    const bool is_stored = report.fit.usable || o.store.force;
     stop_if_interrupted();
     OutputFiles outputs;
     if (!o.report.empty())
         outputs.add(o.report, flat_page(report, o.files.front(), command_text(streams.words), streams.warnings));
-    if (good && !o.store.no_store) report.profile_id = store(o, input, report);
+    if (is_stored && !o.store.no_store) report.profile_id = store(o, input, report);
     outputs.commit();
     if (o.json)
         print_json(flat_json(report), streams.out);
@@ -189,7 +190,7 @@ int run(const FlatCommand &o, Streams &streams) {
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
     if (report.fit.usable && !report.verdict.text.empty()) warn(streams, o.files.front() + ": " + report.verdict.text);
-    if (!report.fit.usable) tell(streams, not_usable_text(o.files.front(), report.verdict, o.store));
+    if (!report.fit.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }
 

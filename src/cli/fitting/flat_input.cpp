@@ -15,8 +15,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double farthest_ev = 64.0;
-constexpr uint32_t smallest_side = 64;
+constexpr double max_abs_ev = 64.0;
+constexpr uint32_t min_side = 64;
 
 std::vector<uint32_t> shots_of(const FlatCommand &o) {
     std::vector<uint32_t> shots;
@@ -29,16 +29,17 @@ std::vector<uint32_t> shots_of(const FlatCommand &o) {
 }
 
 // The rotation per picture from that of the shots, in the order of their first pictures.
-std::vector<double> turns_of(const FlatCommand &o, const std::vector<uint32_t> &shots) {
+std::vector<double> rotations_of(const FlatCommand &o, const std::vector<uint32_t> &shots) {
     std::vector<uint32_t> order;
     for (uint32_t shot : shots)
         if (std::find(order.begin(), order.end(), shot) == order.end()) order.push_back(shot);
-    std::vector<double> turns(shots.size(), 0.0);
-    if (o.turned_deg.empty()) return turns;
+    std::vector<double> rotations(shots.size(), 0.0);
+    if (o.turned_deg.empty()) return rotations;
     demand_count(o.turned_deg.size(), "--turned", order.size(), "shot");
     for (size_t i = 0; i < shots.size(); i++)
-        turns[i] = o.turned_deg[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
-    return turns;
+        rotations[i] =
+            o.turned_deg[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
+    return rotations;
 }
 
 // Exposures matter between pictures of one shot and, with a card at several places, between all.
@@ -60,7 +61,7 @@ std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_
                                                      "they are equal");
             ev[i] = *metadata[i].exif_ev;
         }
-        if (!(std::fabs(ev[i]) <= farthest_ev))
+        if (!(std::fabs(ev[i]) <= max_abs_ev))
             throw Failure(ExitCode::usage,
                           o.files[i] + ": an exposure beyond 64 EV is not plausible; check --ev or EXIF");
     }
@@ -132,7 +133,7 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
         if (lensprof_layout_channels(p.layout) != channels)
             throw Failure(ExitCode::usage, o.files[i] + ": is in colour and others are grey, or the reverse; give "
                                                         "pictures of one kind");
-        if (std::max(p.width, p.height) < smallest_side)
+        if (std::max(p.width, p.height) < min_side)
             throw Failure(ExitCode::not_usable, o.files[i] + ": fewer than 64 px give too few cells; give larger "
                                                              "pictures",
                           LENSPROF_REASON_FLAT_FEW_CELLS);
@@ -156,7 +157,7 @@ void check_flat_options(const FlatCommand &o) {
                 throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
     if (!(o.black < o.white))
         throw Failure(ExitCode::usage, "--black: must be less than --white; give a smaller value");
-    if (o.max_side != 0 && o.max_side < smallest_side)
+    if (o.max_side != 0 && o.max_side < min_side)
         throw Failure(ExitCode::usage,
                       "--max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
     if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
@@ -179,13 +180,13 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     for (const auto &file : o.files) metadata.push_back(read_metadata(file));
     input.names = o.files;
     std::vector<uint32_t> shots = shots_of(o);
-    std::vector<double> ev = exposures_of(o, shots, metadata), turns = turns_of(o, shots);
+    std::vector<double> ev = exposures_of(o, shots, metadata), rotations = rotations_of(o, shots);
     for (size_t i = 0; i < o.files.size(); i++) {
         lensprof_flat_image image;
         lensprof_flat_image_init(&image);
         image.shot = shots[i];
         image.ev = ev[i];
-        image.turn_deg = turns[i];
+        image.turn_deg = rotations[i];
         image.black = o.black;
         image.white = o.white;
         input.images.push_back(image);
@@ -195,7 +196,7 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
         note_linear(metadata.front(), o.files.front(), streams);
         metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
     }
-    warn_of_cut(metadata.front(), o.store, o.files.front(), streams);
+    warn_of_truncation(metadata.front(), o.store, o.files.front(), streams);
     input.key = override_key(metadata.front().key, metadata.front().size, o.store, o.files.front());
     auto &options = input.options;
     options.vignettings = o.falloff_curves;

@@ -49,11 +49,11 @@ Json spots_json(const lensprof_flat_result &fit) {
 Json grid_json(const lensprof_gain_grid &grid) {
     if (!grid.columns) return Json();
     Json channels = Json::array();
-    const float *at = grid.attenuation;
+    const float *row_values = grid.attenuation;
     for (uint32_t c = 0; c < grid.channels; c++) {
         Json rows = Json::array();
-        for (uint32_t row = 0; row < grid.rows; row++, at += grid.columns)
-            rows.push_back(std::vector<float>(at, at + grid.columns));
+        for (uint32_t row = 0; row < grid.rows; row++, row_values += grid.columns)
+            rows.push_back(std::vector<float>(row_values, row_values + grid.columns));
         channels.push_back(rows);
     }
     return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
@@ -76,11 +76,11 @@ void print_images(const FlatReport &report, std::ostream &out) {
 void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
     if (!fit.spots) return;
     out << format("dust      %u spots excluded:", fit.spots);
-    const uint32_t told = std::min<uint32_t>(fit.spots, 5);
-    for (uint32_t i = 0; i < told; i++)
+    const uint32_t listed_count = std::min<uint32_t>(fit.spots, 5);
+    for (uint32_t i = 0; i < listed_count; i++)
         out << format("  %.0f,%.0f px (%.1f %% darker, in %u of %u shots)", fit.spot[i].x, fit.spot[i].y,
                       100.0 * fit.spot[i].depth, fit.spot[i].shots, fit.shots);
-    out << (told < fit.spots ? "  ...\n" : "\n");
+    out << (listed_count < fit.spots ? "  ...\n" : "\n");
 }
 
 }  // namespace

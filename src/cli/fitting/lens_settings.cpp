@@ -47,12 +47,12 @@ lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &st
 LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint32_t> &first) {
     LensSettings settings;
     std::vector<uint32_t> number(first.size(), UINT32_MAX);
-    for (uint32_t own : found) {
-        if (number[own] == UINT32_MAX) {
-            number[own] = static_cast<uint32_t>(settings.first.size());
-            settings.first.push_back(first[own]);
+    for (uint32_t setting : found) {
+        if (number[setting] == UINT32_MAX) {
+            number[setting] = static_cast<uint32_t>(settings.first.size());
+            settings.first.push_back(first[setting]);
         }
-        settings.of_image.push_back(number[own]);
+        settings.of_image.push_back(number[setting]);
     }
     return settings;
 }
@@ -68,9 +68,10 @@ bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &
         || (std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.camera_maker, b.camera_maker) == 0);
     if (is_stated && !is_alike) return false;
     if (project.images[i].response_of == project.images[j].response_of) return true;
-    const lensprof_camera &one = project.images[i].camera, &other = project.images[j].camera;
+    const lensprof_camera &frame = project.images[i].camera, &other_frame = project.images[j].camera;
     const bool is_one_kind =
-        a.processing == b.processing && std::minmax(one.width, one.height) == std::minmax(other.width, other.height);
+        a.processing == b.processing
+        && std::minmax(frame.width, frame.height) == std::minmax(other_frame.width, other_frame.height);
     return is_stated && is_one_kind;
 }
 
@@ -84,8 +85,8 @@ void number_cameras(const Project &project, const std::vector<PictureMetadata> &
     std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return *metadata[i].key.camera_model != 0; });
     std::vector<std::vector<uint32_t>> members;
     for (const uint32_t i : order) {
-        const auto same = std::find_if(members.begin(), members.end(), [&](const std::vector<uint32_t> &own) {
-            return std::any_of(own.begin(), own.end(),
+        const auto same = std::find_if(members.begin(), members.end(), [&](const std::vector<uint32_t> &camera_images) {
+            return std::any_of(camera_images.begin(), camera_images.end(),
                                [&](uint32_t j) { return is_same_camera(project, metadata, is_given, i, j); });
         });
         found[i] = static_cast<uint32_t>(same - members.begin());
@@ -93,7 +94,8 @@ void number_cameras(const Project &project, const std::vector<PictureMetadata> &
         members[found[i]].push_back(i);
     }
     std::vector<uint32_t> first;
-    for (const std::vector<uint32_t> &own : members) first.push_back(*std::min_element(own.begin(), own.end()));
+    for (const std::vector<uint32_t> &camera_images : members)
+        first.push_back(*std::min_element(camera_images.begin(), camera_images.end()));
     const LensSettings cameras = in_order(found, first);
     settings.camera_of_image = cameras.of_image, settings.first_of_camera = cameras.first;
 }
@@ -108,7 +110,7 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
     const std::vector<uint32_t> all(count, 0), reference{project.reference};
     if (one_lens) return {all, reference, all, reference};
     std::vector<lensprof_profile_key> keys;
-    for (const PictureMetadata &own : metadata) keys.push_back(stated_key(own.key, store));
+    for (const PictureMetadata &entry : metadata) keys.push_back(stated_key(entry.key, store));
     LensSettings cameras;
     number_cameras(project, metadata, !store.camera.empty(), cameras);
     std::vector<uint32_t> order(count), found(count), first;

@@ -15,8 +15,8 @@ struct LensSettings {
     std::vector<uint32_t> of_image;  // setting and camera per image
     std::vector<uint32_t> first;     // per setting, the image with the most complete data
     std::vector<uint32_t> camera_of_image, first_of_camera;
-    bool are_several() const { return first.size() > 1; }
-    bool are_of_several_cameras() const { return first_of_camera.size() > 1; }
+    bool has_several_settings() const { return first.size() > 1; }
+    bool has_several_cameras() const { return first_of_camera.size() > 1; }
 };
 
 // According to the project's links and to EXIF, as far as both pictures state it and `store` does not override it.

@@ -10,12 +10,12 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kLeastPairs = 8;          // of an informative link
-constexpr size_t kLeastImages = 3;         // of a group
-constexpr double kLeastRatio = 8.0;        // of variances between and within
-constexpr double kLeastDifference = 0.25;  // levels of 255 squared: the effect of rounding
-constexpr size_t kMostLooked = 200;        // links that may separate the images
-constexpr double kNear = 1.2;              // of the usual distance of views
+constexpr size_t kMinPairs = 8;            // of an informative link
+constexpr size_t kMinImages = 3;           // of a group
+constexpr double kMinRatio = 8.0;          // of variances between and within
+constexpr double kMinDifference = 0.25;    // levels of 255 squared: the effect of rounding
+constexpr size_t kMaxCandidates = 200;     // links that may separate the images
+constexpr double kMaxDistanceRatio = 1.2;  // of the usual distance of views
 
 struct Link {
     double difference, distance;  // of colours, and of views
@@ -31,7 +31,7 @@ std::vector<Link> links_of(const FitInput &input, const std::vector<double> &dif
             of_link[std::minmax(input.pairs[p].image[0], input.pairs[p].image[1])].push_back(differences[p]);
     std::vector<Link> links;
     for (const auto &[images, values] : of_link)
-        if (values.size() >= kLeastPairs)
+        if (values.size() >= kMinPairs)
             links.push_back({median(values), of_views.at(images), {images.first, images.second}});
     std::stable_sort(links.begin(), links.end(),
                      [](const Link &a, const Link &b) { return a.difference < b.difference; });
@@ -56,31 +56,33 @@ LightGroups light_groups(const FitInput &input, const std::vector<double> &diffe
     const std::vector<Link> links = links_of(input, differences, of_views);
     JoinedSets groups(input.images.size());
     std::vector<Link> tree;
-    std::vector<double> all, far;
+    std::vector<double> tree_differences, tree_distances;
     for (const Link &link : links) {
         if (!groups.join(link.image[0], link.image[1])) continue;
         tree.push_back(link);
-        all.push_back(link.difference), far.push_back(link.distance);
+        tree_differences.push_back(link.difference), tree_distances.push_back(link.distance);
     }
     LightGroups found;
-    if (tree.size() < 2 * kLeastImages - 1) return found;
-    const double usual = std::max(median(all), kLeastDifference), usual_distance = median(far);
-    size_t looked = 0;
-    for (size_t n = tree.size(); n-- > 0 && tree[n].difference > kLeastRatio * usual && looked < kMostLooked;
-         looked++) {
+    if (tree.size() < 2 * kMinImages - 1) return found;
+    const double typical_difference = std::max(median(tree_differences), kMinDifference),
+                 typical_distance = median(tree_distances);
+    size_t candidates = 0;
+    for (size_t n = tree.size();
+         n-- > 0 && tree[n].difference > kMinRatio * typical_difference && candidates < kMaxCandidates; candidates++) {
         std::vector<uint32_t> group = smaller_group(tree, n, input.images.size());
-        if (group.size() < kLeastImages) continue;
+        if (group.size() < kMinImages) continue;
         const auto is_in = [&](uint32_t image) { return std::binary_search(group.begin(), group.end(), image); };
-        std::vector<double> within{usual};  // the group may vary more internally than the rest
+        std::vector<double> group_differences{typical_difference};  // the group may vary more internally than the rest
         for (const Link &link : tree)
-            if (is_in(link.image[0]) && is_in(link.image[1])) within.push_back(link.difference);
-        const double most = kLeastRatio * std::max(usual, median(within));
+            if (is_in(link.image[0]) && is_in(link.image[1])) group_differences.push_back(link.difference);
+        const double max_difference = kMinRatio * std::max(typical_difference, median(group_differences));
         const auto is_comparable = [&](const Link &link) {
-            return is_in(link.image[0]) != is_in(link.image[1]) && link.distance <= kNear * usual_distance;
+            return is_in(link.image[0]) != is_in(link.image[1])
+                   && link.distance <= kMaxDistanceRatio * typical_distance;
         };
         const auto nearest = std::find_if(links.begin(), links.end(), is_comparable);  // the most similar of them
-        if (nearest == links.end() || nearest->difference <= most) continue;
-        found.ratio = kLeastRatio * nearest->difference / most;
+        if (nearest == links.end() || nearest->difference <= max_difference) continue;
+        found.ratio = kMinRatio * nearest->difference / max_difference;
         found.second = std::move(group);
         break;
     }

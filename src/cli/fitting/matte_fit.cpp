@@ -12,11 +12,11 @@
 namespace lensprof {
 namespace {
 
-constexpr double kCountedShare = 0.9;      // of the pairs: the others may show different objects
-constexpr double kMatteShare = 0.75;       // of the points
-constexpr double kMostDifference = 400.0;  // maximum levels squared counted per pair
-constexpr double kSameExposure = 0.002;    // EV
-constexpr int kMostRounds = 6;
+constexpr double kCountedShare = 0.9;         // of the pairs: the others may show different objects
+constexpr double kMatteShare = 0.75;          // of the points
+constexpr double kMaxDifference = 400.0;      // maximum levels squared counted per pair
+constexpr double kExposureTolerance = 0.002;  // EV
+constexpr int kMaxRounds = 6;
 constexpr size_t kGreyBins = 8;
 
 // Corrects grey values of the pictures to the mean exposure with a result.
@@ -27,14 +27,14 @@ public:
 
     double level(const lensprof_pair &pair, int side, int channel) const {
         const uint32_t image = pair.image[side];
-        const lensprof_exposure &own = fitted_.exposures[image];
+        const lensprof_exposure &exposure = fitted_.exposures[image];
         const lensprof_response &response = fitted_.response_of(image);
         const lensprof_vignetting &falloff =
             fitted_.falloff_of(image)[fitted_.falloff_curves_of(image) == 3 ? channel : 0];
         const double r2 = lensprof_vignetting_r2(&falloff, input_.images[image].width, input_.images[image].height,
                                                  pair.xy[side][0], pair.xy[side][1], nullptr);
-        const double gain = std::exp2(mean_.ev - own.ev) * mean_.white_balance[channel] / own.white_balance[channel]
-                            / lensprof_vignetting_eval(&falloff, r2, nullptr);
+        const double gain = std::exp2(mean_.ev - exposure.ev) * mean_.white_balance[channel]
+                            / exposure.white_balance[channel] / lensprof_vignetting_eval(&falloff, r2, nullptr);
         const double light = lensprof_response_invert(&response, pair.value[side][channel], nullptr);
         return 255.0 * lensprof_response_eval(&fitted_.response_of(fitted_.reference), light * gain, nullptr);
     }
@@ -60,8 +60,10 @@ Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string 
 }
 
 bool is_joint_better(const Fitted &joint, const Fitted &exposures_only) {
-    const double own = joint.result.heldout_median, other = exposures_only.result.heldout_median;
-    return own == LENSPROF_UNKNOWN || other == LENSPROF_UNKNOWN || own < other;
+    const double joint_median = joint.result.heldout_median,
+                 exposures_only_median = exposures_only.result.heldout_median;
+    return joint_median == LENSPROF_UNKNOWN || exposures_only_median == LENSPROF_UNKNOWN
+           || joint_median < exposures_only_median;
 }
 
 std::vector<double> colour_differences(const FitInput &input, const Fitted *fitted) {
@@ -106,14 +108,14 @@ std::vector<bool> are_matte(const std::vector<lensprof_pair> &pairs, const std::
     };
     std::vector<Point> all(1 + *std::max_element(points.begin(), points.end()));
     for (size_t p = 0; p < points.size(); p++) {
-        Point &own = all[points[p]];
-        own.difference += std::isnan(differences[p]) ? kMostDifference : std::min(differences[p], kMostDifference);
-        own.grey += 0.5 * (pairs[p].value[0][1] + pairs[p].value[1][1]);
-        own.count++;
+        Point &point = all[points[p]];
+        point.difference += std::isnan(differences[p]) ? kMaxDifference : std::min(differences[p], kMaxDifference);
+        point.grey += 0.5 * (pairs[p].value[0][1] + pairs[p].value[1][1]);
+        point.count++;
     }
     std::vector<double> of_bin[kGreyBins];
-    for (const Point &own : all)
-        if (own.count > 0.0) of_bin[own.bin()].push_back(own.difference / own.count);
+    for (const Point &point : all)
+        if (point.count > 0.0) of_bin[point.bin()].push_back(point.difference / point.count);
     double limit[kGreyBins] = {};
     for (size_t bin = 0; bin < kGreyBins; bin++) {
         auto &means = of_bin[bin];
@@ -140,18 +142,18 @@ double largest_change(const Fitted &a, const Fitted &b) {
 }
 
 // If held-out pairs need not choose modes and curves again: for one camera, whose result has chosen them.
-class HeldChoices {
+class FixedChoices {
 public:
-    HeldChoices(FitInput &input, const Fitted &chosen)
+    FixedChoices(FitInput &input, const Fitted &chosen)
         : options_(input.options), modes_(options_.modes), vignettings_(options_.vignettings) {
         const auto is_of_first = [&](const auto &image) { return image.camera == input.images[0].camera; };
         if (!std::all_of(input.images.begin(), input.images.end(), is_of_first)) return;
         if (modes_ == LENSPROF_MODES_AUTO) options_.modes = chosen.result.response.modes;
         if (vignettings_ == 0) options_.vignettings = chosen.result.vignettings;
     }
-    ~HeldChoices() { options_.modes = modes_, options_.vignettings = vignettings_; }
-    HeldChoices(const HeldChoices &) = delete;
-    HeldChoices &operator=(const HeldChoices &) = delete;
+    ~FixedChoices() { options_.modes = modes_, options_.vignettings = vignettings_; }
+    FixedChoices(const FixedChoices &) = delete;
+    FixedChoices &operator=(const FixedChoices &) = delete;
 
 private:
     lensprof_fit_options &options_;
@@ -160,9 +162,9 @@ private:
 
 // Fits the pairs for which keeps(p) holds; empty if they are too few.
 template <class Keeps>
-std::optional<Fitted> fit_some(FitInput &input, const std::vector<lensprof_pair> &all, const Keeps &keeps,
-                               uint32_t reference, const std::string &item, Progress &progress,
-                               std::vector<lensprof_fit_image_quality> *quality) {
+std::optional<Fitted> fit_subset(FitInput &input, const std::vector<lensprof_pair> &all, const Keeps &keeps,
+                                 uint32_t reference, const std::string &item, Progress &progress,
+                                 std::vector<lensprof_fit_image_quality> *quality) {
     input.pairs.clear();
     for (size_t p = 0; p < all.size(); p++)
         if (keeps(p)) input.pairs.push_back(all[p]);
@@ -178,15 +180,16 @@ std::optional<Fitted> fit_some(FitInput &input, const std::vector<lensprof_pair>
 // without the part explained by an exponent: EV, and logarithms.
 std::array<double, 3> differences_of(const Fitted &a, const Fitted &b) {
     std::array<double, 3> rms{};
-    for (size_t what = 0; what < 3; what++) {  // EV, red, blue
+    for (size_t component = 0; component < 3; component++) {  // EV, red, blue
         std::vector<std::array<double, 2>> values;
         std::array<double, 2> mean{};
         for (size_t i = 0; i < a.exposures.size(); i++) {
             const lensprof_exposure &x = a.exposures[i], &y = b.exposures[i];
             if (std::isnan(x.ev) || std::isnan(y.ev)) continue;
-            const size_t c = 2 * (what - 1);
-            values.push_back(what ? std::array<double, 2>{std::log(x.white_balance[c]), std::log(y.white_balance[c])}
-                                  : std::array<double, 2>{x.ev, y.ev});
+            const size_t c = 2 * (component - 1);
+            values.push_back(component
+                                 ? std::array<double, 2>{std::log(x.white_balance[c]), std::log(y.white_balance[c])}
+                                 : std::array<double, 2>{x.ev, y.ev});
             for (size_t k = 0; k < 2; k++) mean[k] += values.back()[k];
         }
         double across = 0.0, along = 1e-30, sum = 0.0;
@@ -195,7 +198,7 @@ std::array<double, 3> differences_of(const Fitted &a, const Fitted &b) {
             across += value[0] * value[1], along += value[0] * value[0];
         }
         for (const auto &value : values) sum += std::pow(value[1] - value[0] * across / along, 2.0);
-        rms[what] = values.size() > 2 ? std::sqrt(sum / double(values.size() - 2)) : 0.0;
+        rms[component] = values.size() > 2 ? std::sqrt(sum / double(values.size() - 2)) : 0.0;
     }
     return rms;
 }
@@ -205,26 +208,26 @@ std::array<double, 3> differences_of(const Fitted &a, const Fitted &b) {
 Fitted fit_matte_points(FitInput &input, std::vector<uint32_t> &points, const Fitted &first, uint32_t reference,
                         const std::string &item, Progress &progress, std::vector<lensprof_fit_image_quality> *quality) {
     const std::vector<lensprof_pair> all = input.pairs;
-    std::vector<lensprof_pair> fitted = all;
-    std::vector<bool> taken(all.size(), true);
+    std::vector<lensprof_pair> fitted_pairs = all;
+    std::vector<bool> is_fitted(all.size(), true);
     Fitted best = first;
-    bool stays = false;
-    const HeldChoices choices(input, first);
-    for (int round = 0; round < kMostRounds && !stays; round++) {
+    bool is_converged = false;
+    const FixedChoices choices(input, first);
+    for (int round = 0; round < kMaxRounds && !is_converged; round++) {
         input.pairs = all;
         const std::vector<bool> matte = are_matte(all, colour_differences(input, &best), points);
-        std::vector<lensprof_fit_image_quality> own;
+        std::vector<lensprof_fit_image_quality> round_quality;
         const auto keeps = [&](size_t p) { return matte[p]; };
-        const auto next = fit_some(input, all, keeps, reference, item, progress, &own);
+        const auto next = fit_subset(input, all, keeps, reference, item, progress, &round_quality);
         if (!next || joined_images(*next) < joined_images(best)) break;  // some images have too few matte points
-        stays = largest_change(*next, best) < kSameExposure;
-        best = *next, fitted = input.pairs, taken = matte;
-        if (quality) *quality = own;
+        is_converged = largest_change(*next, best) < kExposureTolerance;
+        best = *next, fitted_pairs = input.pairs, is_fitted = matte;
+        if (quality) *quality = round_quality;
     }
-    input.pairs = fitted;
+    input.pairs = fitted_pairs;
     size_t count = 0;
     for (size_t p = 0; p < points.size(); p++)
-        if (taken[p]) points[count++] = points[p];
+        if (is_fitted[p]) points[count++] = points[p];
     points.resize(count);
     return best;
 }
@@ -232,20 +235,20 @@ Fitted fit_matte_points(FitInput &input, std::vector<uint32_t> &points, const Fi
 void add_errors_by_halves(FitInput input, const std::vector<uint32_t> &points, const Fitted &result,
                           const std::string &item, Progress &progress,
                           std::vector<lensprof_fit_image_quality> &quality) {
-    const HeldChoices choices(input, result);
+    const FixedChoices choices(input, result);
     const std::vector<lensprof_pair> all = input.pairs;
     std::optional<Fitted> halves[2];
     for (const uint32_t half : {0u, 1u}) {
         const auto keeps = [&](size_t p) { return (points[p] * 2654435761u >> 31) == half; };  // chosen by a hash
-        halves[half] = fit_some(input, all, keeps, result.reference, item, progress, nullptr);
+        halves[half] = fit_subset(input, all, keeps, result.reference, item, progress, nullptr);
         if (!halves[half]) return;
     }
     const std::array<double, 3> rms = differences_of(*halves[0], *halves[1]);  // twice the error of the whole
-    for (lensprof_fit_image_quality &own : quality) {
-        if (own.ev_sigma > 0.0) own.ev_sigma = std::hypot(own.ev_sigma, 0.5 * rms[0]);
+    for (lensprof_fit_image_quality &entry : quality) {
+        if (entry.ev_sigma > 0.0) entry.ev_sigma = std::hypot(entry.ev_sigma, 0.5 * rms[0]);
         for (const size_t c : {0u, 2u})
-            if (own.white_balance_sigma[c] > 0.0)
-                own.white_balance_sigma[c] = std::hypot(own.white_balance_sigma[c], 0.5 * rms[c ? 2 : 1]);
+            if (entry.white_balance_sigma[c] > 0.0)
+                entry.white_balance_sigma[c] = std::hypot(entry.white_balance_sigma[c], 0.5 * rms[c ? 2 : 1]);
     }
 }
 

@@ -21,7 +21,7 @@ Project project_of_words(const std::vector<std::string> &words, const std::strin
         throw Failure(ExitCode::usage,
                       "--images: is for reconstructions, but " + words[0] + " is not one; omit the option");
     if (is_one && !names_pictures(words[0])) {
-        check_is_no_part(words[0]);
+        reject_reconstruction_part(words[0]);
         return read_project(words[0]);
     }
     for (const std::string &word : words)

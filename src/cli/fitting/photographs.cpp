@@ -17,8 +17,8 @@ namespace lensprof {
 namespace {
 
 // Whether two files of equal, nonzero size have the same content, as far as they can be read.
-bool is_copy(const std::string &one, const std::string &other) {
-    std::ifstream a(one, std::ios::binary), b(other, std::ios::binary);
+bool is_copy(const std::string &first, const std::string &second) {
+    std::ifstream a(first, std::ios::binary), b(second, std::ios::binary);
     std::vector<char> x(1 << 16), y(1 << 16);
     for (;;) {
         a.read(x.data(), static_cast<std::streamsize>(x.size()));
@@ -38,15 +38,16 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
     for (const NamedPicture &picture : pictures) {
         if (!known.insert(file_identity(picture.file)).second) continue;
         const uint64_t bytes = file_bytes(picture.file);  // 0 if the file does not exist
-        auto &alike = by_size[bytes];
-        const auto copied = !bytes ? alike.end() : std::find_if(alike.begin(), alike.end(), [&](size_t other) {
-            return is_copy(list.files[other], picture.file);
-        });
-        if (copied != alike.end()) {
-            list.left_out.emplace_back(picture.file, "a copy of " + list.names[*copied]);
+        auto &same_size = by_size[bytes];
+        const auto original =
+            !bytes ? same_size.end() : std::find_if(same_size.begin(), same_size.end(), [&](size_t other) {
+                return is_copy(list.files[other], picture.file);
+            });
+        if (original != same_size.end()) {
+            list.left_out.emplace_back(picture.file, "a copy of " + list.names[*original]);
             continue;
         }
-        alike.push_back(list.files.size());
+        same_size.push_back(list.files.size());
         list.files.push_back(picture.file);
         list.names.push_back(is_one_folder ? std::filesystem::path(picture.file).lexically_relative(words[0]).string()
                                            : picture.file);
@@ -66,10 +67,10 @@ void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::stri
     warn(streams, listed(numbers, names) + ": left out: " + reason);
 }
 
-std::string why_apart(const FoundProject &other, const FoundProject &project) {
+std::string reason_left_out(const FoundProject &other, const FoundProject &project) {
     if (other.kind == SceneKind::still)
         return "part of another group, whose camera did not move; use `lensprof bracket` or `lensprof align` for it";
-    if (other.whole == project.whole) return std::string("part of another group: ") + joined_by_another_body;
+    if (other.whole == project.whole) return std::string("part of another group: ") + linked_by_other_camera;
     return "part of another group that overlaps none of these pictures; give that group's pictures alone";
 }
 
@@ -96,11 +97,11 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
                  + format(": the pictures are from %zu cameras, sizes or processings; each gets its own response (use "
                           "--one-lens to treat all as one)",
                           cameras));
-    if (!project.cameras_fit()) warn(streams, label + no_cameras_fit);
+    if (!project.cameras_fit()) warn(streams, label + poor_cameras_note);
     for (size_t n = 1; n < found.projects.size(); n++)
-        leave_out(found.projects[n].pictures, names, why_apart(found.projects[n], project), left_out, streams);
-    if (!found.foreign.empty()) leave_out(found.foreign, names, of_another_body, left_out, streams);
-    if (!found.apart.empty()) leave_out(found.apart, names, joined_by_another_body, left_out, streams);
+        leave_out(found.projects[n].pictures, names, reason_left_out(found.projects[n], project), left_out, streams);
+    if (!found.foreign.empty()) leave_out(found.foreign, names, no_overlap_within_camera, left_out, streams);
+    if (!found.apart.empty()) leave_out(found.apart, names, linked_by_other_camera, left_out, streams);
     if (!found.alone.empty()) leave_out(found.alone, names, "no overlap with another picture found", left_out, streams);
 }
 
@@ -124,10 +125,10 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
     const std::vector<NamedPicture> outputs =
         take_out_below(named, [](const std::string &folder) { return path_exists(folder + "/" + calibrate_records); });
     for (const NamedPicture &picture : named) note_instead(picture, streams);
-    const auto own = std::stable_partition(named.begin(), named.end(),
-                                           [](const NamedPicture &picture) { return !is_corrected_copy(picture); });
-    const std::vector<NamedPicture> corrected(own, named.end());
-    named.erase(own, named.end());
+    const auto first_corrected = std::stable_partition(
+        named.begin(), named.end(), [](const NamedPicture &picture) { return !is_corrected_copy(picture); });
+    const std::vector<NamedPicture> corrected(first_corrected, named.end());
+    named.erase(first_corrected, named.end());
     Photographs list = list_photographs(words, named);
     for (const NamedPicture &picture : outputs)
         list.left_out.emplace_back(picture.file, "it is in an output folder of calibrate");
@@ -135,7 +136,7 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
         list.left_out.emplace_back(picture.file,
                                    "lensprof made it from another picture; give its name explicitly to "
                                    "use it");
-    for (const auto &[file, why] : list.left_out) warn(streams, file + ": left out: " + why);
+    for (const auto &[file, reason] : list.left_out) warn(streams, file + ": left out: " + reason);
     demand_one_kind(list.files);
     if (list.files.size() < 2)
         throw Failure(ExitCode::not_usable, list.label + ": has only one picture; give at least two that overlap",
@@ -151,9 +152,9 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
     const Registration found = register_pictures(files, one_lens, progress);
     project.register_s = lap(clock);
     progress.clear();
-    for (const auto &[number, why] : found.unreadable) {
-        project.left_out.emplace_back(names[number], why);
-        warn(streams, why + "; left out");
+    for (const auto &[number, reason] : found.unreadable) {
+        project.left_out.emplace_back(names[number], reason);
+        warn(streams, reason + "; left out");
     }
     if (found.unreadable.size() == files.size())
         throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
@@ -168,17 +169,17 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
                               "pictures that overlap by a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
     if (found.projects[0].kind == SceneKind::still)
-        throw Failure(ExitCode::not_usable, label + no_falloff_of_still, LENSPROF_REASON_FEW_PAIRS);
+        throw Failure(ExitCode::not_usable, label + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
     report_found(found, names, label, project.left_out, streams);
 
-    const FoundProject &own = found.projects[0];
+    const FoundProject &largest = found.projects[0];
     project.path = label;
-    for (const uint32_t picture : own.pictures) {
+    for (const uint32_t picture : largest.pictures) {
         project.names.push_back(names[picture]);
         project.files.push_back(files[picture]);
     }
-    project.matches = own.matches, project.by_matches = own.by_matches;
-    read_found(text_of_found(own), project);
+    project.matches = largest.matches, project.by_matches = largest.by_matches;
+    read_found(text_of_found(largest), project);
     return project;
 }
 

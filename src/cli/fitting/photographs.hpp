@@ -33,18 +33,18 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
 Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams);
 
 // Why a picture is not part of a project that it overlaps, directly or through others.
-constexpr const char *of_another_body =
+constexpr const char *no_overlap_within_camera =
     "no two pictures of its camera, size or processing overlap (use --one-lens to treat all as one)";
-constexpr const char *joined_by_another_body =
+constexpr const char *linked_by_other_camera =
     "only pictures of another camera, size or processing connect it to the others (use --one-lens to treat all as one)";
 
 // Why pictures of a stationary camera are not fitted, and what to use them for.
-constexpr const char *no_falloff_of_still =
+constexpr const char *still_camera_advice =
     ": the camera did not move, so the pictures cannot show the falloff; use `lensprof bracket` for its response, "
     "`lensprof align` to match or merge the pictures";
 
 // Note for a project whose cameras do not fit.
-constexpr const char *no_cameras_fit =
+constexpr const char *poor_cameras_note =
     ": no camera model fits the pictures well, because of parallax, distortion or moving objects. The pictures are "
     "compared only at matched points; a project or preview of them does not show the scene";
 

@@ -9,32 +9,33 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t longer_side = 1600, gap = 8;                           // px of a mosaic
-constexpr uint32_t picture_side = 500;                                    // px to which pictures are reduced
-constexpr double widest_flat = 55.0 * M_PI / 180.0, farthest_flat = 8.0;  // forward view; px of a plane at distance 1
+constexpr uint32_t longer_side = 1600, gap = 8;  // px of a mosaic
+constexpr uint32_t picture_side = 500;           // px to which pictures are reduced
+constexpr double max_flat_angle = 55.0 * M_PI / 180.0,
+                 max_flat_radius = 8.0;  // forward view; px of a plane at distance 1
 
 // The model on a reduced picture, whose position in the frame does not matter: radii are in half diagonals.
 Picture applied(Picture &source, const lensprof_apply_options &options, const std::string &file) {
-    lensprof_apply_options own = options;
-    own.frame_width = source.width, own.frame_height = source.height;
-    own.source_sample = source.sample, own.source_layout = source.layout;
-    own.target_sample = LENSPROF_SAMPLE_U8;
+    lensprof_apply_options plan_options = options;
+    plan_options.frame_width = source.width, plan_options.frame_height = source.height;
+    plan_options.source_sample = source.sample, plan_options.source_layout = source.layout;
+    plan_options.target_sample = LENSPROF_SAMPLE_U8;
     Picture target;
     target.width = source.width, target.height = source.height;
     target.layout = source.layout;
     target.row_bytes = size_t(source.width) * lensprof_layout_samples(source.layout);
     target.pixels.resize(target.row_bytes * target.height);
-    std::vector<uint64_t> memory(lensprof_plan_bytes(&own) / 8 + 1);
+    std::vector<uint64_t> memory(lensprof_plan_bytes(&plan_options) / 8 + 1);
     const lensprof_plan *plan = nullptr;
     lensprof_error error{};
-    check(lensprof_plan_init(memory.data(), memory.size() * 8, &own, &plan, &error), file, &error);
+    check(lensprof_plan_init(memory.data(), memory.size() * 8, &plan_options, &plan, &error), file, &error);
     const lensprof_image from = source.view(), to = target.view();
     check(lensprof_apply(plan, &from, &to, 0, 0), file);
     return target;
 }
 
 // A picture corrected with a result, and the unchanged picture in the same format.
-CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted,
+CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &target,
                       uint32_t max_side) {
     ReadOptions read;
     read.max_side = max_side;
@@ -54,7 +55,7 @@ CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, 
     options.response = &fitted.response_of(i);
     options.output_response = &fitted.response_of(fitted.reference), options.output_responses = 1;
     options.vignettings = fitted.falloff_curves_of(i), options.vignetting = fitted.falloff_of(i);
-    options.source = fitted.exposures[i], options.target = wanted;
+    options.source = fitted.exposures[i], options.target = target;
     copy.after = applied(source, options, project.files[i]);
     copy.camera = project.images[i].camera;
     return copy;
@@ -66,7 +67,7 @@ struct Canvas {
     double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0, px = 1.0;  // px: of a pixel
     uint32_t width = 0, height = 0;
 
-    void place_of(const double direction[2], double xy[2]) const {
+    void position_of(const double direction[2], double xy[2]) const {
         xy[0] = is_flat ? std::tan(direction[0]) : direction[0];
         xy[1] = is_flat ? std::tan(direction[1]) / std::cos(direction[0]) : direction[1];
     }
@@ -82,7 +83,7 @@ struct Box {
 
 // Calls use(direction) for sample positions of a frame, including its edges.
 template <class Use>
-void look_around(const lensprof_camera &camera, const Use &use) {
+void for_each_direction(const lensprof_camera &camera, const Use &use) {
     constexpr int steps = 12;
     double direction[2];
     for (int v = 0; v <= steps; v++)
@@ -95,11 +96,11 @@ void look_around(const lensprof_camera &camera, const Use &use) {
 // The extent of a picture; the full width if it crosses the edge of an equirectangular canvas.
 Box box_of(const Canvas &canvas, const lensprof_camera &camera) {
     Box box;
-    look_around(camera, [&](const double direction[2]) {
+    for_each_direction(camera, [&](const double direction[2]) {
         double xy[2];
         if (canvas.is_flat && !(std::fabs(direction[0]) < 0.499 * M_PI)) return;
-        canvas.place_of(direction, xy);
-        if (canvas.is_flat && !(std::hypot(xy[0], xy[1]) < farthest_flat)) return;
+        canvas.position_of(direction, xy);
+        if (canvas.is_flat && !(std::hypot(xy[0], xy[1]) < max_flat_radius)) return;
         box.left = std::min(box.left, xy[0]), box.right = std::max(box.right, xy[0]);
         box.top = std::min(box.top, xy[1]), box.bottom = std::max(box.bottom, xy[1]);
     });
@@ -112,8 +113,8 @@ Canvas canvas_of(const std::vector<CorrectedCopy> &tiles) {
     for (const CorrectedCopy &tile : tiles) {
         const double *t = tile.camera.translation;
         if (t[0] != 0.0 || t[1] != 0.0 || t[2] != 0.0) break;  // a plane is flat
-        look_around(tile.camera, [&](const double direction[2]) {
-            if (std::max(std::fabs(direction[0]), std::fabs(direction[1])) > widest_flat) canvas.is_flat = false;
+        for_each_direction(tile.camera, [&](const double direction[2]) {
+            if (std::max(std::fabs(direction[0]), std::fabs(direction[1])) > max_flat_angle) canvas.is_flat = false;
         });
     }
     Box all;
@@ -183,10 +184,10 @@ std::vector<uint32_t> images_with_exposure(const Fitted &fitted) {
 std::vector<CorrectedCopy> corrected_copies(const Project &project, const Fitted &fitted,
                                             const std::vector<uint32_t> &images, uint32_t max_side,
                                             Progress &progress) {
-    const lensprof_exposure wanted = mean_exposure(fitted.exposures);  // as `apply --pto` has it
+    const lensprof_exposure target = mean_exposure(fitted.exposures);  // as `apply --pto` has it
     std::vector<CorrectedCopy> copies(images.size());
     for_each_parallel(static_cast<uint32_t>(copies.size()), "preview", progress,
-                      [&](uint32_t n) { copies[n] = copy_of(project, images[n], fitted, wanted, max_side); });
+                      [&](uint32_t n) { copies[n] = copy_of(project, images[n], fitted, target, max_side); });
     return copies;
 }
 

@@ -50,9 +50,9 @@ void declare_store(Command &command, StoreOptions &o) {
     command.text("--style", o.style, "picture style, by the camera's name for it; default from EXIF");
 }
 
-void check_store_options(const StoreOptions &o, bool reads_db, bool writes_else) {
+void check_store_options(const StoreOptions &o, bool reads_db, bool writes_other_files) {
     demand_room(o.maker, o.camera, o.lens, o.unit, o.style);
-    if (o.no_store && o.force && !writes_else)
+    if (o.no_store && o.force && !writes_other_files)
         throw Failure(
             ExitCode::usage,
             "--no-store and --force (store a result that is not usable) exclude each other; omit one of them");
@@ -60,15 +60,16 @@ void check_store_options(const StoreOptions &o, bool reads_db, bool writes_else)
         throw Failure(ExitCode::usage, "--db and --no-store exclude each other; omit one of them");
 }
 
-void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file, Streams &streams) {
+void warn_of_truncation(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file,
+                        Streams &streams) {
     const std::pair<const char *, bool> used[] = {{"--maker", o.maker.empty()},
                                                   {"--camera", o.camera.empty()},
                                                   {"--lens", o.lens.empty()},
                                                   {"--unit", o.unit == "exif"},
                                                   {"--style", o.style.empty()}};
     for (const std::string &option : metadata.cut)
-        for (const auto &one : used)
-            if (option == one.first && one.second && !o.no_store)
+        for (const auto &entry : used)
+            if (option == entry.first && entry.second && !o.no_store)
                 warn(streams, file + ": the EXIF text for " + option + " is too long and was truncated; give a "
                                                                        "shorter one with " + option);
 }
@@ -98,7 +99,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
 lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata, const std::string &file,
                                 Streams &streams) {
     metadata.cut.erase(std::remove(metadata.cut.begin(), metadata.cut.end(), "--lens"), metadata.cut.end());
-    warn_of_cut(metadata, o, file, streams);
+    warn_of_truncation(metadata, o, file, streams);
     lensprof_profile_key key = metadata.key, unknown;
     lensprof_profile_key_init(&unknown);
     set_text(key.lens, sizeof key.lens, "");

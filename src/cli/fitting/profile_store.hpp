@@ -28,12 +28,13 @@ void declare_store(Command &command, StoreOptions &o);
 // The choices of --processing.
 Choices<std::optional<uint32_t>> processing_choices();
 
-// Failure (usage) for conflicting options. `reads_db`: --db is allowed with --no-store; `writes_else`: --force is
-// allowed with --no-store, because the command writes other files of the result.
-void check_store_options(const StoreOptions &o, bool reads_db = false, bool writes_else = false);
+// Failure (usage) for conflicting options. `reads_db`: --db is allowed with --no-store; `writes_other_files`: --force
+// is allowed with --no-store, because the command writes other files of the result.
+void check_store_options(const StoreOptions &o, bool reads_db = false, bool writes_other_files = false);
 
 // Warns of names in the EXIF of `file` that are too long to be stored and are used.
-void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file, Streams &streams);
+void warn_of_truncation(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file,
+                        Streams &streams);
 
 // The key of a profile: that of the picture's EXIF, overridden by the command line; the sensor size comes from the
 // database's table of cameras, if listed, for a picture of that size. Failure (usage) with `file` if the camera is

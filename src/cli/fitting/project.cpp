@@ -47,7 +47,7 @@ void check_name(const Project &project, uint32_t i) {
 }
 
 // The available memory: project_max_bytes, or less if the machine or its process limit (ulimit -v) has less.
-uint64_t memory_bound() {
+uint64_t available_memory() {
     uint64_t bound = project_max_bytes;
     const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
     if (pages > 0 && page_bytes > 0) bound = std::min(bound, uint64_t(pages) * uint64_t(page_bytes));
@@ -104,10 +104,10 @@ Project read_project(const std::string &path) {
 
 std::string project_text_at(Project &project, const std::string &path) {
     const auto folder = std::filesystem::path(absolute_path(path)).parent_path();
-    const bool stays =
+    const bool keeps_names =
         is_regular_file(project.path) && folder == std::filesystem::path(absolute_path(project.path)).parent_path();
     lensprof_error error{};
-    for (uint32_t i = 0; i < project.files.size() && !stays; i++) {
+    for (uint32_t i = 0; i < project.files.size() && !keeps_names; i++) {
         const auto file = std::filesystem::path(absolute_path(project.files[i])).lexically_proximate(folder);
         check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str(), &error), project.files[i], &error);
     }
@@ -145,7 +145,7 @@ void check_pictures(const Project &project, uint32_t max_side) {
         needed += header.row_bytes * header.height;
         if (project.pto) needed += uint64_t(header.width) * header.height;  // its mask
     }
-    const uint64_t bound = memory_bound();
+    const uint64_t bound = available_memory();
     if (needed > bound)
         throw Failure(ExitCode::unreadable,
                       project.path
@@ -242,14 +242,14 @@ ImagePair images_of(const Item &item) {
 }
 
 // The pairs and links of one way of sampling; empty if it finds nothing, with the reason in `nothing`.
-template <class Draw>
-std::vector<lensprof_pair> drawn_or_none(const Draw &draw, std::vector<lensprof_link> &links,
-                                         std::optional<Failure> &nothing) {
+template <class Sample>
+std::vector<lensprof_pair> sample_or_empty(const Sample &sample_pairs, std::vector<lensprof_link> &links,
+                                           std::optional<Failure> &no_samples) {
     try {
-        return draw();
+        return sample_pairs();
     } catch (const Failure &failure) {
         if (failure.code != ExitCode::not_usable) throw;
-        nothing = failure;
+        no_samples = failure;
         links.clear();
         return {};
     }
@@ -262,31 +262,32 @@ std::vector<lensprof_pair> sample_matches(const Project &project, std::vector<Sa
                                           std::vector<lensprof_link> &links) {
     std::set<ImagePair> matched;
     for (const lensprof_match &match : project.matches) matched.insert(images_of(match));
-    std::optional<Failure> nothing;
+    std::optional<Failure> no_samples;
     std::vector<lensprof_pair> pairs;
     const auto by_cameras = [&] {
         return sample<lensprof_pair>(project, pictures, options, range, progress, &links, lensprof_sample_overlap);
     };
-    if (!project.by_matches) pairs = drawn_or_none(by_cameras, links, nothing);
+    if (!project.by_matches) pairs = sample_or_empty(by_cameras, links, no_samples);
     const auto is_matched = [&](const auto &item) { return matched.count(images_of(item)) > 0; };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_matched), pairs.end());
     links.erase(std::remove_if(links.begin(), links.end(), is_matched), links.end());
-    const size_t wanted = options.pairs ? options.pairs : std::max<size_t>(2000, 300 * pictures.size());
+    const size_t pair_count = options.pairs ? options.pairs : std::max<size_t>(2000, 300 * pictures.size());
     options.pairs =
-        static_cast<uint32_t>(std::max<size_t>(1, wanted * matched.size() / (matched.size() + links.size())));
-    std::vector<lensprof_link> own_links;
+        static_cast<uint32_t>(std::max<size_t>(1, pair_count * matched.size() / (matched.size() + links.size())));
+    std::vector<lensprof_link> match_links;
     const auto by_matches = [&](const lensprof_sample_options *o, const lensprof_sample_image *images, uint32_t count,
-                                lensprof_pair *own, uint32_t capacity, uint32_t *found, lensprof_error *error) {
+                                lensprof_pair *match_pairs, uint32_t capacity, uint32_t *found, lensprof_error *error) {
         return lensprof_sample_matches(o, images, count, project.matches.data(),
-                                       static_cast<uint32_t>(project.matches.size()), own, capacity, found, error);
+                                       static_cast<uint32_t>(project.matches.size()), match_pairs, capacity, found,
+                                       error);
     };
-    const auto draw_own = [&] {
-        return sample<lensprof_pair>(project, pictures, options, range, progress, &own_links, by_matches);
+    const auto at_matches = [&] {
+        return sample<lensprof_pair>(project, pictures, options, range, progress, &match_links, by_matches);
     };
-    const auto own = drawn_or_none(draw_own, own_links, nothing);
-    if (pairs.empty() && own.empty() && nothing) throw *nothing;
-    pairs.insert(pairs.end(), own.begin(), own.end());
-    links.insert(links.end(), own_links.begin(), own_links.end());
+    const auto match_pairs = sample_or_empty(at_matches, match_links, no_samples);
+    if (pairs.empty() && match_pairs.empty() && no_samples) throw *no_samples;
+    pairs.insert(pairs.end(), match_pairs.begin(), match_pairs.end());
+    links.insert(links.end(), match_links.begin(), match_links.end());
     std::sort(links.begin(), links.end(), [](const auto &a, const auto &b) { return images_of(a) < images_of(b); });
     return pairs;
 }
@@ -296,9 +297,9 @@ std::vector<lensprof_pair> sample_matches(const Project &project, std::vector<Sa
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, const GreyRange &range, Progress &progress,
                                         std::vector<lensprof_link> *links) {
-    std::vector<lensprof_link> unasked;
+    std::vector<lensprof_link> unused_links;
     if (!project.matches.empty() && options.sampling == LENSPROF_SAMPLING_BALANCED)
-        return sample_matches(project, pictures, options, range, progress, links ? *links : unasked);
+        return sample_matches(project, pictures, options, range, progress, links ? *links : unused_links);
     return sample<lensprof_pair>(project, pictures, options, range, progress, links, lensprof_sample_overlap);
 }
 
@@ -347,9 +348,9 @@ void check_point(const std::string &path, const Project &project, const lensprof
 
 // Point files may have gigabytes: other files are refused by their first lines.
 void check_first_points(const std::string &path) {
-    constexpr size_t most_bytes = 1 << 16;
-    const std::string head = read_head(path, most_bytes);
-    const size_t end = head.size() < most_bytes ? head.size() : head.rfind('\n') + 1;  // 0 without a line end
+    constexpr size_t max_head_bytes = 1 << 16;
+    const std::string head = read_head(path, max_head_bytes);
+    const size_t end = head.size() < max_head_bytes ? head.size() : head.rfind('\n') + 1;  // 0 without a line end
     if (end == 0 && !head.empty())
         throw Failure(ExitCode::unreadable, path + ": line 1 is too long for a point file; check the file name");
     lensprof_error error{};
@@ -361,9 +362,9 @@ void check_first_points(const std::string &path) {
 
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
     // The maximum number of pairs of --pairs, with 17 digits.
-    constexpr uint64_t largest_points = uint64_t(1 << 24) * 256;
+    constexpr uint64_t max_points_bytes = uint64_t(1 << 24) * 256;
     check_first_points(path);
-    std::string text = read_text(path, largest_points);
+    std::string text = read_text(path, max_points_bytes);
     lensprof_error error{};
     uint32_t found = 0;
     check(lensprof_points_read(text.data(), text.size(), nullptr, 0, &found, &error), path, &error);

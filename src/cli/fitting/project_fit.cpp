@@ -20,9 +20,9 @@ namespace {
 lensprof_fit_options project_options(const ProjectFitOptions &o, const Project &project, lensprof_response &fixed) {
     lensprof_fit_options options = fit_options(o.fit);
     const auto &lens = project.images[project.reference];
-    uint32_t asked = 0;
-    for (const auto &image : project.images) asked |= image.free & lens_flags;
-    options.free &= asked;
+    uint32_t free_in_project = 0;
+    for (const auto &image : project.images) free_in_project |= image.free & lens_flags;
+    options.free &= free_in_project;
     options.reference = project.reference;
     options.vignettings = o.falloff_curves;
     options.vignetting = lens.vignetting;
@@ -101,7 +101,7 @@ Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectF
     if (project.is_reconstruction) {
         lensprof_sample_options options = sample_options(o);
         options.pairs = 0;  // as many as there are matches, which were selected for this
-        done.input.pairs = sample_in_blocks(project, options, o.max_side, usual_block_bytes, done.progress,
+        done.input.pairs = sample_in_blocks(project, options, o.max_side, default_block_bytes, done.progress,
                                             done.report.links, done.points, &channels);
         set_links(done);
         done.report.sample_s = lap(clock);
@@ -123,26 +123,26 @@ size_t links_of_state(const std::vector<lensprof_link> &links, uint32_t state) {
 // verified links.
 bool explains_more(const Fitted &second, const std::vector<lensprof_link> &second_links, const Fitted &first,
                    const std::vector<lensprof_link> &first_links) {
-    const auto worth_of = [](const Fitted &fitted, const std::vector<lensprof_link> &links) {
+    const auto ranking_of = [](const Fitted &fitted, const std::vector<lensprof_link> &links) {
         return std::tuple(joined_images(fitted), fitted.result.evens != 0, fitted.result.usable != 0,
                           links_of_state(links, LENSPROF_LINK_VERIFIED));
     };
-    const bool is_less = joined_images(second) < joined_images(first) || second.result.evens < first.result.evens
-                         || second.result.usable < first.result.usable;
-    return !is_less && worth_of(second, second_links) > worth_of(first, first_links);
+    const bool is_worse = joined_images(second) < joined_images(first) || second.result.evens < first.result.evens
+                          || second.result.usable < first.result.usable;
+    return !is_worse && ranking_of(second, second_links) > ranking_of(first, first_links);
 }
 
 // Whether links may connect images once response and falloff are known. Not with a refused result, whose irradiance is
 // wrong.
-bool may_join_more(const ProjectFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
+bool may_connect_more(const ProjectFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
     const bool is_trusted = first.corrects() || first.result.reason_code == LENSPROF_REASON_IMAGE_GROUPS;
-    const bool is_whole =
+    const bool is_complete =
         joined_images(first) == first.exposures.size() && links_of_state(links, LENSPROF_LINK_CONTRADICTED) == 0;
-    return o.sampling == LENSPROF_SAMPLING_BALANCED && is_trusted && !is_whole;
+    return o.sampling == LENSPROF_SAMPLING_BALANCED && is_trusted && !is_complete;
 }
 
 // Draws again, comparing irradiance instead of grey values, and fits the new pairs; kept if it explains more.
-void look_again(const ProjectFitOptions &o, const Project &project, Pictures &pictures, ProjectFit &done) {
+void resample(const ProjectFitOptions &o, const Project &project, Pictures &pictures, ProjectFit &done) {
     const std::vector<lensprof_pair> pairs = done.input.pairs;
     const std::vector<lensprof_observation> observations = done.input.observations;
     const std::vector<lensprof_link> links = done.report.links;
@@ -166,23 +166,23 @@ void look_again(const ProjectFitOptions &o, const Project &project, Pictures &pi
 // Changes the reference of the project: if nothing else is fixed, its exposure is fixed instead, so that standard
 // errors are relative to it. Fixed exposures are relative to the project's own reference; then the result is shifted
 // afterwards.
-void refer_to(uint32_t reference, FitInput &input) {
-    uint32_t &own = input.options.reference, asked = 0;
-    for (const auto &image : input.images) asked |= image.free;
+void set_reference(uint32_t reference, FitInput &input) {
+    uint32_t &current = input.options.reference, free_in_images = 0;
+    for (const auto &image : input.images) free_in_images |= image.free;
     for (uint32_t i = 0; i < input.images.size(); i++) {
         const auto &image = input.images[i];
         bool linked = image.ev_of != i || image.red_of != i || image.blue_of != i;
-        if (linked || (i != own && image.free != asked)) return;
+        if (linked || (i != current && image.free != free_in_images)) return;
     }
-    std::swap(input.images[own].free, input.images[reference].free);
-    own = reference;
+    std::swap(input.images[current].free, input.images[reference].free);
+    current = reference;
 }
 
 // Sets the images' settings, if the method fits several, and cameras.
 void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams) {
     LensSettings &settings = done.settings;
-    const bool is_of_one = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // with one falloff per camera
-    if (is_of_one && settings.first.size() > settings.first_of_camera.size()) {
+    const bool has_one_falloff = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // with one falloff per camera
+    if (has_one_falloff && settings.first.size() > settings.first_of_camera.size()) {
         warn(streams, "--method transfer-function: estimates one falloff, but these pictures have "
                           + counted(settings.first.size(), "lens setting")
                           + "; use transfer or radiance to estimate one per setting");
@@ -197,54 +197,54 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams
 // Failure (usage) for images of several cameras with different responses that should share a fixed one, for more
 // cameras than a fit takes, and if each image has its own camera.
 void check_cameras(const Project &project, uint32_t free, LensSettings &settings) {
-    if (!settings.are_of_several_cameras()) return;
+    if (!settings.has_several_cameras()) return;
     const size_t cameras = settings.first_of_camera.size();
-    const auto refuse = [&](const std::string &why) {
+    const auto fail = [&](const std::string &reason) {
         throw Failure(ExitCode::usage, project.path + ": its images are from " + std::to_string(cameras)
-                                           + " cameras, according to their links in Ra..Re and EXIF" + why);
+                                           + " cameras, according to their links in Ra..Re and EXIF" + reason);
     };
     if (!(free & LENSPROF_FREE_RESPONSE)) {
         const auto &first = project.images[settings.first_of_camera[0]];
         for (const uint32_t i : settings.first_of_camera) {
             const auto &image = project.images[i];
             if (image.response_type != first.response_type || !std::equal(image.emor, image.emor + 5, first.emor))
-                refuse(", and the response of " + project.names[i] + " is fixed while others are estimated; estimate "
+                fail(", and the response of " + project.names[i] + " is fixed while others are estimated; estimate "
                                                                      "all responses, or give one camera at a time");
         }
         join_cameras(settings);
     } else if (cameras == project.images.size()) {
-        refuse(", one image each; give more pictures per camera, or use --one-lens to treat all as one");
+        fail(", one image each; give more pictures per camera, or use --one-lens to treat all as one");
     } else if (cameras > LENSPROF_CAMERAS_MAX) {
-        refuse(format(", but a fit takes at most %d; give fewer, or use --one-lens to treat all as one",
-                      LENSPROF_CAMERAS_MAX));
+        fail(format(", but a fit takes at most %d; give fewer, or use --one-lens to treat all as one",
+                    LENSPROF_CAMERAS_MAX));
     }
 }
 
 // The kind of all cameras, if the pictures state it; any if they differ.
-CameraKind kind_of_all(const ProjectFitOptions &o, const std::vector<PictureMetadata> &metadata,
-                       const LensSettings &settings, const CameraKind &of_reference) {
+CameraKind common_camera_kind(const ProjectFitOptions &o, const std::vector<PictureMetadata> &metadata,
+                              const LensSettings &settings, const CameraKind &of_reference) {
     for (const uint32_t first : settings.first_of_camera)
-        if (of_reference.from != KindFrom::option && settings.are_of_several_cameras()
+        if (of_reference.from != KindFrom::option && settings.has_several_cameras()
             && camera_kind_of(o.fit, metadata[first].key, metadata[first]).kind != of_reference.kind)
             return {};
     return of_reference;
 }
 
 // Objects look different from other sides, which with few pictures is mistaken for falloff.
-void warn_of_few(const ProjectFitOptions &o, const Project &project, const Fitted &fitted, Streams &streams) {
-    constexpr size_t enough = 12;
+void warn_of_few_images(const ProjectFitOptions &o, const Project &project, const Fitted &fitted, Streams &streams) {
+    constexpr size_t min_images = 12;
     size_t images = joined_images(fitted);  // or of the camera with fewest
     for (const lensprof_fit_camera &camera : fitted.cameras)
         if (camera.images) images = std::min<size_t>(images, camera.images);
-    if (!project.by_matches || !fitted.corrects() || images >= enough) return;
+    if (!project.by_matches || !fitted.corrects() || images >= min_images) return;
     warn(streams, project.path
                       + format(": the falloff is from only %zu pictures of a moving camera; its error may be several "
                                "times the stated one. Give %zu pictures or more%s",
-                               images, enough, o.store.no_store ? "" : ", or --no-store"));
+                               images, min_images, o.store.no_store ? "" : ", or --no-store"));
 }
 
 // Uses only exposures as the result and stores no profile.
-void take_exposures_only(const Fitted &only, const Project &project, ProjectFit &done, Streams &streams) {
+void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &done, Streams &streams) {
     warn(streams, project.path
                       + ": response and falloff do not explain the pictures better than exposures and white balances "
                         "alone; only the latter are returned");
@@ -259,10 +259,11 @@ void take_exposures_only(const Fitted &only, const Project &project, ProjectFit 
 
 // Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
 // no more than those of a scene with glossy surfaces. With false matches they differ more regardless of the correction.
-bool are_evened(const ColourVariance &variance) {
-    constexpr double much_less = 0.5, most_variance = 200.0;  // levels of 255 squared: 20 levels between two pictures
+bool evens_colours(const ColourVariance &variance) {
+    constexpr double max_variance_ratio = 0.5,
+                     max_variance = 200.0;  // levels of 255 squared: 20 levels between two pictures
     return variance.result < variance.before
-           && (variance.result < much_less * variance.before || variance.result < most_variance);
+           && (variance.result < max_variance_ratio * variance.before || variance.result < max_variance);
 }
 
 // Failure (not_usable) for pictures of two visits whose light differs by more than an exposure.
@@ -302,13 +303,13 @@ void fit_reconstruction(const Project &project, ProjectFit &done, Streams &strea
     if (is_better) {
         add_errors_by_halves(done.input, done.points, done.best, done.item, done.progress, report.quality);
     } else {
-        take_exposures_only(only, project, done, streams);
+        use_exposures_only(only, project, done, streams);
         report.quality = quality, report.variance.result = report.variance.exposures_only;
         done.gains.resize(2);
         done.gains.push_back({"this result", done.gains[1].variances});
     }
     done.best.result.seconds = first_s + lap(clock);
-    done.best.result.evens = are_evened(report.variance);
+    done.best.result.evens = evens_colours(report.variance);
     check_light(light_groups(all, done.gains[2].variances, project.view_distances), project);
 }
 
@@ -317,7 +318,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
                      ProjectFit &done) {
     BuildReport &report = done.report;
     const LensSettings &settings = done.settings;
-    if (!settings.are_several()) return;
+    if (!settings.has_several_settings()) return;
     report.setting_of = settings.of_image;
     for (uint32_t s = 0; s < settings.first.size(); s++) {
         const uint32_t first = settings.first[s];
@@ -330,7 +331,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
             setting.key = metadata[first].key, setting.no_key = failure.what();
         }
         setting.label = describe_setting(setting.key, project.names[first]);
-        if (settings.are_of_several_cameras())
+        if (settings.has_several_cameras())
             setting.label =
                 describe_camera(metadata[first].key, project.names[settings.first_of_camera[setting.camera]]) + ", "
                 + setting.label;
@@ -348,7 +349,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
 void report_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, ProjectFit &done) {
     BuildReport &report = done.report;
     const LensSettings &settings = done.settings;
-    if (!settings.are_of_several_cameras()) return;
+    if (!settings.has_several_cameras()) return;
     report.camera_of = settings.camera_of_image;
     for (uint32_t k = 0; k < settings.first_of_camera.size(); k++) {
         const uint32_t first = settings.first_of_camera[k];
@@ -395,7 +396,7 @@ std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const 
 lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
                                  const std::vector<PictureMetadata> &metadata, Streams &streams) {
     const std::string &file = project.files[project.reference];
-    warn_of_cut(metadata[project.reference], o.store, file, streams);
+    warn_of_truncation(metadata[project.reference], o.store, file, streams);
     const PictureMetadata &reference = metadata[project.reference];
     lensprof_profile_key key = override_key(reference.key, reference.size, o.store, file);
     if (!o.one_lens) return key;
@@ -431,7 +432,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     input.options.profile = prior.profile.get();
     check_unknowns(o, project, input.options);
     done.settings = lens_settings(project, metadata, o.store, o.one_lens);
-    report.camera_kind = kind_of_all(o, metadata, done.settings, report.camera_kind);
+    report.camera_kind = common_camera_kind(o, metadata, done.settings, report.camera_kind);
     input.options.camera_kind = report.camera_kind.kind;
     if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR) join_cameras(done.settings);  // all have one response
     check_cameras(project, input.options.free, done.settings);
@@ -442,7 +443,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     input.images = fit_images(project);
     set_settings(o, done, streams);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
-    refer_to(report.reference, input);
+    set_reference(report.reference, input);
     const auto setting_of = [&](uint32_t image) { return done.settings.of_image[image]; };
     if (prior.profile && setting_of(input.options.reference) != setting_of(project.reference)) {
         input.options.profile = nullptr, report.prior_id = 0;
@@ -450,13 +451,13 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     }
     done.item = o.points.empty() ? project.path : o.points;
     done.best = fit(input, report.reference, done.item, done.progress, &report.quality);
-    const bool is_of_one = !done.settings.are_of_several_cameras();  // irradiance is compared with one response
-    if (is_of_one && !pictures.empty() && may_join_more(o, done.best, report.links))
-        look_again(o, project, pictures, done);
+    const bool has_one_camera = !done.settings.has_several_cameras();  // irradiance is compared with one response
+    if (has_one_camera && !pictures.empty() && may_connect_more(o, done.best, report.links))
+        resample(o, project, pictures, done);
     fit_reconstruction(project, done, streams);
     report.fit = done.best.result;
     report.verdict = verdict_of(done.best.result);
-    warn_of_few(o, project, done.best, streams);
+    warn_of_few_images(o, project, done.best, streams);
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
@@ -476,7 +477,7 @@ std::string result_text(ProjectFit &done, Project &project, const std::string &p
                                   written.exposures.data(), static_cast<uint32_t>(written.exposures.size()),
                                   written.reference, &error),
           project.path, &error);
-    if (done.settings.are_several()) {
+    if (done.settings.has_several_settings()) {
         std::vector<lensprof_vignetting> falloffs;
         for (uint32_t s = 0; s < written.settings.size(); s++) {
             const lensprof_fit_setting &setting = written.settings[s];
@@ -489,7 +490,7 @@ std::string result_text(ProjectFit &done, Project &project, const std::string &p
                                         static_cast<uint32_t>(falloffs.size()), &error),
               project.path, &error);
     }
-    if (done.settings.are_of_several_cameras()) {
+    if (done.settings.has_several_cameras()) {
         std::vector<lensprof_response> responses;
         for (const uint32_t first : done.settings.first_of_camera) responses.push_back(written.response_of(first));
         check(lensprof_pto_set_cameras(project.pto.get(), done.settings.camera_of_image.data(),

@@ -27,7 +27,7 @@ struct ProjectFitOptions {
 
 // Input and result of a fit. Not copyable: the options of `input` point to other members.
 struct ProjectFit {
-    explicit ProjectFit(Progress &shown) : progress(shown) {}
+    explicit ProjectFit(Progress &progress_line) : progress(progress_line) {}
     ProjectFit(const ProjectFit &) = delete;
     ProjectFit &operator=(const ProjectFit &) = delete;
 

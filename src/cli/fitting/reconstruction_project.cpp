@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kAnyAngle = 50.0;  // of view, degrees: not used by anything
 // Pairs drawn per image: in proportion to the total, but not less than the minimum.
-constexpr uint32_t kPairsOfImage = 600, kLeastOfImage = 150, kPairsOfAll = 600000;
+constexpr uint32_t kMaxPairsOfImage = 600, kMinPairsOfImage = 150, kMaxPairs = 600000;
 constexpr uint32_t kEnds = 2;                             // each pair counts for two images
 constexpr double kBlackLevel = 2.0, kWhiteLevel = 250.0;  // colours outside are ignored
 
@@ -59,11 +59,11 @@ bool pair_of_colours(const TrackObservation &a, const TrackObservation &b, lensp
 }
 
 void add_pairs_of_colours(const Reconstruction &r, const std::vector<ObservationPair> &chosen, Project &project) {
-    for (const ObservationPair &own : chosen) {
+    for (const ObservationPair &chosen_pair : chosen) {
         lensprof_pair pair{};
-        if (!pair_of_colours(r.observations[own.first], r.observations[own.second], pair)) continue;
+        if (!pair_of_colours(r.observations[chosen_pair.first], r.observations[chosen_pair.second], pair)) continue;
         project.pairs.push_back(pair);
-        project.pair_points.push_back(r.observations[own.first].point);
+        project.pair_points.push_back(r.observations[chosen_pair.first].point);
     }
     if (project.pairs.empty())
         throw Failure(ExitCode::not_usable, project.path + ": the colours of its points are all clipped (black or "
@@ -73,7 +73,7 @@ void add_pairs_of_colours(const Reconstruction &r, const std::vector<Observation
 
 uint32_t pairs_of_image(const ReconstructionOptions &options, size_t images) {
     if (options.pairs) return static_cast<uint32_t>((options.pairs + images - 1) / images);
-    return std::clamp(static_cast<uint32_t>(kPairsOfAll / images), kLeastOfImage, kPairsOfImage);
+    return std::clamp(static_cast<uint32_t>(kMaxPairs / images), kMinPairsOfImage, kMaxPairsOfImage);
 }
 
 void report_read(const Reconstruction &r, const std::string &label, bool has_pictures, Streams &streams) {
@@ -89,14 +89,14 @@ void report_read(const Reconstruction &r, const std::string &label, bool has_pic
 }
 
 std::vector<std::string> read_names(const std::string &list) {
-    FieldReader fields(list, '\0', largest_text);
+    FieldReader fields(list, '\0', max_text_bytes);
     std::vector<std::string> names;
     while (fields.next_line_of_values()) names.push_back(fields.rest());
     return names;
 }
 
 // Keeps the images listed in a file.
-void take_listed(const std::string &list, Reconstruction &r) {
+void keep_listed_images(const std::string &list, Reconstruction &r) {
     std::map<std::string, uint32_t> image_of;
     for (uint32_t i = 0; i < r.images.size(); i++) image_of[r.images[i].name] = i;
     std::set<uint32_t> kept;
@@ -135,7 +135,7 @@ void report_unused(const std::vector<std::string> &files, Streams &streams) {
 }
 
 // Keeps the images of a shard, their files and observations; sets `label`.
-void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &files, std::string &label) {
+void keep_shard(const Shard &shard, Reconstruction &r, std::vector<std::string> &files, std::string &label) {
     if (shard.count == 1) return;
     const auto count = static_cast<uint32_t>(r.images.size());
     const std::vector<uint32_t> order = order_by_links(count, common_points(r));
@@ -155,7 +155,7 @@ void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &
 
 }  // namespace
 
-void check_is_no_part(const std::string &path) {
+void reject_reconstruction_part(const std::string &path) {
     const std::filesystem::path file(path);
     const std::string name = file.filename().string(), stem = file.stem().string(), end = file.extension().string();
     std::string advice;
@@ -178,18 +178,19 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     project.path = path;
     project.by_matches = project.is_reconstruction = true;
     project.sources = files_of_reconstruction(path);
-    if (!options.image_list.empty()) take_listed(options.image_list, r);
+    if (!options.image_list.empty()) keep_listed_images(options.image_list, r);
     std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
     if (options.image_list.empty()) report_unused(files, streams);
-    settle_coordinates(r, files);
-    take_part(options.shard, r, files, project.path);
+    convert_coordinates(r, files);
+    keep_shard(options.shard, r, files, project.path);
     const bool has_pictures = !files.empty() && !options.is_by_colours;
     report_read(r, project.path, has_pictures, streams);
     const auto chosen = choose_pairs(r, kEnds * pairs_of_image(options, r.images.size()), options.seed);
     project.view_distances = view_distances(r, chosen);
     if (has_pictures) {
         project.matches = matches_of(r, chosen);
-        for (const ObservationPair &own : chosen) project.match_points.push_back(r.observations[own.first].point);
+        for (const ObservationPair &chosen_pair : chosen)
+            project.match_points.push_back(r.observations[chosen_pair.first].point);
     } else {
         add_pairs_of_colours(r, chosen, project);
     }

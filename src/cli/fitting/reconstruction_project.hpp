@@ -23,6 +23,6 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
 
 // Failure (unreadable) for a file that belongs to a reconstruction but is not its main file, with the file to give
 // instead. For names that are not a reconstruction.
-void check_is_no_part(const std::string &path);
+void reject_reconstruction_part(const std::string &path);
 
 }  // namespace lensprof

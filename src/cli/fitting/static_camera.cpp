@@ -10,10 +10,10 @@ namespace {
 
 // JPEG rings at edges: in a block (16 px with subsampled colours) with white pixels, values near white are artefacts of
 // white. Such blocks are masked.
-void mask_ringing(SamplePicture &own) {
+void mask_ringing(SamplePicture &sample) {
     constexpr uint32_t block_px = 16;
-    const Picture &picture = own.picture;
-    if (own.mask.empty()) own.mask.assign(static_cast<size_t>(picture.width) * picture.height, 1);
+    const Picture &picture = sample.picture;
+    if (sample.mask.empty()) sample.mask.assign(static_cast<size_t>(picture.width) * picture.height, 1);
     const uint32_t side = std::max(1u, block_px / picture.reduction), samples = lensprof_layout_samples(picture.layout);
     for (uint32_t top = 0; top < picture.height; top += side)
         for (uint32_t left = 0; left < picture.width; left += side) {
@@ -25,7 +25,8 @@ void mask_ringing(SamplePicture &own) {
                     std::any_of(row + left * samples, row + right * samples, [](uint8_t v) { return v == 255; });
             }
             for (uint32_t y = top; y < bottom && has_white; y++)
-                std::fill_n(own.mask.begin() + static_cast<std::ptrdiff_t>(y * picture.width + left), right - left, 0);
+                std::fill_n(sample.mask.begin() + static_cast<std::ptrdiff_t>(y * picture.width + left), right - left,
+                            0);
         }
 }
 
@@ -70,17 +71,17 @@ Project static_project(const std::vector<std::string> &files, bool free_balance)
 
 std::vector<lensprof_pair> sample_still(const Project &project, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, double black, Progress &progress) {
-    constexpr double next_to_black = 0.6, next_to_white = 254.4, jpeg_white = 250.5;  // levels of 255
-    constexpr uint32_t pairs_a_picture = 10000;
+    constexpr double black_margin = 0.6, max_level = 254.4, max_jpeg_level = 250.5;  // levels of 255
+    constexpr uint32_t pairs_per_picture = 10000;
     options.sampling = LENSPROF_SAMPLING_BRACKET;
-    if (!options.pairs) options.pairs = pairs_a_picture * static_cast<uint32_t>(pictures.size());
+    if (!options.pairs) options.pairs = pairs_per_picture * static_cast<uint32_t>(pictures.size());
     bool any_jpeg = false;
-    for (SamplePicture &own : pictures) {
-        if (!own.picture.traits.is_lossy || own.picture.sample != LENSPROF_SAMPLE_U8) continue;
-        mask_ringing(own);
+    for (SamplePicture &sample : pictures) {
+        if (!sample.picture.traits.is_lossy || sample.picture.sample != LENSPROF_SAMPLE_U8) continue;
+        mask_ringing(sample);
         any_jpeg = true;
     }
-    const GreyRange range{(black + next_to_black) / 255.0, (any_jpeg ? jpeg_white : next_to_white) / 255.0, true};
+    const GreyRange range{(black + black_margin) / 255.0, (any_jpeg ? max_jpeg_level : max_level) / 255.0, true};
     return sample_pairs(project, pictures, options, range, progress, nullptr);
 }
 

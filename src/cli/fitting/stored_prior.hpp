@@ -19,9 +19,10 @@ struct EarlierProfile {
 // The profile stored for the key, or one composed of the profiles of its lens and camera (lensprof_store_lookup_in of
 // the databases of `o`), unless it comes from a fit that was not usable. If `id` is not 0, the profile with this id in
 // the first database; Failure if that cannot be used. No pictures count twice: if the profile was made from `source`,
-// its own prior (provenance.prior_id) is used again. If no profile is stored, the reason is empty unless `is_asked`.
-// Failure (usage) if `source` is deeper in its history and `is_asked`: the prior would add no information.
-EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_asked, const lensprof_profile_key &key,
+// its own prior (provenance.prior_id) is used again. If no profile is stored, the reason is empty unless
+// `is_requested`. Failure (usage) if `source` is deeper in its history and `is_requested`: the prior would add no
+// information.
+EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_requested, const lensprof_profile_key &key,
                                  const std::string &source);
 
 }  // namespace lensprof

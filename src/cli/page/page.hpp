@@ -28,10 +28,10 @@ std::string page_of(const nlohmann::ordered_json &page);
 // A picture before and after correction, both 8 bit grey or RGB.
 nlohmann::ordered_json view_json(const std::string &name, const Picture &before, const Picture &after);
 
-// The longer side in pixels of each view on a page of so many pictures; a page has at most `most_views`. 2000 textured
+// The longer side in pixels of each view on a page of so many pictures; a page has at most `max_views`. 2000 textured
 // pictures take 13 MB.
 uint32_t view_side(size_t pictures);
-constexpr size_t most_views = 2000;
+constexpr size_t max_views = 2000;
 
 // What a page states if it shows only some of the pictures.
 std::string views_note(size_t shown, size_t pictures);

@@ -15,14 +15,14 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kFewestMeasured = 30;  // pairs
+constexpr size_t kMinMeasuredPairs = 30;  // pairs
 
 bool is_number(const std::string &word) {
     return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
 }
 
 // Numbers are ids, used once each; other words are further pictures, as a shell expands --against *.jpg.
-void sort_words(const AgainstOptions &o, std::vector<int64_t> &ids, std::vector<std::string> &pictures) {
+void split_words(const AgainstOptions &o, std::vector<int64_t> &ids, std::vector<std::string> &pictures) {
     pictures = o.pictures;
     for (const std::string &word : o.words) {
         if (!is_number(word)) {
@@ -59,19 +59,19 @@ std::vector<StoredProfile> read_profiles(const std::string &db, const std::vecto
 Project open_pictures(const std::vector<std::string> &words, const std::string &images, Progress &progress,
                       Streams &streams) {
     std::ostringstream err;
-    const auto pass_on = [&] {
+    const auto print_warnings = [&] {
         std::istringstream lines(err.str());
         for (std::string line; std::getline(lines, line);)
             if (line.rfind("lensprof: note: ", 0) != 0) streams.err << line << "\n";
     };
-    Streams own = streams.with(streams.out, err);
-    own.colour = false;  // the words identify notes
+    Streams captured = streams.with(streams.out, err);
+    captured.colour = false;  // the words identify notes
     try {
-        Project project = project_of_words(words, images, progress, own);
-        pass_on();
+        Project project = project_of_words(words, images, progress, captured);
+        print_warnings();
         return project;
     } catch (...) {
-        pass_on();
+        print_warnings();
         throw;
     }
 }
@@ -83,24 +83,26 @@ std::vector<lensprof_pair> pairs_of_one_setting(const Project &project, const st
     const LensSettings settings = lens_settings(project, metadata, {}, false);
     std::vector<size_t> count(settings.first.size());
     const auto setting_of = [&](const lensprof_pair &pair, int side) { return settings.of_image[pair.image[side]]; };
-    const auto is_of_one = [&](const lensprof_pair &pair) { return setting_of(pair, 0) == setting_of(pair, 1); };
+    const auto has_one_setting = [&](const lensprof_pair &pair) { return setting_of(pair, 0) == setting_of(pair, 1); };
     for (const lensprof_pair &pair : pairs)
-        if (is_of_one(pair)) count[setting_of(pair, 0)]++;
-    const auto most = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
-    first = settings.first[most];
-    const auto others = static_cast<size_t>(std::count_if(settings.of_image.begin(), settings.of_image.end(),
-                                                          [&](uint32_t setting) { return setting != most; }));
-    if (others)
-        warn(streams, project.path + ": " + counted(others, "picture")
+        if (has_one_setting(pair)) count[setting_of(pair, 0)]++;
+    const auto main_setting = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
+    first = settings.first[main_setting];
+    const auto other_pictures = static_cast<size_t>(std::count_if(
+        settings.of_image.begin(), settings.of_image.end(), [&](uint32_t setting) { return setting != main_setting; }));
+    if (other_pictures)
+        warn(streams, project.path + ": " + counted(other_pictures, "picture")
                           + " of another camera, size or lens setting left out, since a profile describes one "
                             "setting; using those of " + describe_setting(metadata[first].key, project.names[first]));
-    const auto is_other = [&](const lensprof_pair &p) { return !is_of_one(p) || setting_of(p, 0) != most; };
+    const auto is_other = [&](const lensprof_pair &p) {
+        return !has_one_setting(p) || setting_of(p, 0) != main_setting;
+    };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_other), pairs.end());
     return pairs;
 }
 
-TrialErrors try_candidate(const TrialPairs &pairs, const Candidate &own, const lensprof_profile *falloff) {
-    return try_model(pairs, {falloff, own.responses.data(), static_cast<uint32_t>(own.responses.size())});
+TrialErrors try_candidate(const TrialPairs &pairs, const Candidate &candidate, const lensprof_profile *falloff) {
+    return try_model(pairs, {falloff, candidate.responses.data(), static_cast<uint32_t>(candidate.responses.size())});
 }
 
 // For rendered pictures only the falloff of a raw profile applies.
@@ -109,53 +111,54 @@ bool has_response(const lensprof_profile &profile) {
 }
 
 // The response of the pictures: that of sensor data is linear.
-void take_own_response(const lensprof_profile &profile, uint32_t camera_kind, Candidate &own) {
-    own.response_from = ResponseOf::own;
-    own.responses.assign(profile.response, profile.response + profile.responses);
+void use_profile_response(const lensprof_profile &profile, uint32_t camera_kind, Candidate &candidate) {
+    candidate.response_from = ResponseOf::own;
+    candidate.responses.assign(profile.response, profile.response + profile.responses);
     if (camera_kind != LENSPROF_CAMERA_LINEAR) return;
-    own.response_from = ResponseOf::sensor;
-    own.responses.resize(1);
-    lensprof_response_set_linear(&own.responses[0]);
+    candidate.response_from = ResponseOf::sensor;
+    candidate.responses.resize(1);
+    lensprof_response_set_linear(&candidate.responses[0]);
 }
 
 // For a candidate without a response of its own: the best one, of the kind of camera or of a profile.
-void take_best_response(const TrialPairs &pairs, const std::vector<Candidate> &profiles, uint32_t camera_kind,
-                        const lensprof_profile *falloff, Candidate &own) {
-    own.response_from = camera_kind == LENSPROF_CAMERA_LINEAR ? ResponseOf::sensor : ResponseOf::kind;
-    own.responses.resize(1);
+void use_best_response(const TrialPairs &pairs, const std::vector<Candidate> &profiles, uint32_t camera_kind,
+                       const lensprof_profile *falloff, Candidate &candidate) {
+    candidate.response_from = camera_kind == LENSPROF_CAMERA_LINEAR ? ResponseOf::sensor : ResponseOf::kind;
+    candidate.responses.resize(1);
     lensprof_error error{};
-    check(lensprof_response_set_typical(&own.responses[0], camera_kind, nullptr, nullptr), "response", &error);
-    own.errors = try_candidate(pairs, own, falloff);
+    check(lensprof_response_set_typical(&candidate.responses[0], camera_kind, nullptr, nullptr), "response", &error);
+    candidate.errors = try_candidate(pairs, candidate, falloff);
     const auto rms_of = [](const TrialErrors &errors) {  // of what is not an outlier
         return figures_of(errors, explained_pairs({errors})).rms;
     };
     for (const Candidate &other : profiles) {
         if (other.response_from != ResponseOf::own) continue;
         TrialErrors errors = try_candidate(pairs, other, falloff);
-        if (rms_of(errors) >= rms_of(own.errors)) continue;
-        own.errors = std::move(errors);
-        own.response_from = ResponseOf::other, own.response_id = other.id;
+        if (rms_of(errors) >= rms_of(candidate.errors)) continue;
+        candidate.errors = std::move(errors);
+        candidate.response_from = ResponseOf::other, candidate.response_id = other.id;
     }
 }
 
 std::vector<Candidate> try_profiles(const TrialPairs &pairs, const std::vector<StoredProfile> &profiles,
                                     uint32_t camera_kind) {
-    std::vector<Candidate> tried(profiles.size());
+    std::vector<Candidate> candidates(profiles.size());
     for (size_t i = 0; i < profiles.size(); i++) {
         const lensprof_profile &profile = *profiles[i].profile;
-        tried[i].id = profiles[i].id, tried[i].label = describe_key(profile.key);
-        tried[i].has_falloff = has_falloff(profile);
+        candidates[i].id = profiles[i].id, candidates[i].label = describe_key(profile.key);
+        candidates[i].has_falloff = has_falloff(profile);
         if (!has_response(profile) && camera_kind != LENSPROF_CAMERA_LINEAR) continue;
-        take_own_response(profile, camera_kind, tried[i]);
-        tried[i].errors = try_candidate(pairs, tried[i], &profile);
+        use_profile_response(profile, camera_kind, candidates[i]);
+        candidates[i].errors = try_candidate(pairs, candidates[i], &profile);
     }
     for (size_t i = 0; i < profiles.size(); i++)
-        if (tried[i].responses.empty())
-            take_best_response(pairs, tried, camera_kind, profiles[i].profile.get(), tried[i]);
-    return tried;
+        if (candidates[i].responses.empty())
+            use_best_response(pairs, candidates, camera_kind, profiles[i].profile.get(), candidates[i]);
+    return candidates;
 }
 
-void warn_of_corrected(const Project &project, const std::vector<PictureMetadata> &metadata, Streams &streams) {
+void warn_of_earlier_correction(const Project &project, const std::vector<PictureMetadata> &metadata,
+                                Streams &streams) {
     for (size_t i = 0; i < metadata.size(); i++)
         if (!metadata[i].corrected_by.empty()) {
             warn(streams, project.names[i] + ": its falloff was corrected before, " + metadata[i].corrected_by
@@ -168,23 +171,23 @@ void warn_of_corrected(const Project &project, const std::vector<PictureMetadata
 TrialReport measure(const Project &project, const std::vector<StoredProfile> &profiles, Progress &progress,
                     Streams &streams) {
     const std::vector<PictureMetadata> metadata = picture_metadata({}, project);
-    DrawnPairs drawn = draw_pairs(project, progress);
+    DrawnPairs sampled = draw_pairs(project, progress);
     progress.clear();
     uint32_t first = 0;
-    drawn.pairs = pairs_of_one_setting(project, metadata, std::move(drawn.pairs), first, streams);
-    warn_of_corrected(project, metadata, streams);
+    sampled.pairs = pairs_of_one_setting(project, metadata, std::move(sampled.pairs), first, streams);
+    warn_of_earlier_correction(project, metadata, streams);
     const uint32_t kind = camera_kind_of({}, metadata[first].key, metadata[first]).kind;
     TrialReport report;
-    report.pairs = split_for_trial(fit_images(project), drawn.pairs, drawn.channels);
-    if (report.pairs.heldout.size() < kFewestMeasured)
+    report.pairs = split_for_trial(fit_images(project), sampled.pairs, sampled.channels);
+    if (report.pairs.heldout.size() < kMinMeasuredPairs)
         throw Failure(ExitCode::not_usable,
                       project.path
                           + format(": its overlaps contain %zu usable pairs, but at least %zu are needed; give "
                                    "pictures that overlap by a third",
-                                   report.pairs.heldout.size(), kFewestMeasured),
+                                   report.pairs.heldout.size(), kMinMeasuredPairs),
                       LENSPROF_REASON_FEW_PAIRS);
     report.profiles = try_profiles(report.pairs, profiles, kind);
-    take_best_response(report.pairs, report.profiles, kind, nullptr, report.none);
+    use_best_response(report.pairs, report.profiles, kind, nullptr, report.none);
     compare(report);
     return report;
 }
@@ -204,7 +207,7 @@ void declare_against(Command &command, AgainstOptions &o) {
 int run_against(const AgainstOptions &o, const std::string &db, bool json, Streams &streams) {
     std::vector<int64_t> ids;
     std::vector<std::string> pictures;
-    sort_words(o, ids, pictures);
+    split_words(o, ids, pictures);
     const std::vector<StoredProfile> profiles = read_profiles(db, ids);
     Progress progress(streams, o.progress);
     const Project project = open_pictures(pictures, o.images, progress, streams);
@@ -218,7 +221,7 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     else
         print_trial(report, streams.out);
     if (report.is_any_better()) return static_cast<int>(ExitCode::done);
-    tell(streams, project.path
+    print_message(streams, project.path
                       + ": none of the profiles is better than no falloff correction; give profiles of this lens and "
                         "setting, or make one with `lensprof build`");
     return static_cast<int>(ExitCode::not_usable);

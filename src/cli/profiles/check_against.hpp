@@ -15,7 +15,7 @@ struct AgainstOptions {
     std::string images;
     bool progress = false;
 
-    bool is_asked() const { return !words.empty() || !pictures.empty() || !images.empty(); }
+    bool is_requested() const { return !words.empty() || !pictures.empty() || !images.empty(); }
 };
 
 void declare_against(Command &command, AgainstOptions &o);

@@ -7,13 +7,13 @@
 namespace lensprof {
 namespace {
 
-constexpr double kLeastScale = 0.3;   // levels: quantisation alone causes as much
+constexpr double kMinScale = 0.3;     // levels: quantisation alone causes as much
 constexpr double kFirstLimit = 40.0;  // in scales: nearly all differences count
 constexpr double kLastLimit = 3.0;    // larger differences get little weight
 constexpr double kLimitFactor = 0.7;  // per iteration
-constexpr int kRoundsAtLast = 6;
+constexpr int kRoundsAtLastLimit = 6;
 constexpr double kMedianToSigma = 1.4826;
-constexpr double kSolved = 1e-20;  // of the squared residual
+constexpr double kTolerance = 1e-20;  // of the squared residual
 
 // Weighted differences of all pairs of images as one least squares problem.
 class Links {
@@ -21,8 +21,8 @@ public:
     explicit Links(uint32_t images) : right_(images), diagonal_(images) {}
 
     void add(const LightDifference &d, double weight) {
-        double &own = weights_[{d.image[0], d.image[1]}];
-        own += weight;
+        double &link_weight = weights_[{d.image[0], d.image[1]}];
+        link_weight += weight;
         for (int side = 0; side < 2; side++) {
             diagonal_[d.image[side]] += weight;
             right_[d.image[side]] += (side ? -weight : weight) * d.log_ratio;
@@ -33,18 +33,18 @@ public:
     std::vector<double> solve() const {
         const size_t n = right_.size();
         std::vector<double> x(n), remainder = right_, step = scaled(remainder), image(n);
-        double size = product(remainder, step);
-        const double enough = kSolved * size;
-        for (size_t round = 0; round < 2 * n + 20 && size > enough && size > 0.0; round++) {
+        double norm = product(remainder, step);
+        const double limit = kTolerance * norm;
+        for (size_t round = 0; round < 2 * n + 20 && norm > limit && norm > 0.0; round++) {
             apply(step, image);
             const double along = product(step, image);
             if (!(along > 0.0)) break;
-            const double length = size / along;
+            const double length = norm / along;
             for (size_t i = 0; i < n; i++) x[i] += length * step[i], remainder[i] -= length * image[i];
             const std::vector<double> next = scaled(remainder);
-            const double next_size = product(remainder, next);
-            for (size_t i = 0; i < n; i++) step[i] = next[i] + next_size / size * step[i];
-            size = next_size;
+            const double next_norm = product(remainder, next);
+            for (size_t i = 0; i < n; i++) step[i] = next[i] + next_norm / norm * step[i];
+            norm = next_norm;
         }
         return x;
     }
@@ -73,17 +73,17 @@ private:
 };
 
 // The residual of each difference, levels; 0 without information.
-std::vector<double> levels_left(const std::vector<LightDifference> &differences, const std::vector<double> &x) {
-    std::vector<double> left;
+std::vector<double> residual_levels(const std::vector<LightDifference> &differences, const std::vector<double> &x) {
+    std::vector<double> residuals;
     for (const LightDifference &d : differences)
-        left.push_back(d.sigma > 0.0 ? std::fabs(d.log_ratio - x[d.image[0]] + x[d.image[1]]) / d.sigma : 0.0);
-    return left;
+        residuals.push_back(d.sigma > 0.0 ? std::fabs(d.log_ratio - x[d.image[0]] + x[d.image[1]]) / d.sigma : 0.0);
+    return residuals;
 }
 
-double scale_of(std::vector<double> left) {
-    const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
-    std::nth_element(left.begin(), middle, left.end());
-    return std::max(kLeastScale, kMedianToSigma * *middle);
+double scale_of(std::vector<double> residuals) {
+    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::nth_element(residuals.begin(), middle, residuals.end());
+    return std::max(kMinScale, kMedianToSigma * *middle);
 }
 
 }  // namespace
@@ -91,20 +91,20 @@ double scale_of(std::vector<double> left) {
 std::vector<double> log_exposures(const std::vector<LightDifference> &differences, uint32_t images) {
     std::vector<double> x(images);
     if (differences.empty()) return x;
-    std::vector<double> left(differences.size(), 0.0);  // initially all count equally
+    std::vector<double> residuals(differences.size(), 0.0);  // initially all count equally
     double limit = kFirstLimit;
-    for (int at_last = 0; at_last < kRoundsAtLast;) {
-        const double end = limit * scale_of(left);
+    for (int rounds_at_last = 0; rounds_at_last < kRoundsAtLastLimit;) {
+        const double end = limit * scale_of(residuals);
         Links links(images);
         for (size_t p = 0; p < differences.size(); p++) {
             if (!(differences[p].sigma > 0.0)) continue;
-            const double off = 1.0 + left[p] * left[p] / (end * end);
+            const double off = 1.0 + residuals[p] * residuals[p] / (end * end);
             links.add(differences[p], 1.0 / (differences[p].sigma * differences[p].sigma * off * off));
         }
         x = links.solve();
-        left = levels_left(differences, x);
+        residuals = residual_levels(differences, x);
         limit = std::max(kLastLimit, kLimitFactor * limit);
-        at_last += limit == kLastLimit;
+        rounds_at_last += limit == kLastLimit;
     }
     return x;
 }

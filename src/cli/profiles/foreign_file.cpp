@@ -49,9 +49,9 @@ std::string about_foreign(bool written_only) {
     return text;
 }
 
-const ForeignRule &format_to_read(const std::string &path, const std::string &wanted) {
+const ForeignRule &format_to_read(const std::string &path, const std::string &format_name) {
     demand_ordinary(path);
-    if (!wanted.empty()) return rule_of_word(wanted);
+    if (!format_name.empty()) return rule_of_word(format_name);
     const std::string head = read_head(path, 8192);
     uint32_t format = format_of_tags(path, head);
     if (!format) format = lensprof_format_detect(head.data(), head.size(), path.c_str());
@@ -60,11 +60,11 @@ const ForeignRule &format_to_read(const std::string &path, const std::string &wa
                   path + ": the format cannot be identified from content or name; give it with --format");
 }
 
-const ForeignRule &format_to_write(const std::string &path, const std::string &wanted) {
+const ForeignRule &format_to_write(const std::string &path, const std::string &format_name) {
     const uint32_t named = lensprof_format_detect(nullptr, 0, path.c_str());
-    if (wanted.empty() && !named)
+    if (format_name.empty() && !named)
         throw Failure(ExitCode::usage, path + ": the name does not identify a format; give it with --format");
-    const ForeignRule *rule = wanted.empty() ? &rule_of(named) : &rule_of_word(wanted);
+    const ForeignRule *rule = format_name.empty() ? &rule_of(named) : &rule_of_word(format_name);
     if (extension_of(path) == "m" && rule->format == LENSPROF_FORMAT_CURVES)
         throw Failure(ExitCode::usage, path + ": the format of pfstools is supported for import only; use a name "
                                               "ending in .csv");

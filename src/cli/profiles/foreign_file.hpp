@@ -28,8 +28,8 @@ struct ForeignOptions {
 
 // The format given by --format; if that is empty, identified by content, then by name. Failure (usage or unreadable)
 // with the file name.
-const ForeignRule &format_to_read(const std::string &path, const std::string &wanted);
-const ForeignRule &format_to_write(const std::string &path, const std::string &wanted);
+const ForeignRule &format_to_read(const std::string &path, const std::string &format_name);
+const ForeignRule &format_to_write(const std::string &path, const std::string &format_name);
 
 // Calls visit for every profile of a file of profiles. Failure (unreadable) names the file.
 void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_import_visitor visit, void *user);

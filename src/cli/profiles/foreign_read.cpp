@@ -90,8 +90,9 @@ void read_map(const std::string &path, const ForeignOptions &o, lensprof_import_
     const uint32_t channels = lensprof_layout_channels(picture.layout) == 3 ? 3 : 1;
     const std::vector<float> values = values_of(picture, channels);
     const bool is_gain = o.sense.empty() ? picture.sample == LENSPROF_SAMPLE_F32 : o.sense == "gain";
-    const double shape = double(picture.width) / picture.height, wanted = o.width ? double(o.width) / o.height : shape;
-    if (std::fabs(shape / wanted - 1.0) > 0.01)
+    const double shape = double(picture.width) / picture.height,
+                 frame_shape = o.width ? double(o.width) / o.height : shape;
+    if (std::fabs(shape / frame_shape - 1.0) > 0.01)
         throw Failure(ExitCode::usage,
                       path + ": its aspect ratio differs from that of --frame; give the size of the pictures that it "
                              "is for");
@@ -124,7 +125,7 @@ bool is_packet_alone(const std::string &path) {
 std::string packet_of(const std::string &path, const ForeignOptions &o, lensprof_import_options &options) {
     const bool is_packet = is_packet_alone(path);
     if (is_packet) demand_frame(path, o);
-    const std::string packet = is_packet ? read_text(path, largest_text) : read_xmp_packet(path);
+    const std::string packet = is_packet ? read_text(path, max_text_bytes) : read_xmp_packet(path);
     if (packet.empty())
         throw Failure(ExitCode::unreadable, path + ": has no XMP, where drone cameras describe their falloff; give "
                                                    "the original picture");
@@ -137,33 +138,33 @@ std::string packet_of(const std::string &path, const ForeignOptions &o, lensprof
 // Completes camera, lens and setting from the picture's EXIF. A standalone packet has no EXIF.
 void complete_key(lensprof_profile_key &key, const std::string &path) {
     const lensprof_profile_key exif = read_metadata(path).key;
-    const auto take_text = [](auto &own, const auto &other) {
-        if (!*own) std::copy(std::begin(other), std::end(other), own);
+    const auto fill_text = [](auto &target, const auto &source) {
+        if (!*target) std::copy(std::begin(source), std::end(source), target);
     };
-    const auto take = [](double &own, double other) {
-        if (own == LENSPROF_UNKNOWN) own = other;
+    const auto fill = [](double &target, double source) {
+        if (target == LENSPROF_UNKNOWN) target = source;
     };
-    if (!*key.camera_model) take_text(key.camera_maker, exif.camera_maker);
-    take_text(key.camera_model, exif.camera_model);
-    take_text(key.lens, exif.lens);
-    take(key.crop_factor, exif.crop_factor);
-    take(key.focal_mm, exif.focal_mm);
-    take(key.aperture, exif.aperture);
-    take(key.distance_m, exif.distance_m);
+    if (!*key.camera_model) fill_text(key.camera_maker, exif.camera_maker);
+    fill_text(key.camera_model, exif.camera_model);
+    fill_text(key.lens, exif.lens);
+    fill(key.crop_factor, exif.crop_factor);
+    fill(key.focal_mm, exif.focal_mm);
+    fill(key.aperture, exif.aperture);
+    fill(key.distance_m, exif.distance_m);
 }
 
 }  // namespace
 
 void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_import_visitor visit, void *user) {
     lensprof_import_options options = options_of(rule, {});
-    const std::string text = read_text(path, largest_text), name = name_of(path);
+    const std::string text = read_text(path, max_text_bytes), name = name_of(path);
     options.name = name.c_str();
     import(path, text, options, visit, user);
 }
 
 void read_cameras(const std::string &path, lensprof_camera_visitor visit, void *user) {
     lensprof_error error{};
-    const std::string text = read_text(path, largest_text);
+    const std::string text = read_text(path, max_text_bytes);
     check(lensprof_lensfun_read_cameras(text.data(), text.size(), name_of(path).c_str(), visit, user, &error), path,
           &error);
 }
@@ -179,7 +180,7 @@ void read_part(const ForeignRule &rule, const std::string &path, const ForeignOp
     if (rule.format == LENSPROF_FORMAT_ALSC) demand_frame(path, o);
     const std::string bytes = rule.format == LENSPROF_FORMAT_DNG_OPCODES ? opcodes_of(path, options)
                               : rule.format == LENSPROF_FORMAT_DRONE_XMP ? packet_of(path, o, options)
-                                                                         : read_text(path, largest_text);
+                                                                         : read_text(path, max_text_bytes);
     import(path, bytes, options, take_part, &profile);
 }
 

@@ -11,7 +11,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t most_map_values = 80000000;  // of all channels; each needs 12 bytes of memory
+constexpr uint64_t max_map_values = 80000000;  // of all channels; each needs 12 bytes of memory
 
 void demand_one(const std::string &path, const ForeignRule &rule, size_t profiles) {
     if (profiles != 1)
@@ -37,7 +37,7 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     const bool has_channels = profile.vignettings == 3 || profile.grid.channels == 3;
     const uint32_t channels = is_tiff && has_channels ? 3 : 1;
     const uint32_t columns = o.columns ? o.columns : o.width, rows = o.rows ? o.rows : o.height;
-    if (uint64_t(columns) * rows * channels > most_map_values)
+    if (uint64_t(columns) * rows * channels > max_map_values)
         throw Failure(ExitCode::usage,
                       path + ": the map would have more than 80 million values; give a smaller --grid");
     std::vector<float> values(size_t(columns) * rows * channels);
@@ -65,16 +65,16 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     write_picture(path, picture);
 }
 
-// Whether a list has an opcode for which `is_one` is true.
+// Whether a list has an opcode for which `is_match` is true.
 template <typename Is>
-bool has_opcode(const std::vector<uint8_t> &list, const Is &is_one) {
-    const auto word = [&](size_t at) {
+bool has_opcode(const std::vector<uint8_t> &list, const Is &is_match) {
+    const auto word = [&](size_t offset) {
         uint32_t value = 0;
-        for (size_t i = 0; i < 4; i++) value = value << 8 | (at + i < list.size() ? list[at + i] : 0);
+        for (size_t i = 0; i < 4; i++) value = value << 8 | (offset + i < list.size() ? list[offset + i] : 0);
         return value;
     };
-    for (size_t at = 4; at + 16 <= list.size(); at += 16 + size_t(word(at + 12)))
-        if (is_one(word(at))) return true;
+    for (size_t offset = 4; offset + 16 <= list.size(); offset += 16 + size_t(word(offset + 12)))
+        if (is_match(word(offset))) return true;
     return false;
 }
 

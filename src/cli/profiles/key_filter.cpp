@@ -121,10 +121,10 @@ std::vector<StoredProfile> KeyFilter::profiles(const Databases &databases, const
     std::vector<StoredProfile> profiles;
     for (size_t i = 0; i < databases.size(); i++) {
         const std::string &file = databases.file(i);
-        std::vector<int64_t> wanted = ids;
+        std::vector<int64_t> selected = ids;
         if (ids.empty())
-            for (const auto &row : matching_rows(databases.store(i), file)) wanted.push_back(row.id);
-        for (int64_t id : wanted) {
+            for (const auto &row : matching_rows(databases.store(i), file)) selected.push_back(row.id);
+        for (int64_t id : selected) {
             auto profile = new_profile();
             lensprof_error error{};
             check(lensprof_store_get(databases.store(i), id, profile.get(), &error), file, &error);

@@ -11,9 +11,9 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kNames = 8;  // maximum printed, then the number of the others
+constexpr size_t kMaxNames = 8;  // maximum printed, then the number of the others
 
-void take(double value, KnownRange::Ends &ends) {
+void extend(double value, KnownRange::Ends &ends) {
     if (value == LENSPROF_UNKNOWN) return;
     ends = ends[0] == LENSPROF_UNKNOWN ? KnownRange::Ends{value, value}
                                        : KnownRange::Ends{std::min(ends[0], value), std::max(ends[1], value)};
@@ -21,10 +21,10 @@ void take(double value, KnownRange::Ends &ends) {
 
 std::string joined(const std::set<std::string> &names) {
     std::string text;
-    size_t said = 0;
+    size_t count = 0;
     for (const std::string &name : names) {
-        if (said == kNames) return text + format(" and %zu more", names.size() - said);
-        text += (said++ ? ", " : "") + name;
+        if (count == kMaxNames) return text + format(" and %zu more", names.size() - count);
+        text += (count++ ? ", " : "") + name;
     }
     return text.empty() ? "not named" : text;
 }
@@ -49,10 +49,10 @@ void KnownRange::add(const lensprof_profile &profile) {
     if (*key.camera_model) cameras.insert(camera_name(key.camera_maker, key.camera_model));
     if (*key.lens) lenses.insert(key.lens);
     processings.insert(processing_name(key.processing));
-    take(key.focal_mm, focal_mm);
-    take(key.aperture, aperture);
-    take(key.distance_m, distance_m);
-    take(lensprof_profile_corner_falloff(&profile, 1, nullptr), corner);
+    extend(key.focal_mm, focal_mm);
+    extend(key.aperture, aperture);
+    extend(key.distance_m, distance_m);
+    extend(lensprof_profile_corner_falloff(&profile, 1, nullptr), corner);
 }
 
 Json known_range_json(const KnownRange &known) {

@@ -31,128 +31,130 @@ std::string in_database(const Found &found, uint32_t index) {
 }
 
 Json response_json(const Found &found) {
-    const lensprof_lookup &how = found.how;
+    const lensprof_lookup &lookup = found.lookup;
     Json rows = Json::array();
-    for (uint32_t i = 0; i < how.response_rows; i++)
-        rows.push_back({{"id", how.response_id[i]}, {"weight", how.response_weight[i]}});
+    for (uint32_t i = 0; i < lookup.response_rows; i++)
+        rows.push_back({{"id", lookup.response_id[i]}, {"weight", lookup.response_weight[i]}});
     if (found.response_is_given) return {{"from", "given"}};
-    return {{"from", response_from_name(how.response_from)},
-            {"camera_kind", camera_kind_name(how.camera_kind)},
+    return {{"from", response_from_name(lookup.response_from)},
+            {"camera_kind", camera_kind_name(lookup.camera_kind)},
             {"rows", rows},
-            {"database", how.response_rows ? Json(database(found, how.response_store)) : Json()},
-            {"gamma_sigma", known(how.response_sigma)}};
+            {"database", lookup.response_rows ? Json(database(found, lookup.response_store)) : Json()},
+            {"gamma_sigma", known(lookup.response_sigma)}};
 }
 
 std::string describe_response(const Found &found) {
-    const lensprof_lookup &how = found.how;
+    const lensprof_lookup &lookup = found.lookup;
     if (found.response_is_given) return "as given";
-    switch (how.response_from) {
+    switch (lookup.response_from) {
     case LENSPROF_RESPONSE_FROM_CAMERA:
-        return "of the camera, from " + counted(how.response_rows, "profile") + in_database(found, how.response_store)
-               + format(", \u00b1 %.1f %% in gamma", 100.0 * how.response_sigma);
+        return "of the camera, from " + counted(lookup.response_rows, "profile")
+               + in_database(found, lookup.response_store)
+               + format(", \u00b1 %.1f %% in gamma", 100.0 * lookup.response_sigma);
     case LENSPROF_RESPONSE_FROM_KIND:
-        return format("typical of its kind (%s), \u00b1 %.1f %% in gamma", camera_kind_name(how.camera_kind),
-                      100.0 * how.response_sigma);
+        return format("typical of its kind (%s), \u00b1 %.1f %% in gamma", camera_kind_name(lookup.camera_kind),
+                      100.0 * lookup.response_sigma);
     case LENSPROF_RESPONSE_FROM_RAW: return "linear";
     default: return "of the profile";
     }
 }
 
 // The parts of a standard error. The response's part is what remains.
-std::string describe_parts(const lensprof_lookup &how) {
+std::string describe_parts(const lensprof_lookup &lookup) {
     std::string text;
-    const double others = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma)),
-                 response = std::sqrt(std::max(how.sigma * how.sigma - others * others, 0.0));
-    if (how.distance_sigma > 0.0) text += format(", distance %.3f", how.distance_sigma);
-    if (how.sensor_sigma > 0.0) text += format(", sensor size %.3f", how.sensor_sigma);
+    const double others = std::hypot(lookup.falloff_sigma, std::hypot(lookup.distance_sigma, lookup.sensor_sigma)),
+                 response = std::sqrt(std::max(lookup.sigma * lookup.sigma - others * others, 0.0));
+    if (lookup.distance_sigma > 0.0) text += format(", distance %.3f", lookup.distance_sigma);
+    if (lookup.sensor_sigma > 0.0) text += format(", sensor size %.3f", lookup.sensor_sigma);
     if (response >= 0.0005) text += format(", response %.3f", response);
-    return text.empty() ? text : " (falloff " + format("%.3f", how.falloff_sigma) + text + ")";
+    return text.empty() ? text : " (falloff " + format("%.3f", lookup.falloff_sigma) + text + ")";
 }
 
 // Removes the sentence of a reason from a text of several.
-void leave_out(uint32_t code, std::string &text) {
+void remove_sentence(uint32_t code, std::string &text) {
     const std::string sentence = lensprof_reason_text(code);
-    const size_t at = text.find(sentence);
-    if (at == std::string::npos) return;
-    const size_t before = at >= 2 ? 2 : 0;  // "; "
-    text.erase(at - before, sentence.size() + before);
+    const size_t position = text.find(sentence);
+    if (position == std::string::npos) return;
+    const size_t separator_bytes = position >= 2 ? 2 : 0;  // "; "
+    text.erase(position - separator_bytes, sentence.size() + separator_bytes);
     if (text.rfind("; ", 0) == 0) text.erase(0, 2);
 }
 
 std::string describe_prediction(const Found &found) {
-    const lensprof_lookup &how = found.how;
-    const std::string where = in_database(found, how.falloff_store);
-    if (how.exact) return format("stored as profile %lld", static_cast<long long>(how.id[0])) + where;
-    return "predicted from " + counted(how.rows, "profile") + " of this lens" + where
-           + format(", the nearest (%lld) at %.2f of the allowed 0.5", static_cast<long long>(how.id[0]), how.distance);
+    const lensprof_lookup &lookup = found.lookup;
+    const std::string in_file = in_database(found, lookup.falloff_store);
+    if (lookup.exact) return format("stored as profile %lld", static_cast<long long>(lookup.id[0])) + in_file;
+    return "predicted from " + counted(lookup.rows, "profile") + " of this lens" + in_file
+           + format(", the nearest (%lld) at %.2f of the allowed 0.5", static_cast<long long>(lookup.id[0]),
+                    lookup.distance);
 }
 
 }  // namespace
 
-Json reason_codes_json(const lensprof_lookup &how) {
+Json reason_codes_json(const lensprof_lookup &lookup) {
     Json codes = Json::array();
-    for (uint32_t code : how.reason_code)
+    for (uint32_t code : lookup.reason_code)
         if (code != LENSPROF_REASON_NONE) codes.push_back(lensprof_reason_name(code));
     return codes;
 }
 
 Found with_response_given(Found found) {
-    lensprof_lookup &how = found.how;
+    lensprof_lookup &lookup = found.lookup;
     found.response_is_given = true;
-    how.response_sigma = 0.0;
-    if (how.falloff_sigma != LENSPROF_UNKNOWN)
-        how.sigma = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma));
+    lookup.response_sigma = 0.0;
+    if (lookup.falloff_sigma != LENSPROF_UNKNOWN)
+        lookup.sigma = std::hypot(lookup.falloff_sigma, std::hypot(lookup.distance_sigma, lookup.sensor_sigma));
     std::vector<uint32_t> codes;
-    std::string text = how.reason;
-    for (uint32_t code : how.reason_code) {
+    std::string text = lookup.reason;
+    for (uint32_t code : lookup.reason_code) {
         if (code != LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE && code != LENSPROF_REASON_LOOKUP_OTHER_STYLE) {
             codes.push_back(code);
             continue;
         }
-        leave_out(code, text);
+        remove_sentence(code, text);
     }
-    codes.resize(std::size(how.reason_code));
-    std::copy(codes.begin(), codes.end(), how.reason_code);
-    std::fill(std::begin(how.reason), std::end(how.reason), '\0');
-    std::copy(text.begin(), text.end(), how.reason);
+    codes.resize(std::size(lookup.reason_code));
+    std::copy(codes.begin(), codes.end(), lookup.reason_code);
+    std::fill(std::begin(lookup.reason), std::end(lookup.reason), '\0');
+    std::copy(text.begin(), text.end(), lookup.reason);
     return found;
 }
 
 Json lookup_json(const Found &found) {
-    const lensprof_lookup &how = found.how;
+    const lensprof_lookup &lookup = found.lookup;
     Json rows = Json::array();
-    for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
-    return {{"exact", how.exact != 0},
+    for (uint32_t i = 0; i < lookup.rows; i++) rows.push_back({{"id", lookup.id[i]}, {"weight", lookup.weight[i]}});
+    return {{"exact", lookup.exact != 0},
             {"rows", rows},
-            {"database", database(found, how.falloff_store)},
-            {"distance", how.distance},
-            {"sigma", known(how.sigma)},
-            {"falloff_sigma", known(how.falloff_sigma)},
-            {"distance_sigma", how.distance_sigma},
-            {"sensor_sigma", how.sensor_sigma},
+            {"database", database(found, lookup.falloff_store)},
+            {"distance", lookup.distance},
+            {"sigma", known(lookup.sigma)},
+            {"falloff_sigma", known(lookup.falloff_sigma)},
+            {"distance_sigma", lookup.distance_sigma},
+            {"sensor_sigma", lookup.sensor_sigma},
             {"response", response_json(found)},
-            {"name_score", how.name_score},
-            {"reason", how.reason},
-            {"reason_codes", reason_codes_json(how)}};
+            {"name_score", lookup.name_score},
+            {"reason", lookup.reason},
+            {"reason_codes", reason_codes_json(lookup)}};
 }
 
 std::string describe_briefly(const Found &found) {
-    const lensprof_lookup &how = found.how;
-    std::string others = how.reason;  // the parts of the error cover these two
-    leave_out(LENSPROF_REASON_LOOKUP_USUAL_DISTANCE, others);
-    leave_out(LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE, others);
-    std::string text = how.exact ? format("falloff of profile %lld", static_cast<long long>(how.id[0]))
-                                 : "falloff predicted from " + counted(how.rows, "profile");
-    text += in_database(found, how.falloff_store) + ", response " + describe_response(found);
+    const lensprof_lookup &lookup = found.lookup;
+    std::string others = lookup.reason;  // the parts of the error cover these two
+    remove_sentence(LENSPROF_REASON_LOOKUP_USUAL_DISTANCE, others);
+    remove_sentence(LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE, others);
+    std::string text = lookup.exact ? format("falloff of profile %lld", static_cast<long long>(lookup.id[0]))
+                                    : "falloff predicted from " + counted(lookup.rows, "profile");
+    text += in_database(found, lookup.falloff_store) + ", response " + describe_response(found);
     return others.empty() ? text : text + "; " + others;
 }
 
-std::string describe_error(const lensprof_lookup &how) {
-    if (how.sigma == LENSPROF_UNKNOWN) return "the error of M is unknown";
-    return format("M in the corner \u00b1 %.3f", how.sigma) + describe_parts(how);
+std::string describe_error(const lensprof_lookup &lookup) {
+    if (lookup.sigma == LENSPROF_UNKNOWN) return "the error of M is unknown";
+    return format("M in the corner \u00b1 %.3f", lookup.sigma) + describe_parts(lookup);
 }
 
-constexpr uint32_t kMost = 3;
+constexpr uint32_t kMaxNames = 3;
 
 // "EOS 6D" of "Canon EOS 6D".
 static std::string without_maker(const std::string &model, const std::string &maker) {
@@ -178,30 +180,31 @@ static std::vector<std::string> nearest_cameras(const Databases &databases, cons
         }
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
     std::vector<std::string> cameras;
-    for (const auto &one : ranked)
-        if (cameras.size() < kMost && std::find(cameras.begin(), cameras.end(), one.second) == cameras.end())
-            cameras.push_back(one.second);
+    for (const auto &entry : ranked)
+        if (cameras.size() < kMaxNames && std::find(cameras.begin(), cameras.end(), entry.second) == cameras.end())
+            cameras.push_back(entry.second);
     return cameras;
 }
 
 std::vector<std::string> nearest_names(const Databases &databases, const lensprof_profile_key &key,
-                                       const lensprof_lookup &how) {
-    const auto says = [&](uint32_t code) {
-        return std::find(std::begin(how.reason_code), std::end(how.reason_code), code) != std::end(how.reason_code);
+                                       const lensprof_lookup &lookup) {
+    const auto has_reason = [&](uint32_t code) {
+        return std::find(std::begin(lookup.reason_code), std::end(lookup.reason_code), code)
+               != std::end(lookup.reason_code);
     };
-    if (says(LENSPROF_REASON_LOOKUP_NO_CAMERA) && *key.camera_model) return nearest_cameras(databases, key);
-    if (!says(LENSPROF_REASON_LOOKUP_NO_LENS)) return {};
+    if (has_reason(LENSPROF_REASON_LOOKUP_NO_CAMERA) && *key.camera_model) return nearest_cameras(databases, key);
+    if (!has_reason(LENSPROF_REASON_LOOKUP_NO_LENS)) return {};
     std::vector<lensprof_store_name> all;
     for (size_t i = 0; i < databases.size(); i++) {
-        lensprof_store_name names[kMost];
+        lensprof_store_name names[kMaxNames];
         uint32_t count = 0;
-        if (lensprof_store_nearest_lenses(databases.store(i), &key, names, kMost, &count, nullptr) == LENSPROF_OK)
+        if (lensprof_store_nearest_lenses(databases.store(i), &key, names, kMaxNames, &count, nullptr) == LENSPROF_OK)
             all.insert(all.end(), names, names + count);
     }
     std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.score > b.score; });
     std::vector<std::string> lenses;
     for (const lensprof_store_name &name : all)
-        if (lenses.size() < kMost && std::find(lenses.begin(), lenses.end(), name.lens) == lenses.end())
+        if (lenses.size() < kMaxNames && std::find(lenses.begin(), lenses.end(), name.lens) == lenses.end())
             lenses.emplace_back(name.lens);
     return lenses;
 }
@@ -213,15 +216,15 @@ std::string describe_nearest(const std::vector<std::string> &names) {
 }
 
 void print_lookup(const Found &found, std::ostream &out) {
-    const lensprof_lookup &how = found.how;
+    const lensprof_lookup &lookup = found.lookup;
     out << "lookup    falloff " << describe_prediction(found) << "\n          response " << describe_response(found)
         << "\n";
-    if (how.sigma > 0.0)
-        out << format("sigma     %.3f of M in the corner", how.sigma) << describe_parts(how) << "\n";
+    if (lookup.sigma > 0.0)
+        out << format("sigma     %.3f of M in the corner", lookup.sigma) << describe_parts(lookup) << "\n";
     else
         out << "sigma     unknown: the profile does not state its error\n";
-    if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);
-    if (*how.reason) out << "warning   " << how.reason << "\n";
+    if (lookup.name_score < 1.0) out << format("name      matched with score %.1f\n", lookup.name_score);
+    if (*lookup.reason) out << "warning   " << lookup.reason << "\n";
 }
 
 }  // namespace lensprof

@@ -12,7 +12,7 @@ namespace lensprof {
 namespace {
 
 // Bytes: no packed profile is larger.
-constexpr uint64_t largest_blob = 1 << 20;
+constexpr uint64_t max_blob_bytes = 1 << 20;
 
 // The CRC-32 is the last four bytes, the least significant first.
 BlobStamp stamp_of(const unsigned char *blob, size_t bytes) {
@@ -32,7 +32,7 @@ BlobStamp write_blob(const lensprof_profile &profile, bool with_covariance, cons
 }
 
 std::unique_ptr<lensprof_profile> read_blob(const std::string &path, BlobStamp &stamp) {
-    const std::string blob = read_text(path, largest_blob);
+    const std::string blob = read_text(path, max_blob_bytes);
     auto profile = new_profile();
     const lensprof_status status = lensprof_profile_unpack(blob.data(), blob.size(), profile.get());
     if (status == LENSPROF_ERROR_LAYOUT)

@@ -31,8 +31,8 @@ struct CheckOptions {
 
 std::string range(const double *ends, const char *front, const char *end) {
     if (ends[0] == LENSPROF_UNKNOWN) return "unknown";
-    const std::string one = format("%s%g%s", front, ends[0], end);
-    return ends[0] == ends[1] ? one : one + " to " + format("%s%g%s", front, ends[1], end);
+    const std::string low = format("%s%g%s", front, ends[0], end);
+    return ends[0] == ends[1] ? low : low + " to " + format("%s%g%s", front, ends[1], end);
 }
 
 Json range_json(const double *ends) {
@@ -50,11 +50,11 @@ Json groups_json(const lensprof_store_group *groups) {
 }
 
 void print_groups(const char *title, const lensprof_store_group *groups, uint32_t different, std::ostream &out) {
-    uint32_t shown = 0;
-    for (; shown < LENSPROF_STATS_GROUPS && groups[shown].profiles; shown++)
-        out << format("%-12s %8u  %s\n", shown ? "" : title, groups[shown].profiles,
-                      *groups[shown].name ? groups[shown].name : "unknown");
-    if (different > shown) out << format("%-12s %8s  and %u more\n", "", "", different - shown);
+    uint32_t count = 0;
+    for (; count < LENSPROF_STATS_GROUPS && groups[count].profiles; count++)
+        out << format("%-12s %8u  %s\n", count ? "" : title, groups[count].profiles,
+                      *groups[count].name ? groups[count].name : "unknown");
+    if (different > count) out << format("%-12s %8s  and %u more\n", "", "", different - count);
 }
 
 Json stats_json(const std::string &file, const lensprof_store_stats &s) {
@@ -94,7 +94,7 @@ void print_stats(const std::string &file, const lensprof_store_stats &s, std::os
 }
 
 int run_check(const CheckOptions &o, Streams &streams) {
-    if (o.against.is_asked()) return run_against(o.against, o.db, o.json, streams);
+    if (o.against.is_requested()) return run_against(o.against, o.db, o.json, streams);
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     const std::string file = store_path(o.db);
     std::vector<Fault> faults;

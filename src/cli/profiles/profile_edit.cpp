@@ -33,7 +33,7 @@ void print_changed(const std::vector<int64_t> &ids, const char *what, bool json,
         streams.out << what << " " << counted(ids.size(), "profile") << "\n";
 }
 
-void keep_once(std::vector<int64_t> &ids) {
+void remove_duplicates(std::vector<int64_t> &ids) {
     std::set<int64_t> seen;
     ids.erase(std::remove_if(ids.begin(), ids.end(), [&](int64_t id) { return !seen.insert(id).second; }), ids.end());
 }
@@ -52,7 +52,7 @@ int remove(RemoveOptions &o, Streams &streams) {
         throw Failure(ExitCode::usage,
                       "profile remove: give ids (see `lensprof profile list`), or --camera, --lens or other filters "
                       "with --yes");
-    keep_once(o.ids);
+    remove_duplicates(o.ids);
     const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
     if (o.ids.empty()) {
         for (const auto &row : o.filter.matching_rows(store.get(), o.db)) o.ids.push_back(row.id);
@@ -113,7 +113,7 @@ int set(SetOptions &o, Streams &streams) {
                       "distance");
     o.key.check_names();
     check_contradictions(o);
-    keep_once(o.ids);
+    remove_duplicates(o.ids);
     const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
     const auto profile = new_profile();
     change_all(o.db, store.get(), o.ids, [&](lensprof_store *db, int64_t id, lensprof_error *error) {

@@ -102,25 +102,24 @@ void export_blob(const Options &o, const StoredProfile &stored, Streams &streams
 }
 
 // Reports what a format omits without being refused.
-void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen,
-                   Streams &streams) {
+void note_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen, Streams &streams) {
     const bool is_mean = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP
                          || (rule.format == LENSPROF_FORMAT_MAP && format_of_name(o.output) == FileFormat::png);
     if (!is_mean) return;
-    for (const StoredProfile &one : chosen)
-        if (one.profile->vignettings == 3)
-            note(streams, "profile " + std::to_string(one.id) + ": its falloff differs per channel; " + rule.name
+    for (const StoredProfile &stored : chosen)
+        if (stored.profile->vignettings == 3)
+            note(streams, "profile " + std::to_string(stored.id) + ": its falloff differs per channel; " + rule.name
                               + " stores the mean");
 }
 
 // Formats that need a crop factor use that of the command line if the profile does not have one.
 void complete_crop_factors(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen) {
     const bool needs_crop = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP;
-    for (const StoredProfile &one : chosen) {
-        double &crop = one.profile->key.crop_factor;
+    for (const StoredProfile &stored : chosen) {
+        double &crop = stored.profile->key.crop_factor;
         if (crop == LENSPROF_UNKNOWN) crop = o.crop_factor;
         if (needs_crop && crop == LENSPROF_UNKNOWN)
-            throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(one.id)
+            throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(stored.id)
                                                + " is unknown; give --crop-factor");
     }
 }
@@ -129,7 +128,7 @@ void export_split(const Options &o, const ForeignRule &rule, const std::vector<S
                   Streams &streams) {
     complete_crop_factors(o, rule, chosen);
     const std::vector<SplitFile> files = write_split(rule, o.output, o.foreign, chosen);
-    warn_of_means(rule, o, chosen, streams);
+    note_means(rule, o, chosen, streams);
     if (!o.json) {
         for (const SplitFile &file : files)
             streams.out << file.path << ": " << counted(file.profiles.size(), "profile") << "\n";
@@ -138,7 +137,7 @@ void export_split(const Options &o, const ForeignRule &rule, const std::vector<S
     Json list = Json::array();
     for (const SplitFile &file : files) {
         Json ids = Json::array();
-        for (const StoredProfile *one : file.profiles) ids.push_back(one->id);
+        for (const StoredProfile *stored : file.profiles) ids.push_back(stored->id);
         list.push_back({{"file", file.path}, {"profiles", ids}});
     }
     print_json(Json{{"schema", 1}, {"format", rule.name}, {"folder", o.output}, {"files", list}}, streams.out);
@@ -150,12 +149,12 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
     std::vector<std::string> names;
     Json ids = Json::array();
     complete_crop_factors(o, rule, chosen);
-    for (const StoredProfile &one : chosen) {
-        profiles.push_back(one.profile.get()), ids.push_back(one.id);
-        names.push_back("profile " + std::to_string(one.id));
+    for (const StoredProfile &stored : chosen) {
+        profiles.push_back(stored.profile.get()), ids.push_back(stored.id);
+        names.push_back("profile " + std::to_string(stored.id));
     }
     write_foreign(rule, o.output, o.foreign, profiles, names);
-    warn_of_means(rule, o, chosen, streams);
+    note_means(rule, o, chosen, streams);
     if (o.json)
         print_json(Json{{"schema", 1}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}}, streams.out);
     else

@@ -49,7 +49,7 @@ struct Import {
 };
 
 // Samples rounded by a file: the parameters of their kind are used.
-lensprof_status remake_curve(lensprof_response &response) {
+lensprof_status restore_curve(lensprof_response &response) {
     const std::vector<double> terms(response.emor, response.emor + response.modes);
     switch (response.kind) {
     case LENSPROF_RESPONSE_GAMMA: return lensprof_response_set_gamma(&response, response.gamma);
@@ -60,15 +60,15 @@ lensprof_status remake_curve(lensprof_response &response) {
 }
 
 // The profile as stored here: ids it contains belong to another database.
-lensprof_status make_own(lensprof_profile &profile) {
+lensprof_status make_independent(lensprof_profile &profile) {
     lensprof_status status = LENSPROF_OK;
     profile.provenance.prior_id = 0;
     for (uint32_t c = 0; c < profile.responses && status == LENSPROF_OK; c++)
-        status = remake_curve(profile.response[c]);
+        status = restore_curve(profile.response[c]);
     return status;
 }
 
-lensprof_status take(void *user, const lensprof_import_entry *entry) {
+lensprof_status import_entry(void *user, const lensprof_import_entry *entry) {
     Import &import = *static_cast<Import *>(user);
     const lensprof_profile &profile = *entry->profile;
     if (*profile.provenance.doubt)
@@ -79,14 +79,14 @@ lensprof_status take(void *user, const lensprof_import_entry *entry) {
                                     entry->usable != 0 }});
     if (interrupted()) return LENSPROF_ERROR_CANCELLED;
     if (!entry->usable) return LENSPROF_OK;
-    auto own = new_profile();
+    auto copy = new_profile();
     int64_t same = 0;
-    lensprof_status status = lensprof_profile_copy(own.get(), &profile);
-    if (status == LENSPROF_OK) status = make_own(*own);
-    if (status == LENSPROF_OK) status = lensprof_store_find_same(import.store, own.get(), &same, &import.error);
+    lensprof_status status = lensprof_profile_copy(copy.get(), &profile);
+    if (status == LENSPROF_OK) status = make_independent(*copy);
+    if (status == LENSPROF_OK) status = lensprof_store_find_same(import.store, copy.get(), &same, &import.error);
     if (same) import.known++;
     if (same || status != LENSPROF_OK) return import.store_status = status;
-    status = lensprof_store_put(import.store, own.get(), nullptr, &import.error);
+    status = lensprof_store_put(import.store, copy.get(), nullptr, &import.error);
     if (status == LENSPROF_OK) import.stored++, import.lenses.insert(profile.key.lens);
     return import.store_status = status;
 }
@@ -160,13 +160,13 @@ void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_
     import.store = store.get();
     import.cameras = 0;
     check(lensprof_store_begin(store.get(), &import.error), db, &import.error);
-    visit_all(import, inputs, of_parts, take, "storing", progress);
+    visit_all(import, inputs, of_parts, import_entry, "storing", progress);
     check(lensprof_store_commit(store.get(), &import.error), db, &import.error);
 }
 
 void print_import(const Import &import, size_t files, Streams &streams) {
-    const size_t refused = static_cast<size_t>(
-        std::count_if(import.flagged.begin(), import.flagged.end(), [](const Json &one) { return !one["stored"]; }));
+    const size_t refused = static_cast<size_t>(std::count_if(import.flagged.begin(), import.flagged.end(),
+                                                             [](const Json &entry) { return !entry["stored"]; }));
     streams.out << "imported " << counted(import.stored, "profile") << " of "
                 << counted(import.lenses.size(), "lens", "lenses") << " from " << counted(files, "file") << " into "
                 << store_path(import.db) << "\n";

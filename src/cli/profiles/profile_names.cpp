@@ -26,7 +26,7 @@ struct Options {
 
 // Calls visit(index of the database, row) for all rows.
 template <typename Visit>
-void each_row(const std::vector<Summaries> &all, const Visit &visit) {
+void for_each_row(const std::vector<Summaries> &all, const Visit &visit) {
     for (size_t i = 0; i < all.size(); i++)
         for (const auto &row : all[i]) visit(i, row);
 }
@@ -40,22 +40,22 @@ std::string states_text(const lensprof_store_summary &row) {
 
 Json names_json(const Databases &databases, const std::vector<Summaries> &all, bool of_lenses) {
     Json list = Json::array();
-    each_row(all, [&](size_t index, const lensprof_store_summary &row) {
-        Json one;
+    for_each_row(all, [&](size_t index, const lensprof_store_summary &row) {
+        Json entry;
         if (of_lenses) {
-            one["lens"] = row.lens;
+            entry["lens"] = row.lens;
         } else {
-            one["camera_maker"] = row.camera_maker;
-            one["camera_model"] = row.camera_model;
+            entry["camera_maker"] = row.camera_maker;
+            entry["camera_model"] = row.camera_model;
         }
-        one["profiles"] = row.profiles;
-        one[of_lenses ? "cameras" : "lenses"] = row.others;
-        for (uint32_t i = 0; i < 3; i++) one[processing_name(i)] = row.processing[i];
-        one["focal_mm"] = range_json(row.focal_mm);
-        one["aperture"] = range_json(row.aperture);
-        one["distance_m"] = range_json(row.distance_m);
-        if (databases.size() > 1) one["database"] = databases.file(index);
-        list.push_back(one);
+        entry["profiles"] = row.profiles;
+        entry[of_lenses ? "cameras" : "lenses"] = row.others;
+        for (uint32_t i = 0; i < 3; i++) entry[processing_name(i)] = row.processing[i];
+        entry["focal_mm"] = range_json(row.focal_mm);
+        entry["aperture"] = range_json(row.aperture);
+        entry["distance_m"] = range_json(row.distance_m);
+        if (databases.size() > 1) entry["database"] = databases.file(index);
+        list.push_back(entry);
     });
     return Json{{"schema", 1}, {of_lenses ? "lenses" : "cameras", list}};
 }
@@ -64,7 +64,7 @@ void print_names(const Databases &databases, const std::vector<Summaries> &all, 
     size_t rows = 0;
     out << format("%8s  %7s  %9s %9s %9s  %-15s  %s\n", "profiles", of_lenses ? "cameras" : "lenses", "mm", "f/",
                   "focus m", "processing", of_lenses ? "lens" : "camera");
-    each_row(all, [&](size_t index, const lensprof_store_summary &row) {
+    for_each_row(all, [&](size_t index, const lensprof_store_summary &row) {
         const std::string name = of_lenses ? std::string(row.lens) : camera_name(row.camera_maker, row.camera_model);
         out << format("%8u  %7u  %9s %9s %9s  %-15s  %s\n", row.profiles, row.others, range_text(row.focal_mm).c_str(),
                       range_text(row.aperture).c_str(), range_text(row.distance_m).c_str(), states_text(row).c_str(),

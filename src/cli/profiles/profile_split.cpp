@@ -13,13 +13,13 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t longest_name = 200;  // bytes, without extension: file systems allow 255
+constexpr size_t max_name_bytes = 200;  // bytes, without extension: file systems allow 255
 
 // Removes characters that other file systems refuse. UTF-8 is kept.
 std::string file_name_of(const std::string &text) {
     std::string name;
     for (const char c : text) name += c < 0 || (c >= ' ' && !std::strchr("/\\:*?\"<>|\x7f", c)) ? c : '-';
-    while (name.size() > longest_name || (!name.empty() && (name.back() == '.' || name.back() == ' '))) {
+    while (name.size() > max_name_bytes || (!name.empty() && (name.back() == '.' || name.back() == ' '))) {
         while (name.size() > 1 && (name.back() & 0xC0) == 0x80) name.pop_back();  // the rest of a UTF-8 character
         name.pop_back();
     }
@@ -68,30 +68,30 @@ std::vector<SplitFile> write_split(const ForeignRule &rule, const std::string &f
     std::map<std::string, size_t> file_of_group;
     std::set<std::string> taken;
     const auto add_file = [&](const std::string &name) {
-        const std::string wanted = file_name_of(name);
-        std::string unused = wanted;
-        for (int i = 2; !taken.insert(folded(unused)).second; i++) unused = wanted + " (" + std::to_string(i) + ")";
+        const std::string base_name = file_name_of(name);
+        std::string unused = base_name;
+        for (int i = 2; !taken.insert(folded(unused)).second; i++) unused = base_name + " (" + std::to_string(i) + ")";
         files.push_back({(std::filesystem::path(folder) / (unused + "." + ending_of(rule))).string(), {}});
         return files.size() - 1;
     };
-    for (const StoredProfile &one : profiles) {
-        const std::string group = group_of(rule, one.profile->key);
+    for (const StoredProfile &stored : profiles) {
+        const std::string group = group_of(rule, stored.profile->key);
         if (rule.is_many) {
             const bool is_exact = rule.format == LENSPROF_FORMAT_LCP;  // which distinguishes names by case
-            const auto [place, is_new] = file_of_group.try_emplace(is_exact ? group : folded(group), 0);
-            if (is_new) place->second = add_file(group);
-            files[place->second].profiles.push_back(&one);
+            const auto [group_file, is_new] = file_of_group.try_emplace(is_exact ? group : folded(group), 0);
+            if (is_new) group_file->second = add_file(group);
+            files[group_file->second].profiles.push_back(&stored);
         } else {
-            files[add_file(group + " " + std::to_string(one.id))].profiles.push_back(&one);
+            files[add_file(group + " " + std::to_string(stored.id))].profiles.push_back(&stored);
         }
     }
     std::vector<std::string> texts;  // before a folder is created
     for (const SplitFile &file : files) {
         std::vector<const lensprof_profile *> content;
         std::vector<std::string> names;
-        for (const StoredProfile *one : file.profiles) {
-            content.push_back(one->profile.get());
-            names.push_back("profile " + std::to_string(one->id));
+        for (const StoredProfile *stored : file.profiles) {
+            content.push_back(stored->profile.get());
+            names.push_back("profile " + std::to_string(stored->id));
         }
         texts.push_back(foreign_bytes(rule, file.path, options, content, names));
     }

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kMedianToSigma = 1.4826;
 constexpr double kExplainedSigmas = 5.0;  // a pair that no model explains better shows two different objects
-constexpr double kLeastExplained = 3.0;   // levels
-constexpr size_t kFewestLinks = 5;        // with meaningful scatter
+constexpr double kMinExplained = 3.0;     // levels
+constexpr size_t kMinLinks = 5;           // with meaningful scatter
 
 // A hash of a pair's index, independent of the order along images.
 uint64_t pair_hash(uint64_t pair) { return mixed_bits((pair + 1) * splitmix_step); }
@@ -42,15 +42,15 @@ public:
             double slope = 0.0;
             const double light = lensprof_response_invert(&response(channel), pair.value[side][channel], &slope);
             if (!(light > 0.0) || !(slope > 0.0)) return d;  // black, or a flat part of the curve
-            const double own = std::log(light / falloff(pair, side, channel));
-            d.log_ratio += side ? -own : own;
+            const double log_light = std::log(light / falloff(pair, side, channel));
+            d.log_ratio += side ? -log_light : log_light;
             variance += slope * slope / (light * light);
         }
         d.sigma = std::sqrt(variance) / 255.0;
         return d;
     }
     // The residual at both ends, levels, and ln of the ratio of the exposures.
-    std::array<double, 2> left(const lensprof_pair &pair, uint32_t channel, double log_exposure) const {
+    std::array<double, 2> residuals(const lensprof_pair &pair, uint32_t channel, double log_exposure) const {
         const double ratio = falloff(pair, 0, channel) / falloff(pair, 1, channel) * std::exp(log_exposure);
         const lensprof_response &f = response(channel);
         const double a = pair.value[0][channel], b = pair.value[1][channel];
@@ -70,7 +70,7 @@ void add_pair(const std::vector<double> &levels, TrialErrors &errors) {
     errors.squares.push_back(sum / static_cast<double>(levels.size()));
 }
 
-double middle_of(std::vector<double> values) {
+double median_of(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -88,10 +88,11 @@ TrialPairs split_for_trial(std::vector<lensprof_fit_image> images, const std::ve
         (is_train ? split.train : split.heldout).push_back(pairs[p]);
         if (is_train) groups.join(pairs[p].image[0], pairs[p].image[1]);
     }
-    const auto is_apart = [&](const lensprof_pair &pair) {
+    const auto is_unconnected = [&](const lensprof_pair &pair) {
         return groups.of(pair.image[0]) != groups.of(pair.image[1]);
     };
-    split.heldout.erase(std::remove_if(split.heldout.begin(), split.heldout.end(), is_apart), split.heldout.end());
+    split.heldout.erase(std::remove_if(split.heldout.begin(), split.heldout.end(), is_unconnected),
+                        split.heldout.end());
     split.images = std::move(images);
     return split;
 }
@@ -108,14 +109,14 @@ TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model) {
     for (const lensprof_pair &pair : pairs.heldout) {
         std::vector<double> levels;
         for (uint32_t c = 0; c < pairs.channels; c++)
-            for (double level : evaluator.left(pair, c, exposures[c][pair.image[0]] - exposures[c][pair.image[1]]))
+            for (double level : evaluator.residuals(pair, c, exposures[c][pair.image[0]] - exposures[c][pair.image[1]]))
                 levels.push_back(level);
         add_pair(levels, errors);
     }
     return errors;
 }
 
-TrialErrors errors_as_they_are(const TrialPairs &pairs) {
+TrialErrors uncorrected_errors(const TrialPairs &pairs) {
     TrialErrors errors;
     for (const lensprof_pair &pair : pairs.heldout) {
         std::vector<double> levels;
@@ -125,50 +126,51 @@ TrialErrors errors_as_they_are(const TrialPairs &pairs) {
     return errors;
 }
 
-std::vector<bool> explained_pairs(const std::vector<TrialErrors> &tried) {
-    const size_t pairs = tried.front().squares.size();
+std::vector<bool> explained_pairs(const std::vector<TrialErrors> &candidates) {
+    const size_t pairs = candidates.front().squares.size();
     if (!pairs) return {};
-    double least = HUGE_VAL;
-    for (const TrialErrors &errors : tried) least = std::min(least, std::sqrt(middle_of(errors.squares)));
-    const double limit = std::max(kLeastExplained, kExplainedSigmas * kMedianToSigma * least);
-    std::vector<bool> counts(pairs);
+    double min_median = HUGE_VAL;
+    for (const TrialErrors &errors : candidates)
+        min_median = std::min(min_median, std::sqrt(median_of(errors.squares)));
+    const double limit = std::max(kMinExplained, kExplainedSigmas * kMedianToSigma * min_median);
+    std::vector<bool> is_explained(pairs);
     for (size_t p = 0; p < pairs; p++)
-        counts[p] = std::any_of(tried.begin(), tried.end(),
-                                [&](const TrialErrors &errors) { return errors.squares[p] <= limit * limit; });
-    return counts;
+        is_explained[p] = std::any_of(candidates.begin(), candidates.end(),
+                                      [&](const TrialErrors &errors) { return errors.squares[p] <= limit * limit; });
+    return is_explained;
 }
 
-TrialFigures figures_of(const TrialErrors &errors, const std::vector<bool> &counts) {
+TrialFigures figures_of(const TrialErrors &errors, const std::vector<bool> &is_explained) {
     std::vector<double> absolutes;
     double sum = 0.0, count = 0.0;
-    const size_t each = errors.absolutes.size() / errors.squares.size();
-    for (size_t p = 0; p < counts.size(); p++) {
-        if (!counts[p]) continue;
+    const size_t values_per_pair = errors.absolutes.size() / errors.squares.size();
+    for (size_t p = 0; p < is_explained.size(); p++) {
+        if (!is_explained[p]) continue;
         sum += errors.squares[p], count++;
-        for (size_t n = 0; n < each; n++) absolutes.push_back(errors.absolutes[p * each + n]);
+        for (size_t n = 0; n < values_per_pair; n++) absolutes.push_back(errors.absolutes[p * values_per_pair + n]);
     }
-    return {std::sqrt(sum / count), middle_of(absolutes)};
+    return {std::sqrt(sum / count), median_of(absolutes)};
 }
 
-TrialDifference difference_of(const TrialErrors &one, const TrialErrors &other, const TrialPairs &pairs,
-                              const std::vector<bool> &counts) {
+TrialDifference difference_of(const TrialErrors &a, const TrialErrors &b, const TrialPairs &pairs,
+                              const std::vector<bool> &is_explained) {
     double sum = 0.0, n = 0.0;
-    for (size_t p = 0; p < counts.size(); p++)
-        if (counts[p]) sum += one.squares[p] - other.squares[p], n++;
+    for (size_t p = 0; p < is_explained.size(); p++)
+        if (is_explained[p]) sum += a.squares[p] - b.squares[p], n++;
     const double mean = sum / n;
     double scatter = 0.0, link_scatter = 0.0;
     std::map<std::pair<uint32_t, uint32_t>, double> links;
-    for (size_t p = 0; p < counts.size(); p++) {
-        if (!counts[p]) continue;
-        const double off = one.squares[p] - other.squares[p] - mean;
+    for (size_t p = 0; p < is_explained.size(); p++) {
+        if (!is_explained[p]) continue;
+        const double off = a.squares[p] - b.squares[p] - mean;
         scatter += off * off;
         links[std::minmax(pairs.heldout[p].image[0], pairs.heldout[p].image[1])] += off;
     }
     for (const auto &link : links) link_scatter += link.second * link.second;
-    const double used = links.size() < kFewestLinks ? scatter : std::max(scatter, link_scatter);
-    const double rms = figures_of(one, counts).rms + figures_of(other, counts).rms;
+    const double variance = links.size() < kMinLinks ? scatter : std::max(scatter, link_scatter);
+    const double rms = figures_of(a, is_explained).rms + figures_of(b, is_explained).rms;
     if (!(rms > 0.0)) return {};
-    return {mean / rms, std::sqrt(used) / n / rms};
+    return {mean / rms, std::sqrt(variance) / n / rms};
 }
 
 }  // namespace lensprof

@@ -37,7 +37,7 @@ struct TrialErrors {
 TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model);
 
 // The pictures as they are.
-TrialErrors errors_as_they_are(const TrialPairs &pairs);
+TrialErrors uncorrected_errors(const TrialPairs &pairs);
 
 // Whether each held-out pair counts: one of the models explains it. The others show two different objects.
 std::vector<bool> explained_pairs(const std::vector<TrialErrors> &tried);
@@ -45,7 +45,7 @@ std::vector<bool> explained_pairs(const std::vector<TrialErrors> &tried);
 struct TrialFigures {
     double rms = 0.0, median = 0.0;
 };
-TrialFigures figures_of(const TrialErrors &errors, const std::vector<bool> &counts);
+TrialFigures figures_of(const TrialErrors &errors, const std::vector<bool> &is_explained);
 
 // The RMS of one model above that of another, levels, and the standard error of this difference: the larger of the
 // errors from the scatter of pairs and of image links. Curves stored in another form differ by less than the last
@@ -54,7 +54,7 @@ struct TrialDifference {
     double levels = 0.0, sigma = 0.0;
     bool is_clear() const { return levels > 2.0 * sigma && levels > 1e-3; }
 };
-TrialDifference difference_of(const TrialErrors &one, const TrialErrors &other, const TrialPairs &pairs,
-                              const std::vector<bool> &counts);
+TrialDifference difference_of(const TrialErrors &a, const TrialErrors &b, const TrialPairs &pairs,
+                              const std::vector<bool> &is_explained);
 
 }  // namespace lensprof

@@ -39,10 +39,11 @@ void declare(Command &command, Options &o) {
 }
 
 // Profiles of another sensor are left to a lookup, which converts them.
-void keep_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
-    constexpr double same = 0.02;  // as lensprof_store_lookup
+void keep_same_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
+    constexpr double max_relative_difference = 0.02;  // as lensprof_store_lookup
     const auto is_other = [=](const lensprof_store_row &row) {
-        return row.key.crop_factor != LENSPROF_UNKNOWN && std::fabs(row.key.crop_factor / crop_factor - 1.0) > same;
+        return row.key.crop_factor != LENSPROF_UNKNOWN
+               && std::fabs(row.key.crop_factor / crop_factor - 1.0) > max_relative_difference;
     };
     rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
 }
@@ -55,8 +56,8 @@ void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
     rows.erase(std::remove_if(rows.begin(), rows.end(), has_doubt), rows.end());
 }
 
-std::vector<lensprof_store_row> rows_that_count(const Options &o, std::vector<lensprof_store_row> rows) {
-    if (o.lookup.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.lookup.crop_factor, rows);
+std::vector<lensprof_store_row> applicable_rows(const Options &o, std::vector<lensprof_store_row> rows) {
+    if (o.lookup.crop_factor != LENSPROF_UNKNOWN) keep_same_sensor(o.lookup.crop_factor, rows);
     if (!o.lookup.doubtful) leave_out_doubtful(rows);
     return rows;
 }
@@ -71,7 +72,7 @@ std::vector<Match> matches(const Options &o, const Databases &databases, const K
     std::vector<Match> all;
     for (size_t i = 0; i < databases.size(); i++) {
         const auto &file = databases.file(i);
-        all.push_back({i, rows_that_count(o, by_parts ? filter.matching_rows(databases.store(i), file)
+        all.push_back({i, applicable_rows(o, by_parts ? filter.matching_rows(databases.store(i), file)
                                                       : filter.rows(databases.store(i), file))});
     }
     return all;
@@ -129,13 +130,13 @@ void answer_range(const Options &o, const Databases &databases, const std::strin
 
 // Why there is no answer, for JSON.
 struct Refusal {
-    lensprof_lookup how{};
+    lensprof_lookup lookup{};
     std::vector<std::string> nearest;
 };
 
 // Several profiles may be meant.
-bool is_open(const lensprof_lookup &how) {
-    const uint32_t reason = how.reason_code[0];
+bool is_ambiguous(const lensprof_lookup &lookup) {
+    const uint32_t reason = lookup.reason_code[0];
     return reason == LENSPROF_REASON_LOOKUP_FOCAL_MISSING || reason == LENSPROF_REASON_LOOKUP_APERTURE_MISSING
            || reason == LENSPROF_REASON_LOOKUP_SEVERAL_LENSES;
 }
@@ -149,25 +150,25 @@ bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Re
     if (key.crop_factor == LENSPROF_UNKNOWN && *key.camera_model)
         key.crop_factor = crop_factor_in_tables(databases, key, {});
     auto profile = new_profile();
-    lensprof_lookup &how = refusal.how;
-    const lensprof_status status = databases.look_up(key, options, *profile, how);
-    if (status == LENSPROF_ERROR_NOT_FOUND && is_open(how)) return false;
+    lensprof_lookup &lookup = refusal.lookup;
+    const lensprof_status status = databases.look_up(key, options, *profile, lookup);
+    if (status == LENSPROF_ERROR_NOT_FOUND && is_ambiguous(lookup)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND) {
-        refusal.nearest = nearest_names(databases, key, how);
+        refusal.nearest = nearest_names(databases, key, lookup);
         throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names())
-                                               + "; the falloff cannot be predicted either: " + how.reason
+                                               + "; the falloff cannot be predicted either: " + lookup.reason
                                                + describe_nearest(refusal.nearest));
     }
-    const Found found{how, databases.files()};
+    const Found found{lookup, databases.files()};
     if (o.json) {
-        Json object = profile_json(how.exact ? how.id[0] : 0, *profile);
+        Json object = profile_json(lookup.exact ? lookup.id[0] : 0, *profile);
         object["found"] = true;
         object["matches"] = rows;
         object["lookup"] = lookup_json(found);
         print_json(object, streams.out);
         return true;
     }
-    print_profile(how.exact ? how.id[0] : 0, *profile, streams.out);
+    print_profile(lookup.exact ? lookup.id[0] : 0, *profile, streams.out);
     print_lookup(found, streams.out);
     return true;
 }
@@ -180,14 +181,14 @@ void answer(const Options &o, Refusal &refusal, Streams &streams) {
     if (rows == 1)
         answer_stored(o, databases, only->database, only->rows[0].id, streams);
     else if (!answer_lookup(o, databases, rows, refusal, streams))
-        answer_range(o, databases, refusal.how.reason, streams);
+        answer_range(o, databases, refusal.lookup.reason, streams);
 }
 
 int run(const Options &o, Streams &streams) {
     if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
     o.filter.check_names();
     Refusal refusal;
-    lensprof_lookup_init(&refusal.how);
+    lensprof_lookup_init(&refusal.lookup);
     try {
         answer(o, refusal, streams);
     } catch (const Failure &failure) {
@@ -196,7 +197,7 @@ int run(const Options &o, Streams &streams) {
                             {"id", nullptr},
                             {"found", false},
                             {"reason", failure.what()},
-                            {"reason_codes", reason_codes_json(refusal.how)},
+                            {"reason_codes", reason_codes_json(refusal.lookup)},
                             {"nearest", refusal.nearest}},
                        streams.out);
         throw;

@@ -21,31 +21,35 @@ std::string listed(const std::vector<int64_t> &ids) {
 // The profiles not clearly worse than the best, including it.
 std::vector<int64_t> as_good_as_best(const TrialReport &report) {
     std::vector<int64_t> ids;
-    for (const Candidate &own : report.profiles)
-        if (report.is_as_good(own)) ids.push_back(own.id);
+    for (const Candidate &candidate : report.profiles)
+        if (report.is_as_good(candidate)) ids.push_back(candidate.id);
     return ids;
 }
 
-std::string describe_response(const Candidate &own) {
-    switch (own.response_from) {
+std::string describe_response(const Candidate &candidate) {
+    switch (candidate.response_from) {
     case ResponseOf::sensor: return "linear response";
     case ResponseOf::kind: return "typical response of this kind of camera";
-    case ResponseOf::other: return "response of profile " + std::to_string(own.response_id);
+    case ResponseOf::other: return "response of profile " + std::to_string(candidate.response_id);
     default: return "its own response";
     }
 }
 
-void add_response(const Candidate &own, Json &json) {
+void add_response(const Candidate &candidate, Json &json) {
     static const char *const names[] = {"own", "other", "kind", "linear"};
-    json["response"] = names[static_cast<int>(own.response_from)];
-    json["response_profile"] = own.response_id ? Json(own.response_id) : Json();
+    json["response"] = names[static_cast<int>(candidate.response_from)];
+    json["response_profile"] = candidate.response_id ? Json(candidate.response_id) : Json();
 }
 
-Json figures_json(const Candidate &own) { return {{"rms", own.figures.rms}, {"median", own.figures.median}}; }
+Json figures_json(const Candidate &candidate) {
+    return {{"rms", candidate.figures.rms}, {"median", candidate.figures.median}};
+}
 
 }  // namespace
 
-size_t TrialReport::measured() const { return static_cast<size_t>(std::count(counts.begin(), counts.end(), true)); }
+size_t TrialReport::measured() const {
+    return static_cast<size_t>(std::count(is_explained.begin(), is_explained.end(), true));
+}
 
 size_t TrialReport::images() const {
     std::set<uint32_t> seen;
@@ -56,7 +60,7 @@ size_t TrialReport::images() const {
 
 bool TrialReport::is_any_better() const {
     return std::any_of(profiles.begin(), profiles.end(),
-                       [](const Candidate &own) { return own.below_none.is_clear(); });
+                       [](const Candidate &candidate) { return candidate.gain_over_none.is_clear(); });
 }
 
 bool has_falloff(const lensprof_profile &profile) {
@@ -68,36 +72,37 @@ bool has_falloff(const lensprof_profile &profile) {
 
 void compare(TrialReport &report) {
     std::vector<TrialErrors> tried = {report.none.errors};
-    for (const Candidate &own : report.profiles) tried.push_back(own.errors);
-    report.counts = explained_pairs(tried);
-    report.none.figures = figures_of(report.none.errors, report.counts);
-    report.before = figures_of(errors_as_they_are(report.pairs), report.counts);
+    for (const Candidate &candidate : report.profiles) tried.push_back(candidate.errors);
+    report.is_explained = explained_pairs(tried);
+    report.none.figures = figures_of(report.none.errors, report.is_explained);
+    report.before = figures_of(uncorrected_errors(report.pairs), report.is_explained);
     for (size_t i = 0; i < report.profiles.size(); i++) {
-        Candidate &own = report.profiles[i];
-        own.figures = figures_of(own.errors, report.counts);
-        own.below_none = difference_of(report.none.errors, own.errors, report.pairs, report.counts);
-        if (own.figures.rms < report.profiles[report.best].figures.rms) report.best = i;
+        Candidate &candidate = report.profiles[i];
+        candidate.figures = figures_of(candidate.errors, report.is_explained);
+        candidate.gain_over_none =
+            difference_of(report.none.errors, candidate.errors, report.pairs, report.is_explained);
+        if (candidate.figures.rms < report.profiles[report.best].figures.rms) report.best = i;
     }
     const TrialErrors &best = report.profiles[report.best].errors;
-    for (Candidate &own : report.profiles)
-        own.above_best = difference_of(own.errors, best, report.pairs, report.counts);
-    report.none.above_best = difference_of(report.none.errors, best, report.pairs, report.counts);
+    for (Candidate &candidate : report.profiles)
+        candidate.excess_over_best = difference_of(candidate.errors, best, report.pairs, report.is_explained);
+    report.none.excess_over_best = difference_of(report.none.errors, best, report.pairs, report.is_explained);
 }
 
 Json trial_json(const TrialReport &report) {
     Json profiles = Json::array();
-    for (const Candidate &own : report.profiles) {
-        Json one = {{"id", own.id}};
-        one.update(figures_json(own));
-        one["above_best"] = own.above_best.levels;
-        one["above_best_sigma"] = own.above_best.sigma;
-        one["as_good_as_best"] = report.is_as_good(own);
-        one["below_none"] = own.below_none.levels;
-        one["below_none_sigma"] = own.below_none.sigma;
-        one["better_than_none"] = own.below_none.is_clear();
-        one["has_falloff"] = own.has_falloff;
-        add_response(own, one);
-        profiles.push_back(one);
+    for (const Candidate &candidate : report.profiles) {
+        Json entry = {{"id", candidate.id}};
+        entry.update(figures_json(candidate));
+        entry["above_best"] = candidate.excess_over_best.levels;
+        entry["above_best_sigma"] = candidate.excess_over_best.sigma;
+        entry["as_good_as_best"] = report.is_as_good(candidate);
+        entry["below_none"] = candidate.gain_over_none.levels;
+        entry["below_none_sigma"] = candidate.gain_over_none.sigma;
+        entry["better_than_none"] = candidate.gain_over_none.is_clear();
+        entry["has_falloff"] = candidate.has_falloff;
+        add_response(candidate, entry);
+        profiles.push_back(entry);
     }
     Json none = figures_json(report.none);
     add_response(report.none, none);
@@ -108,7 +113,7 @@ Json trial_json(const TrialReport &report) {
             {"images", report.images()},
             {"fitted", report.pairs.train.size()},
             {"measured", report.measured()},
-            {"unexplained", report.counts.size() - report.measured()},
+            {"unexplained", report.is_explained.size() - report.measured()},
             {"before_rms", report.before.rms},
             {"none", none},
             {"profiles", profiles},
@@ -121,22 +126,26 @@ void print_trial(const TrialReport &report, std::ostream &out) {
     out << format("against        %s, exposures fitted to %zu pairs and %zu others measured",
                   (report.path == pictures ? pictures : report.path + ": " + pictures).c_str(),
                   report.pairs.train.size(), report.measured());
-    if (report.measured() < report.counts.size())
-        out << format(" (%zu outliers left out)", report.counts.size() - report.measured());
+    if (report.measured() < report.is_explained.size())
+        out << format(" (%zu outliers left out)", report.is_explained.size() - report.measured());
     out << format("\n%-14s %7s %7s   %-18s levels of 255\n", "", "RMS", "median", "RMS above the best");
     for (size_t i = 0; i < report.profiles.size(); i++) {
-        const Candidate &own = report.profiles[i];
-        const std::string above =
-            i == report.best ? "" : format("%+.3f +- %.3f", own.above_best.levels, own.above_best.sigma);
-        const std::string without = own.has_falloff ? "" : "; has no falloff";
-        out << format("%-14s %7.3f %7.3f   %-18s %s%s\n", ("profile " + std::to_string(own.id)).c_str(),
-                      own.figures.rms, own.figures.median, above.c_str(), own.label.c_str(), without.c_str());
-        if (own.response_from != ResponseOf::own) out << format("%-51s %s\n", "", describe_response(own).c_str());
+        const Candidate &candidate = report.profiles[i];
+        const std::string above = i == report.best ? ""
+                                                   : format("%+.3f +- %.3f", candidate.excess_over_best.levels,
+                                                            candidate.excess_over_best.sigma);
+        const std::string without = candidate.has_falloff ? "" : "; has no falloff";
+        out << format("%-14s %7.3f %7.3f   %-18s %s%s\n", ("profile " + std::to_string(candidate.id)).c_str(),
+                      candidate.figures.rms, candidate.figures.median, above.c_str(), candidate.label.c_str(),
+                      without.c_str());
+        if (candidate.response_from != ResponseOf::own)
+            out << format("%-51s %s\n", "", describe_response(candidate).c_str());
     }
-    out << format("%-14s %7.3f %7.3f   %-18s exposures and white balances alone, %s\n", "no falloff",
-                  report.none.figures.rms, report.none.figures.median,
-                  format("%+.3f +- %.3f", report.none.above_best.levels, report.none.above_best.sigma).c_str(),
-                  describe_response(report.none).c_str());
+    out << format(
+        "%-14s %7.3f %7.3f   %-18s exposures and white balances alone, %s\n", "no falloff", report.none.figures.rms,
+        report.none.figures.median,
+        format("%+.3f +- %.3f", report.none.excess_over_best.levels, report.none.excess_over_best.sigma).c_str(),
+        describe_response(report.none).c_str());
     out << format("%-14s %7.3f\n", "as they are", report.before.rms);
     const std::vector<int64_t> good = as_good_as_best(report);
     if (!report.is_any_better())

@@ -30,14 +30,14 @@ struct Candidate {
     TrialErrors errors;
 
     TrialFigures figures;
-    TrialDifference above_best;  // of the best profile
-    TrialDifference below_none;  // improvement over no falloff correction
+    TrialDifference excess_over_best;  // of the best profile
+    TrialDifference gain_over_none;    // improvement over no falloff correction
 };
 
 struct TrialReport {
     std::string file, path;  // database, and the name of the pictures
     TrialPairs pairs;
-    std::vector<bool> counts;  // of the measured pairs
+    std::vector<bool> is_explained;  // of the measured pairs
     std::vector<Candidate> profiles;
     Candidate none;
     TrialFigures before;  // the pictures as they are
@@ -45,7 +45,7 @@ struct TrialReport {
 
     size_t measured() const;
     size_t images() const;  // with pairs
-    bool is_as_good(const Candidate &own) const { return !own.above_best.is_clear(); }
+    bool is_as_good(const Candidate &candidate) const { return !candidate.excess_over_best.is_clear(); }
     bool is_any_better() const;
 };
 

@@ -81,12 +81,12 @@ std::string Databases::names() const {
 }
 
 lensprof_status Databases::look_up(const lensprof_profile_key &key, const lensprof_lookup_options &options,
-                                   lensprof_profile &profile, lensprof_lookup &how) const {
+                                   lensprof_profile &profile, lensprof_lookup &lookup) const {
     std::vector<lensprof_store *> stores;
     for (const Store &store : stores_) stores.push_back(store.get());
     lensprof_error error{};
     const lensprof_status status = lensprof_store_lookup_in(stores.data(), static_cast<uint32_t>(stores.size()), &key,
-                                                            &options, &profile, &how, &error);
+                                                            &options, &profile, &lookup, &error);
     if (status != LENSPROF_ERROR_NOT_FOUND) check(status, names(), &error);
     return status;
 }

@@ -40,7 +40,7 @@ public:
 
     // lensprof_store_lookup_in for all of them. Returns NOT_FOUND, throws on every other failure.
     lensprof_status look_up(const lensprof_profile_key &key, const lensprof_lookup_options &options,
-                            lensprof_profile &profile, lensprof_lookup &how) const;
+                            lensprof_profile &profile, lensprof_lookup &lookup) const;
 
 private:
     std::vector<std::string> files_;

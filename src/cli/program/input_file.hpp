@@ -7,7 +7,7 @@
 namespace lensprof {
 
 // Maximum bytes of a text file, as in the library.
-constexpr uint64_t largest_text = uint64_t(64) << 20;
+constexpr uint64_t max_text_bytes = uint64_t(64) << 20;
 
 // Failure (unreadable) for an existing path that is neither a regular file nor a folder: devices are endless, pipes
 // block, and both can be read only once.

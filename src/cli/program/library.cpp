@@ -103,7 +103,7 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
     return Store(store);
 }
 
-Pto read_pto(const std::string &path) { return parse_pto(read_text(path, largest_text), path); }
+Pto read_pto(const std::string &path) { return parse_pto(read_text(path, max_text_bytes), path); }
 
 Pto parse_pto(const std::string &text, const std::string &item) {
     lensprof_pto *pto = nullptr;

@@ -25,7 +25,7 @@ bool shows_colour() {
 
 std::string warning_mark(bool colour) { return mark(colour, "1;33", "warning:"); }
 
-void tell(Streams &streams, const std::string &text) { streams.err << "lensprof: " << one_line(text) << "\n"; }
+void print_message(Streams &streams, const std::string &text) { streams.err << "lensprof: " << one_line(text) << "\n"; }
 
 void warn(Streams &streams, const std::string &text) {
     if (streams.verbosity != Verbosity::quiet)

@@ -10,7 +10,7 @@ namespace lensprof {
 // Prints one line that starts with "lensprof: ", "lensprof: warning: " or "lensprof: note: "; --quiet omits warnings
 // and notes. File names and EXIF may contain anything: control characters are escaped. "warning:" and "note:" have a
 // colour on a terminal, unless NO_COLOR is set (https://no-color.org).
-void tell(Streams &streams, const std::string &text);
+void print_message(Streams &streams, const std::string &text);
 void warn(Streams &streams, const std::string &text);
 void note(Streams &streams, const std::string &text);
 

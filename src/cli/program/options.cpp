@@ -459,7 +459,7 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
     const auto begin = std::chrono::steady_clock::now();
     const int code = action->second(streams);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    if (verbose_) tell(streams, format("%.2f s, %.0f MB of memory", taken.count(), peak_megabytes()));
+    if (verbose_) print_message(streams, format("%.2f s, %.0f MB of memory", taken.count(), peak_megabytes()));
     return code;
 }
 

@@ -104,7 +104,7 @@ void Progress::end_step() {
     step_.clear();
 }
 
-void Progress::say(const std::string &line) {
+void Progress::print_line(const std::string &line) {
     if (!shown_) return;
     std::lock_guard<std::mutex> lock(mutex_);
     clear_line();

@@ -48,7 +48,7 @@ public:
     void clear();  // ends the step
 
     // Prints a permanent line if progress is shown.
-    void say(const std::string &line);
+    void print_line(const std::string &line);
 
     // Prints a permanent line, except with --quiet.
     void warn(const std::string &line);

@@ -70,12 +70,12 @@ int run(const std::vector<std::string> &words, Streams &streams) {
         declare_all(program.root(), program);
         return program.run(words, streams);
     } catch (const Failure &failure) {
-        tell(streams, failure.what());
+        print_message(streams, failure.what());
         return static_cast<int>(failure.code);
     } catch (const std::bad_alloc &) {
-        tell(streams, "out of memory; close other programs or use smaller pictures");
+        print_message(streams, "out of memory; close other programs or use smaller pictures");
     } catch (const std::exception &e) {
-        tell(streams, e.what());
+        print_message(streams, e.what());
     }
     return static_cast<int>(ExitCode::failed);
 }

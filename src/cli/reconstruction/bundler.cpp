@@ -118,7 +118,7 @@ Reconstruction read_bundler(const std::string &path) {
                                                 + " images; give the matching list");
     for (ReconstructionImage &image : found.images) read_camera(fields, image);
     for (uint32_t n = 0; n < points; n++) read_point(fields, found);
-    settle_tracks(found);
+    clean_tracks(found);
     sort_images(found);
     return found;
 }

@@ -133,7 +133,7 @@ void read_images(Content &content) {
     Rows cameras(content.database.get(), content.path, "SELECT camera_id, width, height FROM cameras");
     while (cameras.next()) {
         const int64_t width = cameras.integer(1), height = cameras.integer(2);
-        if (width < 1 || height < 1 || width > most_image_side || height > most_image_side)
+        if (width < 1 || height < 1 || width > max_image_side || height > max_image_side)
             fail_damaged(content.path,
                          "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
         if (!camera_of.emplace(cameras.integer(0), static_cast<uint32_t>(content.found.cameras.size())).second)
@@ -293,7 +293,7 @@ Reconstruction read_colmap_database(const std::string &path) {
     Content content = open_content(path);
     content.found.kind = "COLMAP database", content.found.path = path;
     take_tracks(content, join_matches(content));
-    settle_tracks(content.found);
+    clean_tracks(content.found);
     return std::move(content.found);
 }
 

@@ -79,7 +79,7 @@ struct Sight {
 };
 
 ReconstructionCamera camera_of(const std::string &file, uint64_t width, uint64_t height) {
-    if (width < 1 || height < 1 || width > uint64_t(most_image_side) || height > uint64_t(most_image_side))
+    if (width < 1 || height < 1 || width > uint64_t(max_image_side) || height > uint64_t(max_image_side))
         fail_damaged(file, "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
@@ -276,7 +276,7 @@ Reconstruction read_colmap_model(const std::string &folder) {
         found.points.push_back(position);
     };
     is_text(points) ? read_text_points(points, add) : read_binary_points(points, add);
-    settle_tracks(found);
+    clean_tracks(found);
     return found;
 }
 

@@ -100,7 +100,7 @@ void place(const SceneJson &shot, ReconstructionImage &image) {
 void take_sizes(const SceneJson &model, std::map<std::string, uint32_t> &camera_of, Reconstruction &found) {
     for (const auto &[name, camera] : object_at(model, "cameras").items()) {
         const int64_t width = whole_at(camera, "width"), height = whole_at(camera, "height");
-        if (width < 1 || height < 1 || width > most_image_side || height > most_image_side) continue;
+        if (width < 1 || height < 1 || width > max_image_side || height > max_image_side) continue;
         camera_of[name] = static_cast<uint32_t>(found.cameras.size());
         found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
     }
@@ -156,7 +156,7 @@ Reconstruction read_opensfm(const std::string &path) {
     read_tracks(path, tracks);
     const std::string model = (std::filesystem::path(path).parent_path() / "reconstruction.json").string();
     if (is_regular_file(model)) take_models(model, tracks);
-    settle_tracks(found);
+    clean_tracks(found);
     sort_images(found);
     return std::move(tracks.found);
 }

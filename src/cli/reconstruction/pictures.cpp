@@ -142,7 +142,7 @@ std::vector<std::string> find_pictures(const Reconstruction &r, const std::strin
             + (max_count ? ", or list the images to use with --image-list" : ""));
 }
 
-void settle_coordinates(Reconstruction &r, const std::vector<std::string> &files) {
+void convert_coordinates(Reconstruction &r, const std::vector<std::string> &files) {
     std::vector<Frame> frames;
     for (size_t i = 0; i < r.images.size(); i++) {
         stop_if_interrupted();

@@ -21,6 +21,6 @@ std::vector<std::string> find_pictures(const Reconstruction &reconstruction, con
 // Converts the image coordinates to px of the stored pictures, and gives each image a camera of the stored size.
 // Without files the sizes are those of the cameras. Failure (unreadable) for a picture of another size than the
 // reconstruction states (resized or rotated since), and for features outside it.
-void settle_coordinates(Reconstruction &reconstruction, const std::vector<std::string> &files);
+void convert_coordinates(Reconstruction &reconstruction, const std::vector<std::string> &files);
 
 }  // namespace lensprof

@@ -56,7 +56,7 @@ struct Reconstruction {
 // Sorts observations by point and image, drops points that an image observes twice or fewer than two images observe,
 // and renumbers the others from 0. Failure with the path: (unreadable) for images without a unique name and for
 // positions that are not numbers, (not_usable) if nothing is left.
-void settle_tracks(Reconstruction &reconstruction);
+void clean_tracks(Reconstruction &reconstruction);
 
 // Renumbers images in the order of their names, which often follows the path of the camera.
 void sort_images(Reconstruction &reconstruction);
@@ -68,7 +68,7 @@ bool is_finite(const std::array<double, 3> &vector);
 
 // Maximum number of images and of observations of a reconstruction.
 constexpr uint32_t max_images = 1u << 20;
-constexpr int64_t most_image_side = 1 << 20;  // px
+constexpr int64_t max_image_side = 1 << 20;  // px
 constexpr uint64_t max_observations = uint64_t(1) << 28;
 
 }  // namespace lensprof

@@ -28,7 +28,7 @@ void add_view(const std::string &id, const std::string &name, int64_t width, int
     Reconstruction &found = views.found;
     const std::string &path = found.path;
     if (id.empty() || name.empty()) fail_damaged(path, "has a view without id or name");
-    if (width < 0 || height < 0 || width > most_image_side || height > most_image_side || !width != !height)
+    if (width < 0 || height < 0 || width > max_image_side || height > max_image_side || !width != !height)
         fail_damaged(path, short_name(name) + " has no valid size");
     if (!views.image_of.emplace(id, static_cast<uint32_t>(found.images.size())).second)
         fail_damaged(path, "has two views with the id " + short_name(id));
@@ -68,7 +68,7 @@ void place_images(Views &views) {
 Reconstruction finished(Views &views, const SceneJson &structure) {
     if (structure.empty()) fail_damaged(views.found.path, "has no structure, and so no points that connect images");
     place_images(views);
-    settle_tracks(views.found);
+    clean_tracks(views.found);
     sort_images(views.found);
     return std::move(views.found);
 }

@@ -14,7 +14,7 @@ namespace lensprof {
 TrueValues read_truth(const std::string &path, size_t images) {
     TrueValues truth;
     try {
-        Json json = Json::parse(read_text(path, largest_text));
+        Json json = Json::parse(read_text(path, max_text_bytes));
         for (const Json &image : json.at("images")) truth.ev.push_back(image.at("ev").get<double>());
         const Json &curves = json.at("vignetting").at("k"), &center = json.at("vignetting").at("center");
         for (size_t n = 0; n < 3; n++) truth.vignetting.k[n] = curves.at(curves.size() / 2).at(n).get<double>();

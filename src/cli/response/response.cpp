@@ -192,7 +192,7 @@ int finish(const Options &o, lensprof_profile_key key, ResponseReport &report, S
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(key) << "\n";
     if (report.usable && !report.verdict.text.empty()) warn(streams, o.files.front() + ": " + report.verdict.text);
-    if (!report.usable) tell(streams, not_usable_text(o.files.front(), report.verdict, o.store));
+    if (!report.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
     return static_cast<int>(report.usable ? ExitCode::done : ExitCode::not_usable);
 }
 

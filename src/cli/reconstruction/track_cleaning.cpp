@@ -32,7 +32,7 @@ void check(const Reconstruction &r) {
 
 }  // namespace
 
-void settle_tracks(Reconstruction &reconstruction) {
+void clean_tracks(Reconstruction &reconstruction) {
     check(reconstruction);
     auto &all = reconstruction.observations;
     std::stable_sort(all.begin(), all.end(), [](const TrackObservation &a, const TrackObservation &b) {
@@ -93,7 +93,7 @@ void keep_images(const std::vector<uint32_t> &kept, Reconstruction &reconstructi
         std::remove_if(all.begin(), all.end(), [](const auto &observation) { return observation.image == UINT32_MAX; }),
         all.end());
     reconstruction.images = std::move(images);
-    settle_tracks(reconstruction);
+    clean_tracks(reconstruction);
 }
 
 bool is_finite(const std::array<double, 3> &vector) {
