@@ -10,7 +10,7 @@ bool is_of_pictures(const Failure &failure) {
            || failure.code == ExitCode::not_usable || failure.code == ExitCode::not_found;
 }
 
-std::string why_not(const std::function<void()> &step) {
+std::string failure_of(const std::function<void()> &step) {
     try {
         step();
         return {};

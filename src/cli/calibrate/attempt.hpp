@@ -13,6 +13,6 @@ namespace lensprof {
 bool is_of_pictures(const Failure &failure);
 
 // Returns "" if the step succeeded, else the reason. Rethrows a Failure that does not concern pictures.
-std::string why_not(const std::function<void()> &step);
+std::string failure_of(const std::function<void()> &step);
 
 }  // namespace lensprof

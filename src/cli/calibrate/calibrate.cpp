@@ -65,7 +65,7 @@ void check_existing_files(const CalibrateOptions &o, const Inputs &inputs, const
     for (const InputPicture &picture : inputs.pictures) outputs.push_back(picture.target);
     for (const std::string &file : outputs) {
         if (is_folder(file)) throw Failure(ExitCode::usage, file + ": is a folder; give another output folder with -o");
-        if (!o.overwrite && !ledger.knows(file) && ledger.is_foreign(file))
+        if (!o.overwrite && !ledger.contains(file) && ledger.is_foreign(file))
             throw Failure(ExitCode::usage, file + ": exists and was not written by calibrate; give another folder "
                                                   "with -o, or use --overwrite");
     }
@@ -89,7 +89,8 @@ void write_summary(const CalibrateOptions &o, const Json &json, Ledger &ledger) 
 // A database in the output folder needs no check before the folder is created.
 void check_database(const CalibrateOptions &o) {
     const std::string folder = std::filesystem::path(absolute_path(o.store.db)).parent_path().string();
-    if (o.store.db.empty() || is_folder(o.output) || one_name(folder) != one_name(o.output)) check_store(o.store);
+    if (o.store.db.empty() || is_folder(o.output) || canonical_path(folder) != canonical_path(o.output))
+        check_store(o.store);
 }
 
 // Failure for a report that cannot be written, before anything is computed.
@@ -98,7 +99,7 @@ void check_report(const CalibrateOptions &o) {
     check_page_name(o.report);
     check_not_taken(o.report, "report", {store_path(o.store.db)});
     const std::string folder = std::filesystem::path(absolute_path(o.report)).parent_path().string();
-    if (is_folder(o.output) || one_name(folder) != one_name(o.output)) check_output_file(o.report);
+    if (is_folder(o.output) || canonical_path(folder) != canonical_path(o.output)) check_output_file(o.report);
 }
 
 int run(const CalibrateOptions &o, Streams &streams) {
@@ -108,7 +109,7 @@ int run(const CalibrateOptions &o, Streams &streams) {
     check_database(o);
     FolderLock lock(o.output);
     const Inputs inputs = find_inputs(o.inputs, o.output, progress);
-    if (has_ledger(o.output)) sweep_temporaries(o.output);
+    if (has_ledger(o.output)) remove_stale_temporaries(o.output);
     Ledger ledger(o.output, o.overwrite);
     check_existing_files(o, inputs, ledger);
     if (inputs.pictures.empty() && inputs.unreadable)
@@ -118,7 +119,7 @@ int run(const CalibrateOptions &o, Streams &streams) {
     make_folder(o.output);
     lock.acquire();
     Panoramas panoramas = find_panoramas(o, inputs, ledger, progress);
-    forget_panoramas(o, panoramas, ledger);
+    remove_obsolete_panoramas(o, panoramas, ledger);
     fit_panoramas(o, panoramas, ledger, progress);
     CorrectedPictures pictures = plan_corrections(o, inputs, panoramas);
     write_corrections(o, pictures, ledger, progress);

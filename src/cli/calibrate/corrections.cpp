@@ -63,7 +63,7 @@ void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reaso
 void plan_panorama(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     std::string failure;
     if (panorama.evens()) {
-        failure = why_not([&] { plan_by_project(panorama, corrected, reasons); });
+        failure = failure_of([&] { plan_by_project(panorama, corrected, reasons); });
     } else {
         const Json &result = panorama.summary["result"];
         failure = (result.is_object() ? result["reason"] : panorama.summary["not_stored"]).get<std::string>();

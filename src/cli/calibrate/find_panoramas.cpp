@@ -29,7 +29,8 @@ struct Groups {
 
 std::string key_of(const std::vector<const InputPicture *> &pictures, const std::string &more) {
     std::string text = std::string(lensprof_version()) + "\n" + more + "\n";
-    for (const InputPicture *picture : pictures) text += one_name(picture->file) + "\n" + picture->identity + "\n";
+    for (const InputPicture *picture : pictures)
+        text += canonical_path(picture->file) + "\n" + picture->identity + "\n";
     return digest_of_text(text);
 }
 
@@ -90,7 +91,7 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
     return groups;
 }
 
-std::string noted_name(const std::string &file) { return ascii_path(one_name(file)); }
+std::string noted_name(const std::string &file) { return ascii_path(canonical_path(file)); }
 
 Json json_of(const std::map<std::string, std::string> &reasons) {
     Json list = Json::array();
@@ -129,7 +130,7 @@ bool recall_reasons(const Json &list, const ByNotedFile &by_file, std::map<std::
 bool is_readable(const std::string &file) {
     ReadOptions options;
     options.max_side = 256;
-    return why_not([&] { read_picture(file, options); }).empty();
+    return failure_of([&] { read_picture(file, options); }).empty();
 }
 
 // Takes the ledger's data on these pictures; false if they are missing, or if a picture that was unreadable can now be
@@ -223,7 +224,7 @@ std::string source_of(const Json &notes, const Group &group, const std::string &
     const std::string known = ascii_path(name);
     if (notes.is_object() && notes.contains("results") && notes["results"].contains(known))
         return path_of_ascii(notes["results"][known].value("source", noted_name(group.pictures[0]->file)));
-    return one_name(group.pictures[0]->file);
+    return canonical_path(group.pictures[0]->file);
 }
 
 }  // namespace
@@ -253,7 +254,7 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
     panoramas.unjoined.insert(groups.unreadable.begin(), groups.unreadable.end());
     std::string fit_options = o.one_lens ? "one lens\n" : "\n";
     if (o.store.no_store) fit_options += "no store\n";
-    for (const std::string &db : o.store.dbs) fit_options += one_name(db) + "\n";
+    for (const std::string &db : o.store.dbs) fit_options += canonical_path(db) + "\n";
     std::vector<std::string> keys;
     for (const Group &group : groups.list) keys.push_back(key_of(group.pictures, fit_options));
     const std::vector<std::string> names = names_of(o, groups.list, keys, targets, ledger);
@@ -273,7 +274,7 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
     return panoramas;
 }
 
-void forget_panoramas(const CalibrateOptions &o, const Panoramas &panoramas, Ledger &ledger) {
+void remove_obsolete_panoramas(const CalibrateOptions &o, const Panoramas &panoramas, Ledger &ledger) {
     if (!ledger.notes.is_object() || !ledger.notes.contains("results")) return;
     Json kept = Json::object();
     for (const auto &[name, result] : ledger.notes["results"].items()) {

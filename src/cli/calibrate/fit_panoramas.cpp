@@ -66,15 +66,15 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     const lensprof_profile_key key = profile_key(options, project, metadata, streams);
     const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
     if (panorama.summary["cameras_fit"] == false) warn(streams, panorama.name + poor_cameras_note);
-    ProjectFit done(progress);
-    done.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
-    fit_project(options, project, metadata, prior, done, streams);
-    Json page = fit_page_data({done.report, done.input, done.best, done.input.images, project, metadata, "", "", false},
-                              progress);
+    ProjectFit state(progress);
+    state.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
+    fit_project(options, project, metadata, prior, state, streams);
+    Json page = fit_page_data(
+        {state.report, state.input, state.best, state.input.images, project, metadata, "", "", false}, progress);
     OutputFiles outputs;
-    outputs.add(panorama.project, done.best.corrects() ? result_text(done, project, panorama.project)
-                                                       : project_text_at(project, panorama.project));
-    finish_fit(done.report, key, options.store,
+    outputs.add(panorama.project, state.best.corrects() ? result_text(state, project, panorama.project)
+                                                        : project_text_at(project, panorama.project));
+    finish_fit(state.report, key, options.store,
                {method_name(options.fit.method), project.path, true, true, "", nullptr, &outputs, &prior}, streams);
     Json result = Json::parse(out.str());
     result.erase("seconds");
@@ -84,7 +84,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     panorama.summary["database"] = result["profile"].is_null() ? Json() : Json(store_path(options.store.db));
     panorama.summary["warnings"] = warnings_in(err.str());
     panorama.summary["result"] = result;
-    add_fit_verdict(page, done.report, streams.warnings);
+    add_fit_verdict(page, state.report, streams.warnings);
     panorama.page = valid_json(page);
 }
 
@@ -107,7 +107,7 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
     }
     ledger.finish(panorama.project);
     Json files = Json::array();
-    for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(one_name(picture->file)));
+    for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(canonical_path(picture->file)));
     panorama.summary = valid_json(panorama.summary);
     ledger.notes["results"][ascii_path(panorama.name)] = {
         {"key", is_final ? panorama.key : std::string()},
@@ -198,11 +198,11 @@ void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledg
             panoramas.fitted++;
         }
         if (!panorama.evens()) continue;
-        const std::string why = why_not([&] { draw_preview(panorama, ledger, progress); });
-        panorama.summary["preview"] = why.empty() ? Json(panorama.preview) : Json();
-        if (why.empty()) continue;
+        const std::string failure = failure_of([&] { draw_preview(panorama, ledger, progress); });
+        panorama.summary["preview"] = failure.empty() ? Json(panorama.preview) : Json();
+        if (failure.empty()) continue;
         ledger.abandon(panorama.preview);
-        panorama.summary["warnings"].push_back(panorama.preview + ": not drawn: " + why);
+        panorama.summary["warnings"].push_back(panorama.preview + ": not drawn: " + failure);
     }
 }
 

@@ -46,7 +46,7 @@ void add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Pr
     Json views = Json::array();
     for (const Panorama &panorama : panoramas.list) {
         if (!panorama.evens() || views.size() == max_views) continue;
-        why_not([&] {
+        failure_of([&] {
             const Mosaic mosaic = read_preview(panorama.preview);
             views.push_back(view_json(panorama.name + ", unblended", mosaic.before, mosaic.after));
         });

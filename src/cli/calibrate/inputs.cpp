@@ -26,7 +26,7 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
                 word
                     + ": is neither a picture (.jpg, .png, .tif, camera raw) nor a folder; use `lensprof build` for a "
                       "project");
-        if (one_name(word) == one_name(output))
+        if (canonical_path(word) == canonical_path(output))
             throw Failure(ExitCode::usage, output + ": is the folder of the pictures; give another output folder with "
                                                     "-o");
     }
@@ -40,7 +40,7 @@ void leave_out_duplicates(Inputs &inputs) {
     kept.reserve(inputs.pictures.size());
     for (InputPicture &picture : inputs.pictures) {
         const fs::path file = picture.file;
-        const auto [other, is_new] = first.try_emplace(one_name(picture.target), nullptr);
+        const auto [other, is_new] = first.try_emplace(canonical_path(picture.target), nullptr);
         if (!is_new && fs::path(other->second->file).parent_path() == file.parent_path()) {
             inputs.left_out.push_back({picture.file, picture.file + ": its corrected copy would be " + picture.target
                                                          + ", like that of " + other->second->name
@@ -56,10 +56,10 @@ void leave_out_duplicates(Inputs &inputs) {
 // Refuses pictures of two folders with the same copy name, and copies that would overwrite a picture.
 void check_targets(const Inputs &inputs, const std::vector<NamedPicture> &named) {
     std::set<std::string> read;
-    for (const NamedPicture &picture : named) read.insert(one_name(picture.file));
+    for (const NamedPicture &picture : named) read.insert(canonical_path(picture.file));
     std::map<std::string, std::string> written;
     for (const InputPicture &picture : inputs.pictures) {
-        const std::string target = one_name(picture.target);
+        const std::string target = canonical_path(picture.target);
         if (read.count(target))
             throw Failure(ExitCode::usage, picture.file + ": its corrected copy would be " + picture.target
                                                + ", which is an input picture; give another folder with -o");
@@ -84,9 +84,9 @@ std::string copy_name(const InputPicture &picture) {
 
 // Whether the copy would overwrite a contact sheet.
 bool is_sheet(const InputPicture &picture, const std::string &output) {
-    const fs::path target = one_name(picture.target);
+    const fs::path target = canonical_path(picture.target);
     const std::string name = target.filename().string();
-    if (name.rfind("calibrate_sheet", 0) != 0 || target.parent_path() != fs::path(one_name(output))) return false;
+    if (name.rfind("calibrate_sheet", 0) != 0 || target.parent_path() != fs::path(canonical_path(output))) return false;
     for (size_t page = 0; page < 1000; page++)
         if (name == sheet_name(page)) return true;
     return false;
@@ -162,7 +162,7 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
     check_output(words, output);
     std::vector<UnlistedFolder> unlisted;
     std::vector<NamedPicture> named = named_pictures(words, output, &unlisted);
-    take_out_below(named, has_ledger);
+    extract_below(named, has_ledger);
     const Photographs list = list_photographs(words, named);
     Inputs inputs;
     inputs.label = list.label;

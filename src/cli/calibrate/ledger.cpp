@@ -74,7 +74,7 @@ Json object_of(const std::string &text) {
 bool has_ledger(const std::string &folder) {
     const std::string path = (fs::path(folder) / calibrate_records).string();
     if (!is_regular_file(path)) return false;
-    return why_not([&] {
+    return failure_of([&] {
                if (object_of(read_text(path, max_text_bytes)).is_null())
                    throw Failure(ExitCode::unreadable, path + ": is not a record of calibrate; delete it, or give "
                                                               "another folder with -o");
@@ -155,8 +155,8 @@ bool Ledger::is_foreign(const std::string &file) const {
 void Ledger::begin(const std::string &file, const std::string &key) {
     if (!overwrite_ && is_foreign(file))
         throw ForeignFile(ExitCode::usage, file + ": "
-                                               + (knows(file) ? "was modified after calibrate wrote it"
-                                                              : "exists and was not written by calibrate")
+                                               + (contains(file) ? "was modified after calibrate wrote it"
+                                                                 : "exists and was not written by calibrate")
                                                + "; move it away, or use --overwrite");
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) fs::remove(file, ignored);
@@ -192,7 +192,7 @@ void Ledger::abandon(const std::string &file) { begun_.erase(name_of(file)); }
 
 void Ledger::remove(const std::string &file) {
     std::error_code ignored;
-    if (knows(file) && !is_foreign(file)) fs::remove(file, ignored);
+    if (contains(file) && !is_foreign(file)) fs::remove(file, ignored);
     files_.erase(name_of(file));
 }
 

@@ -63,7 +63,7 @@ public:
     // Whether a file exists at `file` that this command did not write or that was modified since.
     bool is_foreign(const std::string &file) const;
 
-    bool knows(const std::string &file) const { return files_.count(name_of(file)) != 0; }
+    bool contains(const std::string &file) const { return files_.count(name_of(file)) != 0; }
 
     // Records that `file` is about to be written; call save() before writing it. Throws ForeignFile (usage) unless
     // `overwrite`. A link is removed because its target is in another folder.

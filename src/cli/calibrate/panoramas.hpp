@@ -52,6 +52,6 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
 void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledger, Progress &progress);
 
 // Removes projects and mosaics of panoramas that are no more.
-void forget_panoramas(const CalibrateOptions &o, const Panoramas &panoramas, Ledger &ledger);
+void remove_obsolete_panoramas(const CalibrateOptions &o, const Panoramas &panoramas, Ledger &ledger);
 
 }  // namespace lensprof

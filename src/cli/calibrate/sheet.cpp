@@ -33,7 +33,7 @@ void write_sheet(const std::string &path, const CorrectedPicture *first, size_t 
 
 Picture small_copy(const std::string &file, const InputPicture &picture, uint32_t side) {
     Picture copy;
-    why_not([&] { copy = upright_copy(file, picture.metadata.orientation, side); });
+    failure_of([&] { copy = upright_copy(file, picture.metadata.orientation, side); });
     return copy;
 }
 
@@ -64,7 +64,7 @@ void write_sheets(const CalibrateOptions &o, const CorrectedPictures &pictures, 
 
     for (size_t page = names.size();; page++) {  // pages of an earlier, larger set
         const std::string name = sheet_names(o, (page + 1) * per_page).back();
-        if (!ledger.knows(name)) break;
+        if (!ledger.contains(name)) break;
         ledger.remove(name);
     }
 }

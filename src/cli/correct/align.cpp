@@ -86,7 +86,7 @@ Project sequence(const Options &o) {
             ExitCode::not_usable,
             (o.pto.empty() ? project.files[0] : o.pto) + ": a single frame cannot be aligned; give at least two",
             LENSPROF_REASON_FEW_PAIRS);
-    demand_one_kind(project.files);
+    require_one_kind(project.files);
     project.reference = 0;
     for (uint32_t i = 0; i < project.images.size(); i++) {
         auto &image = project.images[i];

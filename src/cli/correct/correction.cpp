@@ -17,13 +17,13 @@ namespace lensprof {
 
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet) {
     std::set<std::string> read, written;
-    for (const std::string &file : inputs) read.insert(one_name(file));
-    for (const Correction &job : jobs) read.insert(one_name(job.source));
+    for (const std::string &file : inputs) read.insert(canonical_path(file));
+    for (const Correction &job : jobs) read.insert(canonical_path(job.source));
     for (Correction &job : jobs) {
         PictureSize size = read_size(job.source);  // unreadable pictures fail before anything is written
         job.pixels = uint64_t(size.width) * size.height;
-        const std::string target = one_name(job.target);
-        if (target == one_name(job.source) || is_same_file(job.source, job.target))
+        const std::string target = canonical_path(job.target);
+        if (target == canonical_path(job.source) || is_same_file(job.source, job.target))
             throw Failure(ExitCode::usage,
                           job.source + ": would be overwritten by its correction; give another folder with -o");
         if (read.count(target))
@@ -33,7 +33,7 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
             throw Failure(ExitCode::usage,
                           job.target + ": two pictures would get this name; correct them one folder at a time");
     }
-    if (!sheet.empty() && (read.count(one_name(sheet)) || written.count(one_name(sheet))))
+    if (!sheet.empty() && (read.count(canonical_path(sheet)) || written.count(canonical_path(sheet))))
         throw Failure(ExitCode::usage, sheet + ": the contact sheet would overwrite a picture; give it another name");
 }
 
@@ -53,7 +53,7 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
         if (kind.overwrite) return;
         const auto mark = mark_of_older(job.target);
         const auto folder_of = [](const std::string &file) {
-            return one_name(std::filesystem::path(absolute_path(file)).parent_path().string());
+            return canonical_path(std::filesystem::path(absolute_path(file)).parent_path().string());
         };
         const bool is_same_folder = folder_of(job.target) == folder_of(job.source);  // next to somebody's pictures
         if (!mark && (!replaces_unmarked || is_same_folder) && path_exists(job.target))

@@ -64,9 +64,9 @@ void declare(Command &command, Options &o) {
 
 // The exposures of the command line, EV; empty if not given.
 std::vector<double> given_exposures(const Options &o) {
-    if (!o.ev.empty()) demand_count(o.ev.size(), "--ev", o.files.size(), "picture");
+    if (!o.ev.empty()) require_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty() || o.times_s.empty()) return o.ev;
-    demand_count(o.times_s.size(), "--times", o.files.size(), "picture");
+    require_count(o.times_s.size(), "--times", o.files.size(), "picture");
     std::vector<double> ev;
     for (const double time_s : o.times_s) ev.push_back(std::log2(time_s));
     return ev;
@@ -89,7 +89,7 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
 
 // The pictures connected by pairs, in order: the largest group, the earlier one of two. The others share almost no
 // unclipped grey values with another picture.
-std::vector<uint32_t> joined(const std::vector<lensprof_pair> &pairs, uint32_t count) {
+std::vector<uint32_t> connected_pictures(const std::vector<lensprof_pair> &pairs, uint32_t count) {
     std::vector<uint32_t> group(count), size(count, 0);
     std::iota(group.begin(), group.end(), 0u);
     for (bool changed = true; changed;) {
@@ -224,7 +224,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     input.pairs = get_pairs(o, project, progress, report, input.options.channels);
     stop_if_interrupted();
     const auto images = input.images;
-    const auto members = joined(input.pairs, static_cast<uint32_t>(images.size()));
+    const auto members = connected_pictures(input.pairs, static_cast<uint32_t>(images.size()));
     auto place = std::find(members.begin(), members.end(), report.reference);
     if (place == members.end() && !o.reference.empty())
         throw Failure(ExitCode::not_usable,
@@ -252,7 +252,7 @@ int bracket_and_store(const Options &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
     Project project = static_project(o.files, o.free_balance);
     check_pictures(project, o.max_side);
-    demand_one_kind(project.files);
+    require_one_kind(project.files);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
     lensprof_profile_key key = camera_key(o.store, metadata[0], project.files[0], streams);

@@ -161,28 +161,28 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
                   const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Json &page,
                   Streams &streams) {
     Progress progress(streams, o.progress);
-    ProjectFit done(progress);
-    done.report.camera_kind = kind;
-    fit_project(o, project, metadata, prior, done, streams);
-    BuildReport &report = done.report;
-    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(done.input.pairs, project));
-    if (!o.exposures_out.empty() && (done.best.corrects() || o.store.force))
-        outputs.add(o.exposures_out, exposures_text(done, project, metadata, o.exposures_out));
-    if (!o.gain_chart.empty() && !done.gains.empty())
-        outputs.add(o.gain_chart, gain_chart(o.gain_chart, project.path, done.gains));
-    if (!o.pto_out.empty() && (done.best.corrects() || o.store.force))
-        outputs.add(o.pto_out, result_text(done, project, o.pto_out));
-    if (!o.preview.empty() && done.best.corrects()) write_preview(o.preview, project, done.best, progress);
+    ProjectFit state(progress);
+    state.report.camera_kind = kind;
+    fit_project(o, project, metadata, prior, state, streams);
+    BuildReport &report = state.report;
+    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(state.input.pairs, project));
+    if (!o.exposures_out.empty() && (state.best.corrects() || o.store.force))
+        outputs.add(o.exposures_out, exposures_text(state, project, metadata, o.exposures_out));
+    if (!o.gain_chart.empty() && !state.gains.empty())
+        outputs.add(o.gain_chart, gain_chart(o.gain_chart, project.path, state.gains));
+    if (!o.pto_out.empty() && (state.best.corrects() || o.store.force))
+        outputs.add(o.pto_out, result_text(state, project, o.pto_out));
+    if (!o.preview.empty() && state.best.corrects()) write_preview(o.preview, project, state.best, progress);
     if (!o.report.empty())
         page = fit_page_data(
-            {report, done.input, done.best, done.input.images, project, metadata, command_text(streams.words)},
+            {report, state.input, state.best, state.input.images, project, metadata, command_text(streams.words)},
             progress);
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path
                           + (o.points.empty() ? ": the EXIF exposures do not differ" : ": --points does not read EXIF")
                           + "; gamma depends on the prior");
-    return std::move(done.report);
+    return std::move(state.report);
 }
 
 // Checks that need no overlaps, which take time to find.
@@ -230,9 +230,9 @@ Project open_project(const Options &o, Streams &streams) {
             throw Failure(ExitCode::usage,
                           std::string(option) + ": is for reconstructions, but " + o.inputs[0]
                               + " is not one; omit the option, or give only database.db, tracks.csv or a similar file");
-    const bool is_project = o.inputs.size() == 1 && !names_pictures(o.inputs[0]);
+    const bool is_project = o.inputs.size() == 1 && !is_picture_argument(o.inputs[0]);
     for (const std::string &input : o.inputs)
-        if (!is_project && !names_pictures(input))
+        if (!is_project && !is_picture_argument(input))
             throw Failure(ExitCode::usage, input + ": is neither a picture (.jpg, .png, .tif) nor a folder; give a "
                                                    "single project, or pictures and folders");
     if (is_project && !o.project_out.empty())

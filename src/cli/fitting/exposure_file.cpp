@@ -30,41 +30,41 @@ Json camera_json(const lensprof_response &response, const std::string &name) {
     return {{"name", name}, {"response", curve}, {"light_of_level", light}};
 }
 
-Json cameras_json(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata) {
+Json cameras_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata) {
     Json list = Json::array();
-    for (const uint32_t first : done.settings.first_of_camera)
+    for (const uint32_t first : state.settings.first_of_camera)
         list.push_back(
-            camera_json(done.best.response_of(first), describe_camera(metadata[first].key, project.names[first])));
+            camera_json(state.best.response_of(first), describe_camera(metadata[first].key, project.names[first])));
     return list;
 }
 
-Json lenses_json(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata) {
+Json lenses_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata) {
     Json list = Json::array();
-    for (const uint32_t first : done.settings.first)
+    for (const uint32_t first : state.settings.first)
         list.push_back(
             {{"name", describe_setting(metadata[first].key, project.names[first])},
-             {"camera", done.settings.camera_of_image[first]},
-             {"vignetting", vignetting_json(done.best.falloff_of(first), done.best.falloff_curves_of(first))}});
+             {"camera", state.settings.camera_of_image[first]},
+             {"vignetting", vignetting_json(state.best.falloff_of(first), state.best.falloff_curves_of(first))}});
     return list;
 }
 
-Json image_json(const ProjectFit &done, const Project &project, uint32_t i, const fs::path &folder) {
-    const lensprof_exposure &exposure = done.best.exposures[i];
+Json image_json(const ProjectFit &state, const Project &project, uint32_t i, const fs::path &folder) {
+    const lensprof_exposure &exposure = state.best.exposures[i];
     const lensprof_camera &frame = project.images[i].camera;
     Json json = {{"name", project.names[i]}};
     if (path_exists(project.files[i]))
         json["file"] = fs::path(absolute_path(project.files[i])).lexically_proximate(folder).string();
     json["width"] = frame.width, json["height"] = frame.height;
-    json["lens"] = done.settings.of_image[i];
+    json["lens"] = state.settings.of_image[i];
     if (std::isnan(exposure.ev)) {
         json["ev"] = Json();
         return json;
     }
     json["ev"] = exposure.ev;
     json["white_balance"] = exposure.white_balance;
-    if (i < done.report.quality.size()) {
-        json["ev_sigma"] = number_or_null(done.report.quality[i].ev_sigma);
-        json["white_balance_sigma"] = done.report.quality[i].white_balance_sigma;
+    if (i < state.report.quality.size()) {
+        json["ev_sigma"] = number_or_null(state.report.quality[i].ev_sigma);
+        json["white_balance_sigma"] = state.report.quality[i].white_balance_sigma;
     }
     return json;
 }
@@ -217,19 +217,19 @@ void add_image(const Reader &reader, const Json &json,
 
 }  // namespace
 
-std::string exposures_text(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata,
-                           const std::string &path) {
+std::string exposures_text(const ProjectFit &state, const Project &project,
+                           const std::vector<PictureMetadata> &metadata, const std::string &path) {
     const fs::path folder = fs::path(absolute_path(path)).parent_path();
     Json images = Json::array();
-    for (uint32_t i = 0; i < project.names.size(); i++) images.push_back(image_json(done, project, i, folder));
-    const lensprof_exposure mean = mean_exposure(done.best.exposures);
+    for (uint32_t i = 0; i < project.names.size(); i++) images.push_back(image_json(state, project, i, folder));
+    const lensprof_exposure mean = mean_exposure(state.best.exposures);
     const Json all = {{"schema", schema},
                       {"file", "lensprof exposures"},
                       {"software", std::string("lensprof ") + lensprof_version()},
-                      {"reference", project.names[done.best.reference]},
+                      {"reference", project.names[state.best.reference]},
                       {"mean", {{"ev", mean.ev}, {"white_balance", mean.white_balance}}},
-                      {"cameras", cameras_json(done, project, metadata)},
-                      {"lenses", lenses_json(done, project, metadata)},
+                      {"cameras", cameras_json(state, project, metadata)},
+                      {"lenses", lenses_json(state, project, metadata)},
                       {"images", images}};
     return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

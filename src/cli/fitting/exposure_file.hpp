@@ -9,8 +9,8 @@
 namespace lensprof {
 
 // The text of the file, to be written to `path`: file names are relative to its folder.
-std::string exposures_text(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata,
-                           const std::string &path);
+std::string exposures_text(const ProjectFit &state, const Project &project,
+                           const std::vector<PictureMetadata> &metadata, const std::string &path);
 
 // Whether a file is a file of exposures, judged by its first lines.
 bool is_exposure_file(const std::string &path);

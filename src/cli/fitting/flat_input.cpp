@@ -24,7 +24,7 @@ std::vector<uint32_t> shots_of(const FlatCommand &o) {
         for (uint32_t i = 0; i < o.files.size(); i++) shots.push_back(i + 1);
         return shots;
     }
-    demand_count(o.shots.size(), "--shots", o.files.size(), "picture");
+    require_count(o.shots.size(), "--shots", o.files.size(), "picture");
     return o.shots;
 }
 
@@ -35,7 +35,7 @@ std::vector<double> rotations_of(const FlatCommand &o, const std::vector<uint32_
         if (std::find(order.begin(), order.end(), shot) == order.end()) order.push_back(shot);
     std::vector<double> rotations(shots.size(), 0.0);
     if (o.turned_deg.empty()) return rotations;
-    demand_count(o.turned_deg.size(), "--turned", order.size(), "shot");
+    require_count(o.turned_deg.size(), "--turned", order.size(), "shot");
     for (size_t i = 0; i < shots.size(); i++)
         rotations[i] =
             o.turned_deg[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
@@ -50,7 +50,7 @@ bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i
 std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_t> &shots,
                                  const std::vector<PictureMetadata> &metadata) {
     std::vector<double> ev(shots.size(), 0.0);
-    if (!o.ev.empty()) demand_count(o.ev.size(), "--ev", o.files.size(), "picture");
+    if (!o.ev.empty()) require_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty()) ev = o.ev;
     for (size_t i = 0; i < ev.size(); i++) {
         if (o.ev.empty() && needs_ev(o, shots, i)) {
@@ -175,7 +175,7 @@ void check_flat_options(const FlatCommand &o) {
 FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     FlatInput input;
     lensprof_flat_options_init(&input.options);
-    demand_one_kind(o.files);
+    require_one_kind(o.files);
     std::vector<PictureMetadata> metadata;
     for (const auto &file : o.files) metadata.push_back(read_metadata(file));
     input.names = o.files;

@@ -20,12 +20,12 @@ Project project_of_words(const std::vector<std::string> &words, const std::strin
     if (!images.empty())
         throw Failure(ExitCode::usage,
                       "--images: is for reconstructions, but " + words[0] + " is not one; omit the option");
-    if (is_one && !names_pictures(words[0])) {
+    if (is_one && !is_picture_argument(words[0])) {
         reject_reconstruction_part(words[0]);
         return read_project(words[0]);
     }
     for (const std::string &word : words)
-        if (!names_pictures(word))
+        if (!is_picture_argument(word))
             throw Failure(ExitCode::unreadable, word + ": is neither a picture (.jpg, .png, .tif) nor a folder; give "
                                                        "a single project, or pictures and folders");
     return project_of_pictures(find_photographs(words, streams), false, progress, streams);

@@ -107,7 +107,7 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
 
 }  // namespace
 
-bool names_pictures(const std::string &word) { return is_folder(word) || is_picture_name(word); }
+bool is_picture_argument(const std::string &word) { return is_folder(word) || is_picture_name(word); }
 
 // Whether a picture in a folder is marked as an output of lensprof.
 static bool is_corrected_copy(const NamedPicture &picture) {
@@ -123,7 +123,7 @@ static bool is_corrected_copy(const NamedPicture &picture) {
 Photographs find_photographs(const std::vector<std::string> &words, Streams &streams) {
     std::vector<NamedPicture> named = named_pictures(words, std::string());
     const std::vector<NamedPicture> outputs =
-        take_out_below(named, [](const std::string &folder) { return path_exists(folder + "/" + calibrate_records); });
+        extract_below(named, [](const std::string &folder) { return path_exists(folder + "/" + calibrate_records); });
     for (const NamedPicture &picture : named) note_instead(picture, streams);
     const auto first_corrected = std::stable_partition(
         named.begin(), named.end(), [](const NamedPicture &picture) { return !is_corrected_copy(picture); });
@@ -137,7 +137,7 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
                                    "lensprof made it from another picture; give its name explicitly to "
                                    "use it");
     for (const auto &[file, reason] : list.left_out) warn(streams, file + ": left out: " + reason);
-    demand_one_kind(list.files);
+    require_one_kind(list.files);
     if (list.files.size() < 2)
         throw Failure(ExitCode::not_usable, list.label + ": has only one picture; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);

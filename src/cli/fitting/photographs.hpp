@@ -12,7 +12,7 @@
 namespace lensprof {
 
 // Whether a word of the command line names a picture or folder, not a project.
-bool names_pictures(const std::string &word);
+bool is_picture_argument(const std::string &word);
 
 // Lists every picture once, regardless of its names; copies of a picture are left out. If a folder is the only word,
 // reports use paths relative to it.

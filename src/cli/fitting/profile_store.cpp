@@ -51,7 +51,7 @@ void declare_store(Command &command, StoreOptions &o) {
 }
 
 void check_store_options(const StoreOptions &o, bool reads_db, bool writes_other_files) {
-    demand_room(o.maker, o.camera, o.lens, o.unit, o.style);
+    require_text_sizes(o.maker, o.camera, o.lens, o.unit, o.style);
     if (o.no_store && o.force && !writes_other_files)
         throw Failure(
             ExitCode::usage,
@@ -119,7 +119,7 @@ void check_store(const StoreOptions &o) {
         open_store(o.db, LENSPROF_STORE_WRITE);
         return;
     }
-    demand_folder(o.db);
+    require_folder(o.db);
     check_folder(std::filesystem::path(absolute_path(file)).parent_path().string(), file, ExitCode::store,
                  ExitCode::store);
 }
@@ -138,7 +138,7 @@ void remove_empty_store(const std::string &file) {
     for (const char *end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);
 }
 
-std::string source_of(const std::string &file) { return one_name(file); }
+std::string source_of(const std::string &file) { return canonical_path(file); }
 
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin) {
     auto &p = profile.provenance;

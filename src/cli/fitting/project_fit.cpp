@@ -62,55 +62,55 @@ lensprof_sample_options sample_options(const ProjectFitOptions &o) {
 }
 
 // Passes the links found by sampling to the fit.
-void set_links(ProjectFit &done) {
-    done.input.options.links = done.report.links.data();
-    done.input.options.link_count = static_cast<uint32_t>(done.report.links.size());
+void set_links(ProjectFit &state) {
+    state.input.options.links = state.report.links.data();
+    state.input.options.link_count = static_cast<uint32_t>(state.report.links.size());
 }
 
 // Samples pairs or tracks of the pictures; `known`, if not NULL, is the known camera and helps to find them.
 void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &pictures, const Fitted *known,
-                 ProjectFit &done) {
+                 ProjectFit &state) {
     auto clock = std::chrono::steady_clock::now();
-    FitInput &input = done.input;
-    std::vector<lensprof_link> &links = done.report.links;
+    FitInput &input = state.input;
+    std::vector<lensprof_link> &links = state.report.links;
     lensprof_sample_options options = sample_options(o);
     if (known) options.response = &known->result.response, options.vignetting = &green_falloff(known->result);
     // The method radiance makes tracks of pairs if sampling by cameras finds no tracks.
     const bool by_matches = project.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;
     if (o.fit.method == LENSPROF_METHOD_RADIANCE && !by_matches) {
-        input.observations = sample_tracks(project, pictures, options, done.progress, &links);
+        input.observations = sample_tracks(project, pictures, options, state.progress, &links);
         input.pairs = pairs_of_tracks(input.observations);
     } else {
-        input.pairs = sample_pairs(project, pictures, options, {}, done.progress, &links);
+        input.pairs = sample_pairs(project, pictures, options, {}, state.progress, &links);
     }
-    set_links(done);
-    done.report.sample_s += lap(clock);
+    set_links(state);
+    state.report.sample_s += lap(clock);
 }
 
 // The fitted pairs or tracks, and the pictures they were drawn from (empty if pairs are given).
-Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectFit &done) {
+Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectFit &state) {
     auto clock = std::chrono::steady_clock::now();
-    uint32_t &channels = done.input.options.channels;
+    uint32_t &channels = state.input.options.channels;
     if (!o.points.empty() || !project.pairs.empty()) {
-        done.input.pairs = o.points.empty() ? project.pairs : read_points(o.points, project);
-        done.points = project.pair_points;
-        channels = is_grey(done.input.pairs) ? 1 : 3;
-        done.report.load_s = lap(clock);
+        state.input.pairs = o.points.empty() ? project.pairs : read_points(o.points, project);
+        state.points = project.pair_points;
+        channels = is_grey(state.input.pairs) ? 1 : 3;
+        state.report.load_s = lap(clock);
         return {};
     }
     if (project.is_reconstruction) {
         lensprof_sample_options options = sample_options(o);
         options.pairs = 0;  // as many as there are matches, which were selected for this
-        done.input.pairs = sample_in_blocks(project, options, o.max_side, default_block_bytes, done.progress,
-                                            done.report.links, done.points, &channels);
-        set_links(done);
-        done.report.sample_s = lap(clock);
+        state.input.pairs = sample_in_blocks(project, options, o.max_side, default_block_bytes, state.progress,
+                                             state.report.links, state.points, &channels);
+        set_links(state);
+        state.report.sample_s = lap(clock);
         return {};
     }
-    Pictures pictures = read_pictures(project, o.max_side, done.progress);
+    Pictures pictures = read_pictures(project, o.max_side, state.progress);
     channels = channel_count(pictures);
-    done.report.load_s = lap(clock);
-    draw_points(o, project, pictures, nullptr, done);
+    state.report.load_s = lap(clock);
+    draw_points(o, project, pictures, nullptr, state);
     return pictures;
 }
 
@@ -142,25 +142,25 @@ bool may_connect_more(const ProjectFitOptions &o, const Fitted &first, const std
 }
 
 // Draws again, comparing irradiance instead of grey values, and fits the new pairs; kept if it explains more.
-void resample(const ProjectFitOptions &o, const Project &project, Pictures &pictures, ProjectFit &done) {
-    const std::vector<lensprof_pair> pairs = done.input.pairs;
-    const std::vector<lensprof_observation> observations = done.input.observations;
-    const std::vector<lensprof_link> links = done.report.links;
+void resample(const ProjectFitOptions &o, const Project &project, Pictures &pictures, ProjectFit &state) {
+    const std::vector<lensprof_pair> pairs = state.input.pairs;
+    const std::vector<lensprof_observation> observations = state.input.observations;
+    const std::vector<lensprof_link> links = state.report.links;
     std::vector<lensprof_fit_image_quality> quality;
     try {
-        draw_points(o, project, pictures, &done.best, done);
-        const Fitted second = fit(done.input, done.report.reference, done.item, done.progress, &quality);
-        if (explains_more(second, done.report.links, done.best, links)) {
-            done.best = second;
-            done.report.quality = quality;
-            done.report.looks = 2;
+        draw_points(o, project, pictures, &state.best, state);
+        const Fitted second = fit(state.input, state.report.reference, state.item, state.progress, &quality);
+        if (explains_more(second, state.report.links, state.best, links)) {
+            state.best = second;
+            state.report.quality = quality;
+            state.report.looks = 2;
             return;
         }
     } catch (const Failure &failure) {
         if (failure.code == ExitCode::interrupted) throw;  // else the first fit stays
     }
-    done.input.pairs = pairs, done.input.observations = observations, done.report.links = links;
-    set_links(done);
+    state.input.pairs = pairs, state.input.observations = observations, state.report.links = links;
+    set_links(state);
 }
 
 // Changes the reference of the project: if nothing else is fixed, its exposure is fixed instead, so that standard
@@ -179,8 +179,8 @@ void set_reference(uint32_t reference, FitInput &input) {
 }
 
 // Sets the images' settings, if the method fits several, and cameras.
-void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams) {
-    LensSettings &settings = done.settings;
+void set_settings(const ProjectFitOptions &o, ProjectFit &state, Streams &streams) {
+    LensSettings &settings = state.settings;
     const bool has_one_falloff = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // with one falloff per camera
     if (has_one_falloff && settings.first.size() > settings.first_of_camera.size()) {
         warn(streams, "--method transfer-function: estimates one falloff, but these pictures have "
@@ -188,9 +188,9 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams
                           + "; use transfer or radiance to estimate one per setting");
         settings.of_image = settings.camera_of_image, settings.first = settings.first_of_camera;
     }
-    for (size_t i = 0; i < done.input.images.size(); i++) {
-        done.input.images[i].setting = settings.of_image[i];
-        done.input.images[i].camera = settings.camera_of_image[i];
+    for (size_t i = 0; i < state.input.images.size(); i++) {
+        state.input.images[i].setting = settings.of_image[i];
+        state.input.images[i].camera = settings.camera_of_image[i];
     }
 }
 
@@ -244,17 +244,17 @@ void warn_of_few_images(const ProjectFitOptions &o, const Project &project, cons
 }
 
 // Uses only exposures as the result and stores no profile.
-void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &done, Streams &streams) {
+void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &state, Streams &streams) {
     warn(streams, project.path
                       + ": response and falloff do not explain the pictures better than exposures and white balances "
                         "alone; only the latter are returned");
-    done.best = only;
-    done.best.result.usable = 0;
-    done.best.result.reason_code = LENSPROF_REASON_NONE;
-    std::snprintf(done.best.result.reason, sizeof done.best.result.reason,
+    state.best = only;
+    state.best.result.usable = 0;
+    state.best.result.reason_code = LENSPROF_REASON_NONE;
+    std::snprintf(state.best.result.reason, sizeof state.best.result.reason,
                   "the pictures determine neither response nor falloff");
-    done.settings.of_image.assign(done.settings.of_image.size(), 0), done.settings.first.resize(1);
-    join_cameras(done.settings);
+    state.settings.of_image.assign(state.settings.of_image.size(), 0), state.settings.first.resize(1);
+    join_cameras(state.settings);
 }
 
 // Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
@@ -279,45 +279,45 @@ void check_light(const LightGroups &groups, const Project &project) {
 
 // For a reconstruction: fits without glossy points, measures the improvement and, if response and falloff explain the
 // pairs no better than exposures alone, uses only exposures, because undetermined parameters do harm.
-void fit_reconstruction(const Project &project, ProjectFit &done, Streams &streams) {
-    BuildReport &report = done.report;
-    const bool is_by_pairs = done.input.observations.empty() && done.input.options.free != 0;
+void fit_reconstruction(const Project &project, ProjectFit &state, Streams &streams) {
+    BuildReport &report = state.report;
+    const bool is_by_pairs = state.input.observations.empty() && state.input.options.free != 0;
     if (!project.is_reconstruction || !is_by_pairs) return;
-    const FitInput all = done.input;
+    const FitInput all = state.input;
     auto clock = std::chrono::steady_clock::now();
-    const double first_s = done.best.result.seconds;
+    const double first_s = state.best.result.seconds;
     std::vector<lensprof_fit_image_quality> quality;
-    const Fitted only = fit_exposures_only(all, report.reference, done.item, done.progress, &quality);
-    done.gains = {{"before", colour_differences(all, nullptr)}, {"exposures alone", colour_differences(all, &only)}};
-    report.variance.before = colour_variance_of(done.gains[0].variances);
-    report.variance.exposures_only = colour_variance_of(done.gains[1].variances);
+    const Fitted only = fit_exposures_only(all, report.reference, state.item, state.progress, &quality);
+    state.gains = {{"before", colour_differences(all, nullptr)}, {"exposures alone", colour_differences(all, &only)}};
+    report.variance.before = colour_variance_of(state.gains[0].variances);
+    report.variance.exposures_only = colour_variance_of(state.gains[1].variances);
     report.variance.pairs = all.pairs.size();
-    bool is_better = is_joint_better(done.best, only);
+    bool is_better = is_joint_better(state.best, only);
     if (is_better) {
-        done.best = fit_matte_points(done.input, done.points, done.best, report.reference, done.item, done.progress,
-                                     &report.quality);
-        done.gains.push_back({"this result", colour_differences(all, &done.best)});
-        report.variance.result = colour_variance_of(done.gains[2].variances);
+        state.best = fit_matte_points(state.input, state.points, state.best, report.reference, state.item,
+                                      state.progress, &report.quality);
+        state.gains.push_back({"this result", colour_differences(all, &state.best)});
+        report.variance.result = colour_variance_of(state.gains[2].variances);
         is_better = report.variance.result < report.variance.exposures_only;
     }
     if (is_better) {
-        add_errors_by_halves(done.input, done.points, done.best, done.item, done.progress, report.quality);
+        add_errors_by_halves(state.input, state.points, state.best, state.item, state.progress, report.quality);
     } else {
-        use_exposures_only(only, project, done, streams);
+        use_exposures_only(only, project, state, streams);
         report.quality = quality, report.variance.result = report.variance.exposures_only;
-        done.gains.resize(2);
-        done.gains.push_back({"this result", done.gains[1].variances});
+        state.gains.resize(2);
+        state.gains.push_back({"this result", state.gains[1].variances});
     }
-    done.best.result.seconds = first_s + lap(clock);
-    done.best.result.evens = evens_colours(report.variance);
-    check_light(light_groups(all, done.gains[2].variances, project.view_distances), project);
+    state.best.result.seconds = first_s + lap(clock);
+    state.best.result.evens = evens_colours(report.variance);
+    check_light(light_groups(all, state.gains[2].variances, project.view_distances), project);
 }
 
 // The result of each setting, if there are several.
 void report_settings(const ProjectFitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
-                     ProjectFit &done) {
-    BuildReport &report = done.report;
-    const LensSettings &settings = done.settings;
+                     ProjectFit &state) {
+    BuildReport &report = state.report;
+    const LensSettings &settings = state.settings;
     if (!settings.has_several_settings()) return;
     report.setting_of = settings.of_image;
     for (uint32_t s = 0; s < settings.first.size(); s++) {
@@ -327,7 +327,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         try {
             setting.key = override_key(metadata[first].key, metadata[first].size, o.store, project.files[first]);
         } catch (const Failure &failure) {  // the others are stored
-            if (failure.code != ExitCode::usage || s == settings.of_image[done.best.result.reference]) throw;
+            if (failure.code != ExitCode::usage || s == settings.of_image[state.best.result.reference]) throw;
             setting.key = metadata[first].key, setting.no_key = failure.what();
         }
         setting.label = describe_setting(setting.key, project.names[first]);
@@ -337,8 +337,8 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
                 + setting.label;
         for (const SettingReport &other : report.settings)
             if (other.label == setting.label) setting.label += ", from " + project.names[first];
-        setting.is_reference = s == settings.of_image[done.best.result.reference];
-        setting.found = done.best.settings[s];
+        setting.is_reference = s == settings.of_image[state.best.result.reference];
+        setting.found = state.best.settings[s];
         setting.verdict = verdict_of(setting.found);
         name_image(project.names, setting.verdict);
         report.settings.push_back(setting);
@@ -346,9 +346,9 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
 }
 
 // The same for each camera.
-void report_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, ProjectFit &done) {
-    BuildReport &report = done.report;
-    const LensSettings &settings = done.settings;
+void report_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, ProjectFit &state) {
+    BuildReport &report = state.report;
+    const LensSettings &settings = state.settings;
     if (!settings.has_several_cameras()) return;
     report.camera_of = settings.camera_of_image;
     for (uint32_t k = 0; k < settings.first_of_camera.size(); k++) {
@@ -357,8 +357,8 @@ void report_cameras(const Project &project, const std::vector<PictureMetadata> &
         camera.label = describe_camera(metadata[first].key, project.names[first]);
         for (const CameraReport &other : report.cameras)
             if (other.label == camera.label) camera.label += ", from " + project.names[first];
-        camera.is_reference = k == settings.camera_of_image[done.best.result.reference];
-        camera.found = done.best.cameras[k];
+        camera.is_reference = k == settings.camera_of_image[state.best.result.reference];
+        camera.found = state.best.cameras[k];
         report.cameras.push_back(camera);
     }
 }
@@ -385,7 +385,7 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
 
 std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project) {
     std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
-    if (o.points.empty() && project.pairs.empty()) demand_one_kind(project.files);
+    if (o.points.empty() && project.pairs.empty()) require_one_kind(project.files);
     for (uint32_t i = 0; i < metadata.size(); i++) {
         bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
         if (needed && path_exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
@@ -418,9 +418,9 @@ DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Progr
 }
 
 void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                 const EarlierProfile &prior, ProjectFit &done, Streams &streams) {
-    BuildReport &report = done.report;
-    FitInput &input = done.input;
+                 const EarlierProfile &prior, ProjectFit &state, Streams &streams) {
+    BuildReport &report = state.report;
+    FitInput &input = state.input;
     report.names = project.names;
     report.left_out = project.left_out;
     report.register_s = project.register_s;
@@ -431,70 +431,70 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     report.prior_is_composed = prior.is_composed;
     input.options.profile = prior.profile.get();
     check_unknowns(o, project, input.options);
-    done.settings = lens_settings(project, metadata, o.store, o.one_lens);
-    report.camera_kind = common_camera_kind(o, metadata, done.settings, report.camera_kind);
+    state.settings = lens_settings(project, metadata, o.store, o.one_lens);
+    report.camera_kind = common_camera_kind(o, metadata, state.settings, report.camera_kind);
     input.options.camera_kind = report.camera_kind.kind;
-    if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR) join_cameras(done.settings);  // all have one response
-    check_cameras(project, input.options.free, done.settings);
-    Pictures pictures = get_points(o, project, done);
+    if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR) join_cameras(state.settings);  // all have one response
+    check_cameras(project, input.options.free, state.settings);
+    Pictures pictures = get_points(o, project, state);
     stop_if_interrupted();
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
         warn(streams, "--sampling paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
     input.images = fit_images(project);
-    set_settings(o, done, streams);
+    set_settings(o, state, streams);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
     set_reference(report.reference, input);
-    const auto setting_of = [&](uint32_t image) { return done.settings.of_image[image]; };
+    const auto setting_of = [&](uint32_t image) { return state.settings.of_image[image]; };
     if (prior.profile && setting_of(input.options.reference) != setting_of(project.reference)) {
         input.options.profile = nullptr, report.prior_id = 0;
         report.no_prior = "the reference has another lens setting than " + project.names[project.reference];
     }
-    done.item = o.points.empty() ? project.path : o.points;
-    done.best = fit(input, report.reference, done.item, done.progress, &report.quality);
-    const bool has_one_camera = !done.settings.has_several_cameras();  // irradiance is compared with one response
-    if (has_one_camera && !pictures.empty() && may_connect_more(o, done.best, report.links))
-        resample(o, project, pictures, done);
-    fit_reconstruction(project, done, streams);
-    report.fit = done.best.result;
-    report.verdict = verdict_of(done.best.result);
-    warn_of_few_images(o, project, done.best, streams);
+    state.item = o.points.empty() ? project.path : o.points;
+    state.best = fit(input, report.reference, state.item, state.progress, &report.quality);
+    const bool has_one_camera = !state.settings.has_several_cameras();  // irradiance is compared with one response
+    if (has_one_camera && !pictures.empty() && may_connect_more(o, state.best, report.links))
+        resample(o, project, pictures, state);
+    fit_reconstruction(project, state, streams);
+    report.fit = state.best.result;
+    report.verdict = verdict_of(state.best.result);
+    warn_of_few_images(o, project, state.best, streams);
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
-    report_settings(o, project, metadata, done);
-    report_cameras(project, metadata, done);
-    report.exposures = done.best.exposures;
-    if (done.best.reference != report.reference)
+    report_settings(o, project, metadata, state);
+    report_cameras(project, metadata, state);
+    report.exposures = state.best.exposures;
+    if (state.best.reference != report.reference)
         warn(streams, project.names[report.reference] + ": the reference was left out; exposures are relative to "
-                          + project.names[done.best.reference]);
-    report.reference = done.best.reference;
+                          + project.names[state.best.reference]);
+    report.reference = state.best.reference;
 }
 
-std::string result_text(ProjectFit &done, Project &project, const std::string &path) {
-    const Fitted written = fit_for_project(done.input, done.best, done.report.reference, done.item, done.progress);
+std::string result_text(ProjectFit &state, Project &project, const std::string &path) {
+    const Fitted written = fit_for_project(state.input, state.best, state.report.reference, state.item, state.progress);
     lensprof_error error{};
     check(lensprof_pto_set_result(project.pto.get(), &written.result.response, &green_falloff(written.result),
                                   written.exposures.data(), static_cast<uint32_t>(written.exposures.size()),
                                   written.reference, &error),
           project.path, &error);
-    if (done.settings.has_several_settings()) {
+    if (state.settings.has_several_settings()) {
         std::vector<lensprof_vignetting> falloffs;
         for (uint32_t s = 0; s < written.settings.size(); s++) {
             const lensprof_fit_setting &setting = written.settings[s];
-            const uint32_t curves = written.falloff_curves_of(done.settings.first[s]);
+            const uint32_t curves = written.falloff_curves_of(state.settings.first[s]);
             falloffs.push_back(setting.images ? setting.vignetting[curves == 3 ? 1 : 0]
                                               : green_falloff(written.result));
         }
-        check(lensprof_pto_set_settings(project.pto.get(), done.settings.of_image.data(),
-                                        static_cast<uint32_t>(done.settings.of_image.size()), falloffs.data(),
+        check(lensprof_pto_set_settings(project.pto.get(), state.settings.of_image.data(),
+                                        static_cast<uint32_t>(state.settings.of_image.size()), falloffs.data(),
                                         static_cast<uint32_t>(falloffs.size()), &error),
               project.path, &error);
     }
-    if (done.settings.has_several_cameras()) {
+    if (state.settings.has_several_cameras()) {
         std::vector<lensprof_response> responses;
-        for (const uint32_t first : done.settings.first_of_camera) responses.push_back(written.response_of(first));
-        check(lensprof_pto_set_cameras(project.pto.get(), done.settings.camera_of_image.data(),
-                                       static_cast<uint32_t>(done.settings.camera_of_image.size()), responses.data(),
+        for (const uint32_t first : state.settings.first_of_camera) responses.push_back(written.response_of(first));
+        check(lensprof_pto_set_cameras(project.pto.get(), state.settings.camera_of_image.data(),
+                                       static_cast<uint32_t>(state.settings.camera_of_image.size()), responses.data(),
                                        static_cast<uint32_t>(responses.size()), &error),
               project.path, &error);
     }

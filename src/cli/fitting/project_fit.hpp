@@ -53,12 +53,12 @@ lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &proj
 // The pairs that fit_project starts with; none for tracks of the method radiance.
 DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Progress &progress);
 
-// Samples the pictures, or takes given points, and fits. `prior` must outlive `done`.
+// Samples the pictures, or takes given points, and fits. `prior` must outlive `state`.
 void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                 const EarlierProfile &prior, ProjectFit &done, Streams &streams);
+                 const EarlierProfile &prior, ProjectFit &state, Streams &streams);
 
 // The text of the project with the result, to be written to `path`. A project stores five modes and one falloff; a
 // result with more is refitted with these.
-std::string result_text(ProjectFit &done, Project &project, const std::string &path);
+std::string result_text(ProjectFit &state, Project &project, const std::string &path);
 
 }  // namespace lensprof

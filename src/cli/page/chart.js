@@ -26,19 +26,19 @@ function tickText(value, ticks) {
   return value.toFixed(digits).replace(/^-(0(\.0+)?)$/, '$1');
 }
 
-// Extent of the values, with a margin, at least `least` wide.
-function extent(values, least) {
+// Extent of the values, with a margin, at least `minExtent` wide.
+function extent(values, minExtent) {
   const finite = values.filter((value) => Number.isFinite(value));
   if (!finite.length) return [0, 1];
   let low = finite.reduce((a, b) => Math.min(a, b)), high = finite.reduce((a, b) => Math.max(a, b));
-  const margin = Math.max(0.06 * (high - low), (least - (high - low)) / 2, 0);
+  const margin = Math.max(0.06 * (high - low), (minExtent - (high - low)) / 2, 0);
   return [low - margin, high + margin];
 }
 
 // Labels of curves: curves with the same values share one.
 function labelsOf(lines) {
   const labels = [];
-  for (const line of lines.filter((each) => each.label && each.points.length)) {
+  for (const line of lines.filter((entry) => entry.label && entry.points.length)) {
     const twin = labels.find((label) => label.points.length === line.points.length &&
       label.points.every((point, i) => Math.abs(point[1] - line.points[i][1]) < 0.002));
     if (twin) twin.text += ', ' + line.label;
@@ -52,19 +52,19 @@ function labelsOf(lines) {
 function placeLabels(labels, y, top, bottom) {
   const distance = 15;
   const groups = [];
-  for (const label of labels.map((each) => ({ ...each, end: y(each.points[each.points.length - 1][1]) }))
+  for (const label of labels.map((entry) => ({ ...entry, end: y(entry.points[entry.points.length - 1][1]) }))
     .sort((a, b) => a.end - b.end)) {
     groups.push({ members: [label] });
     for (;;) {
       const last = groups[groups.length - 1], n = last.members.length;
-      const mean = last.members.reduce((sum, each) => sum + each.end, 0) / n;
+      const mean = last.members.reduce((sum, member) => sum + member.end, 0) / n;
       last.start = Math.max(top, Math.min(bottom - (n - 1) * distance, mean - (n - 1) / 2 * distance));
       const before = groups[groups.length - 2];
       if (!before || before.start + before.members.length * distance <= last.start) break;
       groups.splice(-2, 2, { members: before.members.concat(last.members) });
     }
   }
-  return groups.flatMap((group) => group.members.map((label, i) => ({ ...label, at: group.start + i * distance })));
+  return groups.flatMap((group) => group.members.map((label, i) => ({ ...label, position: group.start + i * distance })));
 }
 
 // chart: {title, x: {label, low, high, ticks?, text?}, y: the same, bands: [{points: [[x, low, high]], colour}],
@@ -73,9 +73,9 @@ function drawChart(chart) {
   const lines = chart.lines || [], dots = chart.dots || [], bands = chart.bands || [];
   const narrow = window.innerWidth < 600;  // a phone: fewer units, so that the text is as large as elsewhere
   const width = narrow ? 400 : 640, height = (chart.height || 360) * (narrow ? 0.85 : 1), ticks = narrow ? 4 : 6;
-  const character = 7.6, most = narrow ? 15 : 30;
-  const labels = labelsOf(lines).map((label) => label.text.length <= most ? label :
-    { ...label, text: label.text.slice(0, most - 1) + '…' });
+  const character = 7.6, maxCharacters = narrow ? 15 : 30;
+  const labels = labelsOf(lines).map((label) => label.text.length <= maxCharacters ? label :
+    { ...label, text: label.text.slice(0, maxCharacters - 1) + '…' });
   const longest = Math.max(0, ...labels.map((label) => label.text.length));
   const named = chart.x.names && chart.x.names.length <= 20;
   const edge = { left: 62, right: 18 + character * longest, top: 14, bottom: named ? 120 : 48 };
@@ -117,16 +117,16 @@ function drawChart(chart) {
     add('path', { class: 'curve', style: `stroke:var(--${line.colour})`, 'stroke-dasharray': line.dash || 'none',
       d: 'M' + line.points.map((p) => `${x(p[0]).toFixed(1)} ${clamped(p[1]).toFixed(1)}`).join('L') });
   for (const group of dots)
-    for (const [at, value, error, name] of group.points) {
+    for (const [position, value, error, name] of group.points) {
       if (!Number.isFinite(value)) continue;
       const style = `stroke:var(--${group.colour});fill:${group.hollow ? 'none' : `var(--${group.colour})`}`;
       if (error > 0)
-        add('line', { class: 'bar', style, x1: x(at), x2: x(at), y1: clamped(value - error), y2: clamped(value + error) });
-      const dot = add('circle', { style, cx: x(at).toFixed(1), cy: clamped(value).toFixed(1), r: group.hollow ? 4 : 3 });
+        add('line', { class: 'bar', style, x1: x(position), x2: x(position), y1: clamped(value - error), y2: clamped(value + error) });
+      const dot = add('circle', { style, cx: x(position).toFixed(1), cy: clamped(value).toFixed(1), r: group.hollow ? 4 : 3 });
       if (name) dot.appendChild(svgElement('title', {}, name));
     }
   for (const label of placeLabels(labels, y, edge.top + 4, height - edge.bottom))
-    add('text', { x: width - edge.right + 6, y: label.at + 4, style: `fill:var(--${label.colour})` },
+    add('text', { x: width - edge.right + 6, y: label.position + 4, style: `fill:var(--${label.colour})` },
       label.text);
   return svg;
 }

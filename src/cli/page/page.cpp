@@ -19,12 +19,12 @@ using Json = nlohmann::ordered_json;
 // The template with a text instead of each mark; marks within a text are text.
 std::string filled(const std::string &page, const std::vector<std::pair<std::string, std::string>> &texts) {
     std::string out;
-    for (size_t at = 0; at < page.size();) {
+    for (size_t position = 0; position < page.size();) {
         const auto mark = std::find_if(texts.begin(), texts.end(), [&](const auto &text) {
-            return page.compare(at, text.first.size(), text.first) == 0;
+            return page.compare(position, text.first.size(), text.first) == 0;
         });
-        out += mark == texts.end() ? std::string(1, page[at]) : mark->second;
-        at += mark == texts.end() ? 1 : mark->first.size();
+        out += mark == texts.end() ? std::string(1, page[position]) : mark->second;
+        position += mark == texts.end() ? 1 : mark->first.size();
     }
     return out;
 }
@@ -51,10 +51,10 @@ std::string base64(const std::vector<uint8_t> &bytes) {
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
     for (size_t i = 0; i < bytes.size(); i += 3) {
-        const size_t have = std::min<size_t>(3, bytes.size() - i);
+        const size_t available = std::min<size_t>(3, bytes.size() - i);
         uint32_t group = 0;
-        for (size_t k = 0; k < 3; k++) group = group << 8 | (k < have ? bytes[i + k] : 0u);
-        for (size_t k = 0; k < 4; k++) text += k <= have ? digits[group >> (18 - 6 * k) & 63] : '=';
+        for (size_t k = 0; k < 3; k++) group = group << 8 | (k < available ? bytes[i + k] : 0u);
+        for (size_t k = 0; k < 4; k++) text += k <= available ? digits[group >> (18 - 6 * k) & 63] : '=';
     }
     return text;
 }
@@ -110,8 +110,8 @@ uint32_t view_side(size_t pictures) {
     return pictures <= 24 ? 720 : pictures <= 60 ? 480 : pictures <= 160 ? 280 : pictures <= 600 ? 150 : 96;
 }
 
-std::string views_note(size_t shown, size_t pictures) {
-    return std::to_string(shown) + " of " + std::to_string(pictures) + " pictures, evenly spaced.";
+std::string views_note(size_t shown_count, size_t picture_count) {
+    return std::to_string(shown_count) + " of " + std::to_string(picture_count) + " pictures, evenly spaced.";
 }
 
 void check_page_name(const std::string &path) {

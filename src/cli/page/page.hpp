@@ -34,7 +34,7 @@ uint32_t view_side(size_t pictures);
 constexpr size_t max_views = 2000;
 
 // What a page states if it shows only some of the pictures.
-std::string views_note(size_t shown, size_t pictures);
+std::string views_note(size_t shown_count, size_t picture_count);
 
 // Failure (usage) unless the name ends in .html or .htm, and if it is of an existing file that is not a report.
 void check_page_name(const std::string &path);

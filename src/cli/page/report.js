@@ -70,13 +70,13 @@ function illuminanceChart(falloffs, points, title) {
   const highs = falloffs.flatMap((curve) => curve.m.map((m, i) => m + curve.sigma[i]));
   const low = Math.min(0.5, Math.floor(10 * lows.reduce((a, b) => Math.min(a, b), 1)) / 10);
   const high = Math.max(1.02, highs.reduce((a, b) => Math.max(a, b), 1));
-  const at = (i, curve) => i / (curve.m.length - 1);
+  const radiusOf = (i, curve) => i / (curve.m.length - 1);
   return drawChart({
     title, x: { label: 'radius, half diagonals', low: 0, high: 1 }, y: { label: 'relative illuminance M', low, high },
     bands: falloffs.map((curve, i) => ({ colour: curveColour(curve, i),
-      points: curve.m.map((m, k) => [at(k, curve), m - curve.sigma[k], m + curve.sigma[k]]) })),
+      points: curve.m.map((m, k) => [radiusOf(k, curve), m - curve.sigma[k], m + curve.sigma[k]]) })),
     lines: falloffs.map((curve, i) => ({ colour: curveColour(curve, i), label: curve.label,
-      dash: i < 8 ? 'none' : '6 4', points: curve.m.map((m, k) => [at(k, curve), m]) })),
+      dash: i < 8 ? 'none' : '6 4', points: curve.m.map((m, k) => [radiusOf(k, curve), m]) })),
     dots: points && points.length ? [{ colour: 'quiet', points: points.map((p) =>
       [p.r, p.m, p.sigma, `radius ${fixed(p.r, 2)}: M ${fixed(p.m, 3)} ± ${fixed(p.sigma, 3)}, ${p.count} pairs`]) }] : [] });
 }
@@ -113,7 +113,7 @@ function responses(report) {
 }
 
 function exposures(report) {
-  const images = report.images.map((image, i) => ({ ...image, at: i })).filter((image) => image.ev !== null);
+  const images = report.images.map((image, i) => ({ ...image, index: i })).filter((image) => image.ev !== null);
   if (images.length < 2) return null;
   const names = report.images.map((image) => image.name);
   const axis = { label: 'image', low: -0.5, high: names.length - 0.5, names,
@@ -122,10 +122,10 @@ function exposures(report) {
   const all = images.flatMap((image) => [image.ev - image.ev_sigma, image.ev + image.ev_sigma])
     .concat(known.map((image) => image.known_ev));
   const [low, high] = extent(all, 0.4);
-  const dots = [{ colour: 'accent', points: images.map((image) => [image.at, image.ev, image.ev_sigma,
+  const dots = [{ colour: 'accent', points: images.map((image) => [image.index, image.ev, image.ev_sigma,
     `${image.name}: ${signed(image.ev, 3)} ± ${fixed(image.ev_sigma, 3)} EV`]) }];
   if (known.length) dots.unshift({ colour: 'quiet', hollow: true, points: known.map((image) =>
-    [image.at, image.known_ev, 0, `${image.name}: ${signed(image.known_ev, 2)} EV by EXIF`]) });
+    [image.index, image.known_ev, 0, `${image.name}: ${signed(image.known_ev, 2)} EV by EXIF`]) });
   const height = names.length <= 20 ? 440 : 360;
   const parts = [element('p', { class: 'quiet' }, 'Exposure relative to the reference, with its standard error.' +
     (known.length ? ' Circles: EXIF, up to a common offset.' : '')),
@@ -134,13 +134,13 @@ function exposures(report) {
   const coloured = images.filter((image) => image.balance_sigma[0] > 0 || image.balance_sigma[2] > 0 ||
     image.balance[0] !== 1 || image.balance[2] !== 1);
   if (coloured.length) {
-    const [least, most] = extent(images.flatMap((image) => [0, 2].flatMap((channel) =>
+    const [minFactor, maxFactor] = extent(images.flatMap((image) => [0, 2].flatMap((channel) =>
       [-1, 1].map((sign) => image.balance[channel] + sign * image.balance_sigma[channel]))), 0.1);
     balances.push(element('p', { class: 'quiet' }, 'Factors of red (red dots) and blue (blue dots), relative to green.'),
       drawChart({ title: 'White balance of each image', height, x: axis,
-        y: { label: 'factor', low: least, high: most },
+        y: { label: 'factor', low: minFactor, high: maxFactor },
         dots: [0, 2].map((channel) => ({ colour: channel ? 'blue' : 'red', points: images.map((image) =>
-          [image.at, image.balance[channel], image.balance_sigma[channel],
+          [image.index, image.balance[channel], image.balance_sigma[channel],
             `${image.name}: ${fixed(image.balance[channel], 4)}`]) })) }));
   }
   const rows = report.images.map((image) => [image.name, image.ev === null ? 'left out' : signed(image.ev, 3),
@@ -152,18 +152,18 @@ function exposures(report) {
 
 function jointHistogram(histogram, title) {
   const bins = histogram.bins, cells = new Array(bins * bins);
-  const most = histogram.cells.reduce((a, cell) => Math.max(a, cell[2]), 1);
+  const maxCount = histogram.cells.reduce((a, cell) => Math.max(a, cell[2]), 1);
   for (const [column, row, count] of histogram.cells)
-    cells[(bins - 1 - row) * bins + column] = { share: 0.15 + 0.85 * Math.log(1 + count) / Math.log(1 + most),
+    cells[(bins - 1 - row) * bins + column] = { share: 0.15 + 0.85 * Math.log(1 + count) / Math.log(1 + maxCount),
       text: `${count} pairs` };
   const svg = drawCells(cells, bins, title, () => 'accent');
   const side = bins * 20, left = 52, below = 34;
   svg.append(svgElement('path', { d: `M0 ${side}L${side} 0`, style: 'stroke:var(--quiet);stroke-width:2' }),
     svgElement('rect', { width: side, height: side, fill: 'none', style: 'stroke:var(--line);stroke-width:2' }));
   for (const level of [0, 64, 128, 192, 255]) {
-    const at = level / 255 * side;
-    svg.append(svgElement('text', { class: 'tick', x: -8, y: side - at + 8, 'text-anchor': 'end', 'font-size': 22 }, level),
-      svgElement('text', { class: 'tick', x: at, y: side + 26, 'text-anchor': 'middle', 'font-size': 22 }, level));
+    const offset = level / 255 * side;
+    svg.append(svgElement('text', { class: 'tick', x: -8, y: side - offset + 8, 'text-anchor': 'end', 'font-size': 22 }, level),
+      svgElement('text', { class: 'tick', x: offset, y: side + 26, 'text-anchor': 'middle', 'font-size': 22 }, level));
   }
   svg.setAttribute('viewBox', `${-left} -12 ${side + left + 24} ${side + 12 + below}`);
   svg.style.border = '0';
@@ -173,19 +173,19 @@ function jointHistogram(histogram, title) {
 function residualChart(bins, title, label, low, high) {
   const points = bins.filter((bin) => bin.count > 0);
   if (points.length < 2) return null;
-  const most = 1.15 * points.reduce((a, bin) => Math.max(a, Math.abs(bin.mean) + bin.spread), 1);
-  return drawChart({ title, height: 300, x: { label, low, high }, y: { label: 'residual, levels of 255', low: -most, high: most },
+  const limit = 1.15 * points.reduce((a, bin) => Math.max(a, Math.abs(bin.mean) + bin.spread), 1);
+  return drawChart({ title, height: 300, x: { label, low, high }, y: { label: 'residual, levels of 255', low: -limit, high: limit },
     bands: [{ colour: 'accent', points: points.map((bin) => [bin.at, bin.mean - bin.spread, bin.mean + bin.spread]) }],
     lines: [{ colour: 'accent', points: points.map((bin) => [bin.at, bin.mean]) }] });
 }
 
 function residuals(report) {
   if (!report.residuals) return [];
-  const r = report.residuals, most = r.frame.count.reduce((a, b) => Math.max(a, b), 1);
+  const r = report.residuals, maxSamples = r.frame.count.reduce((a, b) => Math.max(a, b), 1);
   const limit = Math.max(1, r.frame.mean.reduce((a, b) => Math.max(a, Math.abs(b || 0)), 0));
   const map = r.frame.mean.map((mean, i) => r.frame.count[i] ? { share: mean / limit,
     text: `${signed(mean, 2)} levels, ${r.frame.count[i]} samples` } : null);
-  const coverage = r.frame.count.map((count) => count ? { share: 0.1 + 0.9 * Math.sqrt(count / most), text: `${count} samples` } : null);
+  const coverage = r.frame.count.map((count) => count ? { share: 0.1 + 0.9 * Math.sqrt(count / maxSamples), text: `${count} samples` } : null);
   return [
     sideBySide(section('Values of the same scene points in two pictures', element('p', { class: 'quiet' },
       'Each cell counts pairs of green values: right in the one picture, up in the other, from 0 to 255. On the diagonal both pictures agree.'),
@@ -199,7 +199,7 @@ function residuals(report) {
     sideBySide(section('Residual over the frame', element('p', { class: 'quiet' },
       `Red: brighter than predicted, blue: darker. Full colour is ${fixed(limit, 1)} levels.`),
       drawCells(map, r.frame.columns, 'Mean residual over the frame', (cell) => cell.share > 0 ? 'red' : 'blue', r.frame.aspect)),
-    section('Coverage of the frame', element('p', { class: 'quiet' }, `Samples in each part of the frame: full colour is ${most}.`),
+    section('Coverage of the frame', element('p', { class: 'quiet' }, `Samples in each part of the frame: full colour is ${maxSamples}.`),
       drawCells(coverage, r.frame.columns, 'Samples over the frame', () => 'accent', r.frame.aspect)))];
 }
 
@@ -298,35 +298,38 @@ function databasePage(report) {
     element('option', { value: String(i) }, text(value))));
 
   function draw() {
-    const focals = distinct(shown.settings.map((each) => each.focal_mm)), at = focals[focal.selectedIndex];
-    const here = shown.settings.filter((each) => each.focal_mm === at);
-    const distances = distinct(here.map((each) => each.distance_m)), far = distances[distance.selectedIndex];
-    const settings = here.filter((each) => each.distance_m === far).sort((a, b) => (a.aperture || 0) - (b.aperture || 0));
+    const focals = distinct(shown.settings.map((setting) => setting.focal_mm));
+    const selectedFocal = focals[focal.selectedIndex];
+    const sameFocal = shown.settings.filter((setting) => setting.focal_mm === selectedFocal);
+    const distances = distinct(sameFocal.map((setting) => setting.distance_m));
+    const selectedDistance = distances[distance.selectedIndex];
+    const settings = sameFocal.filter((setting) => setting.distance_m === selectedDistance)
+      .sort((a, b) => (a.aperture || 0) - (b.aperture || 0));
     const samples = 50;
-    const curves = settings.map((each) => ({ label: (each.aperture === null ? 'any aperture' : `f/${+each.aperture.toFixed(2)}`) +
-      (each.note ? ` ${each.note}` : ''),
+    const curves = settings.map((setting) => ({ label: (setting.aperture === null ? 'any aperture' : `f/${+setting.aperture.toFixed(2)}`) +
+      (setting.note ? ` ${setting.note}` : ''),
       sigma: new Array(samples + 1).fill(0), m: Array.from({ length: samples + 1 }, (_, i) => {
         const r2 = (i / samples) ** 2;
-        return 1 + r2 * (each.k[0] + r2 * (each.k[1] + r2 * each.k[2]));
+        return 1 + r2 * (setting.k[0] + r2 * (setting.k[1] + r2 * setting.k[2]));
       }) }));
     chart.replaceChildren(illuminanceChart(curves, [], `Relative illuminance of ${shown.lens || shown.camera}`),
-      values(['setting', 'profile', 'k1', 'k2', 'k3', 'corner M', 'corner EV'], settings.map((each, i) => [curves[i].label,
-        String(each.id), ...each.k.map((k) => fixed(k, 4).replace('-', '−')), fixed(curves[i].m[samples], 3),
+      values(['setting', 'profile', 'k1', 'k2', 'k3', 'corner M', 'corner EV'], settings.map((setting, i) => [curves[i].label,
+        String(setting.id), ...setting.k.map((k) => fixed(k, 4).replace('-', '−')), fixed(curves[i].m[samples], 3),
         signed(Math.log2(curves[i].m[samples]), 2)])));
   }
 
   function show(lens) {
     shown = lens;
     name.textContent = [lens.lens || 'lens not stated', lens.camera].filter((text) => text).join(' · ');
-    const focals = distinct(lens.settings.map((each) => each.focal_mm));
+    const focals = distinct(lens.settings.map((setting) => setting.focal_mm));
     fill(focal, focals, millimetres);
     refocus();
   }
 
   function refocus() {
-    const focals = distinct(shown.settings.map((each) => each.focal_mm));
-    const here = shown.settings.filter((each) => each.focal_mm === focals[focal.selectedIndex]);
-    const distances = distinct(here.map((each) => each.distance_m));
+    const focals = distinct(shown.settings.map((setting) => setting.focal_mm));
+    const sameFocal = shown.settings.filter((setting) => setting.focal_mm === focals[focal.selectedIndex]);
+    const distances = distinct(sameFocal.map((setting) => setting.distance_m));
     fill(distance, distances, metres);
     distance.selectedIndex = distances.length - 1;
     focalLabel.hidden = focals.length < 2;
@@ -340,14 +343,14 @@ function databasePage(report) {
       const text = `${lens.camera} ${lens.lens}`.toLowerCase();
       return words.every((word) => text.includes(word));
     });
-    const most = 200;
-    list.replaceChildren(...matching.slice(0, most).map((lens) => {
+    const maxListed = 200;
+    list.replaceChildren(...matching.slice(0, maxListed).map((lens) => {
       const button = element('button', { type: 'button' }, lens.lens || 'lens not stated');
       button.addEventListener('click', () => { show(lens); name.scrollIntoView({ block: 'nearest' }); });
       return element('tr', {}, element('td', {}, button), element('td', {}, lens.camera || 'any camera'),
         element('td', { class: 'number' }, String(lens.settings.length)));
     }));
-    found.textContent = count(matching.length, 'lens') + (matching.length > most ? `; the first ${most} are listed` : '');
+    found.textContent = count(matching.length, 'lens') + (matching.length > maxListed ? `; the first ${maxListed} are listed` : '');
     if (matching.length && !matching.includes(shown)) show(matching[0]);
   }
 

@@ -52,7 +52,7 @@ CoefficientFile::~CoefficientFile() {
 void CoefficientFile::attach(jpeg_compress_struct &info) {
     if (coefficient_bytes(info) <= jpeg_memory_bytes) return;
     errno = 0;
-    file_ = open_nameless(neighbour_);
+    file_ = open_unnamed(neighbour_);
     if (file_ < 0) ERREXIT(&info, JERR_FILE_WRITE);
     info.client_data = this;
     info.mem->request_virt_barray = request;

@@ -22,7 +22,7 @@ class FolderWalk {
 public:
     FolderWalk(const std::string &root, const std::string &output, std::vector<UnlistedFolder> *unlisted)
         : root_(root), unlisted_(unlisted) {
-        if (one_name(root) != one_name(output)) entered_.insert(file_identity(output));
+        if (canonical_path(root) != canonical_path(output)) entered_.insert(file_identity(output));
         folders_.push_back("");
         while (!folders_.empty() || !links_.empty()) {
             auto &next = folders_.empty() ? links_ : folders_;  // a folder's own name before links to it
@@ -106,8 +106,8 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
     return pictures;
 }
 
-std::vector<NamedPicture> take_out_below(std::vector<NamedPicture> &pictures,
-                                         const std::function<bool(const std::string &)> &is_output) {
+std::vector<NamedPicture> extract_below(std::vector<NamedPicture> &pictures,
+                                        const std::function<bool(const std::string &)> &is_output) {
     std::map<std::string, bool> known;
     const auto is_kept = [&](const NamedPicture &picture) {
         std::filesystem::path place = std::filesystem::path(picture.file).parent_path(), below = picture.subfolder;
@@ -134,7 +134,7 @@ void note_instead(const NamedPicture &picture, Streams &streams) {
                       + "; give the other file explicitly to use it");
 }
 
-void demand_one_kind(const std::vector<std::string> &files) {
+void require_one_kind(const std::vector<std::string> &files) {
     std::string raw, rendered;
     for (const std::string &file : files) {
         if (!is_regular_file(file)) continue;

@@ -35,14 +35,14 @@ constexpr const char *calibrate_records = ".lensprof-calibrate.json";
 
 // Removes and returns the pictures in or below a subfolder for which is_output(folder) is true. Every folder is tested
 // once; named folders are not tested.
-std::vector<NamedPicture> take_out_below(std::vector<NamedPicture> &pictures,
-                                         const std::function<bool(const std::string &)> &is_output);
+std::vector<NamedPicture> extract_below(std::vector<NamedPicture> &pictures,
+                                        const std::function<bool(const std::string &)> &is_output);
 
 // Prints a note for each such pair: which file is used, and why.
 void note_instead(const NamedPicture &picture, Streams &streams);
 
 // Failure (usage) if camera raw files are mixed with others: their values do not share a response, and the falloff of
 // the others may be corrected. Missing files are skipped.
-void demand_one_kind(const std::vector<std::string> &files);
+void require_one_kind(const std::vector<std::string> &files);
 
 }  // namespace lensprof

@@ -50,7 +50,7 @@ std::string about_foreign(bool written_only) {
 }
 
 const ForeignRule &format_to_read(const std::string &path, const std::string &format_name) {
-    demand_ordinary(path);
+    require_regular_file(path);
     if (!format_name.empty()) return rule_of_word(format_name);
     const std::string head = read_head(path, 8192);
     uint32_t format = format_of_tags(path, head);

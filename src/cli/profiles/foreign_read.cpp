@@ -54,7 +54,7 @@ void import(const std::string &path, const std::string &bytes, const lensprof_im
 }
 
 // Width and height of the frame, which some files do not state.
-void demand_frame(const std::string &path, const ForeignOptions &o) {
+void require_frame(const std::string &path, const ForeignOptions &o) {
     if (!o.width || !o.height)
         throw Failure(ExitCode::usage, path + ": does not state the size of the pictures; give --frame WIDTHxHEIGHT");
 }
@@ -124,7 +124,7 @@ bool is_packet_alone(const std::string &path) {
 // The XMP packet of a picture, or of a standalone file.
 std::string packet_of(const std::string &path, const ForeignOptions &o, lensprof_import_options &options) {
     const bool is_packet = is_packet_alone(path);
-    if (is_packet) demand_frame(path, o);
+    if (is_packet) require_frame(path, o);
     const std::string packet = is_packet ? read_text(path, max_text_bytes) : read_xmp_packet(path);
     if (packet.empty())
         throw Failure(ExitCode::unreadable, path + ": has no XMP, where drone cameras describe their falloff; give "
@@ -177,7 +177,7 @@ void read_part(const ForeignRule &rule, const std::string &path, const ForeignOp
     if (is_picture) complete_key(key, path);
     options.key = &key;
     if (rule.format == LENSPROF_FORMAT_MAP) return read_map(path, o, options, profile);
-    if (rule.format == LENSPROF_FORMAT_ALSC) demand_frame(path, o);
+    if (rule.format == LENSPROF_FORMAT_ALSC) require_frame(path, o);
     const std::string bytes = rule.format == LENSPROF_FORMAT_DNG_OPCODES ? opcodes_of(path, options)
                               : rule.format == LENSPROF_FORMAT_DRONE_XMP ? packet_of(path, o, options)
                                                                          : read_text(path, max_text_bytes);

@@ -13,13 +13,13 @@ namespace {
 
 constexpr uint64_t max_map_values = 80000000;  // of all channels; each needs 12 bytes of memory
 
-void demand_one(const std::string &path, const ForeignRule &rule, size_t profiles) {
+void require_single_profile(const std::string &path, const ForeignRule &rule, size_t profiles) {
     if (profiles != 1)
         throw Failure(ExitCode::usage, path + ": " + rule.name + " holds one profile, and " + std::to_string(profiles)
                                            + " were chosen; give one id");
 }
 
-void demand_frame(const std::string &path, const ForeignRule &rule, const ForeignOptions &o) {
+void require_frame(const std::string &path, const ForeignRule &rule, const ForeignOptions &o) {
     if (!o.width || !o.height)
         throw Failure(ExitCode::usage,
                       path + ": " + rule.name + " is for pictures of one size; give --frame WIDTHxHEIGHT");
@@ -81,7 +81,7 @@ bool has_opcode(const std::vector<uint8_t> &list, const Is &is_match) {
 bool is_gain(uint32_t id) { return id == 3 || id == 9; }  // FixVignetteRadial, GainMap
 
 // Other opcodes of a picture must stay, and a falloff must not be corrected twice.
-void demand_no_others(const std::string &path, const OpcodeLists &lists) {
+void require_no_other_opcodes(const std::string &path, const OpcodeLists &lists) {
     if (has_opcode(lists.list2, is_gain))
         throw Failure(ExitCode::usage, path + ": its OpcodeList2 already corrects the falloff; give another picture");
     if (has_opcode(lists.list3, [](uint32_t id) { return !is_gain(id); }))
@@ -114,7 +114,7 @@ lensprof_export_options options_of(const ForeignRule &rule, const ForeignOptions
 void write_opcodes_as(const std::string &path, const std::string &path_out, lensprof_export_options options,
                       const lensprof_profile &profile) {
     const OpcodeLists lists = read_opcode_lists(path);
-    demand_no_others(path, lists);
+    require_no_other_opcodes(path, lists);
     // after demosaicing there are three channels; linear raw images and plain TIFF have three from the start
     if (lists.layout == LENSPROF_LAYOUT_GREY) options.layout = lists.layout;
     options.width = lists.width, options.height = lists.height;
@@ -143,8 +143,8 @@ std::string foreign_bytes(const ForeignRule &rule, const std::string &path, cons
     if (format == LENSPROF_FORMAT_MAP || format == LENSPROF_FORMAT_DNG_OPCODES)
         throw Failure(ExitCode::usage,
                       path + ": " + rule.name + " is written into a picture; export one profile with -o FILE");
-    if (!rule.is_many) demand_one(path, rule, profiles.size());
-    if (format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC) demand_frame(path, rule, o);
+    if (!rule.is_many) require_single_profile(path, rule, profiles.size());
+    if (format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC) require_frame(path, rule, o);
     return bytes_of(path, options_of(rule, o), profiles, names);
 }
 
@@ -152,8 +152,8 @@ void write_foreign(const ForeignRule &rule, const std::string &path, const Forei
                    const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
     const bool is_map = rule.format == LENSPROF_FORMAT_MAP;
     if (is_map || rule.format == LENSPROF_FORMAT_DNG_OPCODES) {
-        demand_one(path, rule, profiles.size());
-        if (is_map) demand_frame(path, rule, o);
+        require_single_profile(path, rule, profiles.size());
+        if (is_map) require_frame(path, rule, o);
         return is_map ? write_map(path, o, *profiles[0])
                       : write_opcodes_as(path, path, options_of(rule, o), *profiles[0]);
     }

@@ -45,7 +45,7 @@ bool KeyFilter::is_empty() const {
            && focal_ == LENSPROF_UNKNOWN && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
 }
 
-void KeyFilter::check_names() const { demand_room(maker_, camera_, lens_, unit_, style_); }
+void KeyFilter::check_names() const { require_text_sizes(maker_, camera_, lens_, unit_, style_); }
 
 lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     lensprof_profile_key key;

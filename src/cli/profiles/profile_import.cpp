@@ -185,7 +185,7 @@ int run(const Options &o, Streams &streams) {
     std::vector<Input> inputs;
     std::set<std::string> seen;
     for (const std::string &file : o.files)
-        if (seen.insert(one_name(file)).second) inputs.push_back({file, &format_to_read(file, o.format)});
+        if (seen.insert(canonical_path(file)).second) inputs.push_back({file, &format_to_read(file, o.format)});
     const std::unique_ptr<lensprof_profile> of_parts = read_parts(o, inputs);
     if (!of_parts && !o.key.is_empty())
         throw Failure(ExitCode::usage,

@@ -169,14 +169,14 @@ std::string fish_completion(const CommandDescription &program) {
         const std::string path = words_of(*command);
         std::string condition = "__fish_use_subcommand";
         if (!path.empty()) {
-            std::string seen;
-            for (size_t at = 0; at < path.size();) {
-                const size_t end = std::min(path.find(' ', at), path.size());
-                seen += (seen.empty() ? "" : "; and ") + std::string("__fish_seen_subcommand_from ")
-                        + path.substr(at, end - at);
-                at = end + 1;
+            std::string conditions;
+            for (size_t begin = 0; begin < path.size();) {
+                const size_t end = std::min(path.find(' ', begin), path.size());
+                conditions += (conditions.empty() ? "" : "; and ") + std::string("__fish_seen_subcommand_from ")
+                              + path.substr(begin, end - begin);
+                begin = end + 1;
             }
-            condition = seen;
+            condition = conditions;
         }
         for (const CommandDescription &verb : command->commands)
             text += "complete -c lensprof -f -n " + shell_quoted(condition) + " -a " + shell_quoted(verb.name())

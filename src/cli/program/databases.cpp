@@ -12,18 +12,18 @@ namespace {
 constexpr const char *kInstalled = "/lensprof/lensfun.db";
 
 // The share folder next to the program's bin: /usr/local/share for /usr/local/bin/lensprof. Empty if unknown.
-std::string own_share_folder() {
+std::string program_share_folder() {
     std::error_code error;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
     return error ? std::string() : (program.parent_path().parent_path() / "share").string();
 }
 
 // Not named by the user: a damaged one is skipped.
-bool can_be_read(const std::string &file) {
+bool is_readable(const std::string &file) {
     lensprof_store *store = nullptr;
-    const bool can = lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &store, nullptr) == LENSPROF_OK;
+    const bool is_open = lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &store, nullptr) == LENSPROF_OK;
     lensprof_store_close(store);
-    return can;
+    return is_open;
 }
 
 }  // namespace
@@ -48,10 +48,11 @@ void declare_listed_databases(Command &command, std::vector<std::string> &files,
 
 std::string installed_database() {
     const char *given = std::getenv("XDG_DATA_DIRS");
-    std::string folders = own_share_folder() + ":" + (given && *given ? given : "/usr/local/share:/usr/share") + ":";
+    std::string folders =
+        program_share_folder() + ":" + (given && *given ? given : "/usr/local/share:/usr/share") + ":";
     for (size_t begin = 0, end; (end = folders.find(':', begin)) != std::string::npos; begin = end + 1) {
         const std::string file = folders.substr(begin, end - begin) + kInstalled;
-        if (file[0] == '/' && end > begin && is_regular_file(file) && can_be_read(file)) return file;
+        if (file[0] == '/' && end > begin && is_regular_file(file) && is_readable(file)) return file;
     }
     return {};
 }
@@ -59,9 +60,9 @@ std::string installed_database() {
 std::vector<std::string> databases_of(const std::vector<std::string> &named) {
     if (!named.empty()) return named;
     std::vector<std::string> files;
-    const std::string own = store_path(""), installed = installed_database();
-    if (path_exists(own) || installed.empty()) files.push_back(own);
-    if (!installed.empty() && !is_same_file(own, installed)) files.push_back(installed);
+    const std::string user_database = store_path(""), installed_file = installed_database();
+    if (path_exists(user_database) || installed_file.empty()) files.push_back(user_database);
+    if (!installed_file.empty() && !is_same_file(user_database, installed_file)) files.push_back(installed_file);
     return files;
 }
 

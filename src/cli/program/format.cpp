@@ -6,25 +6,25 @@
 namespace lensprof {
 
 std::string format(const char *pattern, ...) {
-    va_list arguments, again;
+    va_list arguments, arguments_copy;
     va_start(arguments, pattern);
-    va_copy(again, arguments);
+    va_copy(arguments_copy, arguments);
     std::string text(static_cast<size_t>(std::vsnprintf(nullptr, 0, pattern, arguments)), '\0');
-    std::vsnprintf(text.data(), text.size() + 1, pattern, again);
-    va_end(again);
+    std::vsnprintf(text.data(), text.size() + 1, pattern, arguments_copy);
+    va_end(arguments_copy);
     va_end(arguments);
     return text;
 }
 
-std::string counted(size_t count, const std::string &thing, const std::string &things) {
-    return std::to_string(count) + " " + (count == 1 ? thing : things.empty() ? thing + "s" : things);
+std::string counted(size_t count, const std::string &singular, const std::string &plural) {
+    return std::to_string(count) + " " + (count == 1 ? singular : plural.empty() ? singular + "s" : plural);
 }
 
 std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names) {
-    constexpr size_t most = 5;
+    constexpr size_t max_names = 5;
     std::string text;
-    for (size_t n = 0; n < numbers.size() && n < most; n++) text += (n ? ", " : "") + names[numbers[n]];
-    if (numbers.size() > most) text += format(" and %zu more", numbers.size() - most);
+    for (size_t n = 0; n < numbers.size() && n < max_names; n++) text += (n ? ", " : "") + names[numbers[n]];
+    if (numbers.size() > max_names) text += format(" and %zu more", numbers.size() - max_names);
     return text;
 }
 

@@ -12,7 +12,7 @@ namespace lensprof {
 std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));
 
 // "1 profile", "2 lenses"; the default plural adds an s.
-std::string counted(size_t count, const std::string &thing, const std::string &things = "");
+std::string counted(size_t count, const std::string &singular, const std::string &plural = "");
 
 // Names by index, "img1.jpg, img2.jpg and 7 more".
 std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names);

@@ -11,14 +11,14 @@
 namespace lensprof {
 namespace {
 
-[[noreturn]] void fail_too_large(const std::string &path, uint64_t most_bytes) {
+[[noreturn]] void fail_too_large(const std::string &path, uint64_t max_bytes) {
     throw Failure(ExitCode::unreadable, path + ": exceeds the maximum size of such a file ("
-                                            + std::to_string(most_bytes >> 10) + " KiB); check the file name");
+                                            + std::to_string(max_bytes >> 10) + " KiB); check the file name");
 }
 
-std::ifstream opened(const std::string &path) {
+std::ifstream open_for_reading(const std::string &path) {
     const std::string name = short_name(path);
-    demand_ordinary(path);
+    require_regular_file(path);
     if (is_folder(path)) throw Failure(ExitCode::unreadable, name + ": is a folder; give a file");
     errno = 0;
     std::ifstream file(path, std::ios::binary);
@@ -30,33 +30,33 @@ std::ifstream opened(const std::string &path) {
 
 }  // namespace
 
-void demand_ordinary(const std::string &path) {
+void require_regular_file(const std::string &path) {
     if (path_exists(path) && !is_regular_file(path) && !is_folder(path))
         throw Failure(ExitCode::unreadable, path + ": is not a regular file (a device or a pipe); copy it to a file "
                                                    "first");
 }
 
-std::string read_text(const std::string &path, uint64_t most_bytes) {
+std::string read_text(const std::string &path, uint64_t max_bytes) {
     const std::string name = short_name(path);
-    std::ifstream file = opened(path);
+    std::ifstream file = open_for_reading(path);
     const uint64_t bytes = file_bytes(path);
-    if (bytes > most_bytes) fail_too_large(name, most_bytes);
+    if (bytes > max_bytes) fail_too_large(name, max_bytes);
     std::string text;
     text.reserve(bytes);
-    std::vector<char> room(1 << 16);
-    while (text.size() <= most_bytes && (file.read(room.data(), std::streamsize(room.size())), file.gcount() > 0))
-        text.append(room.data(), static_cast<size_t>(file.gcount()));
+    std::vector<char> buffer(1 << 16);
+    while (text.size() <= max_bytes && (file.read(buffer.data(), std::streamsize(buffer.size())), file.gcount() > 0))
+        text.append(buffer.data(), static_cast<size_t>(file.gcount()));
     if (file.bad())
         throw Failure(ExitCode::unreadable, name + ": read error before the end of the file; copy the "
                                                                "file again");
-    if (text.size() > most_bytes) fail_too_large(name, most_bytes);  // it grows while being read
+    if (text.size() > max_bytes) fail_too_large(name, max_bytes);  // it grows while being read
     return text;
 }
 
-std::string read_head(const std::string &path, size_t most_bytes) {
-    std::ifstream file = opened(path);
-    std::string head(most_bytes, 0);
-    file.read(head.data(), static_cast<std::streamsize>(most_bytes));
+std::string read_head(const std::string &path, size_t max_bytes) {
+    std::ifstream file = open_for_reading(path);
+    std::string head(max_bytes, 0);
+    file.read(head.data(), static_cast<std::streamsize>(max_bytes));
     head.resize(static_cast<size_t>(file.gcount()));
     return head;
 }

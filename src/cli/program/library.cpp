@@ -74,7 +74,7 @@ std::string store_path(const std::string &path) {
     throw Failure(ExitCode::usage, "no home folder for the profile database; give a database with --db FILE");
 }
 
-void demand_folder(const std::string &path) {
+void require_folder(const std::string &path) {
     const std::string folder = std::filesystem::path(absolute_path(store_path(path))).parent_path().string();
     if (path.empty() || is_folder(folder)) return;
     const std::string place = existing_part(folder);
@@ -94,7 +94,7 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
         std::error_code ignored;  // opening the database reports a folder that cannot be created
         std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
     }
-    if (mode == LENSPROF_STORE_CREATE) demand_folder(path);
+    if (mode == LENSPROF_STORE_CREATE) require_folder(path);
     if (path_exists(file) && !is_regular_file(file) && !is_folder(file))  // reading a pipe would block
         throw Failure(ExitCode::store, file + ": is not a regular file; give the path of a database");
     lensprof_store *store = nullptr;
@@ -124,8 +124,8 @@ std::string pto_text(const lensprof_pto &pto) {
     });
 }
 
-void demand_room(const std::string &maker, const std::string &camera, const std::string &lens, const std::string &unit,
-                 const std::string &style) {
+void require_text_sizes(const std::string &maker, const std::string &camera, const std::string &lens,
+                        const std::string &unit, const std::string &style) {
     using Key = lensprof_profile_key;
     const struct {
         const char *option;

@@ -54,7 +54,7 @@ Store open_store(const std::string &path, lensprof_store_mode mode);
 std::string store_path(const std::string &path);
 
 // Failure (store) if the folder of a named database does not exist.
-void demand_folder(const std::string &path);
+void require_folder(const std::string &path);
 
 struct PtoDestroy {
     void operator()(lensprof_pto *pto) const { lensprof_pto_destroy(pto); }
@@ -71,7 +71,7 @@ std::string pto_text(const lensprof_pto &pto);
 void set_text(char *field, size_t size, const std::string &text);
 
 // Failure (usage) if the text of --maker, --camera, --lens, --unit or --style is too long for its field of the key.
-void demand_room(const std::string &maker, const std::string &camera, const std::string &lens, const std::string &unit,
-                 const std::string &style);
+void require_text_sizes(const std::string &maker, const std::string &camera, const std::string &lens,
+                        const std::string &unit, const std::string &style);
 
 }  // namespace lensprof

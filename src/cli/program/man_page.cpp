@@ -8,7 +8,7 @@ namespace {
 constexpr const char *page_date = "2026-11-26";  // of the last change of the commands
 
 // Text for roff: no line starts with a control character, and hyphens of options stay hyphens.
-std::string roff(const std::string &text) {
+std::string roff_text(const std::string &text) {
     std::string escaped;
     bool starts_line = true;
     for (const char c : text) {
@@ -19,8 +19,8 @@ std::string roff(const std::string &text) {
     return escaped;
 }
 
-std::string bold(const std::string &text) { return "\\fB" + roff(text) + "\\fR"; }
-std::string italic(const std::string &text) { return "\\fI" + roff(text) + "\\fR"; }
+std::string bold(const std::string &text) { return "\\fB" + roff_text(text) + "\\fR"; }
+std::string italic(const std::string &text) { return "\\fI" + roff_text(text) + "\\fR"; }
 
 std::string upper(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
@@ -29,18 +29,19 @@ std::string upper(std::string text) {
 }
 
 // `-o, --output FILE`.
-std::string head_of(const OptionDescription &option) {
-    std::string head;
+std::string heading_of(const OptionDescription &option) {
+    std::string heading;
     for (const std::string &name : option.names)
-        head += (head.empty() ? "" : ", ") + (option.is_positional ? italic(name) : bold(name));
-    if (!option.is_positional && !option.type.empty()) head += " " + italic(option.type);
-    return head + (option.is_repeated ? " ..." : "");
+        heading += (heading.empty() ? "" : ", ") + (option.is_positional ? italic(name) : bold(name));
+    if (!option.is_positional && !option.type.empty()) heading += " " + italic(option.type);
+    return heading + (option.is_repeated ? " ..." : "");
 }
 
 std::string options_section(const CommandDescription &command, bool positionals) {
     std::string text;
     for (const OptionDescription &option : command.options)
-        if (option.is_positional == positionals) text += ".TP\n" + head_of(option) + "\n" + roff(option.about) + "\n";
+        if (option.is_positional == positionals)
+            text += ".TP\n" + heading_of(option) + "\n" + roff_text(option.about) + "\n";
     return text.empty() ? text : std::string(".SH ") + (positionals ? "ARGUMENTS" : "OPTIONS") + "\n" + text;
 }
 
@@ -66,21 +67,21 @@ std::string man_name(const CommandDescription &command) {
 std::string man_page(const CommandDescription &command, const std::string &version) {
     std::string page = ".TH " + upper(man_name(command)) + " 1 \"" + std::string(page_date) + "\" \"lensprof " + version
                        + "\" \"lensprof manual\"\n";
-    page += ".SH NAME\n" + roff(man_name(command)) + " \\- " + roff(command.brief) + "\n";
+    page += ".SH NAME\n" + roff_text(man_name(command)) + " \\- " + roff_text(command.brief) + "\n";
     page += ".SH SYNOPSIS\n" + synopsis(command);
-    if (!command.about.empty()) page += ".SH DESCRIPTION\n" + roff(command.about) + "\n";
+    if (!command.about.empty()) page += ".SH DESCRIPTION\n" + roff_text(command.about) + "\n";
     if (!command.commands.empty()) {
         page += command.name() == "lensprof" ? ".SH COMMANDS\n" : ".SH VERBS\n";
         for (const CommandDescription &verb : command.commands)
-            page += ".TP\n" + bold(verb.name()) + "\n" + roff(verb.brief) + "\n";
+            page += ".TP\n" + bold(verb.name()) + "\n" + roff_text(verb.brief) + "\n";
     }
     page += options_section(command, true) + options_section(command, false);
-    if (!command.footer.empty()) page += ".SH NOTES\n.nf\n" + roff(command.footer) + "\n.fi\n";
+    if (!command.footer.empty()) page += ".SH NOTES\n.nf\n" + roff_text(command.footer) + "\n.fi\n";
     page += ".SH SEE ALSO\n";
     if (command.name() == "lensprof")
         for (size_t i = 0; i < command.commands.size(); i++)
-            page += ".BR " + roff(man_name(command.commands[i])) + " (1)" + (i + 1 < command.commands.size() ? "," : "")
-                    + "\n";
+            page += ".BR " + roff_text(man_name(command.commands[i])) + " (1)"
+                    + (i + 1 < command.commands.size() ? "," : "") + "\n";
     else
         page += ".BR lensprof (1)\n";
     return page;

@@ -19,8 +19,8 @@ std::string mark(bool colour, const char *code, const std::string &text) {
 }  // namespace
 
 bool shows_colour() {
-    const char *off = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
-    return isatty(STDERR_FILENO) && !(off && *off) && terminal && std::strcmp(terminal, "dumb") != 0;
+    const char *no_color = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) && !(no_color && *no_color) && terminal && std::strcmp(terminal, "dumb") != 0;
 }
 
 std::string warning_mark(bool colour) { return mark(colour, "1;33", "warning:"); }

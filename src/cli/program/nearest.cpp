@@ -20,18 +20,18 @@ size_t distance(const std::string &a, const std::string &b) {
     return d[a.size()][b.size()];
 }
 
-std::string in_small_letters(std::string word) {
+std::string to_lower(std::string word) {
     for (char &c : word)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return word;
 }
 
 // The shortest of `words` that starts with `start`, which has at least two letters after its dashes; else empty.
-std::string longer_word(const std::string &start, const std::vector<std::string> &words) {
+std::string shortest_completion(const std::string &start, const std::vector<std::string> &words) {
     const size_t dashes = std::min(start.find_first_not_of('-'), start.size());
     std::string shortest;
     for (const std::string &word : words) {
-        const bool begins = start.size() >= dashes + 2 && in_small_letters(word).rfind(start, 0) == 0;
+        const bool begins = start.size() >= dashes + 2 && to_lower(word).rfind(start, 0) == 0;
         if (begins && (shortest.empty() || word.size() < shortest.size())) shortest = word;
     }
     return shortest;
@@ -40,22 +40,20 @@ std::string longer_word(const std::string &start, const std::vector<std::string>
 }  // namespace
 
 std::string nearest_of(const std::string &word, const std::vector<std::string> &words) {
-    constexpr size_t longest = 100;
-    if (word.size() > longest) return {};
-    const std::string small = in_small_letters(word), whole = longer_word(small, words);
-    if (!whole.empty()) return whole;
+    constexpr size_t max_length = 100;
+    if (word.size() > max_length) return {};
+    const std::string lower_word = to_lower(word), completion = shortest_completion(lower_word, words);
+    if (!completion.empty()) return completion;
     std::string nearest;
-    size_t fewest = std::max<size_t>(1, word.size() / 3) + 1;
+    size_t min_changes = std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string &other : words) {
-        const size_t changes = distance(small, in_small_letters(other));
-        if (changes < fewest) fewest = changes, nearest = other;
+        const size_t changes = distance(lower_word, to_lower(other));
+        if (changes < min_changes) min_changes = changes, nearest = other;
     }
     return nearest;
 }
 
-size_t letters_changed(const std::string &a, const std::string &b) {
-    return distance(in_small_letters(a), in_small_letters(b));
-}
+size_t letters_changed(const std::string &a, const std::string &b) { return distance(to_lower(a), to_lower(b)); }
 
 std::string did_you_mean(const std::string &word, const std::vector<std::string> &words) {
     const std::string nearest = nearest_of(word, words);

@@ -12,7 +12,7 @@ namespace lensprof {
 namespace {
 
 struct UnitRule {
-    const char *thing, *unit, *forms;
+    const char *quantity, *unit, *examples;
 };
 
 UnitRule rule_of(Unit unit) {
@@ -32,7 +32,7 @@ std::string range_text(const Quantity &quantity) {
 }
 
 // Parses the decimal number, or infinity, at the start of `text` and removes it; false if not found.
-bool take_number(const char *&text, double &value) {
+bool parse_number(const char *&text, double &value) {
     const char *digits = text + (*text == '-' || *text == '+');
     const bool is_hexadecimal = digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');
     if (is_hexadecimal || std::isspace(static_cast<unsigned char>(*text))) return false;
@@ -49,25 +49,26 @@ double number_of(const std::string &word, const Quantity &quantity) {
     const char *text = word.c_str();
     if (quantity.unit == Unit::f_number && (*text == 'f' || *text == 'F')) text += text[1] == '/' ? 2 : 1;
     double value = 0.0, divisor = 1.0;
-    bool good = take_number(text, value);
+    bool is_valid = parse_number(text, value);
     const bool may_be_fraction = quantity.unit == Unit::none || quantity.unit == Unit::time_s;
-    if (good && may_be_fraction && *text == '/') good = take_number(++text, divisor) && divisor > 0.0;
+    if (is_valid && may_be_fraction && *text == '/') is_valid = parse_number(++text, divisor) && divisor > 0.0;
     while (*text == ' ') text++;
     const UnitRule rule = rule_of(quantity.unit);
-    const std::string rest = text;
-    if (good && !rest.empty() && quantity.unit != Unit::none && rest != rule.unit)
-        throw std::invalid_argument(word + ": '" + rest + "' is not the unit of " + rule.thing + "; give "
-                                    + rule.forms);
+    const std::string suffix = text;
+    if (is_valid && !suffix.empty() && quantity.unit != Unit::none && suffix != rule.unit)
+        throw std::invalid_argument(word + ": '" + suffix + "' is not the unit of " + rule.quantity + "; give "
+                                    + rule.examples);
     value /= divisor;
-    if (!good || (!rest.empty() && rest != rule.unit) || !(value >= quantity.low && value <= quantity.high))
+    if (!is_valid || (!suffix.empty() && suffix != rule.unit) || !(value >= quantity.low && value <= quantity.high))
         throw std::invalid_argument((word.empty() ? "an empty word" : word) + range_text(quantity));
     return value;
 }
 
 uint32_t count_of(const std::string &word, uint32_t low, uint32_t high) {
-    const bool digits = !word.empty() && word.size() <= 10 && word.find_first_not_of("0123456789") == std::string::npos;
-    const uint64_t value = digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
-    if (!digits || value < low || value > high)
+    const bool has_only_digits =
+        !word.empty() && word.size() <= 10 && word.find_first_not_of("0123456789") == std::string::npos;
+    const uint64_t value = has_only_digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
+    if (!has_only_digits || value < low || value > high)
         throw std::invalid_argument(word + " is not an integer from " + std::to_string(low) + " to "
                                     + std::to_string(high));
     return static_cast<uint32_t>(value);
@@ -92,9 +93,9 @@ std::vector<std::string> elements(const std::string &list) {
     return words;
 }
 
-void demand_count(size_t values, const std::string &option, size_t count, const std::string &thing) {
+void require_count(size_t values, const std::string &option, size_t count, const std::string &singular) {
     if (values != count)
-        throw Failure(ExitCode::usage, option + ": " + counted(values, "value") + " for " + counted(count, thing)
+        throw Failure(ExitCode::usage, option + ": " + counted(values, "value") + " for " + counted(count, singular)
                                            + "; give one for each, in their order");
 }
 

@@ -57,19 +57,20 @@ std::vector<std::string> names_of_options(const CLI::App &app) {
 }
 
 // Suggests the nearest word, else where to look.
-std::string advice(const std::string &word, const std::vector<std::string> &words, const std::string &otherwise) {
+std::string advice(const std::string &word, const std::vector<std::string> &words, const std::string &fallback) {
     const std::string nearest = did_you_mean(word, words);
-    return nearest.empty() ? "; " + otherwise : nearest;
+    return nearest.empty() ? "; " + fallback : nearest;
 }
 
 // Failure for an unknown command or verb.
 [[noreturn]] void fail_no_command(const CLI::App &app, const std::string &word) {
-    const std::string path = path_of(app), own = app.get_parent() ? path.substr(path.find(' ') + 1) : "";
-    const std::string help = "`lensprof help" + (own.empty() ? "" : " " + own) + "`";
+    const std::string path = path_of(app), command_words = app.get_parent() ? path.substr(path.find(' ') + 1) : "";
+    const std::string help = "`lensprof help" + (command_words.empty() ? "" : " " + command_words) + "`";
     const std::vector<std::string> names = names_of_commands(app);
-    if (names.empty()) throw Failure(ExitCode::usage, own + " " + word + ": `" + path + "` has no verbs; see " + help);
-    throw Failure(ExitCode::usage, (own.empty() ? (word.empty() ? "''" : word) : own + " " + word)
-                                       + (own.empty() ? ": no such command" : ": no such verb")
+    if (names.empty())
+        throw Failure(ExitCode::usage, command_words + " " + word + ": `" + path + "` has no verbs; see " + help);
+    throw Failure(ExitCode::usage, (command_words.empty() ? (word.empty() ? "''" : word) : command_words + " " + word)
+                                       + (command_words.empty() ? ": no such command" : ": no such verb")
                                        + advice(word, names, help + " lists them"));
 }
 
@@ -95,7 +96,7 @@ bool looks_like_option(const std::string &word, const CLI::Option &option) {
 }
 
 // CLI11 parses a value in brackets as a list, and one that starts with this character as text.
-constexpr char text_mark = '=';
+constexpr char text_prefix = '=';
 
 // Sorts the command line into the order that CLI11 parses as intended: commands, options with their values, "--",
 // positionals. Otherwise it takes an option as the value of the preceding one, and "--" after a positional as the end
@@ -107,15 +108,15 @@ public:
         wants_help_ =
             std::any_of(words.begin(), end, [](const auto &word) { return word == "-h" || word == "--help"; });
         bool only_positionals = false;
-        while (at_ < words_.size() && !is_done_) {
-            const std::string &word = words_[at_++];
+        while (position_ < words_.size() && !is_done_) {
+            const std::string &word = words_[position_++];
             const bool is_option = !only_positionals && word.size() > 1 && word[0] == '-';
             if (is_option && word == "--")
                 only_positionals = true;
             else if (!is_option)
-                take_plain(word);
+                parse_argument(word);
             else if (!wants_help_)
-                take_option(word);
+                parse_option(word);
         }
     }
 
@@ -133,7 +134,7 @@ public:
 
 private:
     // A command, one of its verbs, or a positional.
-    void take_plain(const std::string &word) {
+    void parse_argument(const std::string &word) {
         if (!app_->get_subcommands({}).empty()) {
             const CLI::App *command = command_of(*app_, word);
             if (!command) fail_no_command(*app_, word);
@@ -143,38 +144,39 @@ private:
         }
         if (wants_help_) return;
         if (positionals_.size() == room())
-            throw Failure(ExitCode::usage, word + ": unexpected argument; see " + own_help());
-        positionals_.push_back(text_mark + word);
+            throw Failure(ExitCode::usage, word + ": unexpected argument; see " + help_command());
+        positionals_.push_back(text_prefix + word);
     }
 
-    void take_option(const std::string &word) {
+    void parse_option(const std::string &word) {
         const bool is_long = word[1] == '-';
         const size_t equal = word.find('=');
         const std::string name = word.substr(0, equal);
         const CLI::Option *option = app_->get_option_no_throw(is_long ? name : word.substr(0, 2));
         if (!option || (!is_long && is_flag(*option) && word.size() > 2)) fail_no_option(name, is_long);
-        if (is_flag(*option)) return take_flag(*option, equal == std::string::npos ? "true" : word.substr(equal + 1));
+        if (is_flag(*option)) return parse_flag(*option, equal == std::string::npos ? "true" : word.substr(equal + 1));
         const bool has_value = is_long ? equal != std::string::npos : word.size() > 2;
-        const size_t value_at = is_long || equal == 2 ? equal + 1 : 2;  // of --output=FILE, -o=FILE and -oFILE
-        const std::string value = has_value ? word.substr(value_at) : next_value(*option);
+        const size_t value_offset = is_long || equal == 2 ? equal + 1 : 2;  // of --output=FILE, -o=FILE and -oFILE
+        const std::string value = has_value ? word.substr(value_offset) : next_value(*option);
         if (counts_[option]++ > 0 && option->get_items_expected_max() == 1)
             throw Failure(ExitCode::usage, option->get_name() + ": given more than once; give it once");
         options_.push_back(option->get_name());
-        options_.push_back(text_mark + value);
+        options_.push_back(text_prefix + value);
     }
 
     // A word with one dash may be a file name, even if an option is similar.
     [[noreturn]] void fail_no_option(const std::string &name, bool is_long) const {
         const std::string nearest = did_you_mean(name, names_of_options(*app_)),
                           hint = "put -- before names that start with -";
-        throw Failure(ExitCode::usage, name + ": no such option"
-                                           + (nearest.empty() ? "; see " + own_help() + (room() ? ", or " + hint : "")
-                                              : room() && !is_long ? nearest + " Otherwise " + hint
-                                                                   : nearest));
+        throw Failure(ExitCode::usage,
+                      name + ": no such option"
+                          + (nearest.empty()      ? "; see " + help_command() + (room() ? ", or " + hint : "")
+                             : room() && !is_long ? nearest + " Otherwise " + hint
+                                                  : nearest));
     }
 
     // An option of the program itself, such as --version, ends parsing.
-    void take_flag(const CLI::Option &flag, const std::string &value) {
+    void parse_flag(const CLI::Option &flag, const std::string &value) {
         const std::string &name = flag.get_name();
         if (value.empty()) throw Failure(ExitCode::usage, name + ": takes no value; give " + name + " alone");
         try {
@@ -188,12 +190,12 @@ private:
     }
 
     std::string next_value(const CLI::Option &option) {
-        const std::string name = option.get_name(), give = "; give " + name + " " + option.get_type_name();
-        if (at_ == words_.size()) throw Failure(ExitCode::usage, name + ": needs a value" + give);
-        const std::string &word = words_[at_++];
+        const std::string name = option.get_name(), remedy = "; give " + name + " " + option.get_type_name();
+        if (position_ == words_.size()) throw Failure(ExitCode::usage, name + ": needs a value" + remedy);
+        const std::string &word = words_[position_++];
         if (!looks_like_option(word, option)) return word;
-        throw Failure(ExitCode::usage, name + ": needs a value, but " + word + " looks like an option" + give + ", or "
-                                           + name + "=" + word + " if that is the value");
+        throw Failure(ExitCode::usage, name + ": needs a value, but " + word + " looks like an option" + remedy
+                                           + ", or " + name + "=" + word + " if that is the value");
     }
 
     // The number of positionals the command takes.
@@ -204,11 +206,11 @@ private:
         return room;
     }
 
-    std::string own_help() const { return "`" + path_of(*app_) + " --help`"; }
+    std::string help_command() const { return "`" + path_of(*app_) + " --help`"; }
 
     const CLI::App *app_;
     const std::vector<std::string> &words_;
-    size_t at_ = 0;
+    size_t position_ = 0;
     bool wants_help_ = false, is_done_ = false;
     std::map<const CLI::Option *, uint32_t> counts_;
     std::vector<std::string> commands_, options_, positionals_;
@@ -243,17 +245,17 @@ void Command::run(std::function<int(Streams &)> action) {
 CLI::Option *Command::add_option(const char *names, const std::string &type, const Read &read,
                                  const std::string &about) {
     const std::string all = names, name = all.substr(all.rfind(',') + 1);
-    const auto take = [app = app_, name, read](const std::vector<std::string> &words) {
+    const auto parse = [app = app_, name, read](const std::vector<std::string> &words) {
         for (const std::string &marked : words) try {
-                const std::string word = marked.substr(1);  // without text_mark
+                const std::string word = marked.substr(1);  // without text_prefix
                 if (word.empty()) throw std::invalid_argument(empty_text(*app->get_option(name)));
                 read(word);
-            } catch (const std::invalid_argument &wrong) {
-                throw Failure(ExitCode::usage, name + ": " + wrong.what());
+            } catch (const std::invalid_argument &error) {
+                throw Failure(ExitCode::usage, name + ": " + error.what());
             }
         return true;
     };
-    return app_->add_option(names, CLI::callback_t(take), about)->type_name(type);
+    return app_->add_option(names, CLI::callback_t(parse), about)->type_name(type);
 }
 
 void Command::flag(const char *names, bool &value, const std::string &about) { app_->add_flag(names, value, about); }
@@ -333,9 +335,9 @@ void Command::size(const char *names, uint32_t &width, uint32_t &height, std::pa
 }
 
 int64_t profile_id_of(const std::string &word) {
-    const bool digits = word.find_first_not_of("0123456789") == std::string::npos;
+    const bool has_only_digits = word.find_first_not_of("0123456789") == std::string::npos;
     errno = 0;
-    const unsigned long long id = digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
+    const unsigned long long id = has_only_digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
     if (id == 0 || errno != 0 || id > INT64_MAX)
         throw std::invalid_argument(word + " is not a profile id; see `lensprof profile list`");
     return static_cast<int64_t>(id);
@@ -458,8 +460,8 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
     if (quiet_ || verbose_) streams.verbosity = quiet_ ? Verbosity::quiet : Verbosity::verbose;
     const auto begin = std::chrono::steady_clock::now();
     const int code = action->second(streams);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    if (verbose_) print_message(streams, format("%.2f s, %.0f MB of memory", taken.count(), peak_megabytes()));
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    if (verbose_) print_message(streams, format("%.2f s, %.0f MB of memory", elapsed.count(), peak_megabytes()));
     return code;
 }
 

@@ -47,7 +47,7 @@ std::string extension_of(const std::string &path) {
 }
 
 // Not derived from the final name, which may already have the maximum length.
-int create_beside(const std::string &target, mode_t mode, std::string &name) {
+int create_temporary(const std::string &target, mode_t mode, std::string &name) {
     static std::atomic<unsigned> counter{0};
     for (int attempt = 0; attempt < 1000; ++attempt) {
         name = folder_of(target) + ".lensprof-" + std::to_string(getpid()) + "-" + std::to_string(++counter)
@@ -66,13 +66,13 @@ int sync_path(const std::string &path, int flags) {
     return error_number;
 }
 
-CommitWatch::Note commit_note;  // set before other threads write files
+CommitWatch::Note commit_callback;  // set before other threads write files
 
 }  // namespace
 
 namespace {
 
-// Whether the name is ".lensprof-PID-NUMBER.png", as made by create_beside(), of a process that no longer exists.
+// Whether the name is ".lensprof-PID-NUMBER.png", as made by create_temporary(), of a process that no longer exists.
 bool is_left_over(const std::string &name) {
     const std::string start = ".lensprof-";
     const size_t dash = name.find('-', start.size()), end = std::min(name.find('.', start.size()), name.size());
@@ -87,7 +87,7 @@ bool is_left_over(const std::string &name) {
 
 }  // namespace
 
-void sweep_temporaries(const std::string &folder) {
+void remove_stale_temporaries(const std::string &folder) {
     namespace fs = std::filesystem;
     std::error_code error, ignored;
     std::vector<fs::path> left_over;
@@ -100,18 +100,18 @@ void sweep_temporaries(const std::string &folder) {
     for (const fs::path &file : left_over) fs::remove(file, ignored);
 }
 
-CommitWatch::CommitWatch(Note note) { commit_note = std::move(note); }
+CommitWatch::CommitWatch(Note note) { commit_callback = std::move(note); }
 
-CommitWatch::~CommitWatch() { commit_note = nullptr; }
+CommitWatch::~CommitWatch() { commit_callback = nullptr; }
 
-int open_nameless(const std::string &beside) {
+int open_unnamed(const std::string &neighbour) {
 #ifdef O_TMPFILE
-    const std::string folder = folder_of(beside);
-    const int nameless = open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (nameless >= 0) return nameless;
+    const std::string folder = folder_of(neighbour);
+    const int unnamed = open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (unnamed >= 0) return unnamed;
 #endif
     std::string name;  // not every file system supports unnamed files
-    const int created = create_beside(beside, 0600, name);
+    const int created = create_temporary(neighbour, 0600, name);
     if (created < 0) return -1;
     close(created);
     const int file = open(name.c_str(), O_RDWR | O_CLOEXEC);
@@ -119,11 +119,12 @@ int open_nameless(const std::string &beside) {
     return file;
 }
 
-void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing) {
-    const std::string place = existing_part(absolute_path(folder));
-    if (!is_folder(place)) throw Failure(no_folder, item + ": " + place + " is not a folder; give another name");
-    if (access(place.c_str(), W_OK | X_OK) != 0)
-        throw Failure(no_writing, item + ": cannot write in " + place + ": " + system_text(errno)
+void check_folder(const std::string &folder, const std::string &item, ExitCode folder_code, ExitCode write_code) {
+    const std::string existing = existing_part(absolute_path(folder));
+    if (!is_folder(existing))
+        throw Failure(folder_code, item + ": " + existing + " is not a folder; give another name");
+    if (access(existing.c_str(), W_OK | X_OK) != 0)
+        throw Failure(write_code, item + ": cannot write in " + existing + ": " + system_text(errno)
                                       + "; check its permissions, or give another folder");
 }
 
@@ -153,7 +154,7 @@ OutputFile::OutputFile(const std::string &path) : path_(path), target_(follow_li
     const bool exists = stat(target_.c_str(), &status) == 0;
     if (exists && !S_ISREG(status.st_mode))
         throw Failure(ExitCode::usage, path_ + ": cannot write: not a regular file; give the name of a file");
-    const int file = create_beside(target_, 0666, temporary_);
+    const int file = create_temporary(target_, 0666, temporary_);
     if (file < 0) fail(path_, errno);
     // Best effort: a file system without permissions refuses this, but the picture matters more.
     if (exists && fchmod(file, status.st_mode & 07777) != 0) errno = 0;
@@ -172,7 +173,7 @@ void OutputFile::sync() {
 
 void OutputFile::commit() {
     if (!synced_) sync();
-    if (commit_note) commit_note(path_, temporary_);
+    if (commit_callback) commit_callback(path_, temporary_);
     if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
     temporary_.clear();
     // The data are durable and in place; not all file systems make the new name survive a power cut.

@@ -44,7 +44,7 @@ private:
 };
 
 // Removes temporary files of killed processes from a folder and its subfolders.
-void sweep_temporaries(const std::string &folder);
+void remove_stale_temporaries(const std::string &folder);
 
 // While this object lives, every commit() calls `note` before the file is renamed, with the path as given and the
 // temporary file, on the committing thread. The most recent object counts.
@@ -70,9 +70,9 @@ private:
 // Writes these bytes to the file `path`, completely or not at all.
 void write_file(const std::string &path, const void *data, size_t bytes);
 
-// Opens an unnamed file for reading and writing in the folder of `beside`; it is deleted when closed. Returns -1 and
+// Opens an unnamed file for reading and writing in the folder of `neighbour`; it is deleted when closed. Returns -1 and
 // sets errno if this fails.
-int open_nameless(const std::string &beside);
+int open_unnamed(const std::string &neighbour);
 
 // Failure about `item` if `folder` is not writable and cannot be created: with the code `no_folder` if a file has its
 // name, else `no_writing`. For checks before long computations.

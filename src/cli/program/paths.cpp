@@ -12,18 +12,18 @@ namespace lensprof {
 namespace fs = std::filesystem;
 
 bool path_exists(const std::string &path) {
-    std::error_code none;
-    return fs::exists(path, none);
+    std::error_code ignored;
+    return fs::exists(path, ignored);
 }
 
 bool is_folder(const std::string &path) {
-    std::error_code none;
-    return fs::is_directory(path, none);
+    std::error_code ignored;
+    return fs::is_directory(path, ignored);
 }
 
 bool is_regular_file(const std::string &path) {
-    std::error_code none;
-    return fs::is_regular_file(path, none);
+    std::error_code ignored;
+    return fs::is_regular_file(path, ignored);
 }
 
 uint64_t file_bytes(const std::string &path) {
@@ -33,9 +33,9 @@ uint64_t file_bytes(const std::string &path) {
 }
 
 std::string existing_part(const std::string &path) {
-    fs::path place = path;
-    while (!path_exists(place.string()) && place.has_relative_path()) place = place.parent_path();
-    return place.string();
+    fs::path part = path;
+    while (!path_exists(part.string()) && part.has_relative_path()) part = part.parent_path();
+    return part.string();
 }
 
 std::string absolute_path(const std::string &path) {
@@ -44,7 +44,7 @@ std::string absolute_path(const std::string &path) {
     return (error ? fs::path(path) : absolute).lexically_normal().string();
 }
 
-std::string one_name(const std::string &path) {
+std::string canonical_path(const std::string &path) {
     std::error_code error;
     const fs::path name = fs::weakly_canonical(absolute_path(path), error);
     return error ? absolute_path(path) : name.string();
@@ -52,8 +52,8 @@ std::string one_name(const std::string &path) {
 
 bool is_same_file(const std::string &a, const std::string &b) {
     if (a.empty() || b.empty()) return false;
-    std::error_code none;
-    return absolute_path(a) == absolute_path(b) || fs::equivalent(a, b, none);
+    std::error_code ignored;
+    return absolute_path(a) == absolute_path(b) || fs::equivalent(a, b, ignored);
 }
 
 std::string file_identity(const std::string &path) {
@@ -63,16 +63,16 @@ std::string file_identity(const std::string &path) {
 }
 
 std::string short_name(const std::string &name) {
-    constexpr size_t shown = 100, line = 1000;
-    if (name.size() <= line) return name;
-    return name.substr(0, utf8_cut(name, shown)) + "... (" + std::to_string(name.size()) + " bytes)";
+    constexpr size_t head_bytes = 100, max_bytes = 1000;
+    if (name.size() <= max_bytes) return name;
+    return name.substr(0, utf8_cut(name, head_bytes)) + "... (" + std::to_string(name.size()) + " bytes)";
 }
 
 bool is_too_long(const std::string &path) {
-    constexpr size_t longest_path = 4095, longest_name = 255;  // PATH_MAX and NAME_MAX of Linux
-    size_t longest = 0;
-    for (const fs::path &part : fs::path(path)) longest = std::max(longest, part.native().size());
-    return path.size() > longest_path || longest > longest_name;
+    constexpr size_t max_path_bytes = 4095, max_name_bytes = 255;  // PATH_MAX and NAME_MAX of Linux
+    size_t longest_part = 0;
+    for (const fs::path &part : fs::path(path)) longest_part = std::max(longest_part, part.native().size());
+    return path.size() > max_path_bytes || longest_part > max_name_bytes;
 }
 
 }  // namespace lensprof

@@ -20,7 +20,7 @@ std::string existing_part(const std::string &path);
 std::string absolute_path(const std::string &path);
 
 // The canonical name of a path, whether or not the file exists.
-std::string one_name(const std::string &path);
+std::string canonical_path(const std::string &path);
 
 // Whether two paths refer to the same file, which may not exist yet.
 bool is_same_file(const std::string &a, const std::string &b);

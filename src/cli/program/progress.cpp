@@ -13,7 +13,7 @@
 namespace lensprof {
 namespace {
 
-constexpr std::chrono::milliseconds between_details(200);
+constexpr std::chrono::milliseconds detail_interval(200);
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -21,16 +21,16 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
-double TimeLeft::seconds(const std::string &what, double fraction, double now) {
-    constexpr double soonest = 2.0, least = 0.01;  // seconds, and share, from which on the rate is reliable
-    constexpr double anew = 0.05;                  // larger than the steps back between threads
-    if (what != what_ || fraction < last_ - anew) {
-        what_ = what;
+double TimeLeft::seconds(const std::string &task, double fraction, double now) {
+    constexpr double min_seconds = 2.0, min_share = 0.01;  // seconds, and share, from which on the rate is reliable
+    constexpr double min_restart_drop = 0.05;              // larger than the steps back between threads
+    if (task != task_ || fraction < last_ - min_restart_drop) {
+        task_ = task;
         begin_ = now, first_ = fraction;
     }
     last_ = fraction, now_ = now;
-    const double taken = now - begin_, done = fraction - first_;
-    return taken < soonest || done < least ? 0.0 : taken * std::max(1.0 - fraction, 0.0) / done;
+    const double elapsed = now - begin_, done = fraction - first_;
+    return elapsed < min_seconds || done < min_share ? 0.0 : elapsed * std::max(1.0 - fraction, 0.0) / done;
 }
 
 double TimeLeft::rate() const { return now_ > begin_ ? std::max(last_ - first_, 0.0) / (now_ - begin_) : 0.0; }
@@ -47,7 +47,7 @@ Progress::Progress(Streams &streams, bool always)
     : err_(streams.err),
       verbosity_(streams.verbosity),
       colour_(streams.colour),
-      shown_(verbosity_ != Verbosity::quiet && (always || (&err_ == &std::cerr && isatty(STDERR_FILENO)))) {}
+      is_shown_(verbosity_ != Verbosity::quiet && (always || (&err_ == &std::cerr && isatty(STDERR_FILENO)))) {}
 
 Progress::~Progress() { clear(); }
 
@@ -63,7 +63,7 @@ void Progress::update_items(const std::string &what, uint32_t done, uint32_t cou
 }
 
 void Progress::draw(const std::string &what, double fraction, const std::function<std::string()> &detail) {
-    if (!shown_ && verbosity_ != Verbosity::verbose) return;
+    if (!is_shown_ && verbosity_ != Verbosity::verbose) return;
     std::lock_guard<std::mutex> lock(mutex_);
     auto now = std::chrono::steady_clock::now();
     if (what != step_) {
@@ -71,13 +71,13 @@ void Progress::draw(const std::string &what, double fraction, const std::functio
         step_ = what;
         step_begin_ = now;
     }
-    if (!shown_) return;
+    if (!is_shown_) return;
     int percent = std::clamp(static_cast<int>(100.0 * fraction), 0, 100);
     const double left = left_.seconds(what, fraction, std::chrono::duration<double>(now.time_since_epoch()).count());
-    const bool same = percent == percent_ && what == what_;
-    if (same && now - drawn_ < between_details) return;
+    const bool is_same_percent = percent == percent_ && what == what_;
+    if (is_same_percent && now - drawn_ < detail_interval) return;
     const std::string text = what + format(" %d %%", percent) + detail() + describe_time_left(left);
-    if (same && text == text_) return;
+    if (is_same_percent && text == text_) return;
     percent_ = percent;
     what_ = what;
     text_ = text;
@@ -105,7 +105,7 @@ void Progress::end_step() {
 }
 
 void Progress::print_line(const std::string &line) {
-    if (!shown_) return;
+    if (!is_shown_) return;
     std::lock_guard<std::mutex> lock(mutex_);
     clear_line();
     err_ << line << std::endl;
@@ -150,9 +150,9 @@ void Throughput::show() {
 }
 
 std::string Throughput::summary() const {
-    double s = std::max(seconds(), 1e-6), million = megapixels();
-    return format("%u pictures, %.1f megapixels in %.1f s: %.1f pictures/s, %.1f megapixels/s", pictures_done_, million,
-                  s, pictures_done_ / s, million / s);
+    double s = std::max(seconds(), 1e-6), megapixel_count = megapixels();
+    return format("%u pictures, %.1f megapixels in %.1f s: %.1f pictures/s, %.1f megapixels/s", pictures_done_,
+                  megapixel_count, s, pictures_done_ / s, megapixel_count / s);
 }
 
 }  // namespace lensprof

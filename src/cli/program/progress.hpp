@@ -15,15 +15,15 @@ namespace lensprof {
 // Estimates the remaining time of a task from the share done since it started.
 class TimeLeft {
 public:
-    // Remaining seconds of the task `what`, of which `fraction` is done at time `now`, in seconds; 0 if unknown: at the
+    // Remaining seconds of `task`, of which `fraction` is done at time `now`, in seconds; 0 if unknown: at the
     // beginning, and if nothing is done yet.
-    double seconds(const std::string &what, double fraction, double now);
+    double seconds(const std::string &task, double fraction, double now);
 
     // The share done per second since the start of the task; 0 if unknown.
     double rate() const;
 
 private:
-    std::string what_;
+    std::string task_;
     double begin_ = 0.0, first_ = 0.0, last_ = 0.0, now_ = 0.0;
 };
 
@@ -60,7 +60,7 @@ private:
 
     std::ostream &err_;
     const Verbosity verbosity_;
-    const bool colour_, shown_;
+    const bool colour_, is_shown_;
     int percent_ = -1;
     std::string what_, text_, step_;
     TimeLeft left_;

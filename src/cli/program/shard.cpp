@@ -8,12 +8,12 @@
 namespace lensprof {
 
 Shard shard_of(const std::string &word) {
-    constexpr uint32_t most_shards = 1u << 20;
+    constexpr uint32_t max_shards = 1u << 20;
     if (word.empty()) return {};
     const size_t slash = word.find('/');
     try {
         if (slash == std::string::npos) throw std::invalid_argument("no slash");
-        const uint32_t count = count_of(word.substr(slash + 1), 1, most_shards);
+        const uint32_t count = count_of(word.substr(slash + 1), 1, max_shards);
         return {count_of(word.substr(0, slash), 1, count), count};
     } catch (const std::invalid_argument &) {
         throw Failure(ExitCode::usage, "--shard " + word + ": not a valid part; give INDEX/COUNT with 1 <= INDEX <= "

@@ -6,7 +6,7 @@
 namespace lensprof {
 
 // Length of the UTF-8 character at `at` (Unicode 15, table 3-7: neither overlong forms nor surrogates); 0 if invalid.
-size_t utf8_length(const std::string &text, size_t at);
+size_t utf8_length(const std::string &text, size_t offset);
 
 bool is_utf8(const std::string &text);
 

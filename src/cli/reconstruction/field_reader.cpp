@@ -10,7 +10,7 @@ namespace lensprof {
 
 FieldReader::FieldReader(const std::string &file, char separator, uint64_t most_bytes)
     : file_(file), separator_(separator) {
-    demand_ordinary(file);
+    require_regular_file(file);
     if (file_bytes(file) > most_bytes)
         throw Failure(ExitCode::unreadable, file + ": has " + std::to_string(file_bytes(file)) + " bytes, but at most "
                                                 + std::to_string(most_bytes) + " are supported; give a smaller file");

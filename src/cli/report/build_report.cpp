@@ -13,12 +13,12 @@ bool is_left_out(const BuildReport &report, size_t image) {
 }
 
 lensprof_fit_result result_of(const BuildReport &report, const SettingReport &setting) {
-    lensprof_fit_result own = report.fit;
+    lensprof_fit_result result = report.fit;
     lensprof_error error{};
     if (!report.cameras.empty() && report.cameras[setting.camera].found.images)
-        check(lensprof_fit_result_take_camera(&own, &report.cameras[setting.camera].found, &error), "fit", &error);
-    check(lensprof_fit_result_take_setting(&own, &setting.found, &error), "fit", &error);
-    return own;
+        check(lensprof_fit_result_take_camera(&result, &report.cameras[setting.camera].found, &error), "fit", &error);
+    check(lensprof_fit_result_take_setting(&result, &setting.found, &error), "fit", &error);
+    return result;
 }
 
 const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit) {

@@ -73,10 +73,10 @@ std::string printable(const std::string &text) {
 }
 
 // 1, 2 or 5 times a power of ten, at least `least`.
-double round_step(double least) {
-    const double power = std::pow(10.0, std::floor(std::log10(least)));
+double round_step(double min_step) {
+    const double power = std::pow(10.0, std::floor(std::log10(min_step)));
     for (double factor : {1.0, 2.0, 5.0})
-        if (factor * power >= least * (1.0 - 1e-9)) return factor * power;
+        if (factor * power >= min_step * (1.0 - 1e-9)) return factor * power;
     return 10.0 * power;
 }
 

@@ -85,8 +85,8 @@ std::string png_of(const std::string &path, const DrawingSize &size,
 }  // namespace
 
 void set_curve_colour(cairo_t *cr, size_t curve, double opacity) {
-    const Colour &own = colours[curve % colour_count];
-    cairo_set_source_rgba(cr, own.red, own.green, own.blue, opacity);
+    const Colour &colour = colours[curve % colour_count];
+    cairo_set_source_rgba(cr, colour.red, colour.green, colour.blue, opacity);
 }
 
 void set_grey(cairo_t *cr, double grey) { cairo_set_source_rgb(cr, grey, grey, grey); }

@@ -10,7 +10,7 @@ namespace lensprof {
 namespace {
 
 constexpr double plot_width = 480, plot_height = 300, left = 64, top = 64, bottom = 56, right = 24, key_line = 20;
-constexpr double most_levels = 30.0;
+constexpr double max_levels = 30.0;
 constexpr int points = 301;
 
 // The share of the pairs whose ends differ by less than `levels`; their variance is half the squared difference.
@@ -21,24 +21,24 @@ std::vector<double> shares_of(const GainCurve &curve) {
     std::sort(levels.begin(), levels.end());
     std::vector<double> shares;
     for (int i = 0; i < points; i++) {
-        const auto end = std::upper_bound(levels.begin(), levels.end(), most_levels * i / (points - 1));
+        const auto end = std::upper_bound(levels.begin(), levels.end(), max_levels * i / (points - 1));
         shares.push_back(double(end - levels.begin()) / double(std::max<size_t>(levels.size(), 1)));
     }
     return shares;
 }
 
-double x_of(double levels) { return left + plot_width * levels / most_levels; }
+double x_of(double levels) { return left + plot_width * levels / max_levels; }
 double y_of(double share) { return top + plot_height * (1.0 - share); }
 
 void draw_axes(cairo_t *cr) {
     cairo_set_line_width(cr, 1);
     set_font(cr, text_size);
     for (int i = 0; i <= 6; i++) {
-        const double x = x_of(most_levels * i / 6);
+        const double x = x_of(max_levels * i / 6);
         set_grey(cr, 0.88);
         stroke_line(cr, x, top, x, top + plot_height);
         set_grey(cr, 0.2);
-        draw_text(cr, x, top + plot_height + 19, format("%g", most_levels * i / 6), 0.5);
+        draw_text(cr, x, top + plot_height + 19, format("%g", max_levels * i / 6), 0.5);
     }
     for (int i = 0; i <= 4; i++) {
         const double y = y_of(0.25 * i);
@@ -58,7 +58,7 @@ void draw_curve(cairo_t *cr, size_t number, const GainCurve &curve) {
     cairo_save(cr);
     set_curve_pen(cr, number);
     cairo_new_path(cr);  // text leaves a current point
-    for (int i = 0; i < points; i++) cairo_line_to(cr, x_of(most_levels * i / (points - 1)), y_of(shares[size_t(i)]));
+    for (int i = 0; i < points; i++) cairo_line_to(cr, x_of(max_levels * i / (points - 1)), y_of(shares[size_t(i)]));
     cairo_stroke(cr);
     const double y = top + plot_height - 16 - key_line * double(2 - number), x = left + plot_width - 230;
     stroke_line(cr, x, y, x + 34, y);

@@ -43,7 +43,7 @@ void declare(Command &command, Options &o) {
 
 void check_options(const Options &o) {
     check_store_options(o.store);
-    if (!o.jpegs.empty()) demand_count(o.jpegs.size(), "--jpeg", o.files.size(), "raw file");
+    if (!o.jpegs.empty()) require_count(o.jpegs.size(), "--jpeg", o.files.size(), "raw file");
     for (size_t i = 0; i < o.files.size(); i++)
         for (size_t k = 0; k < i; k++)
             if (is_same_file(o.files[i], o.files[k]))

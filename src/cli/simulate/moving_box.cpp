@@ -19,9 +19,9 @@ struct Passage {
     double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();
     uint32_t face_in = 0, face_out = 0;
 
-    void cut(uint32_t axis, double at, double step, double half) {
+    void cut(uint32_t axis, double origin, double step, double half) {
         const double safe = std::fabs(step) < 1e-12 ? 1e-12 : step;
-        const double low = (-half - at) / safe, high = (half - at) / safe;
+        const double low = (-half - origin) / safe, high = (half - origin) / safe;
         const uint32_t ahead = safe > 0.0 ? 1 : 0;  // leaves through the positive side
         if (std::min(low, high) > from) from = std::min(low, high), face_in = 2 * axis + 1 - ahead;
         if (std::max(low, high) < to) to = std::max(low, high), face_out = 2 * axis + ahead;

@@ -40,7 +40,7 @@ Heights::Heights(uint32_t seed, double reach_x_m, double reach_y_m)
     slope_ = std::sqrt(2.0) * steepest / kCell;
 }
 
-double Heights::at(double x, double y) const {
+double Heights::height_at(double x, double y) const {
     const double u = std::clamp((x + reach_m_[0]) / kCell, 0.0, static_cast<double>(columns_) - 1.001);
     const double v = std::clamp((y + reach_m_[1]) / kCell, 0.0, static_cast<double>(rows_) - 1.001);
     const auto i = static_cast<size_t>(u), j = static_cast<size_t>(v);
@@ -52,29 +52,32 @@ double Heights::at(double x, double y) const {
 }
 
 Vector3 Heights::normal(double x, double y) const {
-    const double along = at(x + kCell, y) - at(x - kCell, y), across = at(x, y + kCell) - at(x, y - kCell);
+    const double along = height_at(x + kCell, y) - height_at(x - kCell, y),
+                 across = height_at(x, y + kCell) - height_at(x, y - kCell);
     return normalised({-along, -across, 2.0 * kCell});
 }
 
 // In steps that cannot pass the ground, because it is nowhere steeper than slope_; the last ones by the secant method.
 bool Heights::meet(const Line &line, double &distance_m) const {
-    const double fall = -line.direction.z, way = std::hypot(line.direction.x, line.direction.y);
-    double at_m = line.from.z > top_m_ ? (line.from.z - top_m_) / fall : 0.0, before_m = at_m, gap_before = 0.0;
+    const double fall = -line.direction.z, horizontal = std::hypot(line.direction.x, line.direction.y);
+    double travelled_m = line.from.z > top_m_ ? (line.from.z - top_m_) / fall : 0.0, previous_m = travelled_m,
+           previous_gap = 0.0;
     if (line.from.z > top_m_ && fall <= 0.0) return false;
-    const double closing = fall + slope_ * way;  // a metre along the ray reduces the gap by at most this
+    const double closing = fall + slope_ * horizontal;  // a metre along the ray reduces the gap by at most this
     if (closing <= 0.0) return false;
-    for (int step = 0; step < 400 && at_m < kFar; step++) {
-        const Vector3 place = line.from + at_m * line.direction;
+    for (int step = 0; step < 400 && travelled_m < kFar; step++) {
+        const Vector3 place = line.from + travelled_m * line.direction;
         if (fall <= 0.0 && place.z > top_m_) return false;
-        const double gap = place.z - at(place.x, place.y);
+        const double gap = place.z - height_at(place.x, place.y);
         if (std::fabs(gap) < 1e-4) {
-            distance_m = at_m;
+            distance_m = travelled_m;
             return true;
         }
-        double further = gap / closing;
-        if (std::fabs(gap) < 0.2 && gap_before != 0.0 && gap_before - gap > 0.1 * (at_m - before_m) * closing)
-            further = gap * (at_m - before_m) / (gap_before - gap);
-        before_m = at_m, gap_before = gap, at_m += further;
+        double advance = gap / closing;
+        if (std::fabs(gap) < 0.2 && previous_gap != 0.0
+            && previous_gap - gap > 0.1 * (travelled_m - previous_m) * closing)
+            advance = gap * (travelled_m - previous_m) / (previous_gap - gap);
+        previous_m = travelled_m, previous_gap = gap, travelled_m += advance;
     }
     return false;
 }

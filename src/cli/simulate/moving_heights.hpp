@@ -10,7 +10,7 @@ public:
     // Hills within `reach_m` of the origin along x and y; flat beyond.
     Heights(uint32_t seed, double reach_x_m, double reach_y_m);
 
-    double at(double x, double y) const;
+    double height_at(double x, double y) const;
     Vector3 normal(double x, double y) const;
     double top() const { return top_m_; }
 

@@ -23,8 +23,8 @@ public:
         walls_.half = kHalf;
         walls_.centre.z = kHalf.z;
         Random random(plan.seed * 6364136223846793005ull + 11);
-        for (int b = 0; b < 11; b++) stand_in_the_middle(random);
-        for (int b = 0; b < 12; b++) stand_by_a_wall(random);
+        for (int b = 0; b < 11; b++) add_free_box(random);
+        for (int b = 0; b < 12; b++) add_wall_box(random);
         for (size_t b = 0; b < boxes_.size(); b++) boxes_[b].surface = 1 + kSurfaces * static_cast<uint32_t>(b + 1);
     }
 
@@ -48,8 +48,8 @@ public:
     std::vector<Pose> path() const override;
 
 private:
-    void stand_in_the_middle(Random &random);
-    void stand_by_a_wall(Random &random);
+    void add_free_box(Random &random);
+    void add_wall_box(Random &random);
     Look look_of_box(uint32_t box, uint32_t face, const double uv_m[2], double footprint_m) const;
     Look look_of_floor(const double uv_m[2], double footprint_m) const;
     Look look_of_ceiling(const double uv_m[2], double footprint_m) const;
@@ -62,15 +62,15 @@ private:
 };
 
 // Away from the camera's path, and from other boxes if a few attempts succeed.
-void Room::stand_in_the_middle(Random &random) {
+void Room::add_free_box(Random &random) {
     Box box;
     box.half = {random.uniform(0.15, 0.5), random.uniform(0.15, 0.5), random.uniform(0.15, 0.85)};
     box.centre.z = box.half.z;
     const double turn = random.uniform(0.0, kPi), radius = std::hypot(box.half.x, box.half.y);
     box.cosine = std::cos(turn), box.sine = std::sin(turn);
     for (int attempt = 0; attempt < 50; attempt++) {
-        const double angle = random.uniform(0.0, 2.0 * kPi), way = std::sqrt(random.uniform());
-        box.centre.x = 2.7 * way * std::cos(angle), box.centre.y = 1.7 * way * std::sin(angle);
+        const double angle = random.uniform(0.0, 2.0 * kPi), distance = std::sqrt(random.uniform());
+        box.centre.x = 2.7 * distance * std::cos(angle), box.centre.y = 1.7 * distance * std::sin(angle);
         const bool is_free = std::none_of(boxes_.begin(), boxes_.end(), [&](const Box &other) {
             return std::hypot(box.centre.x - other.centre.x, box.centre.y - other.centre.y)
                    < radius + std::hypot(other.half.x, other.half.y);
@@ -81,7 +81,7 @@ void Room::stand_in_the_middle(Random &random) {
     }
 }
 
-void Room::stand_by_a_wall(Random &random) {
+void Room::add_wall_box(Random &random) {
     Box box;
     const bool side = random.uniform() < 0.4, positive = random.uniform() < 0.5;
     const double depth = random.uniform(0.15, 0.35), width = random.uniform(0.3, 0.7);

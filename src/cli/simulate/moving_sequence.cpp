@@ -55,13 +55,14 @@ void expose_automatically(const SimulateOptions &o, Truth &truth) {
         metered.push_back(metered_ev(truth, i));
         sum += metered.back();
     }
-    const double middle = sum / o.images, most = o.ev.value_or(kAutomaticEv), wb = o.wb.value_or(kAutomaticWb);
+    const double mean = sum / o.images, max_correction = o.ev.value_or(kAutomaticEv), wb = o.wb.value_or(kAutomaticWb);
     Random random(o.seed * 472882027ull + 5);
     const double phase[2] = {random.uniform(0.0, 2.0 * kPi), random.uniform(0.0, 2.0 * kPi)};
     for (uint32_t i = 0; i < o.images; i++) {
         lensprof_exposure e;
         lensprof_exposure_init(&e);
-        e.ev = o.mean_ev + std::log2(kMetered) - middle + std::clamp(kStrength * (middle - metered[i]), -most, most);
+        e.ev = o.mean_ev + std::log2(kMetered) - mean
+               + std::clamp(kStrength * (mean - metered[i]), -max_correction, max_correction);
         const double share = static_cast<double>(i) / o.images;
         e.white_balance[0] = 1.0 + wb * drift(share, 1.3, phase[0]);
         e.white_balance[2] = 1.0 - wb * drift(share, 0.9, phase[1]);

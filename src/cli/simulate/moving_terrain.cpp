@@ -123,7 +123,7 @@ void Terrain::add_house(Random &random) {
     house.cosine = std::cos(turn), house.sine = std::sin(turn);
     house.centre.x = random.uniform(-1.0, 1.0) * (survey_.reach_x_m() - 10.0);
     house.centre.y = random.uniform(-1.0, 1.0) * (survey_.reach_y_m() - 10.0);
-    house.centre.z = ground_.at(house.centre.x, house.centre.y) + 0.6 * house.half.z;
+    house.centre.z = ground_.height_at(house.centre.x, house.centre.y) + 0.6 * house.half.z;
     if (!is_free(house.centre.x, house.centre.y, radius_m)) return;
     const auto index = static_cast<uint32_t>(houses_.size());
     house.surface = kFirst + 8 * index;
@@ -142,7 +142,7 @@ void Terrain::add_tree(Random &random) {
     const double y = random.uniform(-1.0, 1.0) * (survey_.reach_y_m() - 4.0), wish = random.uniform();
     if (wish > ramp(-0.3, 0.6, noise2(x / 45.0, y / 45.0, plan_.seed * 977u + 61u)) + 0.1) return;
     if (!is_free(x, y, tree.radius_m)) return;
-    tree.centre = {x, y, ground_.at(x, y) + 0.7 * tree.radius_m};
+    tree.centre = {x, y, ground_.height_at(x, y) + 0.7 * tree.radius_m};
     const auto index = static_cast<uint32_t>(trees_.size());
     trees_.push_back(tree);
     highest_ = std::max(highest_, tree.centre.z + tree.radius_m);
@@ -153,11 +153,11 @@ void Terrain::add_tree(Random &random) {
 
 void Terrain::meet_tree(uint32_t index, const Line &line, Hit &hit) const {
     const Tree &tree = trees_[index];
-    const Vector3 way = tree.centre - line.from;
-    const double middle = dot(way, line.direction),
-                 inside = tree.radius_m * tree.radius_m - dot(way, way) + middle * middle;
-    if (inside <= 0.0) return;
-    const double distance_m = middle - std::sqrt(inside);
+    const Vector3 to_centre = tree.centre - line.from;
+    const double closest_m = dot(to_centre, line.direction),
+                 half_chord_squared = tree.radius_m * tree.radius_m - dot(to_centre, to_centre) + closest_m * closest_m;
+    if (half_chord_squared <= 0.0) return;
+    const double distance_m = closest_m - std::sqrt(half_chord_squared);
     if (distance_m <= 0.0 || distance_m >= hit.distance_m) return;
     hit.distance_m = distance_m;
     hit.surface = kFirst + 8 * static_cast<uint32_t>(houses_.size()) + index;
@@ -185,9 +185,9 @@ Hit Terrain::trace(const Line &line) const {
 
 Look Terrain::look(const Hit &hit, double footprint_m) const {
     if (hit.surface == kGround) return look_of_ground(hit, footprint_m);
-    const uint32_t thing = hit.surface - kFirst;
-    if (thing < 8 * houses_.size()) return look_of_house(thing / 8, thing % 8, hit.point, footprint_m);
-    return look_of_tree(thing - 8 * static_cast<uint32_t>(houses_.size()), hit.point, footprint_m);
+    const uint32_t object = hit.surface - kFirst;
+    if (object < 8 * houses_.size()) return look_of_house(object / 8, object % 8, hit.point, footprint_m);
+    return look_of_tree(object - 8 * static_cast<uint32_t>(houses_.size()), hit.point, footprint_m);
 }
 
 // Fields with furrows, each of its own colour and some of them wet; bare stone where it is steep, woods and a road.
@@ -207,13 +207,13 @@ Look Terrain::look_of_ground(const Hit &hit, double footprint_m) const {
     const double hedge = joint(u, v, 0.022, footprint_m / kField),
                  wood = ramp(-0.1, 0.25, noise2(x / 45.0, y / 45.0, plan_.seed * 977u + 61u));
     const double stone = ramp(0.13, 0.22, 1.0 - hit.normal.z);
-    const double way = from_road(x, y), road = 1.0 - ramp(2.1, 2.5, std::fabs(way));
-    const double leaves[3] = {0.05, 0.075, 0.03}, bare[3] = {0.34, 0.31, 0.27}, asphalt[3] = {0.13, 0.13, 0.135};
+    const double road_distance = from_road(x, y), road = 1.0 - ramp(2.1, 2.5, std::fabs(road_distance));
+    const double leaves[3] = {0.05, 0.075, 0.03}, rock[3] = {0.34, 0.31, 0.27}, asphalt[3] = {0.13, 0.13, 0.135};
     for (int c = 0; c < 3; c++) {
-        look.rgb[c] = mix(mix(look.rgb[c], leaves[c], std::max(hedge, 0.85 * wood)), bare[c], stone);
+        look.rgb[c] = mix(mix(look.rgb[c], leaves[c], std::max(hedge, 0.85 * wood)), rock[c], stone);
         look.rgb[c] = mix(look.rgb[c], asphalt[c], road);
     }
-    if (std::fabs(way) < 0.12 && from_whole(y / 6.0) > 0.0) look.rgb[0] = look.rgb[1] = look.rgb[2] = 0.7;
+    if (std::fabs(road_distance) < 0.12 && from_whole(y / 6.0) > 0.0) look.rgb[0] = look.rgb[1] = look.rgb[2] = 0.7;
     const double lightness = std::exp2(1.3 * noise2(x / 55.0, y / 55.0, seed + 3));  // of sand, clay and peat
     for (double &c : look.rgb) c *= lightness;
     add_grain({seed + 2, 9.0, 0.32}, x, y, footprint_m, look.rgb);

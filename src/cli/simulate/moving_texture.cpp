@@ -8,7 +8,7 @@
 namespace lensprof {
 namespace {
 
-constexpr int kMostOctaves = 24;
+constexpr int kMaxOctaves = 24;
 constexpr double kTints[4][3] = {{1.0, 1.0, 1.0}, {1.25, 1.0, 0.7}, {0.75, 1.0, 1.25}, {1.1, 0.8, 1.1}};
 
 uint32_t cell_of(double x) { return static_cast<uint32_t>(static_cast<int32_t>(std::floor(x))); }
@@ -25,7 +25,7 @@ double noise2(double u, double v, uint32_t seed) {
 
 void add_grain(const Grain &grain, double u_m, double v_m, double footprint_m, double rgb[3]) {
     double u = u_m / grain.cell_m, v = v_m / grain.cell_m, cell_m = grain.cell_m;
-    for (int o = 0; o < kMostOctaves; o++, cell_m *= 0.5) {
+    for (int o = 0; o < kMaxOctaves; o++, cell_m *= 0.5) {
         const double fade = ramp(0.9, 2.2, cell_m / footprint_m);
         if (fade <= 0.0) return;
         const double noise = noise2(u, v, grain.seed + static_cast<uint32_t>(o) * 1013u);

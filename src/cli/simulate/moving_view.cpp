@@ -22,9 +22,9 @@ void sky_radiance(const Light &light, const Vector3 &direction, double rgb[3]) {
 void surface_radiance(const MovingWorld &world, const Line &line, const Hit &hit, double footprint_m, double rgb[3]) {
     const Light &light = world.light();
     const Look look = world.look(hit, footprint_m);
-    const Vector3 way = light.is_sun ? light.place : light.place - hit.point;
-    const double strength = light.is_sun ? 1.0 : 9.0 / (dot(way, way) + 1.0);
-    const Vector3 to_light = normalised(way);
+    const Vector3 light_vector = light.is_sun ? light.place : light.place - hit.point;
+    const double strength = light.is_sun ? 1.0 : 9.0 / (dot(light_vector, light_vector) + 1.0);
+    const Vector3 to_light = normalised(light_vector);
     const double facing = std::max(dot(hit.normal, to_light), 0.0), above = 0.6 + 0.4 * hit.normal.z;
     double highlight = 0.0;
     if (look.gloss > 0.0 && facing > 0.0) {

@@ -11,14 +11,14 @@ void Scene::sky(const Ray &ray, double rgb[3]) const {
     const double high[3] = {0.09, 0.18, 0.42}, haze[3] = {0.38, 0.46, 0.60};
     const double clouded = draw(0, 0, 31) < 0.5 ? 0.0 : 0.5;
     const double cloud = clouded > 0.0 ? clouded * ramp(0.02, 0.5, fractal(ray.d, 2.2, 3)) : 0.0;
-    double bare = 1.0;  // neither wire nor pole
+    double transmission = 1.0;  // neither wire nor pole
     for (uint32_t w = 0; w < 3; w++) {
         const double height = -0.25 + 0.5 * draw(w, 0, 32), sag = 0.06 * std::cos(6.0 * ray.longitude + w);
-        bare -= 0.93 * bare * line(ray.latitude - height - sag, 0.0016);
+        transmission -= 0.93 * transmission * line(ray.latitude - height - sag, 0.0016);
     }
     const double pole = from_whole(ray.longitude / 0.9 + draw(0, 0, 33)) * 0.9;
-    if (ray.latitude > -0.1) bare -= 0.9 * bare * line(pole, 0.006);
-    for (int c = 0; c < 3; c++) rgb[c] = mix(mix(high[c], haze[c], low), 0.8, cloud) * bare;
+    if (ray.latitude > -0.1) transmission -= 0.9 * transmission * line(pole, 0.006);
+    for (int c = 0; c < 3; c++) rgb[c] = mix(mix(high[c], haze[c], low), 0.8, cloud) * transmission;
 }
 
 void Scene::wall(const Ray &ray, double rgb[3]) const {

@@ -20,10 +20,10 @@ void clip_lights(double share, const Scene &scene, Truth &truth) {
                 stops.push_back(std::log2(std::max({light[0], light[1], light[2], 1e-9})));
             }
     }
-    auto at = stops.begin() + static_cast<std::ptrdiff_t>((1.0 - share) * static_cast<double>(stops.size() - 1));
-    std::nth_element(stops.begin(), at, stops.end());
+    auto quantile = stops.begin() + static_cast<std::ptrdiff_t>((1.0 - share) * static_cast<double>(stops.size() - 1));
+    std::nth_element(stops.begin(), quantile, stops.end());
     truth.clip_share = share;
-    for (auto &exposure : truth.exposures) exposure.ev -= *at;
+    for (auto &exposure : truth.exposures) exposure.ev -= *quantile;
 }
 
 }  // namespace lensprof

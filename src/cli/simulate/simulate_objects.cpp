@@ -36,13 +36,13 @@ int mark(const lensprof_camera &camera, const Block &block, std::vector<char> &c
 std::vector<Block> random_blocks(const lensprof_camera &camera, double share, Random &random) {
     std::vector<Block> blocks;
     std::vector<char> covered(kGrid * kGrid);
-    const double wanted = share * kGrid * kGrid;
-    for (int before = 0, now = 0; now < wanted; before = now) {
+    const double target = share * kGrid * kGrid;
+    for (int previous = 0, covered_points = 0; covered_points < target; previous = covered_points) {
         Block block = random_block(camera, random);
-        now = mark(camera, block, covered);
+        covered_points = mark(camera, block, covered);
         // The last block is kept if the share is then closer to the requested one: on average exactly that share is
         // covered.
-        if (now < wanted || now - wanted < wanted - before) blocks.push_back(block);
+        if (covered_points < target || covered_points - target < target - previous) blocks.push_back(block);
     }
     return blocks;
 }

@@ -144,8 +144,9 @@ std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene
     const Source source{truth, scene, darkest, noisy, possible_overlaps(truth.cameras)};
     if (source.edges.empty()) return pairs;
     uint32_t per_ring[kRings] = {}, share = (count + kRings - 1) / kRings;
-    for (uint64_t trial = 0, most = 2000ull * count + 100000; trial < most && pairs.size() < count; trial++) {
-        if (trial % (most / 20) == most / 20 - 1)
+    for (uint64_t trial = 0, max_trials = 2000ull * count + 100000; trial < max_trials && pairs.size() < count;
+         trial++) {
+        if (trial % (max_trials / 20) == max_trials / 20 - 1)
             share += share / 4 + 1;  // rings that cannot be filled: others get more
         if (trial % 4096 == 0) stop_if_interrupted();
         lensprof_pair pair;

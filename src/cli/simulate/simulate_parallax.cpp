@@ -10,8 +10,8 @@ void move_cameras(double parallax, Random &random, Truth &truth) {
     truth.parallax = parallax;
     for (size_t i = 0; i < truth.cameras.size(); i++) {
         const double turn = random.uniform(0.0, 2.0 * std::acos(-1.0));
-        const double way = 0.5 * parallax * std::sqrt(random.uniform());
-        truth.positions.push_back({way * std::cos(turn), way * std::sin(turn)});
+        const double distance = 0.5 * parallax * std::sqrt(random.uniform());
+        truth.positions.push_back({distance * std::cos(turn), distance * std::sin(turn)});
     }
 }
 

@@ -69,11 +69,11 @@ void place_cameras(const SimulateOptions &o, Random &random, Truth &truth) {
 
 // Uniform; the first white balance is neutral.
 void draw_exposures(const SimulateOptions &o, Random &random, Truth &truth) {
-    const double most = o.ev.value_or(kRandomEv), wb = o.wb.value_or(kRandomWb);
+    const double max_ev = o.ev.value_or(kRandomEv), wb = o.wb.value_or(kRandomWb);
     for (uint32_t i = 0; i < o.images; i++) {
         lensprof_exposure e;
         lensprof_exposure_init(&e);
-        double draws[3] = {o.mean_ev + random.uniform(-most, most), random.uniform(1 - wb, 1 + wb),
+        double draws[3] = {o.mean_ev + random.uniform(-max_ev, max_ev), random.uniform(1 - wb, 1 + wb),
                            random.uniform(1 - wb, 1 + wb)};
         e.ev = draws[0];
         if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
