@@ -97,7 +97,7 @@ void check_database(const CalibrateOptions &o) {
 void check_report(const CalibrateOptions &o) {
     if (o.report.empty()) return;
     check_page_name(o.report);
-    check_not_taken(o.report, "report", {store_path(o.store.db)});
+    check_not_reserved(o.report, "report", {store_path(o.store.db)});
     const std::string folder = std::filesystem::path(absolute_path(o.report)).parent_path().string();
     if (is_folder(o.output) || canonical_path(folder) != canonical_path(o.output)) check_output_file(o.report);
 }

@@ -161,10 +161,10 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
 
 // The name of an earlier panorama with this key or, with an empty `key`, with any of the pictures; "" if not found.
 std::string name_in_earlier_run(const Json &notes, const std::string &key, const Group &group,
-                                const std::set<std::string> &taken) {
+                                const std::set<std::string> &used_names) {
     if (!notes.is_object() || !notes.contains("results")) return {};
     for (const auto &[name, result] : notes["results"].items()) {
-        if (taken.count(path_of_ascii(name))) continue;
+        if (used_names.count(path_of_ascii(name))) continue;
         if (!key.empty() && result.value("key", "") == key) return path_of_ascii(name);
         for (const InputPicture *picture : group.pictures)
             for (const Json &file : result["files"])
@@ -178,7 +178,7 @@ std::string file_of(const CalibrateOptions &o, const std::string &name, const ch
 }
 
 // Named after the first picture, with a number if the name is used by something else.
-std::string new_name(const CalibrateOptions &o, const Group &group, const std::set<std::string> &taken,
+std::string new_name(const CalibrateOptions &o, const Group &group, const std::set<std::string> &used_names,
                      const std::set<std::string> &targets, const Ledger &ledger) {
     std::string base = std::filesystem::path(group.pictures[0]->name).replace_extension().relative_path().string();
     std::replace(base.begin(), base.end(), '/', '-');
@@ -188,7 +188,7 @@ std::string new_name(const CalibrateOptions &o, const Group &group, const std::s
     if (base.size() > 100) base = base.substr(base.size() - 100);
     for (int number = 1;; number++) {
         const std::string name = base + (number > 1 ? "_" + std::to_string(number) : "");
-        bool is_free = !taken.count(name);
+        bool is_free = !used_names.count(name);
         for (const char *end : {".pto", ".jpg"}) {
             const std::string file = file_of(o, name, end);
             is_free = is_free && !targets.count(file) && !ledger.is_foreign(file);
@@ -201,20 +201,20 @@ std::string new_name(const CalibrateOptions &o, const Group &group, const std::s
 std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<Group> &groups,
                                   const std::vector<std::string> &keys, const std::set<std::string> &targets,
                                   const Ledger &ledger) {
-    std::set<std::string> taken;
+    std::set<std::string> used_names;
     std::vector<std::string> names(groups.size());
     for (const bool is_exact : {true, false})
         for (size_t n = 0; n < names.size(); n++) {
             if (!names[n].empty()) continue;
-            const std::string name = name_in_earlier_run(ledger.notes, is_exact ? keys[n] : "", groups[n], taken);
+            const std::string name = name_in_earlier_run(ledger.notes, is_exact ? keys[n] : "", groups[n], used_names);
             const bool is_copy = targets.count(file_of(o, name, ".pto")) || targets.count(file_of(o, name, ".jpg"));
             if (name.empty() || is_copy) continue;  // a new picture has this name
             names[n] = name;
-            taken.insert(name);
+            used_names.insert(name);
         }
     for (size_t n = 0; n < names.size(); n++) {
-        if (names[n].empty()) names[n] = new_name(o, groups[n], taken, targets, ledger);
-        taken.insert(names[n]);
+        if (names[n].empty()) names[n] = new_name(o, groups[n], used_names, targets, ledger);
+        used_names.insert(names[n]);
     }
     return names;
 }

@@ -152,14 +152,14 @@ void BlockSampler::run() {
         matches_of_blocks[std::minmax(block_of_[image[0]], block_of_[image[1]])].push_back(m);
     }
     size_t done = 0;
-    uint32_t held = UINT32_MAX;  // the block kept in memory for pairs with later ones
+    uint32_t loaded = UINT32_MAX;  // the block kept in memory for pairs with later ones
     for (const auto &[numbers, matches] : matches_of_blocks) {
         stop_if_interrupted();
         Block &a = blocks_[numbers.first], &b = blocks_[numbers.second];
-        if (held != numbers.first) {
-            if (held != UINT32_MAX) blocks_[held].pictures.clear();
+        if (loaded != numbers.first) {
+            if (loaded != UINT32_MAX) blocks_[loaded].pictures.clear();
             read(a);
-            held = numbers.first;
+            loaded = numbers.first;
         }
         if (&a != &b) read(b);
         sample(a, b, matches);

@@ -136,17 +136,17 @@ void reject_other_file(const std::string &output) {
 }
 
 // No output may overwrite an input, the database or another output.
-void check_outputs(const Options &o, std::vector<std::string> taken) {
-    taken.insert(taken.end(), {o.points, o.image_list, o.compare});
-    if (!o.store.no_store) taken.push_back(store_path(o.store.db));
+void check_outputs(const Options &o, std::vector<std::string> reserved) {
+    reserved.insert(reserved.end(), {o.points, o.image_list, o.compare});
+    if (!o.store.no_store) reserved.push_back(store_path(o.store.db));
     for (const std::string &output :
          {o.points_out, o.exposures_out, o.gain_chart, o.pto_out, o.project_out, o.preview, o.report}) {
         if (output.empty()) continue;
-        check_not_taken(output, "output", taken);
+        check_not_reserved(output, "output", reserved);
         reject_photograph(output, output == o.preview || output == o.gain_chart);
         if (output == o.exposures_out) reject_other_file(output);
         check_output_file(output);
-        taken.push_back(output);
+        reserved.push_back(output);
     }
 }
 

@@ -109,8 +109,8 @@ Json falloff_points(const std::vector<PairEnds> &all, const Fitted &best) {
     for (const PairEnds &ends : all) {
         const bool second_is_far = ends.end[1].r > ends.end[0].r;
         const PairEnd &far = ends.end[second_is_far], &near = ends.end[!second_is_far];
-        const bool is_own = best.falloff_of(far.image) == best.falloff_of(best.reference);
-        if (!is_own || far.r - near.r < min_radius_difference) continue;
+        const bool is_of_reference = best.falloff_of(far.image) == best.falloff_of(best.reference);
+        if (!is_of_reference || far.r - near.r < min_radius_difference) continue;
         const double exposure = lensprof_exposure_factor(&best.exposures[far.image], 1);
         bins[bin_of(far.r, radius_bins)].push_back(far.light / near.light * far.attenuation / exposure);
     }

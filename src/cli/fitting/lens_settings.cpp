@@ -127,11 +127,11 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
         std::vector<uint32_t> possible;
         for (uint32_t n = 0; n < first.size(); n++)
             if (is_possible(first[n])) possible.push_back(n);
-        const auto alike = std::find_if(possible.begin(), possible.end(),
-                                        [&](uint32_t n) { return stated(keys[first[n]]) == stated(keys[i]); });
-        found[i] = possible.size() == 1      ? possible[0]
-                   : alike != possible.end() ? *alike
-                                             : static_cast<uint32_t>(first.size());
+        const auto equally_detailed = std::find_if(
+            possible.begin(), possible.end(), [&](uint32_t n) { return stated(keys[first[n]]) == stated(keys[i]); });
+        found[i] = possible.size() == 1                 ? possible[0]
+                   : equally_detailed != possible.end() ? *equally_detailed
+                                                        : static_cast<uint32_t>(first.size());
         if (found[i] == first.size()) first.push_back(i);
     }
     if (first.size() > LENSPROF_SETTINGS_MAX)

@@ -160,14 +160,14 @@ private:
     const uint32_t modes_, vignettings_;
 };
 
-// Fits the pairs for which keeps(p) holds; empty if they are too few.
-template <class Keeps>
-std::optional<Fitted> fit_subset(FitInput &input, const std::vector<lensprof_pair> &all, const Keeps &keeps,
+// Fits the pairs for which is_selected(p) is true; empty if they are too few.
+template <class Filter>
+std::optional<Fitted> fit_subset(FitInput &input, const std::vector<lensprof_pair> &all, const Filter &is_selected,
                                  uint32_t reference, const std::string &item, Progress &progress,
                                  std::vector<lensprof_fit_image_quality> *quality) {
     input.pairs.clear();
     for (size_t p = 0; p < all.size(); p++)
-        if (keeps(p)) input.pairs.push_back(all[p]);
+        if (is_selected(p)) input.pairs.push_back(all[p]);
     try {
         return fit(input, reference, item, progress, quality);
     } catch (const Failure &failure) {
@@ -217,8 +217,8 @@ Fitted fit_matte_points(FitInput &input, std::vector<uint32_t> &points, const Fi
         input.pairs = all;
         const std::vector<bool> matte = are_matte(all, colour_differences(input, &best), points);
         std::vector<lensprof_fit_image_quality> round_quality;
-        const auto keeps = [&](size_t p) { return matte[p]; };
-        const auto next = fit_subset(input, all, keeps, reference, item, progress, &round_quality);
+        const auto is_selected = [&](size_t p) { return matte[p]; };
+        const auto next = fit_subset(input, all, is_selected, reference, item, progress, &round_quality);
         if (!next || joined_images(*next) < joined_images(best)) break;  // some images have too few matte points
         is_converged = largest_change(*next, best) < kExposureTolerance;
         best = *next, fitted_pairs = input.pairs, is_fitted = matte;
@@ -239,8 +239,8 @@ void add_errors_by_halves(FitInput input, const std::vector<uint32_t> &points, c
     const std::vector<lensprof_pair> all = input.pairs;
     std::optional<Fitted> halves[2];
     for (const uint32_t half : {0u, 1u}) {
-        const auto keeps = [&](size_t p) { return (points[p] * 2654435761u >> 31) == half; };  // chosen by a hash
-        halves[half] = fit_subset(input, all, keeps, result.reference, item, progress, nullptr);
+        const auto is_selected = [&](size_t p) { return (points[p] * 2654435761u >> 31) == half; };  // chosen by a hash
+        halves[half] = fit_subset(input, all, is_selected, result.reference, item, progress, nullptr);
         if (!halves[half]) return;
     }
     const std::array<double, 3> rms = differences_of(*halves[0], *halves[1]);  // twice the error of the whole

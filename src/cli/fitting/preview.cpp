@@ -142,8 +142,8 @@ void copy_pixel(const Picture &from, uint32_t x, uint32_t y, uint8_t *to) {
 void paint(const Canvas &canvas, const CorrectedCopy &tile, std::vector<float> &nearest, Mosaic &out) {
     const lensprof_camera &camera = tile.camera;
     const Box box = box_of(canvas, camera);
-    const auto pixel = [&](double at, double from, uint32_t count) {
-        return static_cast<uint32_t>(std::clamp((at - from) / canvas.px, 0.0, static_cast<double>(count)));
+    const auto pixel = [&](double position, double from, uint32_t count) {
+        return static_cast<uint32_t>(std::clamp((position - from) / canvas.px, 0.0, static_cast<double>(count)));
     };
     const uint32_t right = pixel(box.right + canvas.px, canvas.left, canvas.width),
                    bottom = pixel(box.bottom + canvas.px, canvas.top, canvas.height);

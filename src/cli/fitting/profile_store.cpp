@@ -143,7 +143,7 @@ std::string source_of(const std::string &file) { return canonical_path(file); }
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin) {
     auto &p = profile.provenance;
     set_text(p.method, sizeof p.method, origin.method);
-    p.prior_id = origin.held;
+    p.prior_id = origin.prior_id;
     p.forced = !origin.usable;
     set_text(p.source, sizeof p.source, source_of(origin.source));
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
@@ -163,9 +163,9 @@ int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Or
 void check_report(const std::string &report, const std::vector<std::string> &inputs, const StoreOptions &o) {
     if (report.empty()) return;
     check_page_name(report);
-    std::vector<std::string> taken = inputs;
-    if (!o.no_store) taken.push_back(store_path(o.db));
-    check_not_taken(report, "report", taken);
+    std::vector<std::string> reserved = inputs;
+    if (!o.no_store) reserved.push_back(store_path(o.db));
+    check_not_reserved(report, "report", reserved);
     check_output_file(report);
 }
 

@@ -59,8 +59,8 @@ std::string source_of(const std::string &file);
 // The provenance of a profile made now.
 struct Origin {
     std::string method, source;
-    bool usable;       // else stored with --force
-    int64_t held = 0;  // the profile used as its prior; 0 = none
+    bool usable;           // else stored with --force
+    int64_t prior_id = 0;  // the profile used as its prior; 0 = none
 };
 
 // Completes the provenance with source_of(source) and the time, and stores the profile. Removes a new database if

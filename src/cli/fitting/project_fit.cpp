@@ -153,7 +153,7 @@ void resample(const ProjectFitOptions &o, const Project &project, Pictures &pict
         if (explains_more(second, state.report.links, state.best, links)) {
             state.best = second;
             state.report.quality = quality;
-            state.report.looks = 2;
+            state.report.sampling_rounds = 2;
             return;
         }
     } catch (const Failure &failure) {
@@ -371,11 +371,11 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
     const auto can_hold = [](const auto &found) {
         return found.response.modes <= project_modes && found.vignettings == 1;
     };
-    bool fits = can_hold(best.result);
+    bool is_storable = can_hold(best.result);
     uint32_t modes = std::min<uint32_t>(best.result.response.modes, project_modes);
     for (const lensprof_fit_camera &camera : best.cameras)  // whose responses are tables, which are projected
-        if (camera.images) modes = project_modes, fits = fits && can_hold(camera);
-    if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
+        if (camera.images) modes = project_modes, is_storable = is_storable && can_hold(camera);
+    if (is_storable || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
     input.options.modes = modes;
     input.options.vignettings = 1;
     return fit(input, reference, item, progress, nullptr);
@@ -471,19 +471,18 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
 }
 
 std::string result_text(ProjectFit &state, Project &project, const std::string &path) {
-    const Fitted written = fit_for_project(state.input, state.best, state.report.reference, state.item, state.progress);
+    const Fitted stored = fit_for_project(state.input, state.best, state.report.reference, state.item, state.progress);
     lensprof_error error{};
-    check(lensprof_pto_set_result(project.pto.get(), &written.result.response, &green_falloff(written.result),
-                                  written.exposures.data(), static_cast<uint32_t>(written.exposures.size()),
-                                  written.reference, &error),
+    check(lensprof_pto_set_result(project.pto.get(), &stored.result.response, &green_falloff(stored.result),
+                                  stored.exposures.data(), static_cast<uint32_t>(stored.exposures.size()),
+                                  stored.reference, &error),
           project.path, &error);
     if (state.settings.has_several_settings()) {
         std::vector<lensprof_vignetting> falloffs;
-        for (uint32_t s = 0; s < written.settings.size(); s++) {
-            const lensprof_fit_setting &setting = written.settings[s];
-            const uint32_t curves = written.falloff_curves_of(state.settings.first[s]);
-            falloffs.push_back(setting.images ? setting.vignetting[curves == 3 ? 1 : 0]
-                                              : green_falloff(written.result));
+        for (uint32_t s = 0; s < stored.settings.size(); s++) {
+            const lensprof_fit_setting &setting = stored.settings[s];
+            const uint32_t curves = stored.falloff_curves_of(state.settings.first[s]);
+            falloffs.push_back(setting.images ? setting.vignetting[curves == 3 ? 1 : 0] : green_falloff(stored.result));
         }
         check(lensprof_pto_set_settings(project.pto.get(), state.settings.of_image.data(),
                                         static_cast<uint32_t>(state.settings.of_image.size()), falloffs.data(),
@@ -492,7 +491,7 @@ std::string result_text(ProjectFit &state, Project &project, const std::string &
     }
     if (state.settings.has_several_cameras()) {
         std::vector<lensprof_response> responses;
-        for (const uint32_t first : state.settings.first_of_camera) responses.push_back(written.response_of(first));
+        for (const uint32_t first : state.settings.first_of_camera) responses.push_back(stored.response_of(first));
         check(lensprof_pto_set_cameras(project.pto.get(), state.settings.camera_of_image.data(),
                                        static_cast<uint32_t>(state.settings.camera_of_image.size()), responses.data(),
                                        static_cast<uint32_t>(responses.size()), &error),

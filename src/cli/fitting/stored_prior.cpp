@@ -22,7 +22,7 @@ bool may_share(const std::string &a, const std::string &b) {
 }
 
 // Whether a profile in this one's history was made from `source`.
-bool holds(lensprof_store *store, const lensprof_profile &profile, const std::string &source) {
+bool includes_source(lensprof_store *store, const lensprof_profile &profile, const std::string &source) {
     auto next = std::make_unique<lensprof_profile>(profile);
     std::set<int64_t> seen;
     for (;;) {
@@ -82,7 +82,7 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
     double gamma_sigma = 0.0;
     for (const auto &[store, id] : rows) {
         if (lensprof_store_get(store, id, row.get(), nullptr) != LENSPROF_OK) continue;
-        if (may_share(row->provenance.source, source_name) || holds(store, *row, source_name))
+        if (may_share(row->provenance.source, source_name) || includes_source(store, *row, source_name))
             return {0, nullptr, "profile " + std::to_string(id) + " already includes these pictures"};
         if (row->provenance.forced)
             return {0, nullptr,
@@ -112,7 +112,7 @@ EarlierProfile single_prior(lensprof_store *store, int64_t id, std::unique_ptr<l
             || !has_uncertainty(*profile) || profile->provenance.forced)
             return {0, nullptr, named + " is from these pictures alone, which are fitted again"};
     }
-    if (!may_share(source_name, profile->provenance.source) && !holds(store, *profile, source_name))
+    if (!may_share(source_name, profile->provenance.source) && !includes_source(store, *profile, source_name))
         return {id, std::move(profile), ""};
     const std::string reason = "profile " + std::to_string(id) + " already includes these pictures, and later ones";
     if (is_requested)

@@ -2,13 +2,13 @@
 
 namespace lensprof {
 
-void declare_foreign(Command &command, ForeignOptions &o, bool written) {
+void declare_foreign(Command &command, ForeignOptions &o, bool is_output) {
     constexpr std::pair<uint32_t, uint32_t> sides = {2, 65536};
     command.size("--frame", o.width, o.height, sides,
                  "size of the pictures, px, for formats that depend on it but do not store it");
     command.size("--grid", o.columns, o.rows, sides,
-                 written ? "columns and rows of maps (default: the frame size) and of alsc (default: 16x12)"
-                         : "columns and rows of alsc tables; default 16x12 or 32x32, by their length");
+                 is_output ? "columns and rows of maps (default: the frame size) and of alsc (default: 16x12)"
+                           : "columns and rows of alsc tables; default 16x12 or 32x32, by their length");
     command.choice(
         "--curve", o.curve,
         {{"inverse", LENSPROF_CURVE_INVERSE},
@@ -22,7 +22,7 @@ void declare_foreign(Command &command, ForeignOptions &o, bool written) {
         "meaning of maps: attenuation (divide; default for PNG) or gain (multiply; default for float TIFF)");
     command.number("--color-temperature", o.color_temperature_k, {500.0, 50000.0},
                    "colour temperature of alsc tables, K; default that of the file or profile, else 4500");
-    if (!written) return;
+    if (!is_output) return;
     command.choice("--depth", o.depth, {{"8", 8}, {"16", 16}}, "bits of PNG maps: 8 or 16 (default)");
     command.choice("--opcode", o.opcode,
                    {{"auto", LENSPROF_DNG_AUTO}, {"radial", LENSPROF_DNG_RADIAL}, {"map", LENSPROF_DNG_GAIN_MAP}},

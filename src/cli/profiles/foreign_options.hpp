@@ -7,7 +7,7 @@
 namespace lensprof {
 
 // `options` must outlive the parsing.
-void declare_foreign(Command &command, ForeignOptions &options, bool written);
+void declare_foreign(Command &command, ForeignOptions &options, bool is_output);
 
 // The choices of --format.
 Choices<std::string> format_choices(bool written_only);

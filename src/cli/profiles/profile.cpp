@@ -129,10 +129,10 @@ void print_profiles(const std::vector<StoredProfile> &profiles, bool json, Strea
 // A chart omits what was not measured, as by `bracket`.
 void keep_with_falloff(std::vector<StoredProfile> &profiles) {
     const int64_t first = profiles.front().id;
-    const auto lacks = [](const StoredProfile &stored) {
+    const auto has_no_falloff = [](const StoredProfile &stored) {
         return stored.profile->vignettings == 1 && !has_falloff(stored.profile->vignetting[0]);
     };
-    profiles.erase(std::remove_if(profiles.begin(), profiles.end(), lacks), profiles.end());
+    profiles.erase(std::remove_if(profiles.begin(), profiles.end(), has_no_falloff), profiles.end());
     if (profiles.empty())
         throw Failure(ExitCode::not_found, "profile " + std::to_string(first)
                                                + " has no falloff to draw; measure it with `lensprof flat` or "

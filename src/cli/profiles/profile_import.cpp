@@ -99,11 +99,12 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
     std::string response, falloff, names;
     for (const Input &input : inputs) {
         if (input.rule->holds == LENSPROF_HOLDS_PROFILES) continue;
-        std::string &taken = input.rule->holds == LENSPROF_HOLDS_RESPONSE ? response : falloff;
-        if (!taken.empty())
-            throw Failure(ExitCode::usage, input.file + ": has a " + (&taken == &response ? "response" : "falloff")
-                                               + ", and so has " + taken + "; import the profiles one after the other");
-        taken = input.file;
+        std::string &source_file = input.rule->holds == LENSPROF_HOLDS_RESPONSE ? response : falloff;
+        if (!source_file.empty())
+            throw Failure(ExitCode::usage, input.file + ": has a "
+                                               + (&source_file == &response ? "response" : "falloff") + ", and so has "
+                                               + source_file + "; import the profiles one after the other");
+        source_file = input.file;
         names += (names.empty() ? "" : "; ") + std::filesystem::path(input.file).filename().string();
     }
     if (names.empty()) return nullptr;

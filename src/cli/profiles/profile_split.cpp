@@ -66,11 +66,12 @@ std::vector<SplitFile> write_split(const ForeignRule &rule, const std::string &f
                                    const std::vector<StoredProfile> &profiles) {
     std::vector<SplitFile> files;
     std::map<std::string, size_t> file_of_group;
-    std::set<std::string> taken;
+    std::set<std::string> used_names;
     const auto add_file = [&](const std::string &name) {
         const std::string base_name = file_name_of(name);
         std::string unused = base_name;
-        for (int i = 2; !taken.insert(folded(unused)).second; i++) unused = base_name + " (" + std::to_string(i) + ")";
+        for (int i = 2; !used_names.insert(folded(unused)).second; i++)
+            unused = base_name + " (" + std::to_string(i) + ")";
         files.push_back({(std::filesystem::path(folder) / (unused + "." + ending_of(rule))).string(), {}});
         return files.size() - 1;
     };

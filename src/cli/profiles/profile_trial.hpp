@@ -40,7 +40,7 @@ TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model);
 TrialErrors uncorrected_errors(const TrialPairs &pairs);
 
 // Whether each held-out pair counts: one of the models explains it. The others show two different objects.
-std::vector<bool> explained_pairs(const std::vector<TrialErrors> &tried);
+std::vector<bool> explained_pairs(const std::vector<TrialErrors> &candidates);
 
 struct TrialFigures {
     double rms = 0.0, median = 0.0;

@@ -177,7 +177,7 @@ int run_report(const Options &o, Streams &streams) {
     check_inputs(o, kinds, asks_profiles);
     const bool is_of_file = kinds.size() == 1 && kinds[0] == Kind::profiles;
     const std::vector<std::string> files = is_of_file ? o.inputs : databases_of(o.inputs.empty() ? o.dbs : o.inputs);
-    check_not_taken(o.output, "report", files);
+    check_not_reserved(o.output, "report", files);
     check_output_file(o.output);
     if (is_of_file) return write_page(o, profiles_of_file(files[0], streams), files[0], streams);
     const Databases databases(files);

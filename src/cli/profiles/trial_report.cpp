@@ -71,9 +71,9 @@ bool has_falloff(const lensprof_profile &profile) {
 }
 
 void compare(TrialReport &report) {
-    std::vector<TrialErrors> tried = {report.none.errors};
-    for (const Candidate &candidate : report.profiles) tried.push_back(candidate.errors);
-    report.is_explained = explained_pairs(tried);
+    std::vector<TrialErrors> errors = {report.none.errors};
+    for (const Candidate &candidate : report.profiles) errors.push_back(candidate.errors);
+    report.is_explained = explained_pairs(errors);
     report.none.figures = figures_of(report.none.errors, report.is_explained);
     report.before = figures_of(uncorrected_errors(report.pairs), report.is_explained);
     for (size_t i = 0; i < report.profiles.size(); i++) {
@@ -147,14 +147,14 @@ void print_trial(const TrialReport &report, std::ostream &out) {
         format("%+.3f +- %.3f", report.none.excess_over_best.levels, report.none.excess_over_best.sigma).c_str(),
         describe_response(report.none).c_str());
     out << format("%-14s %7.3f\n", "as they are", report.before.rms);
-    const std::vector<int64_t> good = as_good_as_best(report);
+    const std::vector<int64_t> best_ids = as_good_as_best(report);
     if (!report.is_any_better())
         out << "best           none\n";
-    else if (good.size() == 1)
-        out << "best           profile " << good[0] << "\n";
+    else if (best_ids.size() == 1)
+        out << "best           profile " << best_ids[0] << "\n";
     else
         out << "best           profile " << report.profiles[report.best].id
-            << ", but these pictures cannot distinguish profiles " << listed(good)
+            << ", but these pictures cannot distinguish profiles " << listed(best_ids)
             << ": they differ by less than "
                "twice the standard error\n";
 }

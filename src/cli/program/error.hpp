@@ -23,8 +23,8 @@ enum class ExitCode : int {
 
 // what() is a complete message for the user: the item, what is wrong, and the next step.
 struct Failure : std::runtime_error {
-    Failure(ExitCode exit_code, const std::string &text, uint32_t why = LENSPROF_REASON_NONE)
-        : std::runtime_error(text), code(exit_code), reason(why) {}
+    Failure(ExitCode exit_code, const std::string &text, uint32_t reason_code = LENSPROF_REASON_NONE)
+        : std::runtime_error(text), code(exit_code), reason(reason_code) {}
 
     ExitCode code;
     uint32_t reason;  // lensprof_reason of a result that is not usable

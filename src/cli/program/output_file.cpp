@@ -128,8 +128,8 @@ void check_folder(const std::string &folder, const std::string &item, ExitCode f
                                       + "; check its permissions, or give another folder");
 }
 
-void check_not_taken(const std::string &path, const std::string &what, const std::vector<std::string> &taken) {
-    for (const std::string &other : taken)
+void check_not_reserved(const std::string &path, const std::string &what, const std::vector<std::string> &reserved) {
+    for (const std::string &other : reserved)
         if (is_same_file(path, other))
             throw Failure(ExitCode::usage, path + ": would be overwritten; give the " + what + " another name");
 }

@@ -78,9 +78,9 @@ int open_unnamed(const std::string &neighbour);
 // name, else `no_writing`. For checks before long computations.
 void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing);
 
-// Failure (usage) if a file is one of `taken`: inputs, the database, other outputs. `what` names it: "output",
+// Failure (usage) if a file is one of `reserved`: inputs, the database, other outputs. `what` names it: "output",
 // "report".
-void check_not_taken(const std::string &path, const std::string &what, const std::vector<std::string> &taken);
+void check_not_reserved(const std::string &path, const std::string &what, const std::vector<std::string> &reserved);
 
 // Throws the Failure that writing this file would cause, before the work is done.
 void check_output_file(const std::string &path);

@@ -185,7 +185,7 @@ Json build_json(const BuildReport &report) {
     json["coverage"] = {{"radius", std::vector<uint32_t>(fit.radius_ends, fit.radius_ends + LENSPROF_COVERAGE_BINS)},
                         {"grey", std::vector<uint32_t>(fit.grey_ends, fit.grey_ends + LENSPROF_COVERAGE_BINS)}};
     json["pairs"] = fit.pairs;
-    json["looks"] = report.looks;
+    json["looks"] = report.sampling_rounds;
     json["links"] = links_json(report.links);
     json["components"] = fit.components;
     json["iterations"] = fit.iterations;

@@ -93,9 +93,9 @@ void print_plot(const Chart &chart, std::ostream &out) {
     std::vector<std::string> plot(size_t(rows + 1), std::string(columns + 1, ' '));
     for (size_t k = chart.curves.size(); k-- > 0;)  // the first curve is drawn on top
         for (int column = 0; column <= columns; column++) {
-            const double at = double(column) / columns * (chart_samples - 1);
-            const size_t i = std::min(size_t(at), chart_samples - 2);
-            const double *m = chart.curves[k].m, value = m[i] + (at - double(i)) * (m[i + 1] - m[i]);
+            const double position = double(column) / columns * (chart_samples - 1);
+            const size_t i = std::min(size_t(position), chart_samples - 2);
+            const double *m = chart.curves[k].m, value = m[i] + (position - double(i)) * (m[i + 1] - m[i]);
             const long row = std::lround((axis.high - value) / (axis.high - axis.low) * rows);
             plot[size_t(std::clamp(row, 0l, long(rows)))][size_t(column)] = letter(k);
         }

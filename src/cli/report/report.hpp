@@ -75,7 +75,7 @@ struct BuildReport {
     bool has_falloff = true;       // else the falloff cancels in these pictures
     bool exposures_given = false;  // on the command line, not by EXIF
     ColourVariance variance;       // of a reconstruction
-    uint32_t looks = 1;            // 2: pairs were drawn again, by the irradiance of the first fit
+    uint32_t sampling_rounds = 1;  // 2: pairs were drawn again, by the irradiance of the first fit
     std::vector<std::pair<std::string, std::string>> left_out;  // pictures left out, and why
     double register_s = 0, load_s = 0, sample_s = 0;
     CameraKind camera_kind;          // kind of camera of the prior on gamma

@@ -32,9 +32,9 @@ Heights::Heights(uint32_t seed, double reach_x_m, double reach_y_m)
     double steepest = 0.0;
     for (size_t j = 0; j + 1 < rows_; j++)
         for (size_t i = 0; i + 1 < columns_; i++) {
-            const auto here = static_cast<double>(heights_m_[j * columns_ + i]);
-            const double along = std::fabs(static_cast<double>(heights_m_[j * columns_ + i + 1]) - here);
-            const double across = std::fabs(static_cast<double>(heights_m_[(j + 1) * columns_ + i]) - here);
+            const auto height = static_cast<double>(heights_m_[j * columns_ + i]);
+            const double along = std::fabs(static_cast<double>(heights_m_[j * columns_ + i + 1]) - height);
+            const double across = std::fabs(static_cast<double>(heights_m_[(j + 1) * columns_ + i]) - height);
             steepest = std::max({steepest, along, across});
         }
     slope_ = std::sqrt(2.0) * steepest / kCell;

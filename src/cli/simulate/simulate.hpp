@@ -22,7 +22,7 @@ struct Block {
     double texture;  // amplitude in the logarithm of radiance; 0 = even
     double depth;    // offset of its texture in the noise
 
-    bool holds(double x, double y) const { return x >= left && x < right && y >= top && y < bottom; }
+    bool contains(double x, double y) const { return x >= left && x < right && y >= top && y < bottom; }
 };
 
 // Gain of local tone mapping, EV, on a coarse grid over the frame.

@@ -26,7 +26,7 @@ Block random_block(const lensprof_camera &camera, Random &random) {
 int mark(const lensprof_camera &camera, const Block &block, std::vector<char> &covered) {
     for (int j = 0; j < kGrid; j++)
         for (int i = 0; i < kGrid; i++)
-            if (block.holds((i + 0.5) / kGrid * camera.width, (j + 0.5) / kGrid * camera.height))
+            if (block.contains((i + 0.5) / kGrid * camera.width, (j + 0.5) / kGrid * camera.height))
                 covered[static_cast<size_t>(j * kGrid + i)] = 1;
     return static_cast<int>(std::count(covered.begin(), covered.end(), 1));
 }
@@ -51,7 +51,7 @@ bool object_radiance(const Truth &truth, const Scene &scene, uint32_t index, dou
     if (truth.objects.empty()) return false;
     const auto &camera = truth.cameras[index];
     const auto &blocks = truth.objects[index];
-    auto found = std::find_if(blocks.rbegin(), blocks.rend(), [&](const Block &b) { return b.holds(x, y); });
+    auto found = std::find_if(blocks.rbegin(), blocks.rend(), [&](const Block &b) { return b.contains(x, y); });
     if (found == blocks.rend()) return false;
     const double scale = 1.0 / lensprof_half_diagonal(camera.width, camera.height),
                  p[3] = {x * scale, y * scale, found->depth};
