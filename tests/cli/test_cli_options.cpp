@@ -90,7 +90,7 @@ void test_the_nearest_is_named(void **) {
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     const Words far = {"query", "--zzzzzz", "1"};
     assert_refused(usage, far, {"--zzzzzz: no such option; see"});
-    assert_refused(usage, {"profile"}, {"needs a verb", "list", "stats"});
+    assert_refused(usage, {"profile"}, {"profile: give a subcommand", "list", "stats"});
     assert_refused(usage, {"profile", "check", "more"}, {"more: unexpected argument"});
     assert_refused(usage, {"help", "profile", "export", "more"}, {"has no verbs", "`lensprof help profile export`"});
 }

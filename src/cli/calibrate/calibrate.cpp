@@ -114,7 +114,8 @@ int run(const CalibrateOptions &o, Streams &streams) {
     check_existing_files(o, inputs, ledger);
     if (inputs.pictures.empty() && inputs.unreadable)
         throw Failure(ExitCode::unreadable,
-                      inputs.label + ": none of the pictures can be read; the first: " + inputs.left_out[0].reason);
+                      (inputs.found > 1 ? inputs.label + ": none of the pictures can be read; the first: " : "")
+                          + inputs.left_out[0].reason);
     if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
     make_folder(o.output);
     lock.acquire();

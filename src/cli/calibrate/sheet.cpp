@@ -16,7 +16,7 @@ namespace {
 constexpr uint32_t per_page = 60;
 
 std::string note_of(const CorrectedPicture &picture) {
-    return picture.ev ? format("%+.2f EV  ", *picture.ev) + picture.panorama : correction_note(picture.job);
+    return picture.ev ? format("%+.2f EV, panorama ", *picture.ev) + picture.panorama : correction_note(picture.job);
 }
 
 void write_sheet(const std::string &path, const CorrectedPicture *first, size_t count, Progress &progress) {

@@ -10,7 +10,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t max_panoramas = 4, max_names = 3;
+constexpr size_t max_panoramas = 3, max_names = 3;
 
 double corner_of(const Json &result) {
     double corner = 1.0;
@@ -112,10 +112,10 @@ void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panora
     out << "\n";
     const std::vector<LeftOutPicture> left_out = all_left_out(inputs, pictures);
     if (!left_out.empty()) {
-        std::string text = "left out  " + counted(left_out.size(), "picture") + ": ";
-        for (size_t i = 0; i < std::min(max_names, left_out.size()); i++) text += (i ? ", " : "") + left_out[i].file;
-        if (left_out.size() > max_names) text += format(" and %zu more", left_out.size() - max_names);
-        out << one_line(text) << "\n";
+        const size_t shown = left_out.size() <= max_names ? left_out.size() : max_names - 1;
+        out << "left out  " << counted(left_out.size(), "picture") << "\n";
+        for (size_t i = 0; i < shown; i++) out << shortened(one_line("  " + left_out[i].reason)) << "\n";
+        if (shown < left_out.size()) out << "  and " << left_out.size() - shown << " more\n";
     }
     out << one_line("written   to " + o.output + ": " + summary_name + " (with all reasons)"
                     + (pictures.list.empty() ? "" : ", calibrate_sheet.jpg")

@@ -191,9 +191,10 @@ ApplySource open_source(const ApplyOptions &o) {
     source.models = std::make_unique<PictureModels>(o.model, o.project().empty());
     const bool from_store = source.models->are_used();
     if (!from_store && o.project().empty())
-        throw Failure(ExitCode::usage,
-                      "no correction given and no database found; give --profile ID, --from-db, --pto FILE or --model "
-                      "FILE");
+        throw Failure(
+            ExitCode::usage,
+            "no correction given and no database found; give the database with --db FILE, or --pto FILE or --model "
+            "FILE");
     if (!o.project().empty()) {
         source.project =
             std::make_unique<Project>(o.pto.empty() ? read_exposures(o.exposures, o.images) : read_project(o.pto));
@@ -214,7 +215,7 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
     if (o.files.empty() && source.project)
         for (const std::string &file : source.project->files) pictures.push_back({file, "", false});
     else
-        pictures = named_pictures(o.files, o.output);
+        pictures = named_pictures(o.files, o.output), extract_outputs(pictures, streams);
     take_shard(shard_of(o.shard), pictures);
     if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; give pictures or folders");
     ApplyWork work;

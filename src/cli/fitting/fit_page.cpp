@@ -62,18 +62,18 @@ Json facts_json(const BuildReport &report) {
     const lensprof_fit_result &fit = report.fit;
     Json facts = Json::array();
     const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
-    add("images joined",
+    add("pictures used",
         format("%zu of %zu", joined_images(report.exposures), report.names.size() + report.left_out.size()));
     add("pairs", std::to_string(fit.pairs));
     if (report.has_falloff && report.settings.empty()) add("corner illuminance", corner_text(*profile_of(fit)));
     if (fit.before_rms > 0.0)
-        add("pairs differ by, levels RMS", format("%.1f before, %.1f after", fit.before_rms, fit.heldout_rms));
+        add("residual (RMS, grey levels)", format("%.1f before, %.1f after", fit.before_rms, fit.heldout_rms));
     if (report.variance.pairs)
         add("colour variance, levels²",
             format("%.0f before, %.0f by exposures alone, %.0f after", report.variance.before,
                    report.variance.exposures_only, report.variance.result));
-    add("exponent from", std::string(gamma_name(fit.gamma_from))
-                             + (fit.gamma_sigma > 0.0 ? format(", ± %.0f %%", 100.0 * fit.gamma_sigma) : ""));
+    add("gamma from", std::string(gamma_name(fit.gamma_from))
+                          + (fit.gamma_sigma > 0.0 ? format(", ± %.0f %%", 100.0 * fit.gamma_sigma) : ""));
     if (report.profile_id) add("stored as profile", std::to_string(report.profile_id));
     return facts;
 }
@@ -82,7 +82,7 @@ void add_views(const FitPageInput &input, Progress &progress, Json &page) {
     const Fitted &fitted = input.best;
     std::vector<uint32_t> images = images_with_exposure(fitted);
     const size_t image_count = images.size();
-    if (!fitted.corrects()) page["views_note"] = "The result is not usable, so that no picture is corrected.";
+    if (!fitted.corrects()) page["views_note"] = "The result is not usable, so no picture was corrected.";
     if (!fitted.corrects() || images.empty() || !is_regular_file(input.project.files[images[0]])) return;
     if (image_count > max_views) {
         std::vector<uint32_t> shown_images;

@@ -62,11 +62,11 @@ Json grid_json(const lensprof_gain_grid &grid) {
 void print_images(const FlatReport &report, std::ostream &out) {
     size_t width = 5;
     for (const auto &name : report.names) width = std::max(width, name.size());
-    out << format("%-*s  %4s  %7s  %6s  %6s  %7s  %7s  %6s  %6s  %-13s\n", static_cast<int>(width), "image", "shot",
-                  "EV", "turned", "r", "white %", "black %", "noise", "left %", "light right, down %");
+    out << format("%-*s  %4s  %7s  %6s  %6s  %7s  %7s  %6s  %7s  %-13s\n", static_cast<int>(width), "image", "shot",
+                  "EV", "turned", "r", "white %", "black %", "noise", "resid %", "light right, down %");
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &q = report.quality[i];
-        out << format("%-*s  %4u  %+7.2f  %6g  %6.2f  %7.1f  %7.1f  %6.2f  %6.2f  %+6.1f %+6.1f\n",
+        out << format("%-*s  %4u  %+7.2f  %6g  %6.2f  %7.1f  %7.1f  %6.2f  %7.2f  %+6.1f %+6.1f\n",
                       static_cast<int>(width), report.names[i].c_str(), report.shots[i], report.ev[i], report.turned[i],
                       q.radius, 100.0 * q.white_share, 100.0 * q.black_share, q.noise_levels, 100.0 * q.residual,
                       100.0 * q.gradient[0], 100.0 * q.gradient[1]);

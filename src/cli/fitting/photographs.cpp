@@ -89,7 +89,7 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
                       100.0 * project.residual,
                       project.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
                                                          "points"
-                                                       : "a camera that turned about one point"));
+                                                       : "a rotating camera"));
     const size_t cameras = std::set<uint32_t>(project.bodies.begin(), project.bodies.end()).size();
     if (cameras > 1)
         note(streams,
@@ -122,25 +122,26 @@ static bool is_corrected_copy(const NamedPicture &picture) {
 
 Photographs find_photographs(const std::vector<std::string> &words, Streams &streams) {
     std::vector<NamedPicture> named = named_pictures(words, std::string());
-    const std::vector<NamedPicture> outputs =
-        extract_below(named, [](const std::string &folder) { return path_exists(folder + "/" + calibrate_records); });
+    const std::vector<NamedPicture> outputs = extract_outputs(named, streams);
     for (const NamedPicture &picture : named) note_instead(picture, streams);
     const auto first_corrected = std::stable_partition(
         named.begin(), named.end(), [](const NamedPicture &picture) { return !is_corrected_copy(picture); });
     const std::vector<NamedPicture> corrected(first_corrected, named.end());
     named.erase(first_corrected, named.end());
     Photographs list = list_photographs(words, named);
-    for (const NamedPicture &picture : outputs)
-        list.left_out.emplace_back(picture.file, "it is in an output folder of calibrate");
     for (const NamedPicture &picture : corrected)
         list.left_out.emplace_back(picture.file,
                                    "lensprof made it from another picture; give its name explicitly to "
                                    "use it");
     for (const auto &[file, reason] : list.left_out) warn(streams, file + ": left out: " + reason);
+    for (const NamedPicture &picture : outputs)
+        list.left_out.emplace_back(picture.file, "it is in an output folder of calibrate");
     require_one_kind(list.files);
-    if (list.files.size() < 2)
+    if (list.files.size() < 2) {
+        for (const std::string &file : list.files) read_header(file);  // for its errors
         throw Failure(ExitCode::not_usable, list.label + ": has only one picture; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
+    }
     return list;
 }
 

@@ -80,7 +80,7 @@ Json page_verdict(bool usable, bool evens, const std::string &text, const std::v
     const bool is_good = usable && details.empty();
     const char *headline = is_good  ? "Usable: a profile that later pictures can rely on."
                            : usable ? "Usable, with a warning."
-                           : evens  ? "These pictures match after correction, but this is not a profile to store."
+                           : evens  ? "These pictures differ less after correction, but this is not a profile to store."
                                     : "Not usable: do not correct pictures with this result.";
     return {{"level", is_good           ? "good"
                       : usable || evens ? "warn"
@@ -121,7 +121,7 @@ void check_page_name(const std::string &path) {
         throw Failure(ExitCode::usage, path + ": a report is an HTML file; give a name that ends in .html");
     constexpr const char *generator = "content=\"lensprof\"";  // of page.html
     if (is_regular_file(path) && file_bytes(path) > 0 && read_head(path, 512).find(generator) == std::string::npos)
-        throw Failure(ExitCode::usage, path + ": is an existing file and not a report; give another name");
+        throw Failure(ExitCode::usage, path + ": already exists and is not a report of lensprof; give another name");
 }
 
 }  // namespace lensprof

@@ -11,6 +11,7 @@ function element(name, attributes, ...children) {
 }
 
 const fixed = (value, digits) => Number.isFinite(value) ? value.toFixed(digits) : '–';
+const sigmaText = (sigma) => sigma > 0 && sigma < 0.0005 ? sigma.toPrecision(1) : fixed(sigma, 3);
 const signed = (value, digits) => Number.isFinite(value) ? (value < 0 ? '−' : '+') + Math.abs(value).toFixed(digits) : '–';
 
 function section(title, ...children) {
@@ -78,14 +79,14 @@ function illuminanceChart(falloffs, points, title) {
     lines: falloffs.map((curve, i) => ({ colour: curveColour(curve, i), label: curve.label,
       dash: i < 8 ? 'none' : '6 4', points: curve.m.map((m, k) => [radiusOf(k, curve), m]) })),
     dots: points && points.length ? [{ colour: 'quiet', points: points.map((p) =>
-      [p.r, p.m, p.sigma, `radius ${fixed(p.r, 2)}: M ${fixed(p.m, 3)} ± ${fixed(p.sigma, 3)}, ${p.count} pairs`]) }] : [] });
+      [p.r, p.m, p.sigma, `radius ${fixed(p.r, 2)}: M ${fixed(p.m, 3)} ± ${sigmaText(p.sigma)}, ${p.count} pairs`]) }] : [] });
 }
 
 function illuminance(report) {
   if (!report.falloffs.length) return null;
   const rows = report.falloffs.flatMap((curve) => [0.25, 0.5, 0.75, 1].map((r) => {
     const k = Math.round(r * (curve.m.length - 1));
-    return [curve.label || 'all channels', fixed(r, 2), fixed(curve.m[k], 3), fixed(curve.sigma[k], 3), signed(Math.log2(curve.m[k]), 2)];
+    return [curve.label || 'all channels', fixed(r, 2), fixed(curve.m[k], 3), sigmaText(curve.sigma[k]), signed(Math.log2(curve.m[k]), 2)];
   }));
   return section('Relative illuminance',
     element('p', { class: 'quiet' }, 'The light that arrives at a radius, compared with the centre. Band: one standard error.' +
@@ -188,10 +189,10 @@ function residuals(report) {
   const coverage = r.frame.count.map((count) => count ? { share: 0.1 + 0.9 * Math.sqrt(count / maxSamples), text: `${count} samples` } : null);
   return [
     sideBySide(section('Values of the same scene points in two pictures', element('p', { class: 'quiet' },
-      'Each cell counts pairs of green values: right in the one picture, up in the other, from 0 to 255. On the diagonal both pictures agree.'),
+      'Each cell counts pairs of green values; x: value in one picture, y: in the other. On the diagonal both pictures agree.'),
       sideBySide(jointHistogram(r.joint_before, 'before'), jointHistogram(r.joint_after, 'after')))),
     sideBySide(section('Residual over the radius', element('p', { class: 'quiet' },
-      'Mean, and band of half of all pairs. A mean away from 0 towards the edge is falloff that is left.'),
+      'Mean, and band of half of all pairs. A mean away from 0 towards the edge is remaining falloff.'),
       residualChart(r.by_radius, 'Residual over the radius', 'radius, half diagonals', 0, 1)),
     section('Residual over the grey value', element('p', { class: 'quiet' },
       'A mean away from 0 is an error of the response.'),
@@ -279,16 +280,19 @@ function cameras(report) {
 // A database: lenses in a table that a search narrows, and the curves of one lens over its apertures.
 function databasePage(report) {
   const count = (n, word) => `${n} ${word}${n === 1 ? '' : word.endsWith('s') ? 'es' : 's'}`;
-  page.append(heading(report.title, `${count(report.profiles, 'profile')} of ${count(report.lenses.length, 'lens')}`));
+  page.append(heading(report.title, report.subtitle), verdict(report));
   const search = element('input', { type: 'search', id: 'search', placeholder: 'e.g. canon 24-70', autocomplete: 'off' });
-  const focal = element('select', { id: 'focal' }), distance = element('select', { id: 'distance' });
+  const focal = element('select', { id: 'focal' }), distance = element('select', { id: 'distance' }),
+    crop = element('select', { id: 'crop' });
   const list = element('tbody'), found = element('p', { class: 'quiet', 'aria-live': 'polite' });
   const chart = element('div'), name = element('h2', {}, '');
-  const focalLabel = element('label', {}, 'focal length', focal), distanceLabel = element('label', {}, 'focus distance', distance);
+  const focalLabel = element('label', {}, 'focal length', focal), distanceLabel = element('label', {}, 'focus distance', distance),
+    cropLabel = element('label', {}, 'sensor', crop);
   let shown = null;
 
   if (!report.lenses.length) {
     page.append(section('Lenses', element('p', {}, 'No profile has a falloff.')), cameras(report));
+    appendPresent(page, closing(report));
     return;
   }
   const millimetres = (value) => value === null ? 'any focal length' : `${+value.toFixed(1)} mm`;
@@ -297,10 +301,15 @@ function databasePage(report) {
   const fill = (select, options, text) => select.replaceChildren(...options.map((value, i) =>
     element('option', { value: String(i) }, text(value))));
 
+  const ofSensor = () => {
+    const crops = distinct(shown.settings.map((setting) => setting.crop));
+    return shown.settings.filter((setting) => setting.crop === crops[crop.selectedIndex]);
+  };
+
   function draw() {
-    const focals = distinct(shown.settings.map((setting) => setting.focal_mm));
+    const focals = distinct(ofSensor().map((setting) => setting.focal_mm));
     const selectedFocal = focals[focal.selectedIndex];
-    const sameFocal = shown.settings.filter((setting) => setting.focal_mm === selectedFocal);
+    const sameFocal = ofSensor().filter((setting) => setting.focal_mm === selectedFocal);
     const distances = distinct(sameFocal.map((setting) => setting.distance_m));
     const selectedDistance = distances[distance.selectedIndex];
     const settings = sameFocal.filter((setting) => setting.distance_m === selectedDistance)
@@ -321,14 +330,20 @@ function databasePage(report) {
   function show(lens) {
     shown = lens;
     name.textContent = [lens.lens || 'lens not stated', lens.camera].filter((text) => text).join(' · ');
-    const focals = distinct(lens.settings.map((setting) => setting.focal_mm));
-    fill(focal, focals, millimetres);
+    const crops = distinct(lens.settings.map((setting) => setting.crop));
+    fill(crop, crops, (value) => value === null ? 'any size' : `crop factor ${+value.toFixed(2)}`);
+    cropLabel.hidden = crops.length < 2;
+    changeSensor();
+  }
+
+  function changeSensor() {
+    fill(focal, distinct(ofSensor().map((setting) => setting.focal_mm)), millimetres);
     refocus();
   }
 
   function refocus() {
-    const focals = distinct(shown.settings.map((setting) => setting.focal_mm));
-    const sameFocal = shown.settings.filter((setting) => setting.focal_mm === focals[focal.selectedIndex]);
+    const focals = distinct(ofSensor().map((setting) => setting.focal_mm));
+    const sameFocal = ofSensor().filter((setting) => setting.focal_mm === focals[focal.selectedIndex]);
     const distances = distinct(sameFocal.map((setting) => setting.distance_m));
     fill(distance, distances, metres);
     distance.selectedIndex = distances.length - 1;
@@ -355,15 +370,17 @@ function databasePage(report) {
   }
 
   search.addEventListener('input', filter);
+  crop.addEventListener('change', changeSensor);
   focal.addEventListener('change', refocus);
   distance.addEventListener('change', draw);
   page.append(section('Lenses', element('div', { class: 'filter' }, element('label', {}, 'search lens or camera', search)), found,
     element('div', { class: 'scroll lenses', tabindex: '0' }, element('table', {}, element('thead', {}, element('tr', {},
       element('th', {}, 'lens'), element('th', {}, 'camera'), element('th', { class: 'number' }, 'profiles'))), list))));
-  const curves = section(null, name, element('div', { class: 'filter' }, focalLabel, distanceLabel), chart);
+  const curves = section(null, name, element('div', { class: 'filter' }, cropLabel, focalLabel, distanceLabel), chart);
   page.append(curves);
   filter();
   page.append(cameras(report));
+  appendPresent(page, closing(report));
 }
 
 function profilePage(report) {

@@ -124,6 +124,14 @@ std::vector<NamedPicture> extract_below(std::vector<NamedPicture> &pictures,
     return taken;
 }
 
+std::vector<NamedPicture> extract_outputs(std::vector<NamedPicture> &pictures, Streams &streams) {
+    return extract_below(pictures, [&](const std::string &folder) {
+        const bool is_output = path_exists(folder + "/" + calibrate_records);
+        if (is_output) note(streams, folder + ": left out: it is an output folder of calibrate");
+        return is_output;
+    });
+}
+
 void note_instead(const NamedPicture &picture, Streams &streams) {
     if (picture.instead_of.empty()) return;
     std::string others;

@@ -33,6 +33,9 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
 // Name of the file in which calibrate keeps its records in the output folder.
 constexpr const char *calibrate_records = ".lensprof-calibrate.json";
 
+// Removes the pictures in output folders of calibrate and returns them; a note names each folder.
+std::vector<NamedPicture> extract_outputs(std::vector<NamedPicture> &pictures, Streams &streams);
+
 // Removes and returns the pictures in or below a subfolder for which is_output(folder) is true. Every folder is tested
 // once; named folders are not tested.
 std::vector<NamedPicture> extract_below(std::vector<NamedPicture> &pictures,

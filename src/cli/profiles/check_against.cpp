@@ -222,7 +222,7 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
         print_trial(report, streams.out);
     if (report.is_any_better()) return static_cast<int>(ExitCode::done);
     print_message(streams, project.path
-                      + ": none of the profiles is better than no falloff correction; give profiles of this lens and "
+                      + ": no profile is better than leaving the falloff uncorrected; give profiles of this lens and "
                         "setting, or make one with `lensprof build`");
     return static_cast<int>(ExitCode::not_usable);
 }

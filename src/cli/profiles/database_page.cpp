@@ -34,6 +34,7 @@ Json setting_json(const StoredProfile &stored) {
             {"focal_mm", known(p.key.focal_mm)},
             {"aperture", known(p.key.aperture)},
             {"distance_m", known(p.key.distance_m)},
+            {"crop", known(p.key.crop_factor)},
             {"processing", processing_name(p.key.processing)},
             {"k", std::vector<double>(green.k, green.k + 3)},
             {"note", note}};
@@ -65,6 +66,22 @@ Json profile_facts(const lensprof_profile &p) {
     return facts;
 }
 
+// How many profiles there are to rely on.
+Json database_verdict(const std::vector<StoredProfile> &profiles, size_t lenses) {
+    const auto doubtful =
+        static_cast<size_t>(std::count_if(profiles.begin(), profiles.end(), [](const StoredProfile &stored) {
+            return *stored.profile->provenance.doubt || stored.profile->provenance.forced;
+        }));
+    Json details = Json::array();
+    if (doubtful)
+        details.push_back(counted(doubtful, "profile")
+                          + " in doubt: lookups use them only with --doubtful; `lensprof profile check` gives reasons");
+    return {{"level", doubtful == profiles.size() ? "warn" : "good"},
+            {"headline",
+             counted(profiles.size() - doubtful, "usable profile") + " of " + counted(lenses, "lens", "lenses") + "."},
+            {"details", details}};
+}
+
 }  // namespace
 
 std::string profile_page(const StoredProfile &stored, const std::string &command) {
@@ -74,8 +91,8 @@ std::string profile_page(const StoredProfile &stored, const std::string &command
     const bool in_doubt = *p.provenance.doubt || p.provenance.forced;
     page["verdict"] = {{"level", in_doubt ? "warn" : "good"},
                        {"headline", in_doubt    ? "This profile is in doubt."
-                                    : stored.id ? "A stored profile."
-                                                : "A profile of a file."},
+                                    : stored.id ? "A usable profile: its fit gave no reason for doubt."
+                                                : "A profile from a file."},
                        {"details", Json::array()}};
     if (*p.provenance.doubt) page["verdict"]["details"].push_back(p.provenance.doubt);
     if (p.provenance.forced) page["verdict"]["details"].push_back("It was stored although its fit was not usable.");
@@ -83,7 +100,9 @@ std::string profile_page(const StoredProfile &stored, const std::string &command
     page["falloffs"] = Json::array(), page["falloff_points"] = Json::array(), page["responses"] = Json::array();
     if (shows_falloff(p)) add_falloff_curves(p, "", page["falloffs"]);
     add_response_curves(p, "this profile", page["responses"]);
-    page["typical"] = p.response[0].kind == LENSPROF_RESPONSE_LINEAR ? Json() : typical_band(LENSPROF_CAMERA_CAMERA);
+    page["typical"] = p.response[0].kind == LENSPROF_RESPONSE_LINEAR
+                          ? Json()
+                          : typical_band(*p.key.camera_model ? LENSPROF_CAMERA_CAMERA : LENSPROF_CAMERA_ANY);
     page["images"] = Json::array();
     page["result"] = profile_json(stored.id, p);
     return page_of(page);
@@ -101,8 +120,12 @@ std::string database_page(const std::vector<StoredProfile> &profiles, const std:
         if (lens.is_null()) lens = {{"camera", camera_of(key)}, {"lens", key.lens}, {"settings", Json::array()}};
         lens["settings"].push_back(setting_json(stored));
     }
-    Json page = new_page("database", name, "", command);
-    page["profiles"] = profiles.size();
+    Json page = new_page("database", name, format("%zu profiles of a database", profiles.size()), command);
+    page["verdict"] = database_verdict(profiles, lenses.size());
+    page["facts"] = Json::array();
+    page["facts"].push_back({"profiles", std::to_string(profiles.size())});
+    page["facts"].push_back({"lenses", std::to_string(lenses.size())});
+    page["facts"].push_back({"cameras", std::to_string(camera_kinds.size())});
     page["lenses"] = Json::array(), page["cameras"] = Json::array();
     for (auto &[key, lens] : lenses) page["lenses"].push_back(std::move(lens));
     for (const auto &[camera, kinds] : camera_kinds) {

@@ -64,14 +64,14 @@ std::vector<DatabaseState> databases_to_check(const std::vector<std::string> &na
     }
     const std::string installed = installed_database();
     if (installed.empty())
-        states.push_back({"lensprof/lensfun.db", "of Lensfun, made by `make profiles && make install`", false, {}, {}});
+        states.push_back({"lensprof/lensfun.db", "Lensfun data, from `make profiles && make install`", false, {}, {}});
     else
-        states.push_back(state_of(installed, "of Lensfun, installed"));
+        states.push_back(state_of(installed, "Lensfun data, installed"));
     return states;
 }
 
 std::string describe(const DatabaseState &state) {
-    if (!state.exists && state.fault.empty()) return "not there";
+    if (!state.exists && state.fault.empty()) return "not found";
     if (!state.fault.empty()) return "cannot be read: " + state.fault;
     const lensprof_store_stats &stats = state.stats;
     return counted(stats.profiles, "profile") + ", " + counted(stats.lenses, "lens", "lenses") + ", "

@@ -151,7 +151,7 @@ std::string describe_briefly(const Found &found) {
 
 std::string describe_error(const lensprof_lookup &lookup) {
     if (lookup.sigma == LENSPROF_UNKNOWN) return "the error of M is unknown";
-    return format("M in the corner \u00b1 %.3f", lookup.sigma) + describe_parts(lookup);
+    return format("relative illuminance in the corner \u00b1 %.3f", lookup.sigma) + describe_parts(lookup);
 }
 
 constexpr uint32_t kMaxNames = 3;

@@ -27,7 +27,7 @@ Json reason_codes_json(const lensprof_lookup &lookup);
 // warnings not covered by its error. Equal for pictures with the same answer.
 std::string describe_briefly(const Found &found);
 
-// "M in the corner +- 0.022 (falloff 0.004, distance 0.007, response 0.020)".
+// "relative illuminance in the corner +- 0.022 (falloff 0.004, distance 0.007, response 0.020)".
 std::string describe_error(const lensprof_lookup &lookup);
 
 // The three stored lenses, or cameras, whose names are nearest to one that `lookup` reports as not stored; empty for

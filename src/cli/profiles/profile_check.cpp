@@ -156,7 +156,7 @@ void declare_profile_check(Command &profile) {
         "check", "check the whole database, or profiles against pictures",
         "Lists all faults. Exit code 0 if no fault is found, else 6. With --against, reports which of the profiles "
         "fits "
-        "the pictures: exit code 0 if one is better than no falloff correction, else 4. Writes nothing.");
+        "the pictures: exit code 0 if at least one is better than leaving the falloff uncorrected, else 4. Writes nothing.");
     auto o = std::make_shared<CheckOptions>();
     declare_against(command, o->against);
     declare_db(command, o->db);

@@ -176,9 +176,9 @@ void print_import(const Import &import, size_t files, Streams &streams) {
     if (import.known) streams.out << format("%u %s stored already\n", import.known, import.known == 1 ? "was" : "were");
     if (!import.flagged.empty())
         streams.out << format(
-            "%zu are doubtful: %zu of them are impossible for a lens and were left out; the others are stored with "
-            "the reason and used by lookups only with --doubtful; --json lists them\n",
-            import.flagged.size(), refused);
+            "%zu profiles are doubtful: %zu are physically impossible and were not imported; %zu are stored with the reason "
+            "and used only with --doubtful; --json lists them\n",
+            import.flagged.size(), refused, import.flagged.size() - refused);
 }
 
 int run(const Options &o, Streams &streams) {

@@ -1,3 +1,4 @@
+#include <cctype>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -7,12 +8,13 @@
 namespace lensprof {
 namespace {
 
-// "auto|1|3", also of a list "raw|jpeg,...".
+// "auto|1|3", also of a list "raw|jpeg,..."; not the placeholder of "auto|none|ID".
 std::vector<std::string> choices_of(const std::string &type) {
     std::vector<std::string> choices;
     if (type.find('|') == std::string::npos) return choices;
     std::istringstream words(type.substr(0, type.find(",...")));
-    for (std::string word; std::getline(words, word, '|');) choices.push_back(word);
+    for (std::string word; std::getline(words, word, '|');)
+        if (!std::isupper(static_cast<unsigned char>(word[0]))) choices.push_back(word);
     return choices;
 }
 

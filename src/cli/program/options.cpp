@@ -454,7 +454,7 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
     const auto action = actions_->of.find(&command);
     if (action == actions_->of.end())
         throw Failure(ExitCode::usage,
-                      path_of(command) + ": needs a verb: " + joined(names_of_commands(command), ", "));
+                      command.get_name() + ": give a subcommand: " + joined(names_of_commands(command), ", "));
     if (quiet_ && verbose_)
         throw Failure(ExitCode::usage, "--quiet and --verbose exclude each other; give one of them");
     if (quiet_ || verbose_) streams.verbosity = quiet_ ? Verbosity::quiet : Verbosity::verbose;

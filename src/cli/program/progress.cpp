@@ -33,7 +33,10 @@ double TimeLeft::seconds(const std::string &task, double fraction, double now) {
     return elapsed < min_seconds || done < min_share ? 0.0 : elapsed * std::max(1.0 - fraction, 0.0) / done;
 }
 
-double TimeLeft::rate() const { return now_ > begin_ ? std::max(last_ - first_, 0.0) / (now_ - begin_) : 0.0; }
+double TimeLeft::rate() const {
+    constexpr double soonest = 0.5;  // seconds
+    return now_ - begin_ >= soonest ? std::max(last_ - first_, 0.0) / (now_ - begin_) : 0.0;
+}
 
 std::string describe_time_left(double seconds) {
     if (seconds < 5.0) return {};

@@ -66,7 +66,7 @@ void declare_all(Command root, const Program &program) {
 int run(const std::vector<std::string> &words, Streams &streams) {
     streams.words = words;
     try {
-        Program program("lensprof", "lensprof - calibrate camera response and vignetting, and correct pictures");
+        Program program("lensprof", "calibrate camera response and vignetting, and correct pictures");
         declare_all(program.root(), program);
         return program.run(words, streams);
     } catch (const Failure &failure) {

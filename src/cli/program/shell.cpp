@@ -60,7 +60,7 @@ void declare_man(Command &root, const Program &program) {
                                "Prints a man page in roff; `lensprof man build | man -l -` shows it.");
     auto o = std::make_shared<Options>();
     command.texts("COMMAND", o->words, "the command, and its verb; default the program");
-    command.folder("-o,--output", o->folder, "write the pages of all commands to this existing folder");
+    command.folder("-o,--output", o->folder, "write the pages of all commands to this folder");
     command.run([o, &program](Streams &streams) {
         const CommandDescription all = program.describe();
         if (o->folder.empty()) {
@@ -69,6 +69,7 @@ void declare_man(Command &root, const Program &program) {
         }
         if (!o->words.empty())
             throw Failure(ExitCode::usage, "man: -o writes the pages of all commands; leave COMMAND out");
+        make_folder(o->folder);
         const size_t pages = write_pages(all, o->folder);
         streams.out << "wrote " << counted(pages, "man page") << " to " << o->folder << "\n";
         return 0;

@@ -172,7 +172,8 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progr
     std::vector<PicturePair> tried, linked, pairs = candidate_pairs(pictures);
     for (int round = 0; round < max_rounds && !pairs.empty(); round++) {
         std::vector<std::optional<PictureLink>> found(pairs.size());
-        for_each_parallel(static_cast<uint32_t>(pairs.size()), "matching pictures", progress,
+        for_each_parallel(static_cast<uint32_t>(pairs.size()),
+                          round ? "matching further pictures" : "matching pictures", progress,
                           [&](uint32_t n) { found[n] = link(pictures, pairs[n]); });
         for (size_t n = 0; n < pairs.size(); n++)
             if (found[n]) links.push_back(std::move(*found[n])), linked.push_back(pairs[n]);

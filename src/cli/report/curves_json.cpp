@@ -75,7 +75,8 @@ std::string corner_text(const lensprof_profile &profile) {
     const double corner = lensprof_profile_corner_falloff(&profile, profile.vignettings == 3 ? 1 : 0, &sigma);
     const double ev = std::log2(corner);
     if (!(sigma > 0.0)) return format("%.2f (%+.2f EV)", corner, ev);
-    const int digits = sigma < 0.01 ? 4 : 2;
+    const int digits =
+        std::clamp(static_cast<int>(std::ceil(-std::log10(sigma))), 2, 6);  // one of the error, two or more
     return format("%.*f ± %.*f (%+.2f EV)", digits, corner, digits, sigma, ev);
 }
 
