@@ -168,7 +168,7 @@ void test_named_twice(void **) {
     fs::create_directory(work("row"));
     save_text(work("row/a.png"), "no picture");
     const Words words = {"calibrate", work("row"), work("row/a.png"), "-o", work("out"), "--no-store"};
-    assert_refused(unreadable, words, {"none of the pictures can be read"});
+    assert_refused(unreadable, words, {"a.png: cannot read"});
     two_panoramas();
     assert_int_equal(json_of(words + Words{"--json"})["found"], 8);
 }

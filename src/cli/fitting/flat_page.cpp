@@ -22,6 +22,33 @@ Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
     return facts;
 }
 
+// The pictures with what the table of the command lists.
+Json shots_json(const FlatReport &report) {
+    Json shots = Json::array();
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const lensprof_flat_image_quality &quality = report.quality[i];
+        shots.push_back({{"name", report.names[i]},
+                         {"shot", report.shots[i]},
+                         {"ev", report.ev[i]},
+                         {"turned", report.turned[i]},
+                         {"radius", quality.radius},
+                         {"white", quality.white_share},
+                         {"black", quality.black_share},
+                         {"noise", quality.noise_levels},
+                         {"residual", quality.residual},
+                         {"gradient", {quality.gradient[0], quality.gradient[1]}}});
+    }
+    return shots;
+}
+
+// The gain grid of green, if there is one.
+Json grid_cells(const lensprof_gain_grid &grid) {
+    if (!grid.columns) return {};
+    const size_t cells = size_t(grid.columns) * grid.rows;
+    const float *green = grid.attenuation + (grid.channels == 3 ? cells : 0);
+    return {{"columns", grid.columns}, {"cells", std::vector<float>(green, green + cells)}};
+}
+
 }  // namespace
 
 std::string flat_page(const FlatReport &report, const std::string &title, const std::string &command,
@@ -34,6 +61,8 @@ std::string flat_page(const FlatReport &report, const std::string &title, const 
     add_falloff_curves(*profile, "", page["falloffs"]);
     add_response_curves(*profile, "response used", page["responses"]);
     page["images"] = Json::array();
+    page["shots"] = shots_json(report);
+    page["grid"] = grid_cells(profile->grid);
     page["result"] = flat_json(report);
     return page_of(page);
 }

@@ -89,7 +89,8 @@ function illuminance(report) {
     return [curve.label || 'all channels', fixed(r, 2), fixed(curve.m[k], 3), sigmaText(curve.sigma[k]), signed(Math.log2(curve.m[k]), 2)];
   }));
   return section('Relative illuminance',
-    element('p', { class: 'quiet' }, 'The light that arrives at a radius, compared with the centre. Band: one standard error.' +
+    element('p', { class: 'quiet' }, 'The light that arrives at a radius, compared with the centre.' +
+      (report.falloffs.some((curve) => curve.sigma.some((sigma) => sigma > 0.002)) ? ' Band: one standard error.' : '') +
       (report.falloff_points.length ? ' Dots: medians of the measured pairs.' : '')),
     illuminanceChart(report.falloffs, report.falloff_points, 'Relative illuminance over the radius'),
     values(['curve', 'radius', 'M', 'standard error', 'EV'], rows));
@@ -383,9 +384,30 @@ function databasePage(report) {
   appendPresent(page, closing(report));
 }
 
+// Of a white card: the pictures, and what of the light is not radial.
+function card(report) {
+  if (!report.shots) return [];
+  const percent = (share) => fixed(100 * share, 1).replace('-', '−');
+  const rows = report.shots.map((shot) => [shot.name, String(shot.shot), signed(shot.ev, 2), fixed(shot.turned, 0),
+    fixed(shot.radius, 2), percent(shot.white), percent(shot.black), fixed(shot.noise, 2), fixed(100 * shot.residual, 2),
+    signed(100 * shot.gradient[0], 1), signed(100 * shot.gradient[1], 1)]);
+  const parts = [section('Pictures of the card', element('p', { class: 'quiet' },
+    'Radius: the largest that the card covers, in half diagonals. Gradient: of the light, per half diagonal.'),
+    table(['picture', 'shot', 'EV', 'turned by °', 'radius', 'white %', 'black %', 'noise, levels', 'residual %',
+      'gradient right %', 'gradient down %'], rows))];
+  if (report.grid) {
+    const most = report.grid.cells.reduce((a, value) => Math.max(a, Math.abs(value - 1)), 1e-6);
+    const cells = report.grid.cells.map((value) => ({ share: (value - 1) / most, text: fixed(value, 4) }));
+    parts.push(section('Gain grid', element('p', { class: 'quiet' },
+      `Light of green relative to the falloff curve. Red: more, blue: less. Full colour is ${fixed(100 * most, 2)} %.`),
+      drawCells(cells, report.grid.columns, 'Gain grid over the frame', (cell) => cell.share > 0 ? 'red' : 'blue', 0.7)));
+  }
+  return parts;
+}
+
 function profilePage(report) {
   page.append(heading(report.title, report.subtitle), verdict(report));
-  appendPresent(page, [sideBySide(illuminance(report), responses(report)), ...closing(report)]);
+  appendPresent(page, [sideBySide(illuminance(report), responses(report)), ...card(report), ...closing(report)]);
 }
 
 if (data.kind === 'database') databasePage(data);
