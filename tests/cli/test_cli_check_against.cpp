@@ -174,7 +174,7 @@ void test_none_fits(void **) {
     assert_false(json["is_decided"].get<bool>());
     for (int id : {1, 2}) assert_false(of(json, id)["better_than_none"].get<bool>());
     assert_refused(not_usable, against("1 2", flat), {flat, "no profile is better", "lensprof build"});
-    assert_refused(not_usable, against("5", in_folder("two/pano.pto")), {"two", "no falloff correction"});
+    assert_refused(not_usable, against("5", in_folder("two/pano.pto")), {"two", "falloff uncorrected"});
     assert_int_equal(measured("5 1", in_folder("two/pano.pto"))["best"], 1);
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 void test_databases(void **) {
     const Outcome none = run_words({"doctor"});
-    assert_true(contains(none.out, "profiles.db (your own): not there"));
+    assert_true(contains(none.out, "profiles.db (your own): not found"));
     must_exit(done, Words{"build", scene("pano.pto"), "--camera", "C", "--lens", "L"} + quick);
     assert_true(contains(run_words({"doctor"}).out, "1 profile, 1 lens, 1 camera"));
     const Json json = json_of({"doctor", "--json"});

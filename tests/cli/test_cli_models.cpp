@@ -91,7 +91,7 @@ const double by_gamma_2 = grey / std::sqrt(corner_falloff(-0.2)), by_linear = gr
 void test_database_by_default(void **) {
     const std::string file = make_picture("a.png", "Camera", "JPEG 35mm");
     assert_refused(usage, {"apply", "-o", work("out"), file},
-                   {"no correction given and no database found", "--profile ID"});
+                   {"no correction given and no database found", "--db FILE"});
     make_database();
     must_exit(done, {"apply", "-o", work("out"), file});
     assert_corner(work("out/a.png"), by_gamma_2);

@@ -281,7 +281,7 @@ void test_apply_between_settings(void **) {
     assert_int_equal(outcome.code, done);
     // A single note, since the lookup is the same for both.
     assert_true(contains(outcome.err, "img000.png and 1 more: falloff predicted from 2 profiles, response "));
-    assert_true(contains(outcome.err, "; at most, M in the corner \u00b1 0."));
+    assert_true(contains(outcome.err, "; at most, relative illuminance in the corner \u00b1 0."));
     assert_int_equal(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
     fs::remove_all(work("out"));
     const Json lookup = json_of(apply + Words{"--json"})["pictures"][0]["lookup"];

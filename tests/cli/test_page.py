@@ -78,7 +78,7 @@ addEventListener('load', () => setTimeout(() => {
     search.dispatchEvent(new Event('input'));
     found.matching = rows();
     document.querySelector('.lenses button').click();
-    found.shown = document.querySelector('section:nth-of-type(2) h2').textContent;
+    found.shown = document.querySelectorAll('h2')[1].textContent;
     found.curves = document.querySelectorAll('svg .curve').length;
   }
   found.messages = messages;

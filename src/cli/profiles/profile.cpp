@@ -234,6 +234,8 @@ void declare_profile(Command &program) {
     declare_profile_merge(profile);
     declare_profile_check(profile);
     declare_profile_stats(profile);
+    profile.footer(
+        "Run `lensprof help profile VERB` for the options of a verb.\nExample: lensprof profile list --lens \"EF 50mm\"");  // last: verbs would inherit it
 }
 
 }  // namespace lensprof

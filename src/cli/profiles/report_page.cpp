@@ -40,8 +40,8 @@ void declare(Command &command, Options &o) {
     o.filter.add_options(command);
     declare_listed_databases(command, o.dbs);
     command.footer(
-        "The page is one file that needs no network. It holds the pictures before and after, the charts, and the\n"
-        "numbers as JSON.");
+        "The page is one file that needs no network. It contains the pictures before and after, the charts,\n"
+        "and the numbers as JSON.");
     command.example("lensprof report photos -o report.html");
 }
 
