@@ -7,6 +7,7 @@
 #include "cli/calibrate/summary.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/page/page.hpp"
+#include "cli/pictures/thumbnail.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/program/paths.hpp"
@@ -44,11 +45,14 @@ Json facts_json(const Inputs &inputs, const Panoramas &panoramas, const Correcte
 // The mosaics, then the pictures.
 void add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Progress &progress, Json &page) {
     Json views = Json::array();
+    const auto mosaic_side = static_cast<uint32_t>(
+        std::clamp<size_t>(12800 / std::max<size_t>(panoramas.list.size(), 1), 200, 1600));  // px: hundreds need 10 MB
     for (const Panorama &panorama : panoramas.list) {
         if (!panorama.evens() || views.size() == max_views) continue;
         failure_of([&] {
-            const Mosaic mosaic = read_preview(panorama.preview);
-            views.push_back(view_json(panorama.name + ", unblended", mosaic.before, mosaic.after));
+            Mosaic mosaic = read_preview(panorama.preview);
+            views.push_back(view_json(panorama.name + ", unblended", upright_copy(mosaic.before, 1, mosaic_side),
+                                      upright_copy(mosaic.after, 1, mosaic_side)));
         });
     }
     const size_t picture_count = pictures.list.size(), view_count = std::min(picture_count, max_views - views.size());

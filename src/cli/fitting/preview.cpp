@@ -216,8 +216,10 @@ void write_preview(const std::string &path, const Project &project, const Fitted
 
 Mosaic read_preview(const std::string &path) {
     const Picture both = read_picture(path, {});
+    if (both.height < gap + 2)
+        throw Failure(ExitCode::unreadable, path + ": is not a mosaic before and after correction");
     Picture half = both;
-    half.height = half.frame_height = (std::max(both.height, gap + 2) - gap) / 2;
+    half.height = half.frame_height = (both.height - gap) / 2;
     half.pixels.resize(half.row_bytes * half.height);
     Mosaic mosaic{half, half};
     const auto second = both.pixels.begin() + static_cast<std::ptrdiff_t>((half.height + gap) * half.row_bytes);
