@@ -322,6 +322,15 @@ void test_contact_sheet(void **) {
     const Picture picture = read_picture(sheet);
     assert_int_equal(picture.sample, LENSPROF_SAMPLE_U8);
     assert_true(picture.width >= 3 * width && picture.height >= 2 * height);
+    // It replaces an older sheet, but not a photograph, and its name is checked before anything is written.
+    const Words again = {"apply", "--pto", make_project(), "-o", work("more"), "--contact-sheet"};
+    must_exit(done, again + Words{sheet});
+    fs::remove_all(work("more"));
+    must_exit(done, {"simulate", "-o", work("taken"), "--images", "2", "--size", "64x48", "--exif"});
+    const std::string photograph = work("taken/img000.png");
+    assert_refused(usage, again + Words{photograph}, {photograph, "is a photograph"});
+    assert_refused(failed, again + Words{work("missing/sheet.png")}, {"missing"});
+    assert_true(!fs::exists(work("more")) || fs::is_empty(work("more")));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ void test_import(void **) {
     const std::string file = make_file();
     const std::string said = must_exit(done, import_words() + Words{file});
     assert_true(contains(said, "imported 7 profiles of 1 lens from 1 file"));
-    assert_true(contains(said, "2 profiles are doubtful"));
+    assert_true(contains(said, "doubtful: 2 profiles"));
     const Json again = json_of(import_words() + Words{"--json", file});
     assert_int_equal(again["stored"], 0);
     assert_int_equal(again["known"], 7);

@@ -260,10 +260,36 @@ void test_folder(void **) {
     assert_true(contains(page["left_out"][0]["reason"], "bad.png"));
     assert_true(page["result"] == Json::parse(text_of(work("out/calibrate.json"))));
 
+    // What somebody puts instead of a mosaic or a copy is never more than a picture that is not shown.
+    const std::string mosaic = page["result"]["panoramas"][0]["preview"].get<std::string>();
+    const std::string kept = text_of(mosaic), copy = text_of(work("out/other.png"));
+    for (auto [width, height] : {std::pair(3000u, 1u), std::pair(3000u, 9u), std::pair(2u, 3000u)}) {
+        Picture other;
+        other.width = other.frame_width = width, other.height = other.frame_height = height;
+        other.sample = LENSPROF_SAMPLE_U16, other.layout = LENSPROF_LAYOUT_RGBA;
+        other.row_bytes = size_t(8) * width;
+        other.pixels.assign(other.row_bytes * height, 77);
+        write_picture(work("other_mosaic.png"), other);
+        save_text(mosaic, text_of(work("other_mosaic.png")));
+        must_exit(done, calibrate + report);
+        const size_t views = data_of(work("folder.html"))["views"].size();
+        assert_true(views == (height > 9 ? 6 : 5));
+    }
+    save_text(mosaic, kept);
+    save_text(work("out/other.png"), "");
+    must_exit(done, calibrate + report);
+    assert_true(
+        contains(data_of(work("folder.html"))["verdict"]["details"].dump(), "other.png: the corrected copy cannot"));
+    save_text(work("out/other.png"), copy);
+    must_exit(done, calibrate + report);
     const std::string first = text_of(work("folder.html"));
     must_exit(done, calibrate + report);
     assert_true(text_of(work("folder.html")) == first);
     fs::remove_all(work("out"));
+    const Words to_page = {"calibrate", work("row"), "--no-store", "-o"};
+    assert_refused(usage, to_page + Words{work("x.html"), "--report", work("x.html")}, {"x.html", "output folder"});
+    assert_refused(usage, to_page + Words{work("x.html/o"), "--report", work("x.html")}, {"x.html", "output folder"});
+    assert_false(fs::exists(work("x.html")));
     assert_refused(usage, calibrate + Words{"--report", work("row/img000.png")}, {"img000.png", ".html"});
     save_text(work("mine.html"), "mine");
     assert_refused(usage, calibrate + Words{"--report", work("mine.html")}, {"mine.html", "not a report"});

@@ -12,6 +12,7 @@
 #include "cli/calibrate/sheet.hpp"
 #include "cli/calibrate/summary.hpp"
 #include "cli/page/page.hpp"
+#include "cli/pictures/named_pictures.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/message.hpp"
@@ -98,6 +99,10 @@ void check_report(const CalibrateOptions &o) {
     if (o.report.empty()) return;
     check_page_name(o.report);
     check_not_reserved(o.report, "report", {store_path(o.store.db)});
+    if ((canonical_path(o.output) + "/").rfind(canonical_path(o.report) + "/", 0) == 0)
+        throw Failure(ExitCode::usage, o.report + ": the output folder has this name; give the report another one");
+    if (is_too_long(o.report))
+        throw Failure(ExitCode::usage, short_name(o.report) + ": the name is too long; give the report a shorter one");
     const std::string folder = std::filesystem::path(absolute_path(o.report)).parent_path().string();
     if (is_folder(o.output) || canonical_path(folder) != canonical_path(o.output)) check_output_file(o.report);
 }
@@ -119,9 +124,15 @@ int run(const CalibrateOptions &o, Streams &streams) {
     if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
     make_folder(o.output);
     lock.acquire();
-    Panoramas panoramas = find_panoramas(o, inputs, ledger, progress);
-    remove_obsolete_panoramas(o, panoramas, ledger);
-    fit_panoramas(o, panoramas, ledger, progress);
+    Panoramas panoramas;
+    try {
+        panoramas = find_panoramas(o, inputs, ledger, progress);
+        remove_obsolete_panoramas(o, panoramas, ledger);
+        fit_panoramas(o, panoramas, ledger, progress);
+    } catch (const Json::exception &) {  // somebody edited the records
+        throw Failure(ExitCode::failed, (std::filesystem::path(o.output) / calibrate_records).string()
+                                            + ": invalid records of earlier runs; remove this file and run again");
+    }
     CorrectedPictures pictures = plan_corrections(o, inputs, panoramas);
     write_corrections(o, pictures, ledger, progress);
     write_sheets(o, pictures, ledger, progress);

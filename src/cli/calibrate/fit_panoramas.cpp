@@ -145,10 +145,9 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
     const std::string name = ascii_path(panorama.name);
     if (!notes.contains("results") || !notes["results"].contains(name)) return false;
     const Json &known = notes["results"][name];
-    if (known.value("key", "") != panorama.key || !known.contains("page") || !is_stored(o, known["summary"]))
-        return false;
+    if (known.value("key", "") != panorama.key || !is_stored(o, known["summary"])) return false;
     panorama.summary = known["summary"];
-    panorama.page = known["page"];
+    panorama.page = known.value("page", Json());     // earlier versions did not record it
     panorama.summary["project"] = panorama.project;  // the folder may be spelled differently
     if (ledger.is_current(panorama.project, panorama.key)) return true;
     const std::string text = path_of_ascii(known["project"].get<std::string>());

@@ -15,17 +15,28 @@
 namespace lensprof {
 namespace {
 
-Json verdict_json(const Inputs &inputs, const CorrectedPictures &pictures, const Json &summary) {
+// `unreadable` lists pictures that the page does not show.
+Json verdict_json(const Inputs &inputs, const Panoramas &panoramas, const CorrectedPictures &pictures,
+                  const Json &summary, const std::vector<std::string> &unreadable) {
+    Json details = Json::array();
+    const auto doubtful = std::count_if(panoramas.list.begin(), panoramas.list.end(), [](const Panorama &panorama) {
+        return !panorama.evens() || (!panorama.page.is_null() && panorama.page["verdict"]["level"] != "good");
+    });
+    if (doubtful)
+        details.push_back(counted(static_cast<size_t>(doubtful), "panorama")
+                          + " with a warning or without a usable result: see below.");
+    for (const std::string &name : unreadable)
+        details.push_back(name + ": the corrected copy cannot be read; remove it and run calibrate again");
     const size_t corrected = pictures.list.size(), left_out = summary["left_out"].size();
     const std::string all =
         corrected == 1 ? "The picture is corrected." : format("All %zu pictures are corrected.", corrected);
-    return {{"level", !corrected ? "bad"
-                      : left_out ? "warn"
-                                 : "good"},
+    return {{"level", !corrected                     ? "bad"
+                      : left_out || !details.empty() ? "warn"
+                                                     : "good"},
             {"headline", !corrected ? "No picture is corrected."
                          : left_out ? format("%zu of %zu pictures are corrected.", corrected, inputs.found)
                                     : all},
-            {"details", Json::array()}};
+            {"details", details}};
 }
 
 Json facts_json(const Inputs &inputs, const Panoramas &panoramas, const CorrectedPictures &pictures,
@@ -43,7 +54,9 @@ Json facts_json(const Inputs &inputs, const Panoramas &panoramas, const Correcte
 }
 
 // The mosaics, then the pictures.
-void add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Progress &progress, Json &page) {
+// Returns the names of pictures that cannot be read.
+std::vector<std::string> add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Progress &progress,
+                                   Json &page) {
     Json views = Json::array();
     const auto mosaic_side = static_cast<uint32_t>(
         std::clamp<size_t>(12800 / std::max<size_t>(panoramas.list.size(), 1), 200, 1600));  // px: hundreds need 10 MB
@@ -65,9 +78,15 @@ void add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Pr
                       after = small_copy(picture.target, picture, side);
         if (before.width && after.width) copies[n] = view_json(picture.name, before, after);
     });
-    for (Json &copy : copies)
-        if (!copy.is_null()) views.push_back(std::move(copy));
+    std::vector<std::string> unreadable;
+    for (size_t n = 0; n < view_count; n++) {
+        if (copies[n].is_null())
+            unreadable.push_back(pictures.list[n * picture_count / view_count].picture->name);
+        else
+            views.push_back(std::move(copies[n]));
+    }
     page["views"] = std::move(views);
+    return unreadable;
 }
 
 Json panoramas_json(const Panoramas &panoramas) {
@@ -92,9 +111,9 @@ Json looked_up_json(const CorrectedPictures &pictures) {
 std::string folder_page(const Inputs &inputs, const Panoramas &panoramas, const CorrectedPictures &pictures,
                         const Json &summary, const std::string &command, Progress &progress) {
     Json page = new_page("folder", inputs.label, "Calibration of a folder of pictures", command);
-    page["verdict"] = verdict_json(inputs, pictures, summary);
+    const std::vector<std::string> unreadable = add_views(panoramas, pictures, progress, page);
+    page["verdict"] = verdict_json(inputs, panoramas, pictures, summary, unreadable);
     page["facts"] = facts_json(inputs, panoramas, pictures, summary);
-    add_views(panoramas, pictures, progress, page);
     page["panoramas"] = panoramas_json(panoramas);
     page["looked_up"] = looked_up_json(pictures);
     page["left_out"] = Json::array();

@@ -30,7 +30,7 @@ bool has_ledger(const std::string &folder);
 // Allows one run at a time per folder, which stays locked (flock) for the lifetime of this object.
 class FolderLock {
 public:
-    // Failure (failed) if another run holds the lock. A folder that does not exist yet is locked by take().
+    // Failure (failed) if another run holds the lock. A folder that does not exist yet is locked by acquire().
     explicit FolderLock(const std::string &folder);
     ~FolderLock();
     FolderLock(const FolderLock &) = delete;

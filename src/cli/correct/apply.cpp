@@ -1,5 +1,6 @@
 // `lensprof apply`: corrected pictures (Goldman & Chen 2005, equation 16).
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
@@ -18,6 +19,7 @@
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 
 namespace lensprof {
@@ -88,6 +90,27 @@ void encode_alike(const ApplySource &source, std::vector<Correction> &jobs, Stre
                       + " (use --output-exposure keep to encode each with its own)");
 }
 
+// Failure for a contact sheet that cannot be written or would replace a photograph, before the pictures are corrected.
+void check_sheet(const ApplyOptions &o) {
+    check_output_file(o.sheet);
+    if (o.kind.overwrite || !is_regular_file(o.sheet)) return;
+    bool is_photograph = false;
+    try {
+        const PictureMetadata metadata = read_metadata(o.sheet);
+        is_photograph = *metadata.key.camera_model || metadata.exposure_time_s;
+    } catch (const Failure &) {  // not a picture
+    }
+    if (is_photograph)
+        throw Failure(ExitCode::usage, o.sheet + ": is a photograph; give the contact sheet another name, or use "
+                                                 "--overwrite");
+}
+
+// Whether the contact sheet goes to the output folder, which does not exist yet.
+bool is_in_new_folder(const ApplyOptions &o) {
+    const std::string folder = std::filesystem::path(absolute_path(o.sheet)).parent_path().string();
+    return !is_folder(o.output) && canonical_path(folder) == canonical_path(o.output);
+}
+
 Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &work, Streams &streams) {
     if (work.jobs.empty()) return {};
     lensprof_exposure reference;
@@ -108,6 +131,7 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
             o.sheet
                 + format(": a contact sheet holds at most %zu pictures, but %zu are given; correct them in parts",
                          ContactSheet::most_pictures, work.jobs.size()));
+    if (!o.sheet.empty() && !is_in_new_folder(o)) check_sheet(o);
     make_folder(o.output);
     Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());

@@ -68,9 +68,9 @@ void declare_options(Command &command, ApplyOptions &o) {
         "the correction by lensprof. Several pictures are corrected in parallel, in strips of rows; only\n"
         "interlaced PNG and progressive JPEG are held in memory completely. All pictures are opened first:\n"
         "if one cannot be opened, nothing is written. If one turns out to be damaged later, only those\n"
-        "before it are written. Exit code 5: pictures were refused, because they have no profile or are\n"
-        "already corrected. If one of them was named, nothing is written; those of folders, and with --skip\n"
-        "all of them, are left out. An existing output is replaced if it was made from the same picture; a\n"
+        "before it are written. Exit code 5: pictures were refused, because they have no profile. If one\n"
+        "of them, or an already corrected one, was named, nothing is written; those of folders, and with\n"
+        "--skip all of them, are left out. An existing output is replaced if it was made from the same picture; a\n"
         "file not written by lensprof is replaced only in a folder given with -o.");
 }
 

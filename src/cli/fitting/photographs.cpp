@@ -139,7 +139,9 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
     require_one_kind(list.files);
     if (list.files.size() < 2) {
         for (const std::string &file : list.files) read_header(file);  // for its errors
-        throw Failure(ExitCode::not_usable, list.label + ": has only one picture; give at least two that overlap",
+        throw Failure(ExitCode::not_usable,
+                      list.label + (list.files.empty() ? ": has only corrected pictures" : ": has only one picture")
+                          + "; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
     }
     return list;

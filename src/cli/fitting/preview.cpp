@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cli/pictures/thumbnail.hpp"
 #include "cli/program/parallel.hpp"
 
 namespace lensprof {
@@ -215,7 +216,10 @@ void write_preview(const std::string &path, const Project &project, const Fitted
 }
 
 Mosaic read_preview(const std::string &path) {
-    const Picture both = read_picture(path, {});
+    ReadOptions read;
+    read.max_side = 2 * longer_side;  // somebody may have replaced the file by any picture
+    Picture stored = read_picture(path, read);
+    const Picture both = upright_copy(stored, 1, std::max(stored.width, stored.height));  // 8 bit RGB
     if (both.height < gap + 2)
         throw Failure(ExitCode::unreadable, path + ": is not a mosaic before and after correction");
     Picture half = both;

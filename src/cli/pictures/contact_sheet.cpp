@@ -104,6 +104,9 @@ void paste(const Picture &from, uint32_t left, uint32_t top, Picture &band) {
                     &band.pixels[(top + y) * band.row_bytes + size_t(left) * 3]);
 }
 
+// Labels, the pictures before, those after, and gaps.
+uint32_t band_height(uint32_t tallest) { return label + 2 * (tallest + gap) + gap; }
+
 }  // namespace
 
 ContactSheet::ContactSheet(size_t pictures)
@@ -112,33 +115,38 @@ ContactSheet::ContactSheet(size_t pictures)
       cells_(pictures) {}
 
 void ContactSheet::write(const std::string &path) const {
-    uint32_t wide = narrowest_cell, high = 1;
-    for (const Cell &cell : cells_)
-        for (const Picture *picture : {&cell.before, &cell.after})
-            wide = std::max(wide, picture->width), high = std::max(high, picture->height);
+    uint32_t wide = narrowest_cell;
+    for (const Cell &cell : cells_) wide = std::max({wide, cell.before.width, cell.after.width});
     const auto count = static_cast<uint32_t>(cells_.size());
     const uint32_t columns = std::max(1u, std::min(columns_, count)), bands = (count + columns - 1) / columns;
-    const uint32_t width = gap + columns * (wide + gap), height = label + 2 * (high + gap) + gap;
+    const uint32_t width = gap + columns * (wide + gap);
+    std::vector<uint32_t> high(bands, 1);  // the tallest picture of each band
+    for (uint32_t i = 0; i < count; i++)
+        high[i / columns] = std::max({high[i / columns], cells_[i].before.height, cells_[i].after.height});
     Picture whole;  // without pixels
-    whole.width = whole.frame_width = width, whole.height = whole.frame_height = header + bands * height;
+    whole.width = whole.frame_width = width, whole.height = header;
+    for (const uint32_t tallest : high) whole.height += band_height(tallest);
+    whole.frame_height = whole.height;
     whole.row_bytes = size_t(3) * width;
     PictureWriter writer(path, whole);
     Picture top = empty_band(width, header);
     draw_texts(top, header, [&](cairo_t *cr) { draw_text(cr, gap, gap + text_size, width - 2.0 * gap, legend); });
     writer.write(top.view());
     for (uint32_t first = 0; first < count; first += columns) {
-        Picture band = empty_band(width, height);
-        const uint32_t cells = std::min(columns, count - first);
+        const uint32_t tallest = high[first / columns];
+        Picture band = empty_band(width, band_height(tallest));
+        const auto cells = cells_.begin() + first;
+        const uint32_t shown = std::min(columns, count - first);
         draw_texts(band, label, [&](cairo_t *cr) {
-            for (uint32_t i = 0; i < cells; i++) {
+            for (uint32_t i = 0; i < shown; i++) {
                 const double left = gap + i * (wide + gap);
-                draw_text(cr, left, text_size, wide, cells_[first + i].name);
-                draw_text(cr, left, line + text_size, wide, cells_[first + i].note);
+                draw_text(cr, left, text_size, wide, cells[i].name);
+                draw_text(cr, left, line + text_size, wide, cells[i].note);
             }
         });
-        for (uint32_t i = 0; i < cells; i++) {
-            paste(cells_[first + i].before, gap + i * (wide + gap), label, band);
-            paste(cells_[first + i].after, gap + i * (wide + gap), label + high + gap, band);
+        for (uint32_t i = 0; i < shown; i++) {
+            paste(cells[i].before, gap + i * (wide + gap), label, band);
+            paste(cells[i].after, gap + i * (wide + gap), label + tallest + gap, band);
         }
         writer.write(band.view());
     }

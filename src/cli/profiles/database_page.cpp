@@ -67,16 +67,17 @@ Json profile_facts(const lensprof_profile &p) {
 }
 
 // How many profiles there are to rely on.
-Json database_verdict(const std::vector<StoredProfile> &profiles, size_t lenses) {
+Json database_verdict(const std::vector<StoredProfile> &profiles, size_t lenses,
+                      const std::vector<std::string> &warnings) {
     const auto doubtful =
         static_cast<size_t>(std::count_if(profiles.begin(), profiles.end(), [](const StoredProfile &stored) {
             return *stored.profile->provenance.doubt || stored.profile->provenance.forced;
         }));
-    Json details = Json::array();
+    Json details = warnings;
     if (doubtful)
         details.push_back(counted(doubtful, "profile")
                           + " in doubt: lookups use them only with --doubtful; `lensprof profile check` gives reasons");
-    return {{"level", doubtful == profiles.size() ? "warn" : "good"},
+    return {{"level", doubtful == profiles.size() || !warnings.empty() ? "warn" : "good"},
             {"headline",
              counted(profiles.size() - doubtful, "usable profile") + " of " + counted(lenses, "lens", "lenses") + "."},
             {"details", details}};
@@ -109,7 +110,7 @@ std::string profile_page(const StoredProfile &stored, const std::string &command
 }
 
 std::string database_page(const std::vector<StoredProfile> &profiles, const std::string &name,
-                          const std::string &command) {
+                          const std::string &command, const std::vector<std::string> &warnings) {
     std::map<std::pair<std::string, std::string>, Json> lenses;         // by camera and lens
     std::map<std::string, std::map<std::string, size_t>> camera_kinds;  // profiles of each kind of response
     for (const StoredProfile &stored : profiles) {
@@ -121,7 +122,7 @@ std::string database_page(const std::vector<StoredProfile> &profiles, const std:
         lens["settings"].push_back(setting_json(stored));
     }
     Json page = new_page("database", name, format("%zu profiles of a database", profiles.size()), command);
-    page["verdict"] = database_verdict(profiles, lenses.size());
+    page["verdict"] = database_verdict(profiles, lenses.size(), warnings);
     page["facts"] = Json::array();
     page["facts"].push_back({"profiles", std::to_string(profiles.size())});
     page["facts"].push_back({"lenses", std::to_string(lenses.size())});

@@ -175,10 +175,11 @@ void print_import(const Import &import, size_t files, Streams &streams) {
         streams.out << "with " << counted(import.cameras, "camera") << ": sensor sizes and built-in lenses\n";
     if (import.known) streams.out << format("%u %s stored already\n", import.known, import.known == 1 ? "was" : "were");
     if (!import.flagged.empty())
-        streams.out << format(
-            "%zu profiles are doubtful: %zu are physically impossible and were not imported; %zu are stored with the reason "
-            "and used only with --doubtful; --json lists them\n",
-            import.flagged.size(), refused, import.flagged.size() - refused);
+        streams.out << "doubtful: " << counted(import.flagged.size(), "profile")
+                    << format(
+                           ", of which %zu are physically impossible and were not imported; %zu are stored with the ",
+                           refused, import.flagged.size() - refused)
+                    << "reason and used only with --doubtful; --json lists them\n";
 }
 
 int run(const Options &o, Streams &streams) {

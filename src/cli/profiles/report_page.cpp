@@ -141,8 +141,8 @@ int report_fit(const Options &o, Streams &streams) {
 int write_page(const Options &o, const std::vector<StoredProfile> &profiles, const std::string &name,
                Streams &streams) {
     const std::string command = command_text(streams.words);
-    const std::string page =
-        profiles.size() == 1 ? profile_page(profiles[0], command) : database_page(profiles, name, command);
+    const std::string page = profiles.size() == 1 ? profile_page(profiles[0], command)
+                                                  : database_page(profiles, name, command, streams.warnings);
     write_file(o.output, page.data(), page.size());
     streams.out << "wrote " << o.output << ": " << counted(profiles.size(), "profile") << "\n";
     return 0;

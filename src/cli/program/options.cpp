@@ -153,7 +153,10 @@ private:
         const size_t equal = word.find('=');
         const std::string name = word.substr(0, equal);
         const CLI::Option *option = app_->get_option_no_throw(is_long ? name : word.substr(0, 2));
-        if (!option || (!is_long && is_flag(*option) && word.size() > 2)) fail_no_option(name, is_long);
+        if (option && !is_long && is_flag(*option) && word.size() > 2)
+            throw Failure(ExitCode::usage,
+                          word + ": " + word.substr(0, 2) + " takes no value; give one option per word");
+        if (!option) fail_no_option(name, is_long);
         if (is_flag(*option)) return parse_flag(*option, equal == std::string::npos ? "true" : word.substr(equal + 1));
         const bool has_value = is_long ? equal != std::string::npos : word.size() > 2;
         const size_t value_offset = is_long || equal == 2 ? equal + 1 : 2;  // of --output=FILE, -o=FILE and -oFILE

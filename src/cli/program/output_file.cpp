@@ -157,7 +157,8 @@ OutputFile::OutputFile(const std::string &path) : path_(path), target_(follow_li
     const int file = create_temporary(target_, 0666, temporary_);
     if (file < 0) fail(path_, errno);
     // Best effort: a file system without permissions refuses this, but the picture matters more.
-    if (exists && fchmod(file, status.st_mode & 07777) != 0) errno = 0;
+    mode_ = exists ? status.st_mode & 07777 : 0;
+    if (exists && fchmod(file, mode_ | S_IWUSR) != 0) errno = 0;  // writable until it is complete
     close(file);
 }
 
@@ -173,6 +174,7 @@ void OutputFile::sync() {
 
 void OutputFile::commit() {
     if (!synced_) sync();
+    if (mode_ && !(mode_ & S_IWUSR) && chmod(temporary_.c_str(), mode_) != 0) errno = 0;
     if (commit_callback) commit_callback(path_, temporary_);
     if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
     temporary_.clear();

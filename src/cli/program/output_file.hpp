@@ -38,6 +38,7 @@ public:
 
 private:
     bool synced_ = false;
+    unsigned mode_ = 0;   // permissions of the file that is replaced; 0 = no file is replaced
     std::string path_;    // as given, for messages
     std::string target_;  // with symbolic links resolved
     std::string temporary_;
@@ -74,9 +75,9 @@ void write_file(const std::string &path, const void *data, size_t bytes);
 // sets errno if this fails.
 int open_unnamed(const std::string &neighbour);
 
-// Failure about `item` if `folder` is not writable and cannot be created: with the code `no_folder` if a file has its
-// name, else `no_writing`. For checks before long computations.
-void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing);
+// Failure about `item` if `folder` is not writable and cannot be created: with the code `folder_code` if a file has its
+// name, else `write_code`. For checks before long computations.
+void check_folder(const std::string &folder, const std::string &item, ExitCode folder_code, ExitCode write_code);
 
 // Failure (usage) if a file is one of `reserved`: inputs, the database, other outputs. `what` names it: "output",
 // "report".
