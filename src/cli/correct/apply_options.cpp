@@ -70,8 +70,8 @@ void declare_options(Command &command, ApplyOptions &o) {
         "if one cannot be opened, nothing is written. If one turns out to be damaged later, only those\n"
         "before it are written. Exit code 5: pictures were refused, because they have no profile. If one\n"
         "of them, or an already corrected one, was named, nothing is written; those of folders, and with\n"
-        "--skip all of them, are left out. An existing output is replaced if it was made from the same picture; a\n"
-        "file not written by lensprof is replaced only in a folder given with -o.");
+        "--skip all of them, are left out. An existing output is replaced if it was made from the same\n"
+        "picture; a file not written by lensprof is replaced only in a folder given with -o.");
 }
 
 void check_merge(const ApplyOptions &o) {
