@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t images = 12;
 
-int make_work(void **state) {
+int make_folders(void **state) {
     if (make_folder(state) != 0) return -1;
     setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
     setenv("XDG_DATA_DIRS", in_folder("work/share").c_str(), 1);
@@ -55,6 +55,13 @@ struct Work {
 const Work &shared() {
     static const Work work;
     return work;
+}
+
+// Before any test: a slice of them needs the scene, too.
+int make_work(void **state) {
+    if (make_folders(state) != 0) return -1;
+    shared();
+    return 0;
 }
 
 void test_exposures_are_found(void **) {

@@ -38,9 +38,10 @@ complete_words lensprof build --loss =
 complete_words lensprof build --report = pi
 complete_words lensprof help profile sho
 complete_words lensprof man profile mer
+complete_words lensprof build -- -da
 """
 WANTED = ["build", "show", "--report", "robust huber squared", "pictures", "pictures", "--chart --chart-out --channel", "--version",
-          "bash zsh fish", "build", "my photo.jpg", "robust", "robust huber squared", "pictures", "show", "merge"]
+          "bash zsh fish", "build", "my photo.jpg", "robust", "robust huber squared", "pictures", "show", "merge", "-dash.jpg"]
 
 
 def output_of(*words, cwd=None):
@@ -74,6 +75,7 @@ def check_bash(lensprof, folder):
     script.write_text(output_of(lensprof, "completion", "bash"))
     (folder / "pictures").mkdir()
     (folder / "my photo.jpg").touch()
+    (folder / "-dash.jpg").touch()
     found = output_of("bash", "-c", COMPLETE, "bash", script, folder).splitlines()
     assert found == WANTED, found
 

@@ -90,25 +90,31 @@ void encode_alike(const ApplySource &source, std::vector<Correction> &jobs, Stre
                       + " (use --output-exposure keep to encode each with its own)");
 }
 
-// Failure for a contact sheet that cannot be written or would replace a photograph, before the pictures are corrected.
-void check_sheet(const ApplyOptions &o) {
-    check_output_file(o.sheet);
-    if (o.kind.overwrite || !is_regular_file(o.sheet)) return;
-    bool is_photograph = false;
+// Whether a file is a picture that a camera took.
+bool is_photograph(const std::string &file) {
+    if (!is_regular_file(file)) return false;
     try {
-        const PictureMetadata metadata = read_metadata(o.sheet);
-        is_photograph = *metadata.key.camera_model || metadata.exposure_time_s;
+        const PictureMetadata metadata = read_metadata(file);
+        return *metadata.key.camera_model || metadata.exposure_time_s;
     } catch (const Failure &) {  // not a picture
+        return false;
     }
-    if (is_photograph)
-        throw Failure(ExitCode::usage, o.sheet + ": is a photograph; give the contact sheet another name, or use "
-                                                 "--overwrite");
 }
 
-// Whether the contact sheet goes to the output folder, which does not exist yet.
-bool is_in_new_folder(const ApplyOptions &o) {
+// Failure for a contact sheet that cannot be written or would replace a photograph, before the pictures are corrected.
+void check_sheet(const ApplyOptions &o, size_t pictures) {
+    if (pictures > ContactSheet::most_pictures)
+        throw Failure(
+            ExitCode::usage,
+            o.sheet
+                + format(": a contact sheet holds at most %zu pictures, but %zu are given; correct them in parts",
+                         ContactSheet::most_pictures, pictures));
     const std::string folder = std::filesystem::path(absolute_path(o.sheet)).parent_path().string();
-    return !is_folder(o.output) && canonical_path(folder) == canonical_path(o.output);
+    const bool is_new = !is_folder(o.output) && canonical_path(folder) == canonical_path(o.output);
+    if (!is_new) check_output_file(o.sheet);
+    if (!o.kind.overwrite && is_photograph(o.sheet))
+        throw Failure(ExitCode::usage, o.sheet + ": is a photograph; give the contact sheet another name, or use "
+                                                 "--overwrite");
 }
 
 Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &work, Streams &streams) {
@@ -125,13 +131,7 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
     if (source.project && chosen != OutputExposure::keep && !o.kind.linear && !o.kind.simulate)
         encode_alike(source, work.jobs, streams);
     if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);
-    if (!o.sheet.empty() && work.jobs.size() > ContactSheet::most_pictures)
-        throw Failure(
-            ExitCode::usage,
-            o.sheet
-                + format(": a contact sheet holds at most %zu pictures, but %zu are given; correct them in parts",
-                         ContactSheet::most_pictures, work.jobs.size()));
-    if (!o.sheet.empty() && !is_in_new_folder(o)) check_sheet(o);
+    if (!o.sheet.empty()) check_sheet(o, work.jobs.size());
     make_folder(o.output);
     Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());

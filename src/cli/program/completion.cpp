@@ -100,6 +100,7 @@ std::string bash_completion(const CommandDescription &program) {
              "  _lensprof_words ''\n"
              "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
              "    word=${COMP_WORDS[i]}\n"
+             "    if [[ $word == -- ]]; then mapfile -t COMPREPLY < <(compgen -f -- \"$current\"); return; fi\n"
              "    [[ $word != -* && \" $words \" == *\" $word \"* ]] || continue\n"
              "    if [[ $command == help || $command == man ]]; then topic=${topic:+$topic }$word\n"
              "    else command=${command:+$command }$word; fi\n"
