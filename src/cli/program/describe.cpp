@@ -8,7 +8,7 @@
 namespace lensprof {
 namespace {
 
-// "auto|1|3", also of a list "raw|jpeg,..."; not the placeholder of "auto|none|ID".
+// "auto|1|3", also of a list "raw|jpeg,..."; without ID of "auto|none|ID", which names a value.
 std::vector<std::string> choices_of(const std::string &type) {
     std::vector<std::string> choices;
     if (type.find('|') == std::string::npos) return choices;

@@ -12,8 +12,8 @@ namespace lensprof {
 namespace {
 
 // `code`: of ECMA-48, select graphic rendition.
-std::string mark(bool colour, const char *code, const std::string &text) {
-    return (colour ? std::string("\033[") + code + "m" + text + "\033[0m" : text) + " ";
+std::string marked_line(bool colour, const char *code, const std::string &mark, const std::string &text) {
+    return "lensprof: " + (colour ? std::string("\033[") + code + "m" + mark + "\033[0m" : mark) + " " + one_line(text);
 }
 
 }  // namespace
@@ -23,19 +23,17 @@ bool shows_colour() {
     return isatty(STDERR_FILENO) && !(no_color && *no_color) && terminal && std::strcmp(terminal, "dumb") != 0;
 }
 
-std::string warning_mark(bool colour) { return mark(colour, "1;33", "warning:"); }
+std::string warning_line(bool colour, const std::string &text) { return marked_line(colour, "1;33", "warning:", text); }
 
 void print_message(Streams &streams, const std::string &text) { streams.err << "lensprof: " << one_line(text) << "\n"; }
 
 void warn(Streams &streams, const std::string &text) {
-    if (streams.verbosity != Verbosity::quiet)
-        streams.err << "lensprof: " << warning_mark(streams.colour) << one_line(text) << "\n";
+    if (streams.verbosity != Verbosity::quiet) streams.err << warning_line(streams.colour, text) << "\n";
     streams.warnings.push_back(one_line(text));
 }
 
 void note(Streams &streams, const std::string &text) {
-    if (streams.verbosity != Verbosity::quiet)
-        streams.err << "lensprof: " << mark(streams.colour, "36", "note:") << one_line(text) << "\n";
+    if (streams.verbosity != Verbosity::quiet) streams.err << marked_line(streams.colour, "36", "note:", text) << "\n";
 }
 
 std::string command_text(const std::vector<std::string> &words) {

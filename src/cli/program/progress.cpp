@@ -118,7 +118,7 @@ void Progress::warn(const std::string &line) {
     if (verbosity_ == Verbosity::quiet) return;
     std::lock_guard<std::mutex> lock(mutex_);
     clear_line();
-    err_ << "lensprof: " << warning_mark(colour_) << one_line(line) << std::endl;
+    err_ << warning_line(colour_, line) << std::endl;
 }
 
 Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)
