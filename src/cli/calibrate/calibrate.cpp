@@ -89,9 +89,7 @@ void write_summary(const CalibrateOptions &o, const Json &json, Ledger &ledger) 
 
 // A database in the output folder needs no check before the folder is created.
 void check_database(const CalibrateOptions &o) {
-    const std::string folder = std::filesystem::path(absolute_path(o.store.db)).parent_path().string();
-    if (o.store.db.empty() || is_folder(o.output) || canonical_path(folder) != canonical_path(o.output))
-        check_store(o.store);
+    if (o.store.db.empty() || !is_in_new_folder(o.store.db, o.output)) check_store(o.store);
 }
 
 // Failure for a report that cannot be written, before anything is computed.
@@ -103,8 +101,7 @@ void check_report(const CalibrateOptions &o) {
         throw Failure(ExitCode::usage, o.report + ": the output folder has this name; give the report another one");
     if (is_too_long(o.report))
         throw Failure(ExitCode::usage, short_name(o.report) + ": the name is too long; give the report a shorter one");
-    const std::string folder = std::filesystem::path(absolute_path(o.report)).parent_path().string();
-    if (is_folder(o.output) || canonical_path(folder) != canonical_path(o.output)) check_output_file(o.report);
+    if (!is_in_new_folder(o.report, o.output)) check_output_file(o.report);
 }
 
 int run(const CalibrateOptions &o, Streams &streams) {

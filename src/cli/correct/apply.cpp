@@ -109,9 +109,7 @@ void check_sheet(const ApplyOptions &o, size_t pictures) {
             o.sheet
                 + format(": a contact sheet holds at most %zu pictures, but %zu are given; correct them in parts",
                          ContactSheet::most_pictures, pictures));
-    const std::string folder = std::filesystem::path(absolute_path(o.sheet)).parent_path().string();
-    const bool is_new = !is_folder(o.output) && canonical_path(folder) == canonical_path(o.output);
-    if (!is_new) check_output_file(o.sheet);
+    if (!is_in_new_folder(o.sheet, o.output)) check_output_file(o.sheet);
     if (!o.kind.overwrite && is_photograph(o.sheet))
         throw Failure(ExitCode::usage, o.sheet + ": is a photograph; give the contact sheet another name, or use "
                                                  "--overwrite");

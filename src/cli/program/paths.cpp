@@ -50,6 +50,11 @@ std::string canonical_path(const std::string &path) {
     return error ? absolute_path(path) : name.string();
 }
 
+bool is_in_new_folder(const std::string &path, const std::string &folder) {
+    const std::string parent = std::filesystem::path(absolute_path(path)).parent_path().string();
+    return !is_folder(folder) && canonical_path(parent) == canonical_path(folder);
+}
+
 bool is_same_file(const std::string &a, const std::string &b) {
     if (a.empty() || b.empty()) return false;
     std::error_code ignored;

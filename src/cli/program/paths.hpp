@@ -22,6 +22,9 @@ std::string absolute_path(const std::string &path);
 // The canonical name of a path, whether or not the file exists.
 std::string canonical_path(const std::string &path);
 
+// Whether a file is directly in `folder`, which does not exist yet, so that it can be checked only after that is made.
+bool is_in_new_folder(const std::string &path, const std::string &folder);
+
 // Whether two paths refer to the same file, which may not exist yet.
 bool is_same_file(const std::string &a, const std::string &b);
 
