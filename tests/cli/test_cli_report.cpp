@@ -190,10 +190,12 @@ void test_flat(void **) {
     const Json page = data_of(work("r.html"));
     assert_float_equal(page["falloffs"][0]["m"].back().get<double>(), 0.7, 0.01);
     assert_true(page["result"]["usable"] == true);
-    assert_true(page["shots"].size() == 1 && contains(page["shots"][0]["name"], "card.png") && page["grid"].is_null());
+    const Json &images = page["result"]["images"];
+    assert_true(images.size() == 1 && contains(images[0]["file"], "card.png") && page["result"]["gain_grid"].is_null());
     must_exit(done, flat + Words{"--report", work("r.html"), "--grid", "always"});
-    const Json grid = data_of(work("r.html"))["grid"];
-    assert_true(grid["cells"].size() > 100 && grid["cells"].size() % grid["columns"].get<size_t>() == 0);
+    const Json grid = data_of(work("r.html"))["result"]["gain_grid"];
+    const Json &rows = grid["attenuation"][0];
+    assert_true(rows.size() == grid["rows"] && rows[0].size() == grid["columns"] && rows.size() * rows[0].size() > 100);
     assert_refused(usage, flat + Words{"--report", work("card.png")}, {"card.png", ".html"});
 }
 

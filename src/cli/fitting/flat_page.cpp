@@ -22,47 +22,18 @@ Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
     return facts;
 }
 
-// The pictures with what the table of the command lists.
-Json shots_json(const FlatReport &report) {
-    Json shots = Json::array();
-    for (size_t i = 0; i < report.names.size(); i++) {
-        const lensprof_flat_image_quality &quality = report.quality[i];
-        shots.push_back({{"name", report.names[i]},
-                         {"shot", report.shots[i]},
-                         {"ev", report.ev[i]},
-                         {"turned", report.turned[i]},
-                         {"radius", quality.radius},
-                         {"white", quality.white_share},
-                         {"black", quality.black_share},
-                         {"noise", quality.noise_levels},
-                         {"residual", quality.residual},
-                         {"gradient", {quality.gradient[0], quality.gradient[1]}}});
-    }
-    return shots;
-}
-
-// The gain grid of green, if there is one.
-Json grid_cells(const lensprof_gain_grid &grid) {
-    if (!grid.columns) return {};
-    const size_t cells = size_t(grid.columns) * grid.rows;
-    const float *green = grid.attenuation + (grid.channels == 3 ? cells : 0);
-    return {{"columns", grid.columns}, {"cells", std::vector<float>(green, green + cells)}};
-}
-
 }  // namespace
 
 std::string flat_page(const FlatReport &report, const std::string &title, const std::string &command,
                       const std::vector<std::string> &warnings) {
     const auto profile = profile_of(report.fit, report.response, report.names.size());
-    Json page = new_page("profile", title, "Falloff from pictures of a white card", command);
+    Json page = new_page("card", title, "Falloff from pictures of a white card", command);
     page["verdict"] = page_verdict(report.fit.usable, false, report.verdict.text, warnings);
     page["facts"] = flat_facts(report, *profile);
     page["falloffs"] = Json::array(), page["falloff_points"] = Json::array(), page["responses"] = Json::array();
     add_falloff_curves(*profile, "", page["falloffs"]);
     add_response_curves(*profile, "response used", page["responses"]);
     page["images"] = Json::array();
-    page["shots"] = shots_json(report);
-    page["grid"] = grid_cells(profile->grid);
     page["result"] = flat_json(report);
     return page_of(page);
 }

@@ -12,8 +12,8 @@ namespace lensprof {
 
 extern const char *const page_html, *const page_style, *const page_script;  // page.html, style.css, chart.js, report.js
 
-// The frame of every page: kind ("fit", "folder", "profile", "database"), title, subtitle, program, and the command
-// that made it.
+// The frame of every page: kind ("fit", "card", "folder", "profile", "database"), title, subtitle, program, and the
+// command that made it.
 nlohmann::ordered_json new_page(const std::string &kind, const std::string &title, const std::string &subtitle,
                                 const std::string &command);
 

@@ -302,19 +302,28 @@ function databasePage(report) {
   const fill = (select, options, text) => select.replaceChildren(...options.map((value, i) =>
     element('option', { value: String(i) }, text(value))));
 
-  const ofSensor = () => {
-    const crops = distinct(shown.settings.map((setting) => setting.crop));
-    return shown.settings.filter((setting) => setting.crop === crops[crop.selectedIndex]);
-  };
+  // Each selector offers the values that the settings have which the selectors before it leave.
+  const selectors = [
+    { key: 'crop', select: crop, label: cropLabel, first: () => 0,
+      text: (value) => value === null ? 'any size' : `crop factor ${+value.toFixed(2)}` },
+    { key: 'focal_mm', select: focal, label: focalLabel, first: () => 0, text: millimetres },
+    { key: 'distance_m', select: distance, label: distanceLabel, first: (values) => values.length - 1, text: metres }];
 
-  function draw() {
-    const focals = distinct(ofSensor().map((setting) => setting.focal_mm));
-    const selectedFocal = focals[focal.selectedIndex];
-    const sameFocal = ofSensor().filter((setting) => setting.focal_mm === selectedFocal);
-    const distances = distinct(sameFocal.map((setting) => setting.distance_m));
-    const selectedDistance = distances[distance.selectedIndex];
-    const settings = sameFocal.filter((setting) => setting.distance_m === selectedDistance)
-      .sort((a, b) => (a.aperture || 0) - (b.aperture || 0));
+  // The settings that all selectors leave, after those from number `from` on are filled again.
+  function chosenSettings(from) {
+    return selectors.reduce((settings, { key, select, label, first, text }, i) => {
+      const values = distinct(settings.map((setting) => setting[key]));
+      if (i >= from) {
+        fill(select, values, text);
+        select.selectedIndex = first(values);
+        label.hidden = values.length < 2;
+      }
+      return settings.filter((setting) => setting[key] === values[select.selectedIndex]);
+    }, shown.settings);
+  }
+
+  function draw(from) {
+    const settings = chosenSettings(from).sort((a, b) => (a.aperture || 0) - (b.aperture || 0));
     const samples = 50;
     const curves = settings.map((setting) => ({ label: (setting.aperture === null ? 'any aperture' : `f/${+setting.aperture.toFixed(2)}`) +
       (setting.note ? ` ${setting.note}` : ''),
@@ -331,26 +340,7 @@ function databasePage(report) {
   function show(lens) {
     shown = lens;
     name.textContent = [lens.lens || 'lens not stated', lens.camera].filter((text) => text).join(' · ');
-    const crops = distinct(lens.settings.map((setting) => setting.crop));
-    fill(crop, crops, (value) => value === null ? 'any size' : `crop factor ${+value.toFixed(2)}`);
-    cropLabel.hidden = crops.length < 2;
-    changeSensor();
-  }
-
-  function changeSensor() {
-    fill(focal, distinct(ofSensor().map((setting) => setting.focal_mm)), millimetres);
-    refocus();
-  }
-
-  function refocus() {
-    const focals = distinct(ofSensor().map((setting) => setting.focal_mm));
-    const sameFocal = ofSensor().filter((setting) => setting.focal_mm === focals[focal.selectedIndex]);
-    const distances = distinct(sameFocal.map((setting) => setting.distance_m));
-    fill(distance, distances, metres);
-    distance.selectedIndex = distances.length - 1;
-    focalLabel.hidden = focals.length < 2;
-    distanceLabel.hidden = distances.length < 2;
-    draw();
+    draw(0);
   }
 
   function filter() {
@@ -371,9 +361,7 @@ function databasePage(report) {
   }
 
   search.addEventListener('input', filter);
-  crop.addEventListener('change', changeSensor);
-  focal.addEventListener('change', refocus);
-  distance.addEventListener('change', draw);
+  selectors.forEach(({ select }, i) => select.addEventListener('change', () => draw(i + 1)));
   page.append(section('Lenses', element('div', { class: 'filter' }, element('label', {}, 'search lens or camera', search)), found,
     element('div', { class: 'scroll lenses', tabindex: '0' }, element('table', {}, element('thead', {}, element('tr', {},
       element('th', {}, 'lens'), element('th', {}, 'camera'), element('th', { class: 'number' }, 'profiles'))), list))));
@@ -386,31 +374,33 @@ function databasePage(report) {
 
 // Of a white card: the pictures, and what of the light is not radial.
 function card(report) {
-  if (!report.shots) return [];
+  const { images, gain_grid: grid } = report.result;
   const percent = (share) => fixed(100 * share, 1).replace('-', '−');
-  const rows = report.shots.map((shot) => [shot.name, String(shot.shot), signed(shot.ev, 2), fixed(shot.turned, 0),
-    fixed(shot.radius, 2), percent(shot.white), percent(shot.black), fixed(shot.noise, 2), fixed(100 * shot.residual, 2),
-    signed(100 * shot.gradient[0], 1), signed(100 * shot.gradient[1], 1)]);
+  const rows = images.map((image) => [image.file, String(image.shot), signed(image.ev, 2), fixed(image.turned_deg, 0),
+    fixed(image.radius, 2), percent(image.white_share), percent(image.black_share), fixed(image.noise_levels, 2),
+    fixed(100 * image.residual, 2), signed(100 * image.gradient[0], 1), signed(100 * image.gradient[1], 1)]);
   const parts = [section('Pictures of the card', element('p', { class: 'quiet' },
     'Radius: the largest that the card covers, in half diagonals. Gradient: of the light, per half diagonal.'),
     table(['picture', 'shot', 'EV', 'turned by °', 'radius', 'white %', 'black %', 'noise, levels', 'residual %',
       'gradient right %', 'gradient down %'], rows))];
-  if (report.grid) {
-    const most = report.grid.cells.reduce((a, value) => Math.max(a, Math.abs(value - 1)), 1e-6);
-    const cells = report.grid.cells.map((value) => ({ share: (value - 1) / most, text: fixed(value, 4) }));
+  if (grid) {
+    const green = grid.attenuation[grid.attenuation.length === 3 ? 1 : 0].flat();
+    const most = green.reduce((a, value) => Math.max(a, Math.abs(value - 1)), 1e-6);
+    const cells = green.map((value) => ({ share: (value - 1) / most, text: fixed(value, 4) }));
     parts.push(section('Gain grid', element('p', { class: 'quiet' },
       `Light of green relative to the falloff curve. Red: more, blue: less. Full colour is ${fixed(100 * most, 2)} %.`),
-      drawCells(cells, report.grid.columns, 'Gain grid over the frame', (cell) => cell.share > 0 ? 'red' : 'blue', 0.7)));
+      drawCells(cells, grid.columns, 'Gain grid over the frame', (cell) => cell.share > 0 ? 'red' : 'blue', 0.7)));
   }
   return parts;
 }
 
-function profilePage(report) {
+function profilePage(report, ...more) {
   page.append(heading(report.title, report.subtitle), verdict(report));
-  appendPresent(page, [sideBySide(illuminance(report), responses(report)), ...card(report), ...closing(report)]);
+  appendPresent(page, [sideBySide(illuminance(report), responses(report)), ...more, ...closing(report)]);
 }
 
 if (data.kind === 'database') databasePage(data);
 else if (data.kind === 'profile') profilePage(data);
+else if (data.kind === 'card') profilePage(data, ...card(data));
 else if (data.kind === 'folder') folderPage(data);
 else fitPage(data);
