@@ -69,6 +69,9 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FALLOFF_RISES = 403,      /* largest M; its standard error */
     LENSPROF_REASON_CENTER_ON_LIMIT = 404,    /* distance, half diagonals */
     LENSPROF_REASON_FALLOFF_DARK = 405,       /* smallest M */
+    LENSPROF_REASON_SAME_VIEW = 406,          /* change of r^2 between the ends of most pairs, at most */
+    LENSPROF_REASON_EXPOSURES_ONLY = 407,     /* a simpler model predicts held-out pairs as well */
+    LENSPROF_REASON_NOTHING_BETTER = 408,     /* no model predicts held-out pairs better than no correction */
     LENSPROF_REASON_NOT_RADIAL = 451,         /* share of the residual's variance; levels of 255 */
     LENSPROF_REASON_FAR_CENTER = 452,         /* distance, half diagonals */
     LENSPROF_REASON_FALLOFF_RISES_SOME = 453, /* largest M; its standard error */

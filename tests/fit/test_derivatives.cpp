@@ -1,5 +1,6 @@
 // Every derivative of the fit compared with central differences, and the elimination of the images compared with a full
 // solve.
+#include "falloff_prior_terms.hpp"
 #include "simulated.hpp"
 
 #include <Eigen/Core>
@@ -283,6 +284,7 @@ void test_elimination_equals_full_solve(void **) {
     pin.head(6) = prior.pin.head(6);
     hessian += prior.pin_precision * pin * pin.transpose();
     gradient -= prior.pin_precision * (prior.pin.dot(full.head(kMaxModes)) - prior.pin_value) * pin;
+    add_falloff_prior(s.problem, s.estimate, prior, model.columns(), hessian, gradient);
     int known = shared + s.problem.ev_unknown[1];
     hessian(known, known) += prior.known[1].precision;
     gradient[known] -= prior.known[1].precision * (s.estimate.log_exposure[1][1] - prior.known[1].log_exposure);
@@ -297,7 +299,7 @@ void test_elimination_equals_full_solve(void **) {
     // Variances: the diagonal of the full inverse.
     Eigen::MatrixXd inverse = inverse_of_symmetric(hessian),
                     shared_inverse = inverse_of_symmetric(model.reduced_hessian());
-    Eigen::VectorXd variance = model.image_variance(shared_inverse);
+    Eigen::VectorXd variance = model.image_variance(shared_inverse, 1.0);
     for (int u = 0; u < shared; u++) assert_close(shared_inverse(u, u), inverse(u, u), 1e-3 * inverse(u, u));
     for (int q = 0; q < s.problem.image_unknowns; q++)
         assert_close(variance[q], inverse(shared + q, shared + q), 1e-3 * inverse(shared + q, shared + q));

@@ -1,4 +1,5 @@
 // The radiance method's model: exact radiances, derivatives, elimination, trust in observations.
+#include "falloff_prior_terms.hpp"
 #include "simulated_tracks.hpp"
 
 #include <Eigen/Core>
@@ -234,6 +235,7 @@ void add_prior(const Setting &s, const Prior &prior, const std::vector<int> &col
     }
     hessian += prior.pin_precision * pin * pin.transpose();
     gradient -= prior.pin_precision * (prior.pin.dot(full.head(kMaxModes)) - prior.pin_value) * pin;
+    add_falloff_prior(s.problem, s.estimate, prior, columns, hessian, gradient);
     Eigen::Index known = shared + s.problem.ev_unknown[1];
     hessian(known, known) += prior.known[1].precision;
     gradient[known] -= prior.known[1].precision * (s.estimate.log_exposure[1][1] - prior.known[1].log_exposure);
@@ -268,7 +270,7 @@ void test_elimination_equals_full_solve(void **) {
 
     Eigen::MatrixXd inverse = inverse_of_symmetric(hessian);
     Eigen::MatrixXd shared_inverse = inverse_of_symmetric(model.reduced_hessian());
-    Eigen::VectorXd variance = model.image_variance(shared_inverse);
+    Eigen::VectorXd variance = model.image_variance(shared_inverse, 1.0);
     for (Eigen::Index u = 0; u < shared; u++) assert_close(shared_inverse(u, u), inverse(u, u), 2e-3 * inverse(u, u));
     for (Eigen::Index q = 0; q < s.problem.image_unknowns; q++)
         assert_close(variance[q], inverse(shared + q, shared + q), 2e-3 * inverse(shared + q, shared + q));

@@ -7,11 +7,11 @@
 
 namespace {
 
-// Pictures of one exposure from a camera that corrects its falloff.
-Simulation even(double noise, uint64_t seed = 42) {
+// Pictures of one exposure from a camera that corrects all of its falloff but a trace.
+Simulation even(double noise, uint64_t seed = 42, double corner = 0.97) {
     Simulation s;
     s.response = srgb_response();
-    s.vignetting = {};
+    s.vignetting = {{corner - 1.0, 0.0, 0.0}, {}};
     s.exposures.assign(s.images, {0.0, {1.0, 1.0, 1.0}});
     s.make(2000, noise, 0.0, 0.0, seed);
     return s;
@@ -35,7 +35,7 @@ void assert_typical(const FitRun &run, uint32_t kind) {
         for (uint32_t j = 0; j < LENSPROF_EMOR_MODES; j++)
             assert_close(r.covariance[i * r.covariance_size + j], covariance[i * LENSPROF_EMOR_MODES + j], 1e-12);
     for (uint32_t c = 0; c < r.vignettings; c++)
-        assert_close(lensprof_vignetting_eval(&r.vignetting[c], 1.0, nullptr), 1.0, 0.02);
+        assert_close(lensprof_vignetting_eval(&r.vignetting[c], 1.0, nullptr), 0.97, 0.02);
 }
 
 void test_equal_light_shows_no_response(void **) {
@@ -47,6 +47,18 @@ void test_equal_light_shows_no_response(void **) {
                 options.method = method;
                 assert_typical(run_fit(even(noise), options), kind);
             }
+}
+
+// Without that trace there is nothing to correct: no model predicts held-out pairs better than the pictures as they
+// are.
+void test_equal_pictures_are_left_alone(void **) {
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        const FitRun run = run_fit(even(2.0, seed, 1.0));
+        assert_int_equal(run.result.usable, 0);
+        assert_int_equal(run.result.evens, 0);
+        assert_int_equal(run.result.model, LENSPROF_FIT_MODEL_NOTHING);
+        assert_int_equal(run.result.reason_code, LENSPROF_REASON_NOTHING_BETTER);
+    }
 }
 
 // Its profile can be stored, but is marked doubtful, so that later fits do not use it.
@@ -114,6 +126,7 @@ void test_without_a_prior_nothing_is_held(void **) {
 int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_equal_light_shows_no_response),
+        cmocka_unit_test(test_equal_pictures_are_left_alone),
         cmocka_unit_test(test_the_profile_says_that_it_is_not_shown),
         cmocka_unit_test(test_little_light_shows_one),
         cmocka_unit_test(test_the_profile_is_held_where_there_is_one),

@@ -53,6 +53,15 @@ Json links_json(const std::vector<lensprof_link> &links) {
     return list;
 }
 
+const char *model_name(uint32_t model) {
+    switch (model) {
+    case LENSPROF_FIT_MODEL_FULL: return "full";
+    case LENSPROF_FIT_MODEL_LENS: return "lens";
+    case LENSPROF_FIT_MODEL_EXPOSURES: return "exposures";
+    default: return "nothing";
+    }
+}
+
 const char *response_from_name(uint32_t from) {
     static const char *const names[] = {"pictures", "options", "kind", "profile"};
     return from <= LENSPROF_FIT_RESPONSE_PROFILE ? names[from] : "unknown";
@@ -159,6 +168,7 @@ Json build_json(const BuildReport &report) {
     json["schema"] = 1;
     json["usable"] = fit.usable != 0;
     json["evens"] = fit.evens != 0;
+    json["model"] = model_name(fit.model);
     add_verdict(report.verdict, json);
     json["reference"] = report.reference;
     json["images"] = images_json(report);
@@ -194,6 +204,9 @@ Json build_json(const BuildReport &report) {
     json["seconds"] = {
         {"register", report.register_s}, {"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
     json["prior"] = prior_json(report);
+    json["lens_prior"] = {{"falloff_distance", fit.falloff_prior_distance},
+                          {"center_distance", fit.center_prior_distance},
+                          {"error_inflation", fit.error_inflation}};
     json["profile"] = report.profile_id ? Json(report.profile_id) : Json();
     return json;
 }

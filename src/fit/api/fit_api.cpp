@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <new>
+#include <vector>
 
 #include "core/profile.h"
 #include "fit/api/fit_call.hpp"
@@ -39,14 +40,17 @@ lensprof_status at_boundary(lensprof_error *error, Fit fit) {
 
 // Runs a fit, and gives the result and the elapsed time to the caller.
 template <class Fit>
-lensprof_status run(FitCall &call, lensprof_fit_result *result, lensprof_error *error, Fit fit) {
+lensprof_status run(FitCall &call, lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error,
+                    Fit fit) {
     if (!has_unknowns(call.options, call.images.data(), call.count()))
         return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
     const auto began = std::chrono::steady_clock::now();
-    const lensprof_status status = fit();
+    std::vector<lensprof_exposure> found(exposures, exposures + call.count());
+    const lensprof_status status = fit(found.data());
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
     if (status != LENSPROF_OK) return status;
     call.result.seconds = taken.count();
+    std::copy(found.begin(), found.end(), exposures);
     give_settings(call);
     give_result(call.result, call.quality, result);
     return LENSPROF_OK;
@@ -99,11 +103,10 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
             status = check_debevec(call->options, call->images.data(), image_count, error);
         if (status != LENSPROF_OK) return status;
         if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
-        return run(*call, result, error, [&] {
-            return has_several_cameras(call->options, call->images)
-                       ? fit_each_camera(*call, {call->options, call->images, {pairs, pairs + pair_count}, {}},
-                                         exposures, error)
-                       : fit_pairs(*call, pairs, pair_count, exposures, error);
+        return run(*call, exposures, result, error, [&](lensprof_exposure *found) {
+            return has_several_cameras(call->options, call->images) ? fit_each_camera(
+                       *call, {call->options, call->images, {pairs, pairs + pair_count}, {}}, found, error)
+                                                                    : fit_pairs(*call, pairs, pair_count, found, error);
         });
     });
 }
@@ -123,9 +126,9 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
                                         call->channels(), error);
         if (status != LENSPROF_OK) return status;
         if (observation_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no observations were given");
-        return run(*call, result, error, [&] {
+        return run(*call, exposures, result, error, [&](lensprof_exposure *found) {
             if (!has_several_cameras(call->options, call->images))
-                return fit_tracks(*call, observations, observation_count, exposures, error);
+                return fit_tracks(*call, observations, observation_count, found, error);
             const Tracks tracks = tracks_of(observations, observation_count);
             status = check_tracks(tracks, error);
             if (status != LENSPROF_OK) return status;
@@ -134,7 +137,7 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
                                     call->images,
                                     pairs_of(tracks, call->channels()),
                                     {observations, observations + observation_count}},
-                                   exposures, error);
+                                   found, error);
         });
     });
 }

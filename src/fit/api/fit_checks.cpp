@@ -101,6 +101,9 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
             && !(image.known_ev_sigma >= 1e-3 && image.known_ev_sigma <= 100.0 && std::abs(image.known_ev) <= 64.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
                            "known_ev beyond 64 EV, or known_ev_sigma neither 0 nor 0.001..100");
+        if (image.f_number_ratio != 0.0 && !(image.f_number_ratio >= 1.0 && image.f_number_ratio <= 1024.0))
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "f_number_ratio must be 0 (unknown) or 1..1024");
         if (image.free & ~kImageFlags)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "only EV, RED and BLUE can be free in an image");

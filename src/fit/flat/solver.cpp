@@ -222,6 +222,7 @@ FlatPrior make_flat_prior(const lensprof_flat_options &options, const FlatModel 
     const int n = model.unknowns();
     FlatPrior prior{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
     Prior lens = make_prior(options.prior_weight, model.curves, 1);
+    make_falloff_linear(model.curves, lens);
     auto column = [&](int i) { return i < model.center() ? kFalloff + i : kCenter + i - model.center(); };
     for (int i = 0; i < model.levels(); i++) {
         prior.mean[i] = lens.mean[column(i)];

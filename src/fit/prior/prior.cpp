@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include <lensprof/profile.h>
+
 #include "falloff/dense.hpp"
 
 namespace lensprof {
@@ -12,13 +14,9 @@ const double kEmorSigma[kMaxModes] = {3.416,  1.294,  0.469,  0.202,  0.0961, 0.
 
 namespace {
 
-// Mean and covariance of (k1, k2, k3) over the 19,920 falloff entries of the Lensfun database.
-const double kFalloffMean[3] = {-0.347, 0.139, -0.118};
+// Covariance of (k1, k2, k3) over the 19,920 falloff entries of Lensfun's database.
 const double kFalloffCovariance[3][3] = {
     {0.1298, -0.1369, 0.0682}, {-0.1369, 0.3262, -0.2656}, {0.0682, -0.2656, 0.4005}};
-
-// The falloff's centre is where the optical axis meets the sensor: mounting tolerances, in half diagonals.
-constexpr double kCenterSigma = 0.02;
 
 // Falloff curves of the channels relative to that of green: lateral colour and sensor stacks.
 constexpr double kChannelSigma = 0.1;
@@ -31,19 +29,36 @@ Prior make_prior(double weight, int vignettings, int settings, bool by_covarianc
     prior.covariance_weight = by_covariance ? weight : 0.0;
     prior.mean = Eigen::VectorXd::Zero(size);
     prior.precision = Eigen::MatrixXd::Zero(size, size);
+    prior.falloff.resize(static_cast<size_t>(settings));
     for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = weight / (kEmorSigma[l] * kEmorSigma[l]);
-    Eigen::Matrix3d covariance;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) covariance(i, j) = kFalloffCovariance[i][j];
-    for (int s = 0; s < settings; s++) {
-        const int green = green_falloff(vignettings, s), center = center_column(s);
-        prior.precision.block<3, 3>(green, green) = weight * covariance.inverse();
-        for (int c = 0; c < vignettings; c++)
-            for (int i = 0; i < 3; i++) prior.mean(falloff_column(s) + 3 * c + i) = kFalloffMean[i];
-        tie_channels(weight, vignettings, s, prior);
-        for (int d = 0; d < 2; d++) prior.precision(center + d, center + d) = weight / (kCenterSigma * kCenterSigma);
-    }
+    const LensKnowledge any{expected_falloff(LENSPROF_UNKNOWN), weight, weight};
+    for (int s = 0; s < settings; s++) set_lens(any, vignettings, s, prior);
     return prior;
+}
+
+void set_lens(const LensKnowledge &lens, int vignettings, int setting, Prior &prior) {
+    const int first = falloff_column(setting), center = center_column(setting);
+    prior.precision.block(first, first, kSetting, kSetting).setZero();
+    prior.mean.segment(first, kSetting).setZero();
+    tie_channels(lens.falloff_weight, vignettings, setting, prior);
+    for (int d = 0; d < 2; d++)
+        prior.precision(center + d, center + d) = lens.center_weight / (kCenterSigma * kCenterSigma);
+    FalloffPrior &falloff = prior.falloff[static_cast<size_t>(setting)];
+    falloff = lens.falloff;
+    falloff.precision *= lens.falloff_weight;
+}
+
+void make_falloff_linear(int vignettings, Prior &prior) {
+    FalloffPrior &falloff = prior.falloff[0];
+    const double flat[3] = {0.0, 0.0, 0.0};
+    Eigen::Matrix3d slope;
+    log_falloff(flat, &slope);  // of M itself, since M is 1
+    const Eigen::Vector3d k = slope.inverse() * (falloff.mean.array().exp() - 1.0).matrix();
+    log_falloff(k.data(), &slope);
+    const int green = green_falloff(vignettings);
+    prior.precision.block<3, 3>(green, green) += slope.transpose() * falloff.precision * slope;
+    for (int column = kFalloff; column < kCenter; column++) prior.mean[column] = k[(column - kFalloff) % 3];
+    falloff = FalloffPrior{};
 }
 
 void tie_channels(double weight, int vignettings, int setting, Prior &prior) {
@@ -84,6 +99,11 @@ double prior_cost(const Prior &prior, const Problem &problem, const std::vector<
     Eigen::VectorXd full = shared_vector(estimate), d = Eigen::VectorXd::Zero(full.size());
     for (int column : columns) d[column] = full[column] - prior.mean[column];
     double cost = 0.5 * d.dot(prior.precision * d);
+    for (size_t s = 0; s < prior.falloff.size() && (problem.free & kFalloffFlags); s++) {
+        const Eigen::Vector3d off =
+            log_falloff(estimate.vignetting[s][problem.vignettings == 3 ? 1 : 0].k, nullptr) - prior.falloff[s].mean;
+        cost += 0.5 * off.dot(prior.falloff[s].precision * off);
+    }
     if (prior.pin_precision > 0.0) {
         double off = prior.pin.dot(full.head(kMaxModes)) - prior.pin_value;
         cost += 0.5 * prior.pin_precision * off * off;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "fit/prior/falloff_prior.hpp"
 #include "fit/problem/problem.hpp"
 
 namespace lensprof {
@@ -14,10 +15,16 @@ extern const double kEmorSigma[kMaxModes];
 // Correlations of the same, below the diagonal, row by row.
 extern const double kEmorCorrelation[kMaxModes * (kMaxModes - 1) / 2];
 
+// The centre of a falloff is where the optical axis meets the sensor: mounting tolerances, in half diagonals.
+constexpr double kCenterSigma = 0.02;
+
 struct Prior {
     // Of the full shared vector: (s - mean)' precision (s - mean) / 2.
     Eigen::VectorXd mean;
     Eigen::MatrixXd precision;
+
+    // Of u = ln M of green, per setting: (u - mean)' precision (u - mean) / 2, in addition to the above.
+    std::vector<FalloffPrior> falloff;
 
     // Weight of the Gaussian prior on the EMoR coefficients with their full covariance (Goldman & Chen eq. 12), which
     // prior_of() adds to the precision. 0: the precision treats the coefficients as independent.
@@ -35,14 +42,23 @@ struct Prior {
     std::vector<KnownExposure> known;
 };
 
-// Response and falloff of measured cameras and lenses, times `weight`, the same for every setting; `by_covariance` as
-// above.
+// Response, falloff and centre of measured cameras and lenses, times `weight`; `by_covariance` as above.
 Prior make_prior(double weight, int vignettings, int settings, bool by_covariance = false);
+
+// The knowledge of the lens at one setting, with weights relative to that of independent pairs (inflation.hpp).
+struct LensKnowledge {
+    FalloffPrior falloff;
+    double falloff_weight = 1.0, center_weight = 1.0;
+};
+void set_lens(const LensKnowledge &lens, int vignettings, int setting, Prior &prior);
+
+// Puts the prior on u of the first setting into mean and precision, linear about its mean.
+void make_falloff_linear(int vignettings, Prior &prior);
 
 // The prior if `modes` coefficients are estimated, without the contribution of the others.
 Prior prior_of(const Prior &prior, int modes);
 
-// Ties the falloff curves of a setting's channels to that of green, if there are three.
+// Ties the falloff curves of a setting's channels to that of green, if there are three: adds to their precision.
 void tie_channels(double weight, int vignettings, int setting, Prior &prior);
 
 // First column of green's k1..k3 in the full shared vector.

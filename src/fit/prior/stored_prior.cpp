@@ -275,6 +275,7 @@ void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool is
     }
     const bool has_falloff =
         std::any_of(places.to.begin(), places.to.end(), [](int row) { return row >= kFalloff && row < kCenter; });
+    if (has_falloff) prior.falloff[0] = FalloffPrior{};
     if (tied && has_falloff) tie_channels(weight, vignettings, 0, prior);
     const Eigen::MatrixXd precision = precision_of(places.from, is_gamma_open);
     for (size_t i = 0; i < places.to.size(); i++)

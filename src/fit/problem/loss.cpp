@@ -8,7 +8,10 @@ namespace {
 
 constexpr double kSmallestNoise = 0.05 / 255.0;  // below this, quantisation of 8-bit data still leaves errors
 
-PairWeights pair_weights(const PairTransfer &transfer, int channels) {
+}  // namespace
+
+PairWeights pair_weights(const PairTransfer &transfer, int channels, const Loss &loss) {
+    if (loss.kind != LENSPROF_LOSS_ROBUST) return {{{1.f, 1.f}, {1.f, 1.f}, {1.f, 1.f}}};
     PairWeights weights{};
     for (int c = 0; c < channels; c++)
         for (int side = 0; side < 2; side++) {
@@ -18,14 +21,13 @@ PairWeights pair_weights(const PairTransfer &transfer, int channels) {
     return weights;
 }
 
-}  // namespace
-
 NoiseWeights noise_weights(const Problem &problem, const Estimate &estimate, const Loss &loss) {
     NoiseWeights weights(problem.pairs.size(), {{{1.f, 1.f}, {1.f, 1.f}, {1.f, 1.f}}});
     if (loss.kind != LENSPROF_LOSS_ROBUST) return weights;
     for_each_chunk(problem, [&](uint32_t k) {
-        for_each_transfer(problem, problem.chunks[k], estimate,
-                          [&](size_t p, const PairTransfer &t) { weights[p] = pair_weights(t, problem.channels); });
+        for_each_transfer(problem, problem.chunks[k], estimate, [&](size_t p, const PairTransfer &t) {
+            weights[p] = pair_weights(t, problem.channels, loss);
+        });
     });
     return weights;
 }
@@ -74,7 +76,8 @@ std::vector<double> all_chi2(const Problem &problem, const Estimate &estimate, d
     std::vector<double> z(problem.pairs.size());
     for_each_chunk(problem, [&](uint32_t k) {
         for_each_transfer(problem, problem.chunks[k], estimate, [&](size_t p, const PairTransfer &t) {
-            PairResiduals residuals = weighted_residuals(t, problem.channels, pair_weights(t, problem.channels));
+            PairResiduals residuals =
+                weighted_residuals(t, problem.channels, pair_weights(t, problem.channels, Loss{}));
             z[p] = pair_chi2(residuals, problem.channels, noise);
         });
     });

@@ -28,6 +28,7 @@ struct Loss {
 // while the solver steps, so that cost and Jacobian are consistent.
 using PairWeights = std::array<std::array<float, 2>, 3>;
 using NoiseWeights = std::vector<PairWeights>;
+PairWeights pair_weights(const PairTransfer &transfer, int channels, const Loss &loss);
 NoiseWeights noise_weights(const Problem &problem, const Estimate &estimate, const Loss &loss);
 
 // Residuals of all channels of a pair, [channel][direction], multiplied by their noise weights.

@@ -179,6 +179,13 @@ uint32_t Problem::component_count() const {
     return count;
 }
 
+uint32_t place_in_frame(const lensprof_fit_image &image, const double xy[2], int across) {
+    const auto step = [&](double value, uint32_t size) {
+        return static_cast<uint32_t>(std::clamp((value + 0.5) / size * across, 0.0, across - 1.0));
+    };
+    return step(xy[0], image.width) + static_cast<uint32_t>(across) * step(xy[1], image.height);
+}
+
 bool is_static(const Problem &problem) {
     return std::all_of(problem.pairs.begin(), problem.pairs.end(), [](const lensprof_pair &pair) {
         constexpr double kSame = 0.01;  // px

@@ -35,6 +35,8 @@ constexpr LensColumn lens_column(int column) {
     return {(column - kFalloff) / kSetting, (column - kFalloff) % kSetting};
 }
 
+constexpr uint32_t kFalloffFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+
 constexpr double kLargestLogExposure = 20.0 * kLn2;  // 20 EV relative to the reference
 
 // Two images that share pairs, and these pairs: [first, last) of Problem::pairs.
@@ -99,6 +101,9 @@ struct Problem {
     uint32_t link_of(uint32_t low, uint32_t high) const;            // number of the link between two images
     int measured_channel() const { return channels == 3 ? 1 : 0; }  // the channel whose white balance factor is 1
 };
+
+// Where a pair or, with tracks, an observation is in the frame of its image: one of across x across places.
+uint32_t place_in_frame(const lensprof_fit_image &image, const double xy[2], int across);
 
 // Pictures by a camera that did not move: every place is compared with itself, and the falloff cancels.
 bool is_static(const Problem &problem);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kRadii = 33;  // samples of r^2 at which M is held positive
 constexpr double kSmallestM = 0.01;
-constexpr double kReach2 = 1.8 * 1.8;  // (1 + largest |centre|)^2 that the bound below allows
+constexpr double kFallStep = 1.0 / kRadii;  // of r^2
+constexpr double kReach2 = 1.8 * 1.8;       // (1 + largest |centre|)^2 that the bound below allows
 
 // The r^2 up to which M must be positive for the centre of a setting: the farthest corner, with a margin for the
 // centre's own step.
@@ -28,7 +29,8 @@ Eigen::VectorXd moved(const Region &region, const Eigen::VectorXd &d) {
     return value;
 }
 
-// Order: rises of f; then for each setting the values of each M, and the bounds of the centre.
+// Order: rises of f; then for each setting the values of each M, the bounds of the centre and, if falloffs may not
+// rise, the differences of each M from one radius to the next.
 class CameraInequalities : public Inequalities {
 public:
     explicit CameraInequalities(const Region &r) : region(r) {
@@ -44,6 +46,9 @@ public:
             for (int c = 0; c < region.vignettings; c++)
                 if (!is_positive(value.data() + falloff_column(s) + 3 * c, value.data() + center_column(s)))
                     return false;
+        for (int i = kRises; region.falls && i < count(); i++)
+            if (const Place bound = place(i); bound.kind == Kind::fall && rise_at(value, bound) > tolerance(i))
+                return false;
         return region.modes < 0 || is_rising(value.data(), region.modes);
     }
 
@@ -54,12 +59,13 @@ public:
         for (int i = kRises; i < count(); i++) {
             const Place bound = place(i);
             const double *k = value.data() + bound.column;
-            if (bound.is_center) {
-                gap[static_cast<size_t>(i)] = (bound.is_upper ? *k : -*k) - kLargestCenter;
-                continue;
+            double &of_bound = gap[static_cast<size_t>(i)];
+            switch (bound.kind) {
+            case Kind::upper: of_bound = *k - kLargestCenter; break;
+            case Kind::lower: of_bound = -*k - kLargestCenter; break;
+            case Kind::fall: of_bound = rise_at(value, bound); break;
+            case Kind::positive: of_bound = kSmallestM - value_at(value, bound, bound.radius2); break;
             }
-            const lensprof_vignetting v{{k[0], k[1], k[2]}, {0.0, 0.0}};
-            gap[static_cast<size_t>(i)] = kSmallestM - lensprof_vignetting_eval(&v, bound.radius2, nullptr);
         }
         return gap;
     }
@@ -74,28 +80,48 @@ public:
             }
             const Place bound = place(i);
             const int power = column - bound.column;
-            if (bound.is_center && power == 0) row[u] = bound.is_upper ? -1.0 : 1.0;
-            if (!bound.is_center && power >= 0 && power < 3) row[u] = std::pow(bound.radius2, power + 1);
+            const bool is_center = bound.kind == Kind::upper || bound.kind == Kind::lower;
+            if (is_center && power == 0) row[u] = bound.kind == Kind::upper ? -1.0 : 1.0;
+            if (is_center || power < 0 || power > 2) continue;
+            row[u] = std::pow(bound.radius2, power + 1);
+            if (bound.kind == Kind::fall) row[u] = std::pow(bound.radius2 - kFallStep, power + 1) - row[u];
         }
         return row;
     }
 
 private:
-    // Meaning of an inequality from kRises on: M at radius2 of the curve that begins in `column`, or the coordinate of
-    // a centre in `column`.
+    // Meaning of an inequality from kRises on: of the curve that begins in `column` its value at radius2, or its rise
+    // up to there; or a bound of the coordinate of a centre in `column`.
+    enum class Kind {
+        positive,
+        lower,
+        upper,
+        fall
+    };
     struct Place {
         int column;
-        bool is_center, is_upper;
+        Kind kind;
         double radius2;
     };
     Place place(int i) const {
         const int setting = (i - kRises) / of_setting(), n = (i - kRises) % of_setting();
-        const int bound = n - kRadii * region.vignettings;
-        if (bound >= 0) return {center_column(setting) + bound / 2, true, bound % 2 == 1, 0.0};
-        return {falloff_column(setting) + 3 * (n / kRadii), false, false,
-                limit2[static_cast<size_t>(setting)] * (n % kRadii + 1) / kRadii};
+        const int values = kRadii * region.vignettings, bound = n - values;
+        const auto column = [&](int of_values) { return falloff_column(setting) + 3 * (of_values / kRadii); };
+        if (bound < 0)
+            return {column(n), Kind::positive, limit2[static_cast<size_t>(setting)] * (n % kRadii + 1) / kRadii};
+        if (bound < 4) return {center_column(setting) + bound / 2, bound % 2 == 1 ? Kind::upper : Kind::lower, 0.0};
+        return {column(bound - 4), Kind::fall, kFallStep * ((bound - 4) % kRadii + 1)};
     }
-    int of_setting() const { return kRadii * region.vignettings + 4; }
+    int of_setting() const { return kRadii * region.vignettings * (region.falls ? 2 : 1) + 4; }
+
+    static double value_at(const Eigen::VectorXd &value, const Place &bound, double radius2) {
+        const double *k = value.data() + bound.column;
+        const lensprof_vignetting v{{k[0], k[1], k[2]}, {0.0, 0.0}};
+        return lensprof_vignetting_eval(&v, radius2, nullptr);
+    }
+    static double rise_at(const Eigen::VectorXd &value, const Place &bound) {
+        return value_at(value, bound, bound.radius2) - value_at(value, bound, bound.radius2 - kFallStep);
+    }
 
     const Region &region;
     std::vector<double> limit2;  // per setting

@@ -14,6 +14,7 @@ struct Region {
     int vignettings, settings;
     std::vector<int> columns;
     Eigen::VectorXd value;
+    bool falls = false;  // whether no falloff may rise outward, within a half diagonal
 };
 
 // Minimises  1/2 d'Sd - b'd  over steps d that stay in the region, as constrained_step of inequality.hpp does.

@@ -1,7 +1,9 @@
 #include "fit/solver/heldout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "fit/solver/objective.hpp"
@@ -48,6 +50,32 @@ double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &stand
         sum2 += d * d;
     }
     standard_error = std::sqrt(sum2 / (n * (n - 1.0)));
+    return difference;
+}
+
+double loss_difference_by_place(const Problem &heldout, const HeldoutLoss &a, const HeldoutLoss &b,
+                                double &standard_error) {
+    constexpr int kAcross = 4;
+    std::map<std::array<uint32_t, 3>, double> sums;  // by two images and the place in the first one
+    const double difference = a.mean - b.mean;
+    for (size_t p = 0; p < a.losses.size(); p++) {
+        uint32_t first, second;
+        const double *xy;
+        if (heldout.by_radiance) {
+            const Range &track = heldout.tracks.tracks[p];
+            const lensprof_observation *observation = &heldout.tracks.observations[track.first];
+            first = observation[0].image, second = observation[1].image, xy = observation[0].xy;
+        } else {
+            const lensprof_pair &pair = heldout.pairs[p];
+            first = pair.image[0], second = pair.image[1], xy = pair.xy[0];
+        }
+        const uint32_t place = place_in_frame(heldout.images[first], xy, kAcross);
+        sums[{first, second, place}] += a.losses[p] - b.losses[p] - difference;
+    }
+    double sum2 = 0.0;
+    for (const auto &[place, sum] : sums) sum2 += sum * sum;
+    const auto places = static_cast<double>(sums.size());
+    standard_error = std::sqrt(sum2 * places / std::max(places - 1.0, 1.0)) / static_cast<double>(a.losses.size());
     return difference;
 }
 

@@ -32,6 +32,11 @@ HeldoutLoss heldout_loss(const Problem &heldout, const Estimate &estimate, const
 // Mean and standard error of the difference of two candidates' held-out losses.
 double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &standard_error);
 
+// The same, with the standard error over places instead of single pairs or tracks: those that are near each other have
+// errors in common (inflation.hpp).
+double loss_difference_by_place(const Problem &heldout, const HeldoutLoss &a, const HeldoutLoss &b,
+                                double &standard_error);
+
 // Whether a candidate is within one standard error (of the paired difference) of the best one.
 bool is_as_good(const HeldoutLoss &loss, const HeldoutLoss &best);
 

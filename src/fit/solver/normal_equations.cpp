@@ -39,19 +39,21 @@ void NormalEquations::Sums::add(const Sums &part) {
 }
 
 NormalEquations::NormalEquations(const Problem &problem, const Estimate &estimate)
-    : problem_(problem),
-      columns_(free_columns(problem, estimate.modes)),
-      modes_(static_cast<size_t>(std::lower_bound(columns_.begin(), columns_.end(), kMaxModes) - columns_.begin())) {}
+    : problem_(problem), columns_(free_columns(problem, estimate.modes)), modes_(leading_modes(columns_)) {}
 
-void NormalEquations::add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign,
-                                  double *derivative) const {
-    const int setting = problem_.setting_of[image];
-    for (size_t u = modes_; u < columns_.size(); u++) {
-        const LensColumn column = lens_column(columns_[u]);
+size_t leading_modes(const std::vector<int> &columns) {
+    return static_cast<size_t>(std::lower_bound(columns.begin(), columns.end(), kMaxModes) - columns.begin());
+}
+
+void add_by_lens(const Problem &problem, const std::vector<int> &columns, const Attenuation &place, uint32_t image,
+                 int curve, double sign, double *derivative) {
+    const int setting = problem.setting_of[image];
+    for (size_t u = leading_modes(columns); u < columns.size(); u++) {
+        const LensColumn column = lens_column(columns[u]);
         if (column.setting != setting) continue;
         const int k = column.offset - 3 * curve;
         if (column.is_center())
-            derivative[u] += sign * place.by_center[columns_[u] - center_column(setting)];
+            derivative[u] += sign * place.by_center[columns[u] - center_column(setting)];
         else if (k >= 0 && k < 3)
             derivative[u] += sign * place.by_k[k];
     }
@@ -79,6 +81,25 @@ void NormalEquations::add_prior(const Prior &prior, const Estimate &estimate) {
                 precision + prior.pin_precision * pin(columns_[u]) * pin(columns_[v]);
             gradient_[i] -= precision * (full[columns_[v]] - prior.mean[columns_[v]]);
         }
+    }
+    for (size_t s = 0; s < prior.falloff.size(); s++)
+        add_falloff_prior(prior.falloff[s], static_cast<int>(s), estimate);
+}
+
+void NormalEquations::add_falloff_prior(const FalloffPrior &prior, int setting, const Estimate &estimate) {
+    Eigen::Matrix3d slope;
+    const Falloffs &curves = estimate.vignetting[static_cast<size_t>(setting)];
+    const Eigen::Vector3d off = log_falloff(curves[problem_.vignettings == 3 ? 1 : 0].k, &slope) - prior.mean;
+    const Eigen::Vector3d gradient = slope.transpose() * prior.precision * off;
+    const Eigen::Matrix3d hessian = slope.transpose() * prior.precision * slope;
+    const int green = green_falloff(problem_.vignettings, setting);
+    const auto power = [&](size_t u) { return columns_[u] - green; };
+    for (size_t u = modes_; u < columns_.size(); u++) {
+        if (power(u) < 0 || power(u) > 2) continue;
+        const auto i = static_cast<Eigen::Index>(u);
+        gradient_[i] -= gradient[power(u)];
+        for (size_t v = modes_; v < columns_.size(); v++)
+            if (power(v) >= 0 && power(v) <= 2) shared_(i, static_cast<Eigen::Index>(v)) += hessian(power(u), power(v));
     }
 }
 
@@ -157,13 +178,19 @@ double NormalEquations::expected_gain(const Eigen::VectorXd &shared_step) const 
     return images + b_.dot(shared_step) - 0.5 * shared_step.dot(S_ * shared_step);
 }
 
-Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) const {
+Eigen::MatrixXd NormalEquations::images_by(const Eigen::MatrixXd &shared) const {
+    if (problem_.image_unknowns == 0 || columns_.empty())
+        return Eigen::MatrixXd::Zero(problem_.image_unknowns, shared.cols());
+    return eliminated_ * shared;
+}
+
+Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared, double inflation) const {
     if (problem_.image_unknowns == 0) return {};
     const bool has_shared = !columns_.empty();
     auto added = [&](const Eigen::MatrixXd &rows) -> Eigen::VectorXd {  // by the shared unknowns
         return (rows * shared).cwiseProduct(rows).rowwise().sum();
     };
-    Eigen::VectorXd variance = inverse_diagonal(factor_);
+    Eigen::VectorXd variance = inflation * inverse_diagonal(factor_);
     if (!problem_.channels_apart) return has_shared ? variance + added(eliminated_) : variance;
     // ln w_ic = a_ic - a_i1: the first part of their covariance is 0, because the channels are apart.
     Eigen::MatrixXd by_shared = eliminated_;

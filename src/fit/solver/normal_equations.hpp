@@ -35,8 +35,12 @@ public:
     // Decrease of the objective that the model predicts for a shared step and the corresponding step of the images.
     double expected_gain(const Eigen::VectorXd &shared_step) const;
 
-    // Variance of every unknown of the images, given `shared`, the covariance of the shared unknowns.
-    Eigen::VectorXd image_variance(const Eigen::MatrixXd &shared) const;
+    // Change of every unknown of the images per change of the shared unknowns in each column, with the sign reversed.
+    Eigen::MatrixXd images_by(const Eigen::MatrixXd &shared) const;
+
+    // Variance of every unknown of the images, given `shared`, the covariance of the shared unknowns, and the inflation
+    // of the error of the images' own pairs.
+    Eigen::VectorXd image_variance(const Eigen::MatrixXd &shared, double inflation) const;
 
 protected:
     // Two images and the weight of the Laplacian between them, per channel.
@@ -57,10 +61,6 @@ protected:
 
     NormalEquations(const Problem &problem, const Estimate &estimate);
 
-    // Adds `sign` times the derivatives of ln M at a place of an image, for one falloff curve, to the derivatives by
-    // the lens, which follow those by the modes.
-    void add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign, double *derivative) const;
-
     void complete(const Sums &sums, const Prior &prior, const Estimate &estimate);
 
     const Problem &problem_;
@@ -69,6 +69,7 @@ protected:
 
 private:
     void add_prior(const Prior &prior, const Estimate &estimate);
+    void add_falloff_prior(const FalloffPrior &prior, int setting, const Estimate &estimate);
     void map_images(const Sums &sums, const Prior &prior, const Estimate &estimate);
 
     double objective_ = 0.0;
@@ -83,6 +84,14 @@ private:
     Eigen::MatrixXd S_;
     Eigen::VectorXd b_;
 };
+
+// Number of leading columns of free unknowns that are modes.
+size_t leading_modes(const std::vector<int> &columns);
+
+// Adds `sign` times the derivatives of ln M at a place of an image, for one falloff curve, to the derivatives by the
+// lens, which follow those by the modes.
+void add_by_lens(const Problem &problem, const std::vector<int> &columns, const Attenuation &place, uint32_t image,
+                 int curve, double sign, double *derivative);
 
 // Diagonal of the inverse of a factored matrix (Takahashi, Fagan and Chen 1973). Only entries in the pattern of the
 // factor are computed, so that the cost is that of the factor.

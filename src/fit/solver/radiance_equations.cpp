@@ -68,7 +68,7 @@ void RadianceEquations::add_channel(const Range &track, int channel, const Track
         size_t curve = problem_.vignettings == 3 ? c : 0;
         const Attenuation &lens = fit.lens[static_cast<size_t>(i)][curve];
         std::fill(row + modes_, row + n, 0.0);
-        add_by_lens(lens, problem_.tracks.observations[track.first + static_cast<size_t>(i)].image,
+        add_by_lens(problem_, columns_, lens, problem_.tracks.observations[track.first + static_cast<size_t>(i)].image,
                     static_cast<int>(curve), 1.0, row);
         for (size_t u = modes_; u < columns_.size(); u++) row[u] *= s.by_log;
         if (modes_) modes.response_by_emor(s.x, 1.0, row);

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "fit/solver/constrained_step.hpp"
+#include "fit/solver/inflation.hpp"
 #include "fit/solver/objective.hpp"
 
 namespace lensprof {
@@ -24,6 +25,7 @@ struct Stepper {
     const Problem &problem;
     const Objective &objective;
     double flat;  // a step with a smaller expected gain is not evaluated
+    bool falls;   // whether no falloff may rise
     std::unique_ptr<NormalEquations> model;
     double lambda = 1e-4;
     int steps = 0;
@@ -52,7 +54,8 @@ struct Stepper {
     bool step(Estimate &estimate, double &cost) {
         is_solved = false;
         if (!model) model = objective.model_at(estimate);
-        Region region{estimate.modes, problem.vignettings, problem.settings, model->columns(), shared_vector(estimate)};
+        Region region{estimate.modes,   problem.vignettings,     problem.settings,
+                      model->columns(), shared_vector(estimate), falls};
         for (int attempt = 0; attempt < 12; attempt++, lambda *= 8.0) {
             if (!model->reduce(lambda)) continue;
             Eigen::VectorXd d = constrained_step(region, model->reduced_hessian(), model->reduced_gradient());
@@ -112,7 +115,7 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
         if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
         gauge.renew(problem, estimate, renewed);
         std::unique_ptr<Objective> objective = make_objective(problem, renewed, loss, estimate);
-        Stepper stepper{problem, *objective, control.flat, nullptr};
+        Stepper stepper{problem, *objective, control.flat, control.falls, nullptr};
         outcome.converged = false;
         while (!outcome.converged && outcome.iterations < control.max_iterations) {
             if (control.cancelled && control.cancelled()) throw Cancelled();
@@ -130,7 +133,7 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
 }
 
 Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
-                      const Estimate &estimate) {
+                      const Estimate &estimate, const Inflation *inflation) {
     Covariance result;
     result.shared = Eigen::MatrixXd::Zero(shared_size(problem.settings), shared_size(problem.settings));
     result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
@@ -149,11 +152,17 @@ Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, 
         inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
         if (!inverse.allFinite() || inverse.diagonal().minCoeff() <= 0.0) return result;
     }
+    if (inflation) {
+        Eigen::VectorXd scale(n);
+        for (Eigen::Index u = 0; u < n; u++)
+            scale[u] = std::sqrt(inflation->of_column(model.columns()[static_cast<size_t>(u)]));
+        inverse = scale.asDiagonal() * inverse * scale.asDiagonal();
+    }
     for (Eigen::Index u = 0; u < n; u++)
         for (Eigen::Index v = 0; v < n; v++)
             result.shared(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]) =
                 0.5 * (inverse(u, v) + inverse(v, u));
-    if (problem.image_unknowns) result.images = model.image_variance(inverse);
+    if (problem.image_unknowns) result.images = model.image_variance(inverse, inflation ? inflation->exposures : 1.0);
     result.is_determined = result.images.allFinite();
     return result;
 }

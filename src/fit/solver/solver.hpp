@@ -12,10 +12,13 @@
 
 namespace lensprof {
 
+struct Inflation;
+
 struct Control {
     int max_iterations = 200;
     int rounds = 6;
     double flat = 1e-3;  // a round ends if a step gains less: half of chi-squared, 1/20 sigma of one parameter
+    bool falls = false;  // whether no falloff may rise outward; the estimate to start from must not, either
     std::function<bool()> cancelled;  // called once per iteration
 };
 
@@ -34,13 +37,14 @@ double largest_change(const Estimate &a, const Estimate &b);
 Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
               const Control &control, Estimate &estimate);
 
-// Covariances at an estimate, gamma held: inverse of the Hessian of all unknowns.
+// Covariances at an estimate, gamma held: inverse of the Hessian of all unknowns, times the inflation of errors that
+// neighbouring pairs share (NULL: independent pairs).
 struct Covariance {
     bool is_determined = false;
     Eigen::MatrixXd shared;  // full shared vector; zero rows for parameters held fixed
     Eigen::VectorXd images;  // variances of the images' unknowns
 };
 Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
-                      const Estimate &estimate);
+                      const Estimate &estimate, const Inflation *inflation = nullptr);
 
 }  // namespace lensprof

@@ -72,7 +72,8 @@ void TransferEquations::add_edge(const Edge &edge, const Loss &loss, const Noise
             std::vector<double> &derivative = lens[static_cast<size_t>(curve)];
             derivative.assign(columns_.size(), 0.0);
             for (int side = 0; side < 2; side++)
-                add_by_lens(fall.end[side], edge.image[side], curve, side ? -1.0 : 1.0, derivative.data());
+                add_by_lens(problem_, columns_, fall.end[side], edge.image[side], curve, side ? -1.0 : 1.0,
+                            derivative.data());
         }
         for (int c = 0; c < problem_.channels; c++) {
             const Transfer &transfer = t.channel[static_cast<size_t>(c)];

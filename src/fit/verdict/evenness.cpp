@@ -77,8 +77,7 @@ bool is_of_profile(uint32_t reason) {
     case LENSPROF_REASON_PATTERNS_HELD:
     case LENSPROF_REASON_FEW_GREYS:
     case LENSPROF_REASON_EXPOSURES_ALIKE:
-    case LENSPROF_REASON_SMALL_RADIUS:
-    case LENSPROF_REASON_FALLOFF_RISES: return true;
+    case LENSPROF_REASON_SMALL_RADIUS: return true;
     default: return false;
     }
 }

@@ -7,6 +7,7 @@
 #include "core/covariance.h"
 #include "falloff/rise.hpp"
 #include "fit/base/constants.hpp"
+#include "fit/base/quantile.hpp"
 #include "fit/prior/known_exposures.hpp"
 #include "fit/problem/curve_shape.hpp"
 #include "fit/verdict/held_balance.hpp"
@@ -19,6 +20,7 @@ namespace {
 constexpr double kBlack = 0.004;                     // one level of 255
 constexpr uint32_t kMinGreys = 4, kEnoughGreys = 8;  // tenths of the grey values that hold more than a few
 constexpr double kSmallestRadius = 0.6;              // half diagonals: beyond it, k1..k3 extrapolate
+constexpr double kSameView = 0.03;                   // of r^2: a corner of 70 % then changes grey values by 1 %
 constexpr double kLargestNoise = 6.0;       // levels of 255: above the noise of any camera, so the model does not fit
 constexpr double kLargestImageShare = 0.2;  // of residual variance explained by separate maps of each image,
 constexpr double kSuspiciousImageShare = 0.1;  // and worth a warning; noise and moving things stay below
@@ -38,8 +40,6 @@ constexpr double kSmallestStillShare = 0.7;  // of all pairs, if equal places ar
 constexpr double kStillMedian = 1.5;         // and levels of 255 that half of them exceed
 constexpr double kFarCentre = 0.1;           // half diagonals: five standard errors of its prior
 constexpr double kOnLimit = 0.98;            // of the largest allowed offset of the centre
-constexpr double kImpossibleRise = 1.1;      // of M outside the middle: no lens brightens so much
-constexpr double kDarkest = 0.05;            // smallest M of a lens: those of Lensfun are above it
 constexpr double kClearly = 3.0;             // standard errors
 constexpr double kOddImage = 5.0;            // levels of 255, and four times the noise
 
@@ -87,8 +87,6 @@ std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_res
     return longest;
 }
 
-constexpr uint32_t kFalloffFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-
 bool frees_falloff(const Problem &problem) { return problem.free & kFalloffFlags; }
 
 // Offset of the centre from the middle, along the axis with the larger offset, half diagonals.
@@ -112,6 +110,22 @@ void covariance_held(const lensprof_fit_result &r, int curve, double held[9]) {
         held[i] = r.covariance[row * n + column]
                   - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[row] * r.gamma_direction[column];
     }
+}
+
+// Change of r^2 between the ends of a pair, exceeded by few pairs: a falloff is seen by nothing else.
+double radius_change(const Problem &problem) {
+    const lensprof_vignetting centred{};
+    std::vector<double> changes;
+    for (const lensprof_pair &pair : problem.pairs) {
+        double r2[2];
+        for (int side = 0; side < 2; side++) {
+            const lensprof_fit_image &image = problem.images[pair.image[side]];
+            r2[side] = lensprof_vignetting_r2(&centred, image.width, image.height, pair.xy[side][0], pair.xy[side][1],
+                                              nullptr);
+        }
+        changes.push_back(std::abs(r2[0] - r2[1]));
+    }
+    return quantile(changes, 0.95);
 }
 
 // The smallest M of the falloffs that were free.
@@ -199,6 +213,9 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
             return refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {spread}});
     if (fits_response(estimate) && covered_greys(problem, r) < kMinGreys)
         return refuse(r, {LENSPROF_REASON_FEW_GREYS, {double(covered_greys(problem, r))}});
+    if (frees_falloff(problem) && !is_static(problem))
+        if (const double change = radius_change(problem); change < kSameView)
+            return refuse(r, {LENSPROF_REASON_SAME_VIEW, {change}});
     if (frees_falloff(problem) && covered_radius(r) < kSmallestRadius)
         return refuse(r, {LENSPROF_REASON_SMALL_RADIUS, {covered_radius(r)}});
     return false;
@@ -255,9 +272,9 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
     const double off_centre = largest_offset(r.vignetting[0]);
     if (off_centre > kOnLimit * kLargestCenter && (problem.free & LENSPROF_FREE_CENTER))
         return refuse(r, {LENSPROF_REASON_CENTER_ON_LIMIT, {off_centre}});
-    if (const auto rise = rise_above(kImpossibleRise, problem, r); !rise.empty())
+    if (const auto rise = rise_above(kLargestRise, problem, r); !rise.empty())
         return refuse(r, {LENSPROF_REASON_FALLOFF_RISES, rise});
-    if (const double darkest = darkest_of(problem, r); darkest < kDarkest)
+    if (const double darkest = darkest_of(problem, r); darkest < kSmallestM)
         return refuse(r, {LENSPROF_REASON_FALLOFF_DARK, {darkest}});
     const bool still = is_static(problem);
     uint32_t image, inliers;
@@ -347,7 +364,7 @@ bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_f
         return warn(r, {LENSPROF_REASON_WEAK_PATTERNS, {r.image_share, image_pattern}});
     if (r.frame_share > kNotRadial && frame_pattern > kSmallestPattern)
         return warn(r, {LENSPROF_REASON_NOT_RADIAL, {r.frame_share, frame_pattern}});
-    if (const auto rise = rise_above(kLargestRise, problem, r); !rise.empty())
+    if (const auto rise = rise_above(1.0 + kSmallRise, problem, r); !rise.empty())
         return warn(r, {LENSPROF_REASON_FALLOFF_RISES_SOME, rise});
     if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))
         return warn(r, {LENSPROF_REASON_FAR_CENTER, {off_centre}});

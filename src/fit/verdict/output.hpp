@@ -10,15 +10,21 @@
 
 namespace lensprof {
 
-// Copies the fields that a result and each of its lens settings share: the verdict, and the numbers of one setting.
+// Copies the verdict of a result, or of one of its lens settings.
 template <class From, class To>
-void copy_setting(const From &from, To &to) {
+void copy_verdict(const From &from, To &to) {
     to.usable = from.usable;
     std::copy(std::begin(from.reason), std::end(from.reason), to.reason);
     to.reason_code = from.reason_code;
     to.reason_values = from.reason_values;
     to.reason_item = from.reason_item;
     std::copy(std::begin(from.reason_value), std::end(from.reason_value), to.reason_value);
+}
+
+// Copies the fields that a result and each of its lens settings share: the verdict, and the numbers of one setting.
+template <class From, class To>
+void copy_setting(const From &from, To &to) {
+    copy_verdict(from, to);
     std::copy(std::begin(from.vignetting), std::end(from.vignetting), to.vignetting);
     std::copy(std::begin(from.radius_ends), std::end(from.radius_ends), to.radius_ends);
     std::copy(std::begin(from.covariance), std::end(from.covariance), to.covariance);

@@ -1,0 +1,82 @@
+#include "fit/methods/lens_weight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <lensprof/profile.h>
+
+namespace lensprof {
+namespace {
+
+// Without its negative eigenvalues, which are rounding.
+template <class Matrix>
+Matrix positive_part(const Matrix &symmetric) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> parts(0.5 * (symmetric + symmetric.transpose()));
+    return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() * parts.eigenvectors().transpose();
+}
+
+// Stops from wide open of a setting: the mean of its images that know them.
+double stops_of(const Problem &problem, int setting) {
+    double sum = 0.0, count = 0.0;
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        if (problem.setting_of[i] == setting && problem.images[i].f_number_ratio > 0.0)
+            sum += 2.0 * std::log2(problem.images[i].f_number_ratio), count += 1.0;
+    return count > 0.0 ? sum / count : LENSPROF_UNKNOWN;
+}
+
+// What the pictures show of the falloff: information of the estimate minus that of the prior, over the inflation.
+ShownFalloff shown_falloff(const Problem &problem, const FalloffPrior &prior, const Estimate &estimate,
+                           const Covariance &found, double inflation, int setting) {
+    const int green = green_falloff(problem.vignettings, setting);
+    Eigen::Matrix3d slope, covariance = found.shared.block<3, 3>(green, green);
+    const size_t curve = problem.vignettings == 3 ? 1 : 0;
+    const Eigen::Vector3d u = log_falloff(estimate.vignetting[static_cast<size_t>(setting)][curve].k, &slope);
+    covariance = slope * covariance * slope.transpose();
+    const Eigen::Matrix3d all = covariance.inverse();
+    if (!all.allFinite()) return {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
+    const Eigen::Matrix3d alone = positive_part<Eigen::Matrix3d>(all - prior.precision);
+    return {alone / inflation, (all * u - prior.precision * prior.mean) / inflation};
+}
+
+// The pictures' own centre relative to the middle of the frame, in standard errors of both.
+double center_distance(const Prior &prior, const Estimate &estimate, const Covariance &found, double inflation,
+                       int setting) {
+    constexpr double kNothing = 1e-4;
+    const int center = center_column(setting);
+    const Eigen::Matrix2d all = found.shared.block<2, 2>(center, center).inverse(),
+                          of_prior = prior.precision.block<2, 2>(center, center);
+    if (!all.allFinite() || !(of_prior(0, 0) > 0.0)) return 0.0;
+    const Eigen::Vector2d at = Eigen::Vector2d::Map(estimate.vignetting[static_cast<size_t>(setting)][0].center);
+    const Eigen::Matrix2d alone = positive_part<Eigen::Matrix2d>(all - of_prior) / inflation;
+    const Eigen::Matrix2d error = (alone + kNothing * Eigen::Matrix2d::Identity()).inverse();
+    const Eigen::Vector2d own = error * (all * at) / inflation;
+    const Eigen::Matrix2d both = error + kCenterSigma * kCenterSigma * Eigen::Matrix2d::Identity();
+    return std::sqrt(own.dot(both.inverse() * own));
+}
+
+}  // namespace
+
+std::vector<WeighedLens> weigh_lenses(const Problem &problem, const Prior &prior, double weight,
+                                      const Estimate &estimate, const Covariance &found, const Inflation &inflation) {
+    std::vector<WeighedLens> lenses;
+    for (int s = 0; s < problem.settings; s++) {
+        const auto n = static_cast<size_t>(s);
+        WeighedLens lens;
+        const double inflated = inflation.lens[n];
+        const bool is_whole = (problem.free & kFalloffFlags) == kFalloffFlags;
+        const double stops = stops_of(problem, s);
+        lens.knowledge = {expected_falloff(stops), weight * inflated, weight * inflated};
+        if (is_whole)
+            lens.knowledge.falloff = falloff_given(
+                shown_falloff(problem, prior.falloff[n], estimate, found, inflated, s), stops, lens.falloff_distance);
+        if (problem.free & LENSPROF_FREE_CENTER)
+            lens.center_distance = center_distance(prior, estimate, found, inflated, s);
+        lenses.push_back(lens);
+    }
+    return lenses;
+}
+
+}  // namespace lensprof

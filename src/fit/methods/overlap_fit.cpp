@@ -1,0 +1,334 @@
+#include "fit/methods/overlap_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "falloff/rise.hpp"
+#include "fit/base/constants.hpp"
+#include "fit/methods/refine.hpp"
+#include "fit/problem/curve_shape.hpp"
+#include "fit/solver/objective.hpp"
+#include "fit/solver/start.hpp"
+#include "fit/verdict/finish.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kFollows = 0.02;  // of ln gamma, allowed distance of modes from the requested value
+
+}  // namespace
+
+// The best of short fits from every start, with its gamma determined.
+Estimate OverlapFit::best_start(int modes) {
+    Problem brief = problem_(options_, brief_subset());
+    brief.vignettings = all_.vignettings;
+    Gauge unconstrained = gauge_.unconstrained();
+    Estimate best = best_brief_fit(brief, unconstrained, control_.cancelled, start_estimates(brief, options_, modes));
+    start_exposures(all_, kRoughWidth, best);  // sets the exposures of images that had few pairs here
+    gauge_.apply_gamma(train_, best);
+    return best;
+}
+
+static void set_modes(Estimate &estimate, int modes) {
+    if (estimate.modes >= 0 && modes < estimate.modes)
+        set_response(estimate, project_curve(estimate.curve.table.data(), modes).data(), modes);
+    else if (estimate.modes >= 0)
+        set_response(estimate, estimate.emor.data(), modes);
+}
+
+// A fit to the training pairs at the common noise level.
+Candidate OverlapFit::candidate(const Estimate &from, int modes) {
+    Candidate result;
+    result.estimate = from;
+    set_modes(result.estimate, modes);
+    Control brief = control_;
+    brief.rounds = 1;
+    brief.flat = 0.05;
+    brief.max_iterations = std::min(control_.max_iterations, 12);
+    Loss used = common_;
+    solve(train_, prior_, gauge_, used, false, brief, result.estimate);
+    static_cast<HeldoutLoss &>(result) = heldout_loss(heldout_, result.estimate, common_);
+    done_ = std::min(0.75, done_ + 0.08);
+    return result;
+}
+
+// Frees the response from its modes, first at the noise level that they left, then at the remaining noise level.
+void OverlapFit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
+    const Estimate of_modes = estimate;
+    refine_response(problem, used, estimate);
+    used.noise = estimate_noise(problem, estimate, used.noise);
+    estimate = of_modes;
+    refine_response(problem, used, estimate);
+}
+
+// Whether a response free of its modes is not worse on held-out pairs by more than a standard error.
+bool OverlapFit::is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined) {
+    HeldoutLoss modes = heldout_loss(heldout_, best.estimate, common_);
+    refined.estimate = best.estimate;
+    Loss refined_loss = used;
+    refine(train_, refined_loss, refined.estimate);
+    static_cast<HeldoutLoss &>(refined) = heldout_loss(heldout_, refined.estimate, common_);
+    double error, difference = loss_difference(refined, modes, error);
+    return difference < error;
+}
+
+// Recomputes the exposures from the fitted response and all pairs. If pairs that agree by chance had misled an image,
+// the fit of `problem` from there has a lower cost.
+void OverlapFit::reconsider(const Problem &problem, const Loss &used, Estimate &estimate) {
+    constexpr double kLargestChange = 0.15;  // natural logarithm
+    Estimate other = estimate;
+    start_exposures(all_, kFineWidth, other);
+    double change = 0.0;
+    for (size_t i = 0; i < other.log_exposure.size(); i++)
+        for (size_t c = 0; c < 3; c++)
+            change = std::max(change, std::abs(other.log_exposure[i][c] - estimate.log_exposure[i][c]));
+    if (change < kLargestChange) return;
+    Control brief = control_;
+    brief.rounds = 1;
+    brief.flat = 0.05;
+    Loss fixed = used;
+    double cost = solve(problem, prior_, gauge_, fixed, false, brief, estimate).cost;
+    if (solve(problem, prior_, gauge_, fixed, false, brief, other).cost < cost) estimate = other;
+}
+
+// The smallest number of modes whose held-out loss is within one standard error (of the paired difference) of the best.
+// More modes are tried until two in a row have not helped, fewer until one is worse.
+Candidate OverlapFit::choose_modes(const Estimate &start) {
+    std::vector<Candidate> tried;  // in order of falling number of modes, once complete
+    tried.push_back(candidate(start, start_modes()));
+    double lowest = tried[0].mean;
+    int failures = 0;
+    for (int modes : {7, 9, 12, 16}) {
+        if (modes <= start_modes()) continue;
+        tried.insert(tried.begin(), candidate(tried.front().estimate, modes));
+        failures = tried.front().mean < lowest ? 0 : failures + 1;
+        lowest = std::min(lowest, tried.front().mean);
+        if (failures == 2) break;
+    }
+    auto is_good = [&](const Candidate &candidate) { return is_as_good(candidate, best_of(tried)); };
+    for (int modes : {3, 2, 1}) {
+        if (!is_good(tried.back()) || (stored_ && modes < stored_->modes())) break;
+        tried.push_back(candidate(tried.back().estimate, modes));
+    }
+    for (size_t i = tried.size(); i-- > 1;)
+        if (is_good(tried[i])) return tried[i];
+    return tried[0];
+}
+
+// Chooses start, modes and falloff curves.
+Candidate OverlapFit::choose(Loss &used) {
+    bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && has_heldout_;
+    bool any_curves = may_choose_vignettings(has_heldout_);
+    int modes = options_.modes == LENSPROF_MODES_AUTO ? start_modes() : static_cast<int>(options_.modes);
+    if (any_curves && stored_ && stored_->vignettings() == 3) any_curves = false;
+
+    set_vignettings(first_vignettings());
+    Candidate best;
+    best.estimate = best_start(is_free_ ? std::min(std::max(modes, 1), start_modes()) : 0);
+    done_ = 0.2;
+    set_modes(best.estimate, modes);
+    Control first = control_;
+    if (any_modes || any_curves) first.flat = 0.05, first.rounds = 3;
+    solve(train_, prior_, gauge_, used, true, first, best.estimate);
+    reconsider(train_, used, best.estimate);
+    common_ = used;
+    if (options_.loss != LENSPROF_LOSS_ROBUST) common_.noise = estimate_noise(train_, best.estimate, used.noise);
+    if (any_modes)
+        best = choose_modes(best.estimate);
+    else if (any_curves)
+        best = candidate(best.estimate, modes);
+    if (any_curves)
+        choose_vignettings(
+            best, [this](int count) { set_vignettings(count); },
+            [&] { return candidate(best.estimate, best.estimate.modes); });
+    done_ = 0.8;
+    return best;
+}
+
+void OverlapFit::take_all() {
+    if (step_ == 1) return;
+    step_ = 1;
+    const int vignettings = all_.vignettings;
+    all_ = problem_(options_, split_.all);
+    train_ = problem_(options_, split_.train);
+    heldout_ = problem_(options_, split_.heldout);
+    set_vignettings(vignettings);
+}
+
+// Whether modes can follow to the requested gamma: the estimate is then that of a fit which holds it.
+bool OverlapFit::follows(const Loss &used, Estimate &estimate, Outcome &outcome) {
+    Estimate trial = estimate;
+    Loss trial_loss = used;
+    Outcome result = solve(all_, prior_, gauge_, trial_loss, true, control_, trial);
+    HeldoutLoss before = heldout_loss(heldout_, estimate, common_), after = heldout_loss(heldout_, trial, common_);
+    double error, difference = loss_difference(after, before, error);
+    if (difference > error || std::abs(gauge_.distance(all_, trial)) > kFollows) return false;
+    estimate = trial, outcome = result;
+    return true;
+}
+
+// Frees the response from its modes if that is better, or if these cannot follow to the requested gamma. The fits so
+// far have the gamma of most cameras.
+void OverlapFit::free_response(const Gauge &requested, Loss &used, Candidate &best, Estimate &estimate,
+                               Outcome &outcome) {
+    const bool was_thinned = step_ > 1;
+    take_all();
+    Candidate refined;
+    const bool is_refined = options_.method == LENSPROF_METHOD_TRANSFER && is_as_good_refined(best, used, refined);
+    if (is_refined)
+        best = refined, refine(all_, used, estimate);
+    else if (was_thinned)
+        outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
+    gauge_ = requested;
+    if (!is_refined && follows(used, estimate, outcome)) return;
+    for (Estimate *target : {&estimate, &best.estimate}) {
+        if (!target->is_refined) set_table(*target, target->curve.table.data());
+        gauge_.apply_gamma(all_, *target);
+    }
+}
+
+// From the present estimates, with the present knowledge.
+void OverlapFit::solve_again() {
+    set_vignettings(all_.vignettings);
+    Loss used = used_;
+    solve(train_, prior_, gauge_, used, true, control_, best_.estimate);
+    outcome_ = solve(all_, prior_, gauge_, used_, true, control_, estimate_);
+}
+
+// Weighs the knowledge of lenses against what the pictures show, of which errors common to neighbouring pairs leave
+// less than their number suggests, and fits again.
+void OverlapFit::weigh_lens_knowledge() {
+    constexpr int kRounds = 2;
+    for (int round = 0; round < kRounds; round++) {
+        inflation_ = error_inflation(all_, prior_, gauge_, used_, estimate_);
+        const Covariance found = covariance(all_, prior_, gauge_, used_, estimate_);
+        if (!found.is_determined || stored_) return;  // a profile replaces the knowledge of all lenses
+        lenses_ = weigh_lenses(all_, prior_, options_.prior_weight, estimate_, found, inflation_);
+        solve_again();
+    }
+    free_center();
+    hold_falling();
+}
+
+// A crop has its optical axis far from its middle, as no lens has. Pictures that say so must predict held-out pairs
+// clearly better for it: a drift of exposures along a row looks much like it.
+void OverlapFit::free_center() {
+    constexpr double kFar = 3.0, kFreedom = 2.0, kGain = 0.04;  // of the loss: 2 % of the residual
+    bool is_far = false;
+    const std::vector<WeighedLens> lenses = lenses_;
+    for (WeighedLens &lens : lenses_) {
+        const double distance2 = lens.center_distance * lens.center_distance;
+        if (lens.center_distance < kFar) continue;
+        lens.knowledge.center_weight *= (kFreedom + 2.0) / (kFreedom + distance2);
+        is_far = true;
+    }
+    if (!is_far) return;
+    const Candidate held = best_;
+    const Estimate of_all = estimate_;
+    const Loss used = used_;
+    const Outcome outcome = outcome_;
+    solve_again();
+    const Problem &tested = has_heldout_ ? heldout_ : all_;
+    const HeldoutLoss before = heldout_loss(tested, held.estimate, common_),
+                      after = heldout_loss(tested, best_.estimate, common_);
+    double error;
+    const double gain = -loss_difference_by_place(tested, after, before, error);
+    if (gain > 3.0 * error && gain > kGain * before.mean) return;
+    lenses_ = lenses, best_ = held, estimate_ = of_all, used_ = used, outcome_ = outcome;
+    set_vignettings(all_.vignettings);
+}
+
+// Falloffs that rise outward, as hardly any lens does, must predict held-out pairs clearly better than the best ones
+// that do not.
+void OverlapFit::hold_falling() {
+    bool any_rises = false;
+    for (const Falloffs &curves : estimate_.vignetting)
+        for (const lensprof_vignetting &v : curves) any_rises = any_rises || outward_rise(v) > kSmallRise;
+    if (!any_rises || (options_.free & kFalloffFlags) != kFalloffFlags) return;
+    const Estimate of_all = estimate_;
+    const Candidate best = best_;
+    const Loss used = used_;
+    const Outcome outcome = outcome_;
+    for (Estimate *estimate : {&estimate_, &best_.estimate})
+        for (Falloffs &curves : estimate->vignetting)
+            for (lensprof_vignetting &v : curves) {
+                const double corner = lensprof_vignetting_eval(&v, 1.0, nullptr) - 1.0;
+                v.k[0] = std::clamp(corner, -0.9, 0.0), v.k[1] = v.k[2] = 0.0;
+            }
+    control_.falls = true;
+    solve_again();
+    double error;
+    const Problem &tested = has_heldout_ ? heldout_ : all_;
+    const HeldoutLoss falling = heldout_loss(tested, best_.estimate, common_),
+                      rising = heldout_loss(tested, best.estimate, common_);
+    if (loss_difference_by_place(tested, falling, rising, error) <= 3.0 * error) return;
+    control_.falls = false;
+    estimate_ = of_all, best_ = best, used_ = used, outcome_ = outcome;
+}
+
+const Problem &OverlapFit::tested() const { return has_heldout_ ? heldout_ : all_; }
+
+HeldoutLoss OverlapFit::loss_of(const OverlapFit &other) const {
+    return heldout_loss(tested(), has_heldout_ ? other.best_.estimate : other.estimate_, common_);
+}
+
+bool OverlapFit::predicts_better(const HeldoutLoss &simpler) const {
+    double error;
+    return loss_difference_by_place(tested(), loss_of(*this), simpler, error) < -2.0 * error;
+}
+
+bool OverlapFit::predicts_better_than(const OverlapFit &simpler) const { return predicts_better(loss_of(simpler)); }
+
+// Nothing: the pictures as they are.
+bool OverlapFit::predicts_better_than_nothing() const {
+    Estimate nothing = estimate_;
+    lensprof_response linear;
+    lensprof_response_set_linear(&linear);
+    set_fixed(nothing, linear);
+    for (Falloffs &curves : nothing.vignetting) curves = Falloffs{};
+    for (auto &log_exposure : nothing.log_exposure) log_exposure = {0.0, 0.0, 0.0};
+    return predicts_better(heldout_loss(tested(), nothing, common_));
+}
+
+void OverlapFit::run() {
+    bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMaxRefinedImages;
+    const Gauge requested = gauge_;
+    if (frees) gauge_ = gauge_.by_prior();
+    used_ = loss();
+    used_.distrusts = true;
+    best_ = choose(used_);
+    estimate_ = best_.estimate;
+    if (has_heldout_) reconsider(all_, used_, estimate_);
+    outcome_ = solve(all_, prior_, gauge_, used_, true, control_, estimate_);
+    inflation_ = Inflation(all_.settings);
+    if (options_.prior_weight > 0.0 && frees_lens() && !is_static(all_)) weigh_lens_knowledge();
+    if (frees)
+        free_response(requested, used_, best_, estimate_, outcome_);
+    else
+        take_all();
+}
+
+double OverlapFit::worse_than(const OverlapFit &other) const {
+    if (!has_heldout_) return 0.0;
+    HeldoutLoss own_loss = heldout_loss(other.heldout_, best_.estimate, other.common_),
+                other_loss = heldout_loss(other.heldout_, other.best_.estimate, other.common_);
+    double error, difference = loss_difference(own_loss, other_loss, error);
+    return error > 0.0 ? difference / error : 0.0;
+}
+
+void OverlapFit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
+    Loss last = used_;
+    last.noise = estimate_noise(all_, estimate_, used_.noise);
+    const Covariance found = covariance(all_, prior_, gauge_, last, estimate_, &inflation_);
+    finish({all_, gauge_, estimate_, has_heldout_ ? heldout_ : all_, best_.estimate, has_heldout_, last.noise, found,
+            static_cast<uint32_t>(outcome_.iterations), outcome_.converged},
+           nullptr, exposures, result);
+    result.falloff_prior_distance = result.center_prior_distance = 0.0;
+    for (const WeighedLens &lens : lenses_) {
+        result.falloff_prior_distance = std::max(result.falloff_prior_distance, lens.falloff_distance);
+        result.center_prior_distance = std::max(result.center_prior_distance, lens.center_distance);
+    }
+    result.error_inflation = *std::max_element(inflation_.lens.begin(), inflation_.lens.end());
+}
+
+}  // namespace lensprof

@@ -1,0 +1,124 @@
+#include "fit/prior/falloff_prior.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <lensprof/profile.h>
+
+namespace lensprof {
+namespace {
+
+constexpr double kRadius[3] = {0.5, 0.75, 1.0};  // as in make_falloff_prior.py
+constexpr double kSmallestM = 1e-3;
+constexpr double kNothing = 1e-4;  // precision of u that adds no information: a standard error of 100
+
+// Pictures whose camera corrected the falloff: M within some per cent of 1. Nobody has counted them; one in seven.
+constexpr double kCorrectedShare = 1.0 / 7.0;
+constexpr double kCorrectedSigma[3] = {0.010, 0.018, 0.030}, kCorrectedCorrelation = 0.9;
+
+struct Component {
+    double share;
+    Eigen::Vector3d mean;
+    Eigen::Matrix3d scatter;
+    bool has_tails;  // a t distribution
+};
+
+constexpr int kCount = kFalloffClassCount + 1;
+using Mixture = std::array<Component, kCount>;
+
+// Shares of the classes: a linear transition from one to the next if the stops are known, else equal parts.
+double share_of(int of_class, double stops) {
+    if (stops == LENSPROF_UNKNOWN) return 1.0 / kFalloffClassCount;
+    const double place = std::clamp(stops, 0.0, kFalloffClassCount - 1.0);
+    return std::max(0.0, 1.0 - std::abs(place - of_class));
+}
+
+Mixture mixture_of(double stops) {
+    Mixture mixture;
+    for (int n = 0; n < kFalloffClassCount; n++) {
+        const FalloffClass &of_class = kFalloffClasses[n];
+        mixture[static_cast<size_t>(n)] = {(1.0 - kCorrectedShare) * share_of(n, stops),
+                                           Eigen::Vector3d::Map(of_class.mean),
+                                           Eigen::Map<const Eigen::Matrix3d>(&of_class.scatter[0][0]), true};
+    }
+    Component &corrected = mixture.back();
+    corrected = {kCorrectedShare, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero(), false};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            corrected.scatter(i, j) = kCorrectedSigma[i] * kCorrectedSigma[j] * (i == j ? 1.0 : kCorrectedCorrelation);
+    return mixture;
+}
+
+// The normal distribution with the mean and covariance of the mixture.
+FalloffPrior moments_of(const Mixture &mixture) {
+    double total = 0.0;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Component &part : mixture) total += part.share, mean += part.share * part.mean;
+    mean /= total;
+    for (const Component &part : mixture) {
+        const Eigen::Vector3d off = part.mean - mean;
+        covariance += part.share / total * (part.scatter + off * off.transpose());
+    }
+    return {mean, covariance.inverse()};
+}
+
+// Squared distance between the pictures and a component, in the covariance of both, and that covariance's inverse.
+double distance2_of(const Component &part, const Eigen::Matrix3d &shown, const Eigen::Vector3d &u,
+                    Eigen::Matrix3d *inverse) {
+    const Eigen::Matrix3d both = (part.scatter + shown).inverse();
+    if (inverse) *inverse = both;
+    const Eigen::Vector3d off = u - part.mean;
+    return off.dot(both * off);
+}
+
+}  // namespace
+
+Eigen::Vector3d log_falloff(const double k[3], Eigen::Matrix3d *slope) {
+    Eigen::Vector3d u;
+    for (int i = 0; i < 3; i++) {
+        const double r2 = kRadius[i] * kRadius[i];
+        const double m = std::max(1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[2])), kSmallestM);
+        u[i] = std::log(m);
+        if (slope) slope->row(i) << r2 / m, r2 * r2 / m, r2 * r2 * r2 / m;
+    }
+    return u;
+}
+
+FalloffPrior expected_falloff(double stops) { return moments_of(mixture_of(stops)); }
+
+FalloffPrior falloff_given(const ShownFalloff &shown, double stops, double &distance) {
+    const Eigen::Matrix3d precision = shown.precision + kNothing * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d covariance = precision.inverse();
+    const Eigen::Vector3d u = covariance * shown.weighted;
+    Mixture mixture = mixture_of(stops);
+    std::array<double, kCount> log_density{};
+    double highest = -HUGE_VAL, nearest2 = HUGE_VAL;
+    for (size_t n = 0; n < kCount; n++) {
+        const Component &part = mixture[n];
+        Eigen::Matrix3d both;
+        const double distance2 = distance2_of(part, covariance, u, &both);
+        const double tail =
+            part.has_tails ? 0.5 * (kFalloffFreedom + 3.0) * std::log1p(distance2 / kFalloffFreedom) : 0.5 * distance2;
+        log_density[n] =
+            part.share > 0.0 ? std::log(part.share) + 0.5 * std::log(both.determinant()) - tail : -HUGE_VAL;
+        highest = std::max(highest, log_density[n]);
+        if (part.share > 0.0) nearest2 = std::min(nearest2, distance2);
+    }
+    distance = std::sqrt(nearest2);
+    for (size_t n = 0; n < kCount; n++) {
+        Component &part = mixture[n];
+        // A t distribution about pictures that are far from it is as wide as that of the scale that explains them best.
+        if (part.has_tails)
+            part.scatter *=
+                std::max(1.0, (kFalloffFreedom + distance2_of(part, covariance, u, nullptr)) / (kFalloffFreedom + 3.0));
+        part.share = std::exp(log_density[n] - highest);
+    }
+    return moments_of(mixture);
+}
+
+}  // namespace lensprof
