@@ -9,13 +9,15 @@ namespace {
 constexpr double kOfScene = 0.5;  // share of a block's variance: below it, noise dominates the similarity of blocks
 constexpr double kFlat = 0.05;    // of the other's texture: no exposure explains less
 
-// The mean of the middle two of every four pixels: a single wrong pixel has no effect.
-GreyLevels::Level halved(const GreyLevels::Level &from) {
+// The mean of the middle two of every four pixels: a single wrong pixel has no effect. `rows(v)` returns row v of
+// the larger level, followed by the next.
+template <class Rows>
+GreyLevels::Level halved(int width, int height, double pixel, const Rows &rows) {
     GreyLevels::Level to;
-    to.width = from.width / 2, to.height = from.height / 2, to.pixel = 2.0 * from.pixel;
+    to.width = width / 2, to.height = height / 2, to.pixel = 2.0 * pixel;
     to.grey.resize(static_cast<size_t>(to.width) * static_cast<size_t>(to.height));
     for (int v = 0; v < to.height; v++) {
-        const float *above = from.grey.data() + static_cast<ptrdiff_t>(2 * v) * from.width, *below = above + from.width;
+        const float *above = rows(2 * v), *below = above + width;
         float *out = to.grey.data() + static_cast<ptrdiff_t>(v) * to.width;
         for (int u = 0; u < to.width; u++, above += 2, below += 2) {
             float low = std::min(std::min(above[0], above[1]), std::min(below[0], below[1]));
@@ -24,6 +26,22 @@ GreyLevels::Level halved(const GreyLevels::Level &from) {
         }
     }
     return to;
+}
+
+GreyLevels::Level halved(const GreyLevels::Level &from) {
+    return halved(from.width, from.height, from.pixel,
+                  [&](int v) { return from.grey.data() + static_cast<ptrdiff_t>(v) * from.width; });
+}
+
+// From two rows of the view at a time: all would need as much memory as the pictures.
+GreyLevels::Level halved(const View &view) {
+    const auto &picture = view.image().view;
+    std::vector<float> pair(2 * static_cast<size_t>(picture.width));
+    return halved(static_cast<int>(picture.width), static_cast<int>(picture.height), view.image().reduction,
+                  [&](int v) {
+                      view.grey_row(v, pair.data()), view.grey_row(v + 1, pair.data() + picture.width);
+                      return pair.data();
+                  });
 }
 
 // Variance of the mean of every four pixels, from the difference of the two diagonals.
@@ -74,14 +92,7 @@ void make_light(GreyLevels::Level &level, const Light &light, const lensprof_cam
 }  // namespace
 
 GreyLevels::GreyLevels(const View &view, const Light &light) {
-    const auto &picture = view.image().view;
-    Level full;
-    full.width = static_cast<int>(picture.width), full.height = static_cast<int>(picture.height);
-    full.pixel = view.image().reduction;
-    full.grey.resize(static_cast<size_t>(full.width) * static_cast<size_t>(full.height));
-    for (int v = 0; v < full.height; v++)
-        view.grey_row(v, full.grey.data() + static_cast<size_t>(v) * static_cast<size_t>(full.width));
-    level[1] = halved(full);
+    level[1] = halved(view);
     if (light.is_known()) make_light(level[1], light, view.image().camera);
     level[0] = halved(level[1]);
     wide[0] = halved(level[0]);

@@ -22,6 +22,22 @@ bool apply_homography(const lensprof_camera &camera, const Eigen::Matrix3d &homo
     return true;
 }
 
+// The direction, longitude and latitude, in which image `from` of a correction sees (x, y).
+bool direction_of(const lensprof_camera &from, const Correction &correction, Way way, double x, double y,
+                  std::array<double, 2> &direction) {
+    double xy[2] = {x, y};
+    if (correction.bend && way == Way::back && !apply_homography(from, correction.bend->back, xy)) return false;
+    return lensprof_camera_unproject(&from, xy[0], xy[1], direction.data());
+}
+
+// The place at which image `to` sees a direction of the other.
+bool place_in(const lensprof_camera &to, const Correction &correction, Way way, std::array<double, 2> direction,
+              double xy[2]) {
+    rotate(correction.rotation, way == Way::forward ? 1.0 : -1.0, direction.data());
+    return lensprof_camera_project(&to, direction[0], direction[1], xy)
+           && (!correction.bend || way == Way::back || apply_homography(to, correction.bend->forward, xy));
+}
+
 }  // namespace
 
 Bend::Bend(const Eigen::Matrix3d &homography) : forward(homography), back(homography.inverse()) {}
@@ -56,13 +72,8 @@ void pixel_place(const lensprof_camera &camera, const Eigen::Vector2d &place, do
 
 bool place_of(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
               double y, double xy[2]) {
-    double direction[2], source_xy[2] = {x, y};
-    const bool is_forward = way == Way::forward;
-    if (correction.bend && !is_forward && !apply_homography(from, correction.bend->back, source_xy)) return false;
-    if (!lensprof_camera_unproject(&from, source_xy[0], source_xy[1], direction)) return false;
-    rotate(correction.rotation, is_forward ? 1.0 : -1.0, direction);
-    return lensprof_camera_project(&to, direction[0], direction[1], xy)
-           && (!correction.bend || !is_forward || apply_homography(to, correction.bend->forward, xy));
+    std::array<double, 2> direction;
+    return direction_of(from, correction, way, x, y, direction) && place_in(to, correction, way, direction, xy);
 }
 
 bool sees(const lensprof_camera &first, const lensprof_camera &second, double across, double down) {
@@ -73,14 +84,27 @@ bool sees(const lensprof_camera &first, const lensprof_camera &second, double ac
 
 bool sight(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
            double y, Sight &out) {
+    return Gaze(from, correction, way, x, y).sight(to, correction, way, out);
+}
+
+Gaze::Gaze(const lensprof_camera &from, const Correction &correction, Way way, double x, double y) {
+    constexpr double step = 2.0;  // px, inwards
+    step_ = {x < 0.5 * from.width ? step : -step, y < 0.5 * from.height ? step : -step};
+    const auto look = [&](double to_x, double to_y, Direction &direction) {
+        direction.is_known = direction_of(from, correction, way, to_x, to_y, direction.angles);
+    };
+    look(x, y, middle_), look(x + step_[0], y, neighbour_[0]), look(x, y + step_[1], neighbour_[1]);
+}
+
+bool Gaze::sight(const lensprof_camera &to, const Correction &correction, Way way, Sight &out) const {
     double xy[2], shifted[2];
-    constexpr double step = 2.0;  // px
-    if (!place_of(from, to, correction, way, x, y, xy)) return false;
-    for (int d = 0; d < 2; d++) {
-        double inwards = (d == 0 ? x < 0.5 * from.width : y < 0.5 * from.height) ? step : -step;
-        double to_x = x + (d == 0 ? inwards : 0.0), to_y = y + (d == 1 ? inwards : 0.0);
-        if (!place_of(from, to, correction, way, to_x, to_y, shifted)) return false;
-        for (int e = 0; e < 2; e++) out.map[e][d] = (shifted[e] - xy[e]) / inwards;
+    const auto sees = [&](const Direction &direction, double place[2]) {
+        return direction.is_known && place_in(to, correction, way, direction.angles, place);
+    };
+    if (!sees(middle_, xy)) return false;
+    for (size_t d = 0; d < 2; d++) {
+        if (!sees(neighbour_[d], shifted)) return false;
+        for (size_t e = 0; e < 2; e++) out.map[e][d] = (shifted[e] - xy[e]) / step_[d];
     }
     out.x = xy[0], out.y = xy[1];
     return true;

@@ -51,6 +51,24 @@ struct Sight {
 bool sight(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
            double y, Sight &out);
 
+// What of a sight depends only on the place, for sights under several corrections: the directions of the place and of
+// two neighbours. Forward, they do not depend on the correction either.
+class Gaze {
+public:
+    Gaze(const lensprof_camera &from, const Correction &correction, Way way, double x, double y);
+
+    bool sight(const lensprof_camera &to, const Correction &correction, Way way, Sight &out) const;
+
+private:
+    struct Direction {
+        std::array<double, 2> angles;  // longitude and latitude, radians
+        bool is_known;
+    };
+    std::array<double, 2> step_;  // px to the neighbours across and down
+    Direction middle_;
+    std::array<Direction, 2> neighbour_;
+};
+
 // Whether a place of the first frame, given as shares of its width and height, lies in the second, according to the
 // project.
 bool sees(const lensprof_camera &first, const lensprof_camera &second, double across, double down);

@@ -1,6 +1,8 @@
 // Converts grey values to light if response and falloff are known.
 #pragma once
 
+#include <vector>
+
 #include <lensprof/model.h>
 #include <lensprof/sample.h>
 
@@ -26,7 +28,9 @@ public:
 private:
     const lensprof_response *response_;
     const lensprof_vignetting *vignetting_;
-    double darkest_ = 1.0;  // least M: brightened values stay below white
+    // Tables, because there are millions of pixels: a grey value by the grey value measured, and the factor that the
+    // falloff requires by r^2.
+    std::vector<double> brightness_, factor_;
 };
 
 }  // namespace lensprof

@@ -34,6 +34,7 @@
 #include "fit/sampling/registration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <utility>
@@ -43,6 +44,8 @@
 #include <Eigen/LU>
 
 #include <lensprof/model.h>
+
+#include "fit/sampling/block_search.hpp"
 
 namespace lensprof {
 namespace {
@@ -71,11 +74,12 @@ constexpr double kLargestBend = 0.25;     // rotation or change of scale of a fi
 constexpr double kFollows = 2.0;          // coarse pixels within which a block follows a guess
 constexpr double kMinFollowing = 0.2;     // share of the blocks that follow a guess
 constexpr double kDerivativeStep = 1e-4;  // radians
-constexpr double kNoShift[2] = {0.0, 0.0};
+constexpr std::array<int, 2> kNoShift = {0, 0};
 
 // A block of the first image, and its place in the second according to the project.
 struct Place {
     double x, y;
+    Gaze gaze;
     size_t cell;
     std::array<Block<4>, 2> block;  // per level
 
@@ -92,7 +96,7 @@ struct Match {
     Sight expected;       // expected place in the second image
     Eigen::Vector2d off;  // and its offset from there, px of the full frame
     double quality;
-    Eigen::Matrix<double, 2, Eigen::Dynamic> rows;  // derivative of the expected place by every unknown
+    Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 8> rows;  // derivative of the expected place by every unknown
 };
 
 // The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, with c_m being the trust.
@@ -137,16 +141,15 @@ struct Matcher {
     bool is_textured(const Place &p) const;
     void find_places();
     double mean_agreement(size_t level, const Rotation &rotation) const;
-    Rotation together(const double shift[2]) const;
-    bool cut(size_t level, const Sight &expected, double du, double dv, Block<4> &out) const;
+    Rotation together(const std::array<int, 2> &shift) const;
+    std::vector<double> around(size_t level, const Place &place, const Sight &expected, const Shifts &shifts) const;
     Correlations correlations(size_t level, const Correction &correction) const;
-    void common_shift(double shift[2]) const;
-    std::vector<Match> look(size_t level, const double *shift, int reach, int step, double least,
-                            const Correction &correction) const;
-    bool refine(size_t level, const double *shift, Rotation &rotation) const;
+    std::array<int, 2> common_shift() const;
+    std::vector<Match> look(size_t level, const Shifts &shifts, double least, const Correction &correction) const;
+    bool refine(size_t level, const std::array<int, 2> &shift, Rotation &rotation) const;
     bool refine_bend(size_t level, Correction &correction) const;
     bool guess_bend(Correction &correction) const;
-    std::optional<Rotation> rotation(const double shift[2]) const;
+    std::optional<Rotation> rotation(const std::array<int, 2> &shift) const;
     std::optional<Correction> bent(Correction correction) const;
     bool is_better(const Correction &correction, const Correlations &correlations, const Correction &reference,
                    const Correlations &without) const;
@@ -184,12 +187,12 @@ void Matcher::find_places() {
     if (!overlap_box(low, high)) return;
     for (int row = 0; row < kRows; row++)
         for (int column = 0; column < kColumns; column++) {
-            Place p{};
-            p.x = (low[0] + (column + 0.5) / kColumns * (high[0] - low[0])) * first.width - 0.5;
-            p.y = (low[1] + (row + 0.5) / kRows * (high[1] - low[1])) * first.height - 0.5;
+            const double x = (low[0] + (column + 0.5) / kColumns * (high[0] - low[0])) * first.width - 0.5;
+            const double y = (low[1] + (row + 0.5) / kRows * (high[1] - low[1])) * first.height - 0.5;
+            Place p{x, y, {first, {}, Way::forward, x, y}, {}, {}};
             p.cell = static_cast<size_t>(row / kCell * (kColumns / kCell) + column / kCell);
             Sight expected;
-            bool good = sight(first, second, {}, Way::forward, p.x, p.y, expected);
+            bool good = p.gaze.sight(second, {}, Way::forward, expected);
             for (size_t n = 0; n < 2 && good; n++)
                 good = p.block[n].cut_flat(first_grey.level[n], p.x, p.y, first_grey.level[n].pixel, kUpright);
             if (good && is_textured(p)) places.push_back(p);
@@ -201,11 +204,9 @@ void Matcher::find_places() {
     places.erase(std::remove_if(places.begin(), places.end(), is_taken), places.end());
 }
 
-// The second image's block, (du, dv) level pixels from its expected place.
-bool Matcher::cut(size_t n, const Sight &expected, double du, double dv, Block<4> &out) const {
-    const auto &level = second_grey.level[n];
-    return out.cut_flat(level, expected.x + du * level.pixel, expected.y + dv * level.pixel, first_grey.level[n].pixel,
-                        expected.map);
+// Correlations of a place's block with the second image's around the expected place.
+std::vector<double> Matcher::around(size_t n, const Place &place, const Sight &expected, const Shifts &shifts) const {
+    return correlations_around(place.block[n], second_grey.level[n], expected, first_grey.level[n].pixel, shifts);
 }
 
 Correlations Matcher::correlations(size_t n, const Correction &correction) const {
@@ -213,57 +214,50 @@ Correlations Matcher::correlations(size_t n, const Correction &correction) const
     Block<4> other;
     Sight expected;
     for (const Place &p : places) {
-        bool seen = p.shows(n) && sight(first, second, correction, Way::forward, p.x, p.y, expected)
-                    && cut(n, expected, 0.0, 0.0, other);
+        bool seen =
+            p.shows(n) && p.gaze.sight(second, correction, Way::forward, expected)
+            && other.cut_flat(second_grey.level[n], expected.x, expected.y, first_grey.level[n].pixel, expected.map);
         result.push_back(seen ? std::optional(p.block[n].correlation(other)) : std::nullopt);
     }
     return result;
 }
 
 // The shift, in coarse pixels of the second image, under which all blocks together match best.
-void Matcher::common_shift(double shift[2]) const {
-    constexpr int size = 2 * kFarthest + 1;
-    std::array<double, size * size> sum{};
-    std::array<size_t, size * size> count{};
-    auto offset = [](int k) { return k - kFarthest; };
-    Block<4> other;
+std::array<int, 2> Matcher::common_shift() const {
+    const Shifts shifts{kNoShift, kFarthest, 1};
+    std::vector<double> sum(shifts.count());
+    std::vector<size_t> count(shifts.count());
     Sight expected;
     for (const Place &p : places) {
-        if (!sight(first, second, {}, Way::forward, p.x, p.y, expected)) continue;
-        for (int k = 0; k < size * size; k++)
-            if (cut(0, expected, offset(k % size), offset(k / size), other)) {
-                sum[static_cast<size_t>(k)] += agreement(p.block[0].correlation(other));
-                count[static_cast<size_t>(k)]++;
-            }
+        if (!p.gaze.sight(second, {}, Way::forward, expected)) continue;
+        const std::vector<double> found = around(0, p, expected, shifts);
+        for (size_t k = 0; k < found.size(); k++)
+            if (found[k] != kOutside) sum[k] += agreement(found[k]), count[k]++;
     }
     double best = 0.0;
-    shift[0] = shift[1] = 0.0;
-    for (int k = 0; k < size * size; k++) {
-        auto n = static_cast<size_t>(k);
-        double mean =
-            count[n] >= std::max(kMinJointBlocks, places.size() / 4) ? sum[n] / static_cast<double>(count[n]) : 0.0;
-        if (mean > best) best = mean, shift[0] = offset(k % size), shift[1] = offset(k / size);
+    std::array<int, 2> shift = kNoShift;
+    for (size_t k = 0; k < shifts.count(); k++) {
+        const double mean =
+            count[k] >= std::max(kMinJointBlocks, places.size() / 4) ? sum[k] / static_cast<double>(count[k]) : 0.0;
+        if (mean > best) best = mean, shift = shifts.at(k);
     }
+    return shift;
 }
 
-// Searches for every block around its expected place: under the correction, plus a `shift` in level pixels.
-std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int step, double least,
-                                 const Correction &correction) const {
+// Searches for every block around its expected place under the correction.
+std::vector<Match> Matcher::look(size_t n, const Shifts &shifts, double least, const Correction &correction) const {
     const double pixel = second_grey.level[n].pixel;
     std::vector<Match> matches;
-    Block<4> other;
     for (const Place &p : places) {
         Match m{};
-        m.place = &p, m.quality = least;
-        if (!sight(first, second, correction, Way::forward, p.x, p.y, m.expected)) continue;
-        for (int dv = -reach; dv <= reach; dv += step)
-            for (int du = -reach; du <= reach; du += step) {
-                if (!cut(n, m.expected, shift[0] + du, shift[1] + dv, other)) continue;
-                const double correlation = p.block[n].correlation(other);
-                if (correlation > m.quality)
-                    m.quality = correlation, m.off = {(shift[0] + du) * pixel, (shift[1] + dv) * pixel};
-            }
-        if (m.quality > least) matches.push_back(m);
+        m.place = &p;
+        if (!p.gaze.sight(second, correction, Way::forward, m.expected)) continue;
+        const std::vector<double> found = around(n, p, m.expected, shifts);
+        const auto best = std::max_element(found.begin(), found.end());
+        if (!(*best > least)) continue;
+        const auto [du, dv] = shifts.at(static_cast<size_t>(best - found.begin()));
+        m.quality = *best, m.off = {du * pixel, dv * pixel};
+        matches.push_back(m);
     }
     return matches;
 }
@@ -281,7 +275,7 @@ double Matcher::mean_agreement(size_t level, const Rotation &rotation) const {
 
 // The rotation under which all blocks together match best: along the axes through the middle of the second frame, with
 // steps of two pixels at first.
-Rotation Matcher::together(const double shift[2]) const {
+Rotation Matcher::together(const std::array<int, 2> &shift) const {
     double middle[2], one_px_aside[2];
     const double x = 0.5 * (second.width - 1.0), y = 0.5 * (second.height - 1.0);
     if (!lensprof_camera_unproject(&second, x, y, middle)
@@ -320,9 +314,9 @@ Rotation Matcher::together(const double shift[2]) const {
 }
 
 // Fits the rotation to the places of the blocks: least squares, with less trust in blocks that are far from the others.
-bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
+bool Matcher::refine(size_t n, const std::array<int, 2> &shift, Rotation &rotation) const {
     const double pixel = second_grey.level[n].pixel;
-    std::vector<Match> matches = look(n, shift, kSearch, 1, kMatch, {rotation, {}});
+    std::vector<Match> matches = look(n, {shift, kSearch, 1}, kMatch, {rotation, {}});
     auto is_lost = [&](Match &m) {
         m.rows.resize(2, 3);
         for (int d = 0; d < 3; d++) {
@@ -344,7 +338,7 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
 // The same for the homography.
 bool Matcher::refine_bend(size_t n, Correction &correction) const {
     const double pixel = second_grey.level[n].pixel, scale = lensprof_half_diagonal(second.width, second.height);
-    std::vector<Match> matches = look(n, kNoShift, kSearch, 1, kMatch, correction);
+    std::vector<Match> matches = look(n, {kNoShift, kSearch, 1}, kMatch, correction);
     if (matches.size() < kMinBlocks) return false;
     for (Match &m : matches) {
         const Eigen::Vector2d s = frame_place(second, m.expected.x, m.expected.y);
@@ -365,7 +359,7 @@ bool Matcher::refine_bend(size_t n, Correction &correction) const {
 bool Matcher::guess_bend(Correction &correction) const {
     constexpr size_t kMaxGuesses = 4000;
     const double pixel = second_grey.level[0].pixel, scale = lensprof_half_diagonal(second.width, second.height);
-    const std::vector<Match> matches = look(0, kNoShift, kFarthestBlock, 2, kFarMatch, correction);
+    const std::vector<Match> matches = look(0, {kNoShift, kFarthestBlock, 2}, kFarMatch, correction);
     using Complex = std::complex<double>;
     std::vector<Complex> from, off;
     for (const Match &m : matches) {
@@ -445,7 +439,7 @@ bool Matcher::is_in_place(const Correlations &uncorrected) const {
     return median_shift({}, {turned, {}}) < max_shift && median_shift({}, bent) < max_shift;
 }
 
-std::optional<Rotation> Matcher::rotation(const double shift[2]) const {
+std::optional<Rotation> Matcher::rotation(const std::array<int, 2> &shift) const {
     Rotation rotation{};
     if (!refine(0, shift, rotation) || !refine(0, kNoShift, rotation)) return std::nullopt;
     for (int round = 0; round < 2; round++)
@@ -480,8 +474,7 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
             found = other, correlations = other_correlations;
     };
     if (is_right() || matcher.is_in_place(correlations)) return found;
-    double shift[2];  // start of both rotations
-    matcher.common_shift(shift);
+    const std::array<int, 2> shift = matcher.common_shift();  // start of both rotations
     if (const auto rotation = matcher.rotation(shift)) take_if_better({*rotation, {}});
     if (is_right()) return found;
     take_if_better({matcher.together(shift), {}});
