@@ -37,11 +37,12 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_IMAGE_ODD = 151,                 /* image: median residual, levels of 255 */
     LENSPROF_REASON_STILL_IMAGE_ODD = 152,           /* image: median residual, levels of 255 */
     LENSPROF_REASON_WEAK_PATTERNS = 153,             /* share of the residual's variance; levels of 255 */
-    LENSPROF_REASON_IMAGES_LEFT_OUT = 154,           /* first image left out: number of images */
+    LENSPROF_REASON_IMAGES_LEFT_OUT = 154,           /* first image that disagrees and was left out: number of them */
     LENSPROF_REASON_MANY_OUTLIERS = 155,             /* share of the pairs that disagree; held-out RMS, levels of 255 */
-    LENSPROF_REASON_SEAMS_STAY = 156,       /* median residual; median residual before the fit; levels of 255 */
-    LENSPROF_REASON_LINKS_UNVERIFIED = 157, /* first image: number of images */
-    LENSPROF_REASON_LINKS_CONTRADICT = 158, /* image of the first link: number of links */
+    LENSPROF_REASON_SEAMS_STAY = 156,         /* median residual; median residual before the fit; levels of 255 */
+    LENSPROF_REASON_LINKS_UNVERIFIED = 157,   /* first image: number of images */
+    LENSPROF_REASON_LINKS_CONTRADICT = 158,   /* image of the first link: number of links */
+    LENSPROF_REASON_IMAGES_UNCONNECTED = 159, /* first image left out, as none of them disagrees: number of images */
 
     /* Exposures, and the exponent gamma, which pictures alone do not determine. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201, /* image: standard error, EV */

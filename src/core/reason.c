@@ -31,6 +31,7 @@ static const reason_row rows[] = {
     ROW(IMAGE_ODD, "image_odd", "most pairs of an image disagree with the camera model"),
     ROW(STILL_IMAGE_ODD, "still_image_odd", "most pairs of an image disagree with the response"),
     ROW(IMAGES_LEFT_OUT, "images_left_out", "images that do not agree with the others were left out"),
+    ROW(IMAGES_UNCONNECTED, "images_unconnected", "images that no pairs connect to the others were left out"),
     ROW(MANY_OUTLIERS, "many_outliers", "many pairs disagree with the camera model"),
     ROW(SEAMS_STAY, "seams_stay", "the result barely reduces the differences between the pictures"),
     ROW(LINKS_UNVERIFIED, "links_unverified",

@@ -23,7 +23,7 @@ void test_one_bad_picture_of_six(void **) {
     const std::string result = work("bad/result.pto"), even = work("even"), db = work("bad.db");
     const Outcome found = run_words({"build", pto("bad"), "--db", db, "--json", "--pto-out", result});
     assert_int_equal(found.code, done);
-    assert_true(contains(found.err, "img005.png: left out"));
+    assert_true(contains(found.err, "img005.png: left out: it disagrees with the others"));
     const Json json = Json::parse(found.out);
     assert_true(json["usable"] == true && json["evens"] == true);
     for (size_t i = 0; i < 6; i++) {
@@ -48,6 +48,18 @@ void test_one_bad_picture_of_six(void **) {
     const Json alone = json_of({"apply", "--pto", result, "-o", even, "--json", work("bad/img005.png")}, not_usable);
     assert_int_equal(alone["pictures"].size(), 0);
     assert_int_equal(alone["left_out"].size(), 1);
+}
+
+// The project has the last picture elsewhere: it overlaps none.
+void test_one_picture_apart(void **) {
+    simulate("apart", {"--seed", "3"});
+    edit(pto("apart"), " y[-0-9.]+( .*img005.png)", " y180$1");
+    const Outcome found = run_words({"build", pto("apart"), "--no-store", "--json"});
+    assert_int_equal(found.code, done);
+    assert_true(contains(found.err, "img005.png: left out: no pair connects it to the others"));
+    const Json json = Json::parse(found.out);
+    assert_true(json["images"][4]["joined"] == true && json["images"][5]["joined"] == false);
+    assert_true(json["reason_code"] == "images_unconnected");
 }
 
 // The reference of the project is the bad one.
@@ -168,6 +180,7 @@ void test_a_second_look_joins(void **) {
 int main() {
     const struct CMUnitTest tests[] = {
         CLI_TEST(test_one_bad_picture_of_six),
+        CLI_TEST(test_one_picture_apart),
         CLI_TEST(test_the_reference_can_be_the_bad_one),
         CLI_TEST(test_even_pictures_that_are_no_profile),
         CLI_TEST(test_noise_is_neither),

@@ -250,6 +250,45 @@ void test_a_misplaced_reference_is_replaced(void **) {
     assert_true(run.quality[2].ev_sigma > 0.0);
 }
 
+// Drops all but `count` pairs of the last image.
+void keep_of_last(Simulation &s, uint32_t count) {
+    uint32_t kept = 0, last = s.images - 1;
+    drop(s, [&](const lensprof_pair &p) { return (p.image[0] == last || p.image[1] == last) && kept++ >= count; });
+}
+
+// No pair of the last image: nothing disagrees, unless sampling found that the pictures show something else there.
+void test_an_image_without_pairs_is_unconnected(void **) {
+    Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
+    const uint32_t last = s.images - 1;
+    keep_of_last(s, 0);
+    FitRun run = run_fit(s);
+    assert_int_equal(run.result.left_out, 1);
+    assert_true(says(run, LENSPROF_REASON_IMAGES_UNCONNECTED, "including image 7;") && names(run, last));
+    assert_close(run.result.reason_value[0], 1.0, 0.0);
+    lensprof_link links[] = {{{0, 1}, LENSPROF_LINK_VERIFIED, 100}, {{last - 1, last}, LENSPROF_LINK_CONTRADICTED, 0}};
+    lensprof_fit_options options = default_fit();
+    options.links = links, options.link_count = 1;
+    assert_true(says(run_fit(s, options), LENSPROF_REASON_IMAGES_UNCONNECTED, "no pairs connect 1 of the images"));
+    options.link_count = 2;
+    assert_true(says(run_fit(s, options), LENSPROF_REASON_IMAGES_LEFT_OUT, "(1, including image 7)"));
+}
+
+// Two images, each connected to the other alone, are unconnected; with an image that disagrees, the reason is about
+// that.
+void test_images_that_disagree_come_first(void **) {
+    Simulation s = simulate(4000, 1.0, 0.0, 42, 3);
+    const auto is_last = [&](uint32_t i) { return i + 2 >= s.images; };
+    drop(s, [&](const lensprof_pair &p) { return is_last(p.image[0]) != is_last(p.image[1]); });
+    assert_true(says(run_fit(s), LENSPROF_REASON_IMAGES_UNCONNECTED, "2 of the images, including image 6;"));
+    for (auto &p : s.pairs)
+        for (int side = 0; side < 2; side++)
+            if (p.image[side] == 5)
+                for (double &v : p.value[side]) v = std::fmod(1.0 + 7.3 * p.xy[side][0] * p.xy[side][1], 0.9);
+    const FitRun run = run_fit(s);
+    assert_int_equal(run.result.left_out, 3);
+    assert_true(says(run, LENSPROF_REASON_IMAGES_LEFT_OUT, "(1, including image 5)") && names(run, 5));
+}
+
 // Links that contradict the others are left out; their images stay.
 void test_a_broken_link_is_left_out_alone(void **) {
     Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
@@ -266,12 +305,6 @@ void test_a_broken_link_is_left_out_alone(void **) {
     assert_int_equal(run.result.pairs, s.pairs.size() - of_link);
     assert_true(says(run, LENSPROF_REASON_LINKS_CONTRADICT, "1 of the links") && names(run, 2));
     assert_int_equal(run.result.evens, 0);  // that seam stays
-}
-
-// Drops all but `count` pairs of the last image.
-void keep_of_last(Simulation &s, uint32_t count) {
-    uint32_t kept = 0, last = s.images - 1;
-    drop(s, [&](const lensprof_pair &p) { return (p.image[0] == last || p.image[1] == last) && kept++ >= count; });
 }
 
 // The last image keeps seven pairs, five of which show something else; two agree on an exposure by chance.
@@ -420,6 +453,8 @@ int main() {
         cmocka_unit_test(test_coverage_counts_every_end),
         cmocka_unit_test(test_a_misplaced_image_is_left_out),
         cmocka_unit_test(test_a_misplaced_reference_is_replaced),
+        cmocka_unit_test(test_an_image_without_pairs_is_unconnected),
+        cmocka_unit_test(test_images_that_disagree_come_first),
         cmocka_unit_test(test_a_broken_link_is_left_out_alone),
         cmocka_unit_test(test_an_exposure_must_rest_on_pairs),
         cmocka_unit_test(test_gamma_is_no_doubt_of_an_exposure),

@@ -269,13 +269,22 @@ static void warn_of_unjoined_cameras(const BuildReport &report, const std::strin
     }
 }
 
-// Reports the images that disagree with the others, even if the verdict is about them.
+// Whether an image that was left out took part in a fit first, or shows something else than those it overlaps.
+static bool disagrees(const BuildReport &report, size_t image) {
+    return report.quality[image].pairs > 0
+           || std::any_of(report.links.begin(), report.links.end(), [=](const lensprof_link &link) {
+                  return link.state == LENSPROF_LINK_CONTRADICTED && (link.image[0] == image || link.image[1] == image);
+              });
+}
+
+// Reports the images that are left out, even if the verdict is about them.
 void warn_of_unjoined_images(const BuildReport &report, Streams &streams) {
     for (size_t i = 0; i < report.quality.size() && report.fit.left_out; i++)
         if (!report.quality[i].joined && is_camera_joined(report, i))
             warn(streams, report.names[i]
-                              + ": left out: it disagrees with the others, or no pair connects it to them; check its "
-                                "alignment");
+                              + (disagrees(report, i) ? ": left out: it disagrees with the others; check its alignment"
+                                                      : ": left out: no pair connects it to the others; add pictures "
+                                                        "that overlap it, or check its alignment"));
 }
 
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {

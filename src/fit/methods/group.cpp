@@ -39,6 +39,8 @@ private:
     void describe(lensprof_exposure *exposures, lensprof_fit_result &r) const;
     template <class Verdict>
     void warn_of_links(const lensprof_fit_result &all, Verdict &r) const;
+    bool disagrees(uint32_t image) const;
+    Reason left_out_reason(uint32_t all) const;
     uint32_t count_unverified(uint32_t &first) const;
     bool is_within(const std::array<uint32_t, 2> &link) const {
         return group_.joined[link[0]] && group_.joined[link[1]];
@@ -50,6 +52,7 @@ private:
     const PairsWithin &pairs_within_;
     Group group_;
     std::vector<bool> had_pairs_ = std::vector<bool>(count_, false);  // images, considering all pairs
+    std::vector<bool> was_fitted_ = std::vector<bool>(count_, false);
     std::vector<lensprof_fit_image_quality> quality_;              // of every image, from the last fit that included it
     std::vector<bool> banned_ = std::vector<bool>(count_, false);  // images
     std::vector<uint32_t> component_;                              // of all images, through links that are not broken
@@ -180,8 +183,26 @@ uint32_t GroupFit::count_unverified(uint32_t &first) const {
     return count;
 }
 
+// Whether pairs, or the link that sampling looked at, are the cause if the image is left out; else no pairs connect it.
+bool GroupFit::disagrees(uint32_t image) const {
+    return was_fitted_[image]
+           || std::any_of(options_.links, options_.links + options_.link_count, [=](const lensprof_link &link) {
+                  return link.state == LENSPROF_LINK_CONTRADICTED && (link.image[0] == image || link.image[1] == image);
+              });
+}
+
+// The reason that `all` images are left out: about those that disagree, if there are any.
+Reason GroupFit::left_out_reason(uint32_t all) const {
+    std::vector<uint32_t> disagree, unconnected;
+    for (uint32_t i = 0; i < count_; i++)
+        if (!group_.joined[i]) (disagrees(i) ? disagree : unconnected).push_back(i);
+    if (disagree.empty()) return of_image(LENSPROF_REASON_IMAGES_UNCONNECTED, unconnected[0], {double(all)});
+    return of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, disagree[0], {double(disagree.size())});
+}
+
 // Stores the quality that the last fit reports for its images.
 void GroupFit::note_quality(const lensprof_fit_result &r) {
+    for (uint32_t i = 0; i < count_; i++) was_fitted_[i] = was_fitted_[i] || group_.joined[i];
     quality_.resize(r.image_quality ? count_ : 0);
     for (uint32_t i = 0; i < quality_.size(); i++)
         if (group_.joined[i]) quality_[i] = r.image_quality[i];
@@ -226,7 +247,7 @@ void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
     const auto *contradicted = std::find_if(links, end, is_contradicted);
     uint32_t unverified = 0;
     if (all.left_out)
-        warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(all.left_out)}));
+        warn(r, left_out_reason(all.left_out));
     else if (broken != group_.broken.end())
         warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, (*broken)[0],
                          {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_in_group))}));

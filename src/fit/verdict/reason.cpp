@@ -48,6 +48,8 @@ constexpr Wording
              "{0%} of the residual follows a different pattern in each image ({1.1} levels), which suggests weak local tone mapping (HDR): exposures may be less accurate than stated"},
             {LENSPROF_REASON_IMAGES_LEFT_OUT,
              "inconsistent images were left out ({0}, including {item}); check their alignment, or leave them out of the project"},
+            {LENSPROF_REASON_IMAGES_UNCONNECTED,
+             "no pairs connect {0} of the images, including {item}; add pictures that overlap them"},
             {LENSPROF_REASON_MANY_OUTLIERS,
              "{0%} of the pairs disagree with the camera model (residual {1.1} levels RMS): check the alignment, and whether something moved"},
             {LENSPROF_REASON_SEAMS_STAY,
