@@ -5,6 +5,7 @@
 #include "cli/fitting/photographs.hpp"
 #include "cli/fitting/project_fit.hpp"
 #include "cli/fitting/reconstruction_project.hpp"
+#include "cli/program/file_kind.hpp"
 #include "cli/reconstruction/reconstruction_file.hpp"
 
 namespace lensprof {
@@ -20,6 +21,7 @@ Project project_of_words(const std::vector<std::string> &words, const std::strin
     if (!images.empty())
         throw Failure(ExitCode::usage,
                       "--images: is for reconstructions, but " + words[0] + " is not one; omit the option");
+    for (const std::string &word : words) refuse_other_kind(word);
     if (is_one && !is_picture_argument(words[0])) {
         reject_reconstruction_part(words[0]);
         return read_project(words[0]);

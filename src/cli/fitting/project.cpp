@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "cli/program/file_kind.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/interrupt.hpp"
@@ -350,6 +351,7 @@ void check_point(const std::string &path, const Project &project, const lensprof
 void check_first_points(const std::string &path) {
     constexpr size_t max_head_bytes = 1 << 16;
     const std::string head = read_head(path, max_head_bytes);
+    refuse_other_kind(path);
     const size_t end = head.size() < max_head_bytes ? head.size() : head.rfind('\n') + 1;  // 0 without a line end
     if (end == 0 && !head.empty())
         throw Failure(ExitCode::unreadable, path + ": line 1 is too long for a point file; check the file name");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "cli/program/file_kind.hpp"
 #include "cli/program/paths.hpp"
 
 namespace lensprof {
@@ -46,6 +47,7 @@ lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free)
 }  // namespace
 
 Project static_project(const std::vector<std::string> &files, bool free_balance) {
+    for (const std::string &file : files) refuse_other_kind(file);
     if (files.size() < 2)
         throw Failure(ExitCode::usage,
                       "one picture shows no difference in exposure; give at least two of the same scene");

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "cli/program/error.hpp"
+#include "cli/program/file_kind.hpp"
 #include "cli/program/output_file.hpp"
 
 namespace lensprof {
@@ -74,6 +75,7 @@ File open_for_reading(const std::string &path) {
     struct stat status = {};
     if (fstat(fileno(file.get()), &status) != 0 || S_ISDIR(status.st_mode))
         throw Failure(ExitCode::unreadable, path + ": cannot read: it is a folder; give the name of a picture");
+    refuse_other_kind(path);
     return file;
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/opcode_tag.hpp"
+#include "cli/program/file_kind.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/library.hpp"
 
@@ -53,6 +54,7 @@ const ForeignRule &format_to_read(const std::string &path, const std::string &fo
     require_regular_file(path);
     if (!format_name.empty()) return rule_of_word(format_name);
     const std::string head = read_head(path, 8192);
+    refuse_other_kind(path);
     uint32_t format = format_of_tags(path, head);
     if (!format) format = lensprof_format_detect(head.data(), head.size(), path.c_str());
     if (format) return rule_of(format);

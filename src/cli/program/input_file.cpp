@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/program/error.hpp"
+#include "cli/program/file_kind.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
 
@@ -39,6 +40,7 @@ void require_regular_file(const std::string &path) {
 std::string read_text(const std::string &path, uint64_t max_bytes) {
     const std::string name = short_name(path);
     std::ifstream file = open_for_reading(path);
+    refuse_other_kind(path);
     const uint64_t bytes = file_bytes(path);
     if (bytes > max_bytes) fail_too_large(name, max_bytes);
     std::string text;

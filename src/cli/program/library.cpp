@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "cli/program/file_kind.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/utf8.hpp"
@@ -97,6 +98,7 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
     if (mode == LENSPROF_STORE_CREATE) require_folder(path);
     if (path_exists(file) && !is_regular_file(file) && !is_folder(file))  // reading a pipe would block
         throw Failure(ExitCode::store, file + ": is not a regular file; give the path of a database");
+    refuse_other_kind(file);
     lensprof_store *store = nullptr;
     lensprof_error error{};
     check(lensprof_store_open(file.c_str(), mode, &store, &error), file, &error);

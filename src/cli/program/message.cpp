@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/program/format.hpp"
+#include "cli/program/shell_word.hpp"
 #include "cli/program/utf8.hpp"
 
 namespace lensprof {
@@ -37,12 +38,8 @@ void note(Streams &streams, const std::string &text) {
 }
 
 std::string command_text(const std::vector<std::string> &words) {
-    constexpr const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./,:=+@%";
     std::string text = "lensprof";
-    for (const std::string &word : words) {
-        const bool is_plain = !word.empty() && word.find_first_not_of(plain) == std::string::npos;
-        text += " " + (is_plain ? word : shell_quoted(word));
-    }
+    for (const std::string &word : words) text += " " + shell_word(word);
     return text;
 }
 
