@@ -1,13 +1,11 @@
-// TIFF through libtiff. Its errors are return values; its messages arrive in a handler per open file.
-#include "cli/pictures/codec.hpp"
-
+// TIFF through libtiff.
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <new>
+#include <optional>
 
-#include <tiffio.h>
+#include "cli/pictures/tiff_handle.hpp"
 
 namespace lensprof {
 
@@ -23,68 +21,6 @@ constexpr uint64_t classic_max_bytes = uint64_t(4000) << 20;
 
 // Bytes of a strip before compression.
 constexpr size_t strip_bytes = size_t(256) << 10;
-
-struct Message {
-    char text[200] = "";  // the first error
-    int error_number = 0;
-};
-
-int on_error(TIFF *, void *data, const char *, const char *format, va_list arguments) {
-    Message *message = static_cast<Message *>(data);
-    if (message->text[0] == '\0') {
-        message->error_number = errno;
-        vsnprintf(message->text, sizeof message->text, format, arguments);
-    }
-    return 1;
-}
-
-// libjpeg inside libtiff only warns about damage and invents the missing pixels.
-int on_warning(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
-    va_list copy;
-    va_copy(copy, arguments);
-    char text[200] = "";
-    vsnprintf(text, sizeof text, format, copy);
-    va_end(copy);
-    const bool damage = std::strstr(text, "Premature end")
-                        || (std::strstr(text, "Corrupt JPEG data") && !std::strstr(text, "extraneous"));
-    if (module && std::strcmp(module, "JPEGLib") == 0 && damage) on_error(tiff, data, module, format, arguments);
-    return 1;
-}
-
-class Tiff {
-public:
-    Tiff(const std::string &path, const char *mode) {
-        std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions *)> options(TIFFOpenOptionsAlloc(),
-                                                                              TIFFOpenOptionsFree);
-        if (!options) throw std::bad_alloc();
-        TIFFOpenOptionsSetErrorHandlerExtR(options.get(), on_error, &message);
-        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), on_warning, &message);
-        handle = TIFFOpenExt(path.c_str(), mode, options.get());
-    }
-    ~Tiff() { close(); }
-    Tiff(const Tiff &) = delete;
-    Tiff &operator=(const Tiff &) = delete;
-
-    void close() {
-        if (handle) TIFFClose(handle);
-        handle = nullptr;
-    }
-
-    bool failed() const { return !handle || message.text[0] != '\0'; }
-
-    template <class T>
-    T field(uint32_t tag, T default_value) const {
-        T value = default_value;
-        return TIFFGetFieldDefaulted(handle, tag, &value) ? value : default_value;
-    }
-
-    // Bytes stored in the file for a strip or tile.
-    uint64_t stored(uint32_t block) const { return std::min(TIFFGetStrileByteCount(handle, block), file_bytes()); }
-    uint64_t file_bytes() const { return TIFFGetSizeProc(handle)(TIFFClientdata(handle)); }
-
-    Message message;
-    TIFF *handle = nullptr;
-};
 
 // Limits of a strip or tile by compression.
 struct Limits {
@@ -340,7 +276,7 @@ private:
 // m: no memory map, which would crash the process if the file is truncated while being read.
 TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(request.path, "rm") {
     if (!tiff_.handle) fail_damaged(path_, tiff_.message.text);
-    tiff_.message = Message();  // errors in tags that are not needed
+    tiff_.message = TiffMessage();  // errors in tags that are not needed
     check_not_raw(tiff_, request);
     read_sample(tiff_, request, header_);
     read_layout(tiff_, request, header_);
