@@ -8,8 +8,10 @@
 #include "cli/fitting/photographs.hpp"
 #include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/pictures/raw_kind.hpp"
+#include "cli/program/file_kind.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/program/paths.hpp"
 
@@ -20,6 +22,7 @@ namespace fs = std::filesystem;
 
 void check_output(const std::vector<std::string> &words, const std::string &output) {
     for (const std::string &word : words) {
+        refuse_other_kind(word);
         if (!is_folder(word) && !is_picture_name(word) && path_exists(word))
             throw Failure(
                 ExitCode::usage,
@@ -94,10 +97,12 @@ bool is_sheet(const InputPicture &picture, const std::string &output) {
 
 // Sets metadata, identity and copy in `folder`; returns the reason to leave it out, or "".
 std::string examine_picture(InputPicture &picture, const fs::path &folder, bool &is_unreadable) {
+    SeveralPictures several;
     try {
         picture.is_raw = raw_kind(picture.file).has_value();
         picture.target = (folder / copy_name(picture)).string();
         picture.metadata = read_metadata(picture.file);
+        several = several_pictures(picture.file);
         picture.identity = stamp_of(picture.file) + ":" + digest_of(picture.file);
     } catch (const Failure &failure) {
         if (!is_of_pictures(failure)) throw;
@@ -105,6 +110,8 @@ std::string examine_picture(InputPicture &picture, const fs::path &folder, bool 
         return failure.what();
     }
     const auto &mark = picture.metadata.mark;
+    if (!several.what.empty())
+        return picture.file + ": " + several.what + ", but only the first would be corrected; " + several.next_step;
     if (mark && mark->falloff == CorrectionMark::Falloff::removed)
         return picture.file + ": already corrected, " + picture.metadata.corrected_by + "; give the original";
     return {};

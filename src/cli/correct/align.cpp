@@ -15,6 +15,7 @@
 #include "cli/pictures/clipping.hpp"
 #include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/message.hpp"
@@ -165,6 +166,10 @@ size_t frame_like(const std::vector<lensprof_exposure> &exposures, const lenspro
 std::vector<Correction> make_jobs(const Options &o, const Project &project, const std::vector<uint32_t> &frames) {
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
+        const SeveralPictures several = several_pictures(project.files[i]);
+        if (!several.what.empty())
+            throw Failure(ExitCode::unreadable, project.files[i] + ": " + several.what
+                                                    + ", but only the first would be written; " + several.next_step);
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
         if (raw_kind(project.files[i]) || is_read_alone(project.files[i])) name.replace_extension(".tif");
         Correction job;

@@ -9,8 +9,10 @@
 #include "cli/fitting/exposure_file.hpp"
 #include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/profiles/foreign_file.hpp"
+#include "cli/program/file_kind.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/output_file.hpp"
@@ -93,6 +95,14 @@ void check_mark(const ApplyOptions &o, const std::string &file, const PictureMet
                      true);
 }
 
+// NotThisOne for a file with several pictures: its copy would have only the first.
+void check_several(const std::string &file) {
+    const SeveralPictures several = several_pictures(file);
+    if (!several.what.empty())
+        throw NotThisOne(ExitCode::unreadable,
+                         file + ": " + several.what + ", but only the first would be corrected; " + several.next_step);
+}
+
 // NotThisOne for a DNG whose opcodes already correct the falloff.
 void check_opcodes(const ApplyOptions &o, const std::string &file) {
     if (o.model.force_falloff || !has_falloff_opcode(file)) return;
@@ -125,6 +135,7 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
     job.target = target_name(o, picture, named);
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);
+    check_several(picture.file);
     if (source.models->are_used()) source.models->choose(metadata, job);
     job.copies_dng = is_dng_name(job.target);
     if (job.copies_dng) check_opcodes(o, picture.file);
@@ -183,6 +194,7 @@ void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
 }  // namespace
 
 ApplySource open_source(const ApplyOptions &o) {
+    for (const std::string &file : o.files) refuse_other_kind(file);
     ApplySource source;
     if (o.files.empty() && o.project().empty())
         throw Failure(ExitCode::usage,

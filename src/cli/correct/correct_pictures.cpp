@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/correct/correction.hpp"
+#include "cli/correct/left_out_parts.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/correct/strip_pipeline.hpp"
 #include "cli/fitting/project.hpp"
@@ -156,8 +157,10 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
                        std::filesystem::path(jobs[i].source).filename().string(), correction_note(jobs[i])});
     };
     Corrected corrected;
+    LeftOutParts parts;
     auto finish = [&](uint32_t i) {
         finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
+        parts.add(jobs[i].source, jobs[i].target);
         finished[i] = {nullptr, nullptr, finished[i].with_metadata};
         throughput.add_picture();
         warn_of_written(jobs[i], finished[i].with_metadata, progress);
@@ -166,7 +169,13 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         if (jobs[i].lookup) entry["lookup"] = lookup_json(*jobs[i].lookup);
         corrected.pictures.push_back(entry);
     };
-    for_each_in_order(count, threads, work, finish);
+    try {
+        for_each_in_order(count, threads, work, finish);
+    } catch (...) {
+        parts.warn(progress);
+        throw;
+    }
+    parts.warn(progress);
     corrected.seconds = throughput.seconds();
     corrected.megapixels = throughput.megapixels();
     if (count > 1) progress.print_line("corrected " + throughput.summary());

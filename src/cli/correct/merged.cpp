@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "cli/correct/left_out_parts.hpp"
 #include "cli/correct/light_weights.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/fitting/project.hpp"
@@ -129,6 +130,9 @@ void write_merged(const std::vector<Correction> &jobs, size_t reference, const s
     const bool with_metadata = writer.finish();
     writer.commit();
     warn_of_written(merged_job, with_metadata, progress);
+    LeftOutParts parts;
+    parts.add(merged_job.source, target);
+    parts.warn(progress);
 }
 
 }  // namespace lensprof

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cli/correct/left_out_parts.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/correct/place_map.hpp"
 #include "cli/program/format.hpp"
@@ -226,6 +227,9 @@ void write_light(const Correction &job, const CorrectionKind &kind, Merge &merge
     const bool with_metadata = writer.finish();
     writer.commit();
     warn_of_written(job, with_metadata, progress);
+    LeftOutParts parts;
+    parts.add(job.source, job.target);
+    parts.warn(progress);
 }
 
 }  // namespace

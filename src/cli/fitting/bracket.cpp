@@ -11,6 +11,7 @@
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/static_camera.hpp"
 #include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
@@ -252,6 +253,7 @@ int bracket_and_store(const Options &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
     Project project = static_project(o.files, o.free_balance);
     check_pictures(project, o.max_side);
+    note_several(project.files, streams);
     require_one_kind(project.files);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));

@@ -16,7 +16,9 @@
 #include "cli/fitting/project_fit.hpp"
 #include "cli/fitting/reconstruction_project.hpp"
 #include "cli/page/page.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/file_kind.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
@@ -230,6 +232,7 @@ Project open_project(const Options &o, Streams &streams) {
             throw Failure(ExitCode::usage,
                           std::string(option) + ": is for reconstructions, but " + o.inputs[0]
                               + " is not one; omit the option, or give only database.db, tracks.csv or a similar file");
+    for (const std::string &input : o.inputs) refuse_other_kind(input);
     const bool is_project = o.inputs.size() == 1 && !is_picture_argument(o.inputs[0]);
     for (const std::string &input : o.inputs)
         if (!is_project && !is_picture_argument(input))
@@ -279,6 +282,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);
     if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.max_side);
+    note_several(project.files, streams);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;

@@ -6,6 +6,7 @@
 #include "cli/fitting/flat.hpp"
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
@@ -176,6 +177,7 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     FlatInput input;
     lensprof_flat_options_init(&input.options);
     require_one_kind(o.files);
+    note_several(o.files, streams);
     std::vector<PictureMetadata> metadata;
     for (const auto &file : o.files) metadata.push_back(read_metadata(file));
     input.names = o.files;

@@ -32,6 +32,15 @@ CodedMetadata webp_metadata(const std::string &path);
 CodedMetadata heif_metadata(const std::string &path, const std::string &kind);
 CodedMetadata jxl_metadata(const std::string &path);
 
+// What a HEIF file holds in addition to its primary picture, except thumbnails.
+struct HeifParts {
+    uint32_t pictures = 0;  // of their own, the primary one included
+    bool is_sequence = false;
+    std::vector<std::string> names;  // of auxiliary ones, for messages: "a gain map (HDR)"
+};
+
+HeifParts heif_parts(const std::string &path, const std::string &kind);
+
 // Rows of a picture that is decoded when the first row is requested.
 class DecodedSource : public RowSource {
 public:

@@ -69,28 +69,48 @@ std::optional<Box> find_box(Bytes bytes, const char *type) {
     return std::nullopt;
 }
 
-// The content of the file's meta box; empty if not found.
-std::vector<uint8_t> read_meta(const std::string &path) {
-    const File file = open_for_reading(path);
-    const uint64_t end = file_bytes(file.get());
+// Calls `visit` with type, start and size of the content of each box of the file, until that returns false.
+template <class Visit>
+void each_box(std::FILE *file, const Visit &visit) {
+    const uint64_t end = file_bytes(file);
     std::vector<uint8_t> head;
-    for (uint64_t offset = 0; offset + 16 <= end && read_at(file.get(), offset, 16, head);) {
+    for (uint64_t offset = 0; offset + 16 <= end && read_at(file, offset, 16, head);) {
         Bytes bytes{head.data(), head.size()};
         uint64_t size = bytes.number(4), start = 8;
-        const bool is_meta = std::memcmp(bytes.data, "meta", 4) == 0;
+        const std::string type(reinterpret_cast<const char *>(bytes.data), 4);
         bytes.skip(4);
         if (size == 1) size = bytes.number(8), start = 16;
         if (size == 0) size = end - offset;
-        if (size < start || size > end - offset) break;
-        if (is_meta) {
-            std::vector<uint8_t> meta;
-            if (size > max_meta_bytes || !read_at(file.get(), offset + start, static_cast<size_t>(size - start), meta))
-                meta.clear();
-            return meta;
-        }
+        if (size < start || size > end - offset || !visit(type, offset + start, size - start)) return;
         offset += size;
     }
-    return {};
+}
+
+// The content of the file's meta box; empty if not found.
+std::vector<uint8_t> read_meta(const std::string &path) {
+    const File file = open_for_reading(path);
+    std::vector<uint8_t> meta;
+    each_box(file.get(), [&](const std::string &type, uint64_t start, uint64_t size) {
+        if (type != "meta") return true;
+        if (size > max_meta_bytes || !read_at(file.get(), start, static_cast<size_t>(size), meta)) meta.clear();
+        return false;
+    });
+    return meta;
+}
+
+// 14496-12, 8.11.6: whether an item of this type is listed.
+bool has_item(Bytes meta, const char *type) {
+    const auto items = find_box(meta, "iinf");
+    if (!items) return false;
+    Bytes rest = items->content;
+    rest.number(rest.number(4) >> 24 == 0 ? 2 : 4);  // version, and the number of items
+    while (const auto item = next_box(rest)) {
+        Bytes entry = item->content;
+        const uint64_t version = entry.number(4) >> 24;
+        entry.number(version < 3 ? 2 : 4), entry.number(2);
+        if (version >= 2 && entry.count >= 4 && std::memcmp(entry.data, type, 4) == 0) return true;
+    }
+    return false;
 }
 
 // 1-based indices of an item's properties, in order.
@@ -170,6 +190,21 @@ HeifProperties heif_properties(const std::string &path) {
         if (!indices.empty()) return combine(properties, indices);
     }
     return {};
+}
+
+HeifContents heif_contents(const std::string &path) {
+    HeifContents contents;
+    const File file = open_for_reading(path);
+    each_box(file.get(), [&](const std::string &type, uint64_t, uint64_t) {
+        contents.has_frames |= type == "moov";
+        contents.has_video |= type == "mpvd";
+        return true;
+    });
+    const std::vector<uint8_t> bytes = read_meta(path);
+    Bytes meta{bytes.data(), bytes.size()};
+    meta.number(4);  // version and flags
+    contents.has_tone_map = has_item(meta, "tmap");
+    return contents;
 }
 
 }  // namespace codec

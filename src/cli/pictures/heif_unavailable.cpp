@@ -21,6 +21,8 @@ std::unique_ptr<RowSource> open_heif(const ReadRequest &request, const std::stri
 
 CodedMetadata heif_metadata(const std::string &path, const std::string &kind) { fail_without(path, kind); }
 
+HeifParts heif_parts(const std::string &, const std::string &) { return {}; }
+
 }  // namespace codec
 
 bool can_read_heif() { return false; }

@@ -21,6 +21,8 @@
 #include "cli/pictures/exif_exposure.hpp"
 #include "cli/pictures/exif_value.hpp"
 #include "cli/pictures/icc.hpp"
+#include "cli/pictures/other_parts.hpp"
+#include "cli/pictures/part_tags.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/pictures/png_exif.hpp"
 #include "cli/pictures/raw_kind.hpp"
@@ -344,13 +346,14 @@ Exiv2::ExifData merge_exif(const Exiv2::ExifData &source, const Exiv2::ExifData 
 }
 
 // Removes the thumbnail, and references to parts of the old file that are not copied.
-Exiv2::XmpData copy_xmp(const Exiv2::XmpData &source) {
-    static const char *const removed_prefixes[] = {"Xmp.xmp.Thumbnails", "Xmp.xmpNote.", "Xmp.Container.",
-                                                   "Xmp.GContainer."};
+Exiv2::XmpData copy_xmp(Exiv2::XmpData source, bool keeps_parts) {
+    codec::remove_extended_tags(source);
+    static const char *const removed_prefixes[] = {"Xmp.xmp.Thumbnails", "Xmp.xmpNote."};
     Exiv2::XmpData copy;
     for (const Exiv2::Xmpdatum &datum : source) {
         if (!begins_with_one(datum.key(), removed_prefixes)) copy.add(datum);
     }
+    if (!keeps_parts) codec::remove_part_tags(copy);
     return copy;
 }
 
@@ -452,10 +455,12 @@ bool copy_metadata(const std::string &source, const std::string &target, const C
     if (is_big_tiff(source) || is_big_tiff(target)) return false;
     const ExivImage from = open_image(source);
     const bool from_raw = raw_kind(source).has_value();
+    const OtherParts parts = other_parts(source, target);
     edit_metadata(target, [&](Exiv2::Image &to) {
         const bool tiff = to.mimeType() == "image/tiff";
         Exiv2::ExifData exif = merge_exif(from->exifData(), to.exifData(), tiff, from_raw);
-        Exiv2::XmpData xmp = copy_xmp(from->xmpData());
+        Exiv2::XmpData xmp = copy_xmp(from->xmpData(), !parts.kept.empty());
+        if (parts.kept.empty() && !parts.left_out.empty()) codec::remove_gain_map_tags(exif);
         set_sizes(exif, xmp, static_cast<uint32_t>(to.pixelWidth()), static_cast<uint32_t>(to.pixelHeight()));
         const auto mime_type = xmp.findKey(Exiv2::XmpKey("Xmp.dc.format"));
         if (mime_type != xmp.end()) mime_type->setValue(to.mimeType());

@@ -10,6 +10,7 @@
 
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/coded_kind.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/pictures/raw_file.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/pictures/row_reducer.hpp"
@@ -224,6 +225,7 @@ bool PictureWriter::finish() {
         const bool copied = options_.metadata_from.empty()
                             || copy_metadata(options_.metadata_from, file, options_.mark ? &*options_.mark : nullptr);
         const bool written = !options_.metadata || write_metadata(file, *options_.metadata);
+        if (!options_.metadata_from.empty()) append_kept_parts(options_.metadata_from, file);
         output_->sync();
         return copied && written;
     });

@@ -121,11 +121,11 @@ void Replacement::write(const void *data, size_t bytes) {
     if (std::fwrite(data, 1, bytes, to_.get()) != bytes) fail_to_write(path_, system_text(errno), errno);
 }
 
-void Replacement::copy(uint64_t start, uint64_t bytes) {
+void Replacement::copy_from(std::FILE *file, uint64_t start, uint64_t bytes) {
     for (uint64_t done = 0; done < bytes;) {
         stop_if_interrupted();
         const size_t count = static_cast<size_t>(std::min<uint64_t>(copy_bytes, bytes - done));
-        if (!read_at(from_, start + done, count, buffer_)) fail_damaged(path_, "it was truncated while being read");
+        if (!read_at(file, start + done, count, buffer_)) fail_damaged(path_, "it was truncated while being read");
         write(buffer_.data(), count);
         done += count;
     }

@@ -20,7 +20,8 @@ public:
     Replacement(const std::string &path, std::FILE *from);
 
     void write(const void *data, size_t bytes);
-    void copy(uint64_t start, uint64_t bytes);  // of the old file
+    void copy(uint64_t start, uint64_t bytes) { copy_from(from_, start, bytes); }  // of the old file
+    void copy_from(std::FILE *file, uint64_t start, uint64_t bytes);
     void commit();
 
 private:

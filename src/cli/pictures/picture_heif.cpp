@@ -103,6 +103,11 @@ public:
                         heif_image_handle_get_chroma_bits_per_pixel(handle()));
     }
 
+    uint32_t pictures() const {
+        return static_cast<uint32_t>(std::max(heif_context_get_number_of_top_level_images(context_.get()), 1));
+    }
+    std::vector<std::string> auxiliary_types() const;  // URNs, except those of alpha and depth
+
     std::vector<uint8_t> icc() const;
     std::vector<uint8_t> block(const char *type, const char *content_type) const;
     Owned<const heif_image> decode(heif_chroma chroma);
@@ -136,6 +141,23 @@ std::vector<uint8_t> HeifFile::icc() const {
     if (profile.empty()) return is_linear_ ? linear_profile(is_grey()) : profile;
     errors_.check(heif_image_handle_get_raw_color_profile(handle(), profile.data()));
     return profile;
+}
+
+std::vector<std::string> HeifFile::auxiliary_types() const {
+    constexpr int filter = LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA | LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH;
+    std::vector<heif_item_id> ids(
+        static_cast<size_t>(std::max(heif_image_handle_get_number_of_auxiliary_images(handle(), filter), 0)));
+    heif_image_handle_get_list_of_auxiliary_image_IDs(handle(), filter, ids.data(), static_cast<int>(ids.size()));
+    std::vector<std::string> types;
+    for (const heif_item_id id : ids) {
+        heif_image_handle *picture = nullptr;
+        if (heif_image_handle_get_auxiliary_image_handle(handle(), id, &picture).code != heif_error_Ok) continue;
+        const Owned<const heif_image_handle> owner(picture, release);
+        const char *type = nullptr;
+        if (heif_image_handle_get_auxiliary_type(picture, &type).code == heif_error_Ok && type) types.push_back(type);
+        heif_image_handle_free_auxiliary_types(picture, &type);
+    }
+    return types;
 }
 
 // The first one of a type; empty if not found.
@@ -287,6 +309,25 @@ CodedMetadata heif_metadata(const std::string &path, const std::string &kind) {
     metadata.height = heif.height();
     metadata.orientation = heif.orientation();
     return metadata;
+}
+
+HeifParts heif_parts(const std::string &path, const std::string &kind) {
+    const HeifFile heif(path, kind);
+    const HeifContents contents = heif_contents(path);
+    HeifParts parts;
+    parts.is_sequence = contents.has_frames;
+    parts.pictures = heif.pictures();
+    bool has_gain_map = contents.has_tone_map;
+    for (const std::string &type : heif.auxiliary_types()) {
+        const bool is_gain_map = type.find("hdrgainmap") != std::string::npos;
+        has_gain_map |= is_gain_map;
+        if (!is_gain_map) parts.names.push_back("an auxiliary picture (" + type + ")");
+    }
+    if (contents.has_tone_map && parts.pictures == 2) parts.pictures = 1;  // the gain map may be listed as a picture
+    if (has_gain_map) parts.names.push_back("a gain map (HDR)");
+    if (heif_image_handle_has_depth_image(heif.handle())) parts.names.push_back("a depth map");
+    if (contents.has_video) parts.names.push_back("a video");
+    return parts;
 }
 
 }  // namespace codec
