@@ -281,8 +281,10 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);
-    if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.max_side);
-    note_several(project.files, streams);
+    if (o.points.empty() && !project.is_reconstruction) {
+        check_pictures(project, o.max_side);
+        note_several(project.files, streams);
+    }
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;

@@ -118,7 +118,7 @@ Replacement::Replacement(const std::string &path, std::FILE *from)
 
 void Replacement::write(const void *data, size_t bytes) {
     errno = 0;
-    if (std::fwrite(data, 1, bytes, to_.get()) != bytes) fail_to_write(path_, system_text(errno), errno);
+    if (bytes > 0 && std::fwrite(data, 1, bytes, to_.get()) != bytes) fail_to_write(path_, system_text(errno), errno);
 }
 
 void Replacement::copy_from(std::FILE *file, uint64_t start, uint64_t bytes) {
