@@ -281,6 +281,18 @@ void test_apple_maker_note(void **) {
     assert_int_equal(value_at(copy, at + 84, 4), 7);
 }
 
+// Of a JPEG XL container, before anything is decoded.
+void test_gain_map_of_jxl(void **) {
+    const auto box = [](const std::string &type, const Bytes &content) {
+        return number(content.size() + 8, 4) + bytes_of(type) + content;
+    };
+    const Bytes start = box("JXL ", {'\r', '\n', 0x87, '\n'}) + box("ftyp", bytes_of("jxl ") + number(0, 4));
+    save(work("a.jxl"), start + box("jxlc", Bytes(30, 9)));
+    assert_true(other_parts(work("a.jxl"), work("a.tif")).left_out.empty());
+    save(work("a.jxl"), start + box("jhgm", Bytes(30, 9)) + box("jxlc", Bytes(30, 9)));
+    assert_string_equal(other_parts(work("a.jxl"), work("a.tif")).left_out.at(0).c_str(), "a gain map (HDR)");
+}
+
 struct Page {
     uint32_t width, height;
     uint32_t type = 0;
@@ -458,6 +470,7 @@ int main() {
         CLI_TEST(test_damaged_indices),
         CLI_TEST(test_hostile_files),
         CLI_TEST(test_apple_maker_note),
+        CLI_TEST(test_gain_map_of_jxl),
         CLI_TEST(test_pages),
         CLI_TEST(test_commands),
         CLI_TEST(test_known_kinds),

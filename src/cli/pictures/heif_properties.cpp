@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/pictures/codec.hpp"
+#include "cli/pictures/file_boxes.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 
 namespace lensprof {
@@ -67,23 +68,6 @@ std::optional<Box> find_box(Bytes bytes, const char *type) {
     while (const auto box = next_box(bytes))
         if (box->is(type)) return box;
     return std::nullopt;
-}
-
-// Calls `visit` with type, start and size of the content of each box of the file, until that returns false.
-template <class Visit>
-void each_box(std::FILE *file, const Visit &visit) {
-    const uint64_t end = file_bytes(file);
-    std::vector<uint8_t> head;
-    for (uint64_t offset = 0; offset + 16 <= end && read_at(file, offset, 16, head);) {
-        Bytes bytes{head.data(), head.size()};
-        uint64_t size = bytes.number(4), start = 8;
-        const std::string type(reinterpret_cast<const char *>(bytes.data), 4);
-        bytes.skip(4);
-        if (size == 1) size = bytes.number(8), start = 16;
-        if (size == 0) size = end - offset;
-        if (size < start || size > end - offset || !visit(type, offset + start, size - start)) return;
-        offset += size;
-    }
 }
 
 // The content of the file's meta box; empty if not found.

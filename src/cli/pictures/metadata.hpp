@@ -66,8 +66,9 @@ std::string read_xmp_packet(const std::string &path);
 
 // Copies EXIF, maker notes, IPTC, XMP and comment of one picture to another (JPEG, PNG or TIFF) and replaces that file,
 // completely or not at all. Skipped is what would no longer be true: the thumbnail, sizes of the old file, and in TIFF
-// all tags that describe pixel storage. Pixels, colour profile and resolution of the target stay. Adds `mark`, if
-// given. Returns false if one of the files is a BigTIFF, which Exiv2 does not support. Throws Failure.
+// all tags that describe pixel storage; also tags of parts that a copy leaves out (other_parts.hpp). Pixels, colour
+// profile and resolution of the target stay. Adds `mark`, if given. Returns false for a BigTIFF, which Exiv2 does not
+// support.
 bool copy_metadata(const std::string &source, const std::string &target, const CorrectionMark *mark = nullptr);
 
 // Writes the known fields as EXIF into a picture file and replaces only these (aperture from the key). Returns false

@@ -7,6 +7,7 @@
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/coded_file.hpp"
 #include "cli/pictures/coded_kind.hpp"
+#include "cli/pictures/file_boxes.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/pictures/tiff_pages.hpp"
@@ -23,12 +24,16 @@ enum class Kind {
     jpeg,
     tiff,
     png,
-    heif
+    heif,
+    jxl
 };
 
 Kind kind_of(const std::string &path) {
     if (raw_kind(path)) return Kind::other;
-    if (const auto coded = coded_kind(path)) return coded->format == FileFormat::heif ? Kind::heif : Kind::other;
+    if (const auto coded = coded_kind(path))
+        return coded->format == FileFormat::heif  ? Kind::heif
+               : coded->format == FileFormat::jxl ? Kind::jxl
+                                                  : Kind::other;
     const codec::File file = codec::open_for_reading(path);
     std::vector<uint8_t> start;
     if (!codec::read_at(file.get(), 0, 4, start)) return Kind::other;
@@ -41,6 +46,16 @@ Kind kind_of(const std::string &path) {
 bool is_jpeg(const std::string &path) {
     char start[2] = {};
     return std::ifstream(path, std::ios::binary).read(start, sizeof start) && start[0] == '\xff' && start[1] == '\xd8';
+}
+
+// ISO/IEC 18181-2: the box of a gain map.
+bool has_gain_map_of_jxl(const std::string &path) {
+    bool is_found = false;
+    codec::each_box(codec::open_for_reading(path).get(), [&](const std::string &type, uint64_t, uint64_t) {
+        is_found |= type == "jhgm";
+        return !is_found;
+    });
+    return is_found;
 }
 
 uint32_t big_endian(const uint8_t *bytes) {
@@ -132,6 +147,9 @@ OtherParts other_parts(const std::string &source, const std::string &target) {
         break;
     }
     case Kind::heif: parts.left_out = codec::heif_parts(source, coded_kind(source)->name).names; break;
+    case Kind::jxl:
+        if (has_gain_map_of_jxl(source)) parts.left_out.push_back("a gain map (HDR)");
+        break;
     default: break;
     }
     return parts;
