@@ -12,6 +12,7 @@
 
 #include "cli/pictures/codec.hpp"
 #include "cli/program/error.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 
@@ -67,8 +68,7 @@ public:
 
     void finish() override {
         run([&] { file_.reset(); });
-        const File written = open_for_reading(path_);
-        if (file_bytes(written.get()) == 0) fail_to_write(path_, "it is empty", 0);
+        if (lensprof::file_bytes(path_) == 0) fail_to_write(path_, "it is empty", 0);
     }
 
 private:
