@@ -4,6 +4,7 @@
 
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
+#include "cli/pictures/lens_name.hpp"
 #include "picture_files.hpp"
 
 using namespace picture_files;
@@ -135,9 +136,26 @@ void test_sensor_by_pitch(void **) {
     assert_close(crop_of_pitch("2400", "1600", 2400, 1600, "27"), 1.5, 1e-9);   // contradiction
     assert_close(crop_of_pitch("2400", "1600", 1200, 800), LENSPROF_UNKNOWN, 0);
     assert_close(crop_of_pitch("2400", "1600", 1200, 800, "70"), 70 / 18.0, 1e-9);
-    assert_close(crop_of_pitch("2400", "1600", 2400, 1350), LENSPROF_UNKNOWN, 0);  // cropped
-    assert_close(crop_of_pitch("1200", "800", 1200, 800), LENSPROF_UNKNOWN, 0);    // reduced, as EXIF states
+    assert_close(crop_of_pitch("2400", "1600", 1800, 1350), LENSPROF_UNKNOWN, 0);  // cropped, perhaps resized
+    assert_close(crop_of_pitch("2400", "1600", 1800, 1350, "27"), LENSPROF_UNKNOWN, 0);
+    assert_close(crop_of_pitch("1200", "800", 1200, 800), LENSPROF_UNKNOWN, 0);  // reduced, as EXIF states
     assert_close(crop_of_pitch("1200", "800", 1200, 800, "27"), 1.5, 1e-9);
+}
+
+// A crop that still has all pixels of one side: the pitch of its pixels is the camera's, and the frame was larger.
+void test_sensor_of_a_crop(void **) {
+    const double full_mm = std::hypot(36, 24), pitch_mm = 0.0039;
+    const uint32_t sizes[][2] = {{2400, 1350}, {1600, 1600}, {1350, 2400}, {1600, 2000}, {2400, 800}};
+    for (const auto &size : sizes) {
+        const double crop = full_mm / (std::hypot(size[0], size[1]) * pitch_mm);
+        assert_close(crop_of_pitch("2400", "1600", size[0], size[1], "70"), crop, 1e-9);
+        // by the equivalent, which is that of the frame: 27/18
+        assert_close(crop_of_pitch("2400", "1600", size[0], size[1], "27"),
+                     1.5 * std::hypot(2400, 1600) / std::hypot(size[0], size[1]), 1e-9);
+    }
+    assert_close(crop_of_pitch("2400", "1600", 1201, 800, "27"), 1.5, 1e-9);   // resized
+    assert_close(crop_of_pitch("2400", "1600", 3000, 800, "27"), 1.5, 1e-9);   // stitched
+    assert_close(crop_of_pitch("2400", "1600", 1600, 2400, "27"), 1.5, 1e-9);  // turned
 }
 
 // Nikon's codes of the AF-S Zoom-Nikkor 24-70mm f/2.8G ED.
@@ -187,6 +205,118 @@ void test_lens_of_maker_note(void **) {
     const PictureMetadata olympus =
         read_exif({{"Exif.Image.Make", "OLYMPUS IMAGING CORP."}, {"Exif.OlympusEq.LensModel", "OLYMPUS 14-54mm Lens"}});
     assert_true(olympus.key.lens[0] == '\0' || std::strstr(olympus.key.lens, "14-54mm"));
+}
+
+LensName lens_of(const std::function<void(Exiv2::Image &)> &change) {
+    const std::string path = in_folder("lens.jpg");
+    write_picture(path, make_smooth(16, 8, LENSPROF_LAYOUT_RGB));
+    edit(path, change);
+    const PictureMetadata metadata = read_metadata(path);
+    return {metadata.key.lens, metadata.ambiguous_lens};
+}
+
+// Files from raw converters have no maker notes. 230 is Canon's number of the lens, 137 that of several Sigma lenses.
+void test_lens_in_xmp(void **) {
+    const auto xmp_lens = [](const char *maker, const char *lens, const char *number, const char *range) {
+        return lens_of([&](Exiv2::Image &image) {
+            image.exifData()["Exif.Image.Make"] = std::string(maker);
+            if (*lens) image.xmpData()["Xmp.aux.Lens"] = std::string(lens);
+            if (*number) image.xmpData()["Xmp.aux.LensID"] = std::string(number);
+            if (*range) image.xmpData()["Xmp.aux.LensInfo"] = std::string(range);
+        });
+    };
+    const char *name = "EF24-70mm f/2.8L USM", *range = "24/1 70/1 0/0 0/0";
+    assert_string_equal(xmp_lens("Canon", name, "230", range).name.c_str(), name);
+    assert_string_equal(xmp_lens("FUJIFILM", "XF23mmF1.4 R", "", "").name.c_str(), "XF23mmF1.4 R");
+    for (const char *stated : {range, ""})
+        assert_string_equal(xmp_lens("Canon", "", "230", stated).name.c_str(), "Canon EF 24-70mm f/2.8L USM");
+    assert_string_equal(xmp_lens("Canon", "", "230", "17/1 40/1 0/0 0/0").name.c_str(), "");
+    assert_non_null(std::strstr(xmp_lens("Canon", "", "137", "18/1 50/1 0/0 0/0").name.c_str(), "Sigma 18-50mm"));
+    assert_string_equal(xmp_lens("Canon", "", "137", "").name.c_str(), "");
+    for (const char *maker : {"FUJIFILM", "Other", ""})
+        assert_string_equal(xmp_lens(maker, "", "230", range).name.c_str(), "");
+    const LensName sony = xmp_lens("SONY", "", "24", "");
+    assert_string_equal(sony.name.c_str(), "");
+    assert_non_null(std::strstr(sony.ambiguous.c_str(), "Sigma 18-50mm"));
+    const LensName nikon = xmp_lens("NIKON CORPORATION", "18.0-55.0 mm f/3.5-5.6", "154", "180/10 550/10 35/10 56/10");
+    assert_string_equal(nikon.name.c_str(), "18.0-55.0 mm f/3.5-5.6");
+    assert_string_equal(lens_of([](Exiv2::Image &image) {
+                            image.exifData()["Exif.Photo.LensModel"] = std::string("EF50mm f/1.8 STM");
+                            image.xmpData()["Xmp.aux.Lens"] = std::string("Another 85mm");
+                        }).name.c_str(),
+                        "EF50mm f/1.8 STM");
+}
+
+void test_lens_of_canon_without_number(void **) {
+    for (const char *number : {"0", "65535"})
+        assert_string_equal(read_exif({{"Exif.Image.Make", "Canon"},
+                                       {"Exif.Canon.LensModel", "EF24-105mm f/4L IS USM"},
+                                       {"Exif.CanonCs.LensType", number}})
+                                .key.lens,
+                            "EF24-105mm f/4L IS USM");
+}
+
+// Texts of other types than ASCII, UNDEFINED with or without a character code.
+void test_texts_as_bytes(void **) {
+    const std::string text = "EF50mm f/1.8 STM";
+    for (const Exiv2::TypeId type : {Exiv2::unsignedByte, Exiv2::undefined})
+        for (const std::string &code : {std::string(), std::string("ASCII\0\0\0", 8)}) {
+            const std::string bytes = code + text;
+            const auto value_of = [&](const std::string &content) {
+                auto value = Exiv2::Value::create(type);
+                value->read(reinterpret_cast<const Exiv2::byte *>(content.data()), static_cast<long>(content.size()),
+                            Exiv2::littleEndian);
+                return value;
+            };
+            const std::string path = in_folder("bytes.jpg");
+            write_picture(path, make_smooth(16, 8, LENSPROF_LAYOUT_RGB));
+            edit(path, [&](Exiv2::Image &image) {
+                image.exifData().add(Exiv2::ExifKey("Exif.Image.Model"), value_of("Canon EOS 6D").get());
+                image.exifData().add(Exiv2::ExifKey("Exif.Photo.LensModel"), value_of(bytes).get());
+            });
+            const PictureMetadata metadata = read_metadata(path);
+            assert_string_equal(metadata.key.lens, text.c_str());
+            assert_string_equal(metadata.key.camera_model, "Canon EOS 6D");
+        }
+}
+
+// A program has written the EXIF around a maker note in another byte order.
+void test_maker_note_in_the_other_byte_order(void **) {
+    static const struct {
+        const char *maker, *key, *value, *lens;
+    } notes[] = {
+        {"Canon", "Exif.CanonCs.LensType", "230", "Canon EF 24-70mm f/2.8L USM"},
+        {"Canon", "Exif.Canon.LensModel", "EF24-105mm f/4L IS USM", "EF24-105mm f/4L IS USM"},
+        {"SONY", "Exif.Sony1.LensID", "25501", "Minolta AF 50mm F1.7"},
+        {"Panasonic", "Exif.Panasonic.LensType", "LUMIX G VARIO 14-42/F3.5-5.6II", "LUMIX G VARIO 14-42/F3.5-5.6II"}};
+    for (const auto &note : notes)
+        for (const Exiv2::ByteOrder order : {Exiv2::littleEndian, Exiv2::bigEndian}) {
+            const std::string own = in_folder("own.jpg"), other = in_folder("other.jpg");
+            for (const std::string &path : {own, other}) write_picture(path, make_smooth(16, 8, LENSPROF_LAYOUT_RGB));
+            const auto write = [&](Exiv2::Image &image, Exiv2::ByteOrder written) {
+                image.setByteOrder(written);
+                image.exifData()["Exif.Image.Make"] = std::string(note.maker);
+                image.exifData()["Exif.Image.Model"] = std::string("A camera");
+            };
+            edit(own, [&](Exiv2::Image &image) {
+                write(image, order);
+                image.exifData()[note.key] = std::string(note.value);
+            });
+            assert_string_equal(read_metadata(own).key.lens, note.lens);
+            auto source = Exiv2::ImageFactory::open(own);
+            source->readMetadata();
+            const Exiv2::Exifdatum bytes = *source->exifData().findKey(Exiv2::ExifKey("Exif.Photo.MakerNote"));
+            const long offset = source->exifData()["Exif.MakerNote.Offset"].toLong();
+            edit(other, [&](Exiv2::Image &image) {
+                write(image, order == Exiv2::littleEndian ? Exiv2::bigEndian : Exiv2::littleEndian);
+                image.exifData().add(bytes);
+            });
+            auto written = Exiv2::ImageFactory::open(other);
+            written->readMetadata();
+            assert_int_equal(written->exifData()["Exif.MakerNote.Offset"].toLong(), offset);
+            assert_true(written->byteOrder() != order);
+            assert_string_equal(read_metadata(other).key.lens, note.lens);
+        }
 }
 
 // Picture styles as in the maker notes.
@@ -496,8 +626,13 @@ int main() {
         TEST(test_texts),
         TEST(test_unit_and_sensor),
         TEST(test_sensor_by_pitch),
+        TEST(test_sensor_of_a_crop),
         TEST(test_nikon_lens_of_numbers),
         TEST(test_lens_of_maker_note),
+        TEST(test_lens_in_xmp),
+        TEST(test_lens_of_canon_without_number),
+        TEST(test_texts_as_bytes),
+        TEST(test_maker_note_in_the_other_byte_order),
         TEST(test_style),
         TEST(test_exposure),
         TEST(test_manual_exposure),

@@ -129,7 +129,7 @@ Fitted fit_sequence(const Options &o, const Project &project, std::vector<double
     input.images = fit_images(project);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
-    add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    add_known_exposures(o.fit, project, metadata, input.images, streams);
     for (const SamplePicture &picture : pictures) white_shares.push_back(white_share(picture.picture));
     return fit(input, project.reference, o.pto.empty() ? project.files[0] : o.pto, progress, nullptr);
 }

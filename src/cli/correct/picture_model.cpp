@@ -1,9 +1,12 @@
 #include "cli/correct/picture_model.hpp"
 
+#include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include "cli/pictures/sensor.hpp"
 #include "cli/profiles/lookup_report.hpp"
+#include "cli/program/format.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/response_words.hpp"
 
@@ -85,6 +88,27 @@ void PictureModels::take_profile(const PictureMetadata &metadata, Correction &jo
                                           + profile_text + ", or its response, such as --response srgb");
 }
 
+// What is missing, in EXIF or in the databases: camera, lens or setting.
+static std::string missing_part(const lensprof_profile_key &key, const PictureMetadata &metadata,
+                                const lensprof_lookup &lookup) {
+    const bool is_of_exif = std::strcmp(key.lens, metadata.key.lens) == 0;
+    if (is_of_exif && !metadata.ambiguous_lens.empty())
+        return "EXIF does not identify the lens: " + metadata.ambiguous_lens;
+    if (!*key.lens) return *key.camera_model ? "EXIF does not name the lens" : "EXIF names neither camera nor lens";
+    switch (lookup.reason_code[0]) {
+    case LENSPROF_REASON_LOOKUP_NO_LENS: return "the lens is missing";
+    case LENSPROF_REASON_LOOKUP_NO_CAMERA: return "the camera is missing";
+    case LENSPROF_REASON_LOOKUP_FOCAL_MISSING:
+    case LENSPROF_REASON_LOOKUP_APERTURE_MISSING: return "EXIF does not state the setting";
+    case LENSPROF_REASON_LOOKUP_NO_FOCAL:
+    case LENSPROF_REASON_LOOKUP_NO_APERTURE:
+    case LENSPROF_REASON_LOOKUP_FOCAL_BEYOND:
+    case LENSPROF_REASON_LOOKUP_APERTURE_BEYOND:
+    case LENSPROF_REASON_LOOKUP_TOO_FAR: return "the setting is missing";
+    default: return "";
+    }
+}
+
 // Suggests the options for data missing from the picture; if none is missing, the lens may be stored under another
 // name.
 static std::string missing_options(const lensprof_profile_key &key) {
@@ -92,7 +116,7 @@ static std::string missing_options(const lensprof_profile_key &key) {
     const auto add = [&](bool is_missing, const char *option) {
         if (is_missing) options += (options.empty() ? "" : ", ") + std::string(option);
     };
-    add(!*key.lens && !*key.camera_model, "the lens with --lens");
+    add(!*key.lens, "the lens with --lens");
     add(key.focal_mm == LENSPROF_UNKNOWN, "the focal length with --focal");
     add(key.aperture == LENSPROF_UNKNOWN, "the aperture with --aperture");
     return options.empty() ? "the lens name used in the database with --lens" : options;
@@ -105,9 +129,11 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     lensprof_lookup_init(&lookup);
     const lensprof_status status = databases_.look_up(key, options, profile, lookup);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_corrected(key, metadata)) fail_corrected(job.source, metadata);
+    const std::string missing = missing_part(key, metadata, lookup);
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw NotThisOne(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "
-                                                  + databases_.names() + " (" + lookup.reason
+                                                  + databases_.names() + " (" + missing + (missing.empty() ? "" : "; ")
+                                                  + lookup.reason
                                                   + describe_nearest(nearest_names(databases_, key, lookup))
                                                   + "); make one with `lensprof build`, give " + missing_options(key)
                                                   + ", or give a profile with --profile");
@@ -118,9 +144,22 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
                                                                : Found{lookup, databases_.files()});
 }
 
+// Of a picture that shows a part of its frame.
+static std::string crop_note(const PictureSize &size) {
+    if (size.shown_diagonal == 1.0) return "";
+    if (std::isnan(size.shown_diagonal))
+        return "EXIF states another shape: it was cropped, perhaps resized, so the size of its part of the sensor is "
+               "unknown; give --crop-factor";
+    return format(
+        "EXIF states a larger frame: it was cropped to %.0f %% of the diagonal; the falloff is scaled to "
+        "that, around the middle of the picture",
+        100.0 * size.shown_diagonal);
+}
+
 void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     options_.profile ? take_profile(metadata, job, *profile) : look_up(metadata, job, *profile);
+    if (!options_.profile && options_.lookup.crop_factor == LENSPROF_UNKNOWN) job.note = crop_note(metadata.size);
     if (options_.response) {
         profile->responses = 1;
         profile->response[0] = *options_.response;

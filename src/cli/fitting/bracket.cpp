@@ -195,14 +195,14 @@ void check_exposures_known(const Options &o, const std::vector<lensprof_fit_imag
 }
 
 FitInput fit_input(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
-                   const std::vector<double> &ev, Streams &streams) {
+                   const std::vector<double> &ev, ExifUse &exif, Streams &streams) {
     FitInput input;
     input.options = fit_options(o.fit);
     input.options.free &= LENSPROF_FREE_RESPONSE;
     input.options.vignettings = 1;
     input.options.refine = !o.modes_only && o.fit.modes == LENSPROF_MODES_AUTO;
     input.images = fit_images(project);
-    if (ev.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    if (ev.empty()) exif = add_known_exposures(o.fit, project, metadata, input.images, streams);
     for (size_t i = 0; i < ev.size(); i++) {
         input.images[i].known_ev = ev[i];
         input.images[i].known_ev_sigma = o.ev_sigma;
@@ -218,7 +218,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     report.names = project.names;
     report.has_falloff = false;
     report.exposures_given = !ev.empty();
-    FitInput input = fit_input(o, project, metadata, ev, streams);
+    FitInput input = fit_input(o, project, metadata, ev, report.exif, streams);
     report.camera_kind = kind;
     input.options.camera_kind = kind.kind;
     if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);

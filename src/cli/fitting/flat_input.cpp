@@ -4,6 +4,7 @@
 #include <set>
 
 #include "cli/fitting/flat.hpp"
+#include "cli/fitting/known_exposures.hpp"
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/other_parts.hpp"
@@ -49,23 +50,28 @@ bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i
 }
 
 std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_t> &shots,
-                                 const std::vector<PictureMetadata> &metadata) {
+                                 const std::vector<PictureMetadata> &metadata, Streams &streams) {
     std::vector<double> ev(shots.size(), 0.0);
+    const ExifExposures stated = exif_exposures(metadata, std::vector<uint32_t>(shots.size(), 0));
+    bool are_needed = false;
     if (!o.ev.empty()) require_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty()) ev = o.ev;
     for (size_t i = 0; i < ev.size(); i++) {
         if (o.ev.empty() && needs_ev(o, shots, i)) {
-            if (!metadata[i].exif_ev)
+            if (std::isnan(stated.ev[i]))
                 throw Failure(ExitCode::usage, o.files[i]
                                                    + ": EXIF does not state its exposure (time, aperture, ISO); give "
                                                      "the exposures of all pictures with --ev, for example 0,0,0 if "
                                                      "they are equal");
-            ev[i] = *metadata[i].exif_ev;
+            ev[i] = stated.ev[i];
+            are_needed = true;
         }
         if (!(std::fabs(ev[i]) <= max_abs_ev))
             throw Failure(ExitCode::usage,
                           o.files[i] + ": an exposure beyond 64 EV is not plausible; check --ev or EXIF");
     }
+    const std::string in_part = exif_use(stated, metadata, o.files).note;
+    if (are_needed && !in_part.empty()) note(streams, o.files[0] + ": " + in_part + " (--ev gives them instead)");
     return ev;
 }
 
@@ -182,7 +188,7 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     for (const auto &file : o.files) metadata.push_back(read_metadata(file));
     input.names = o.files;
     std::vector<uint32_t> shots = shots_of(o);
-    std::vector<double> ev = exposures_of(o, shots, metadata), rotations = rotations_of(o, shots);
+    std::vector<double> ev = exposures_of(o, shots, metadata, streams), rotations = rotations_of(o, shots);
     for (size_t i = 0; i < o.files.size(); i++) {
         lensprof_flat_image image;
         lensprof_flat_image_init(&image);

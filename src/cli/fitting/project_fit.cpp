@@ -424,7 +424,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
         warn(streams, "--sampling paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
     input.images = fit_images(project);
     set_settings(o, state, streams);
-    if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    if (o.points.empty()) report.exif = add_known_exposures(o.fit, project, metadata, input.images, streams);
     set_reference(report.reference, input);
     const auto setting_of = [&](uint32_t image) { return state.settings.of_image[image]; };
     if (prior.profile && setting_of(input.options.reference) != setting_of(project.reference)) {

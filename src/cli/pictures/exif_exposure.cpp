@@ -15,6 +15,7 @@ std::optional<double> read_exposure_time(const Exiv2::ExifData &exif) {
     const double time = read_number(exif, {"Exif.Photo.ExposureTime", "Exif.Image.ExposureTime"});
     const double apex = read_number(exif, {"Exif.Photo.ShutterSpeedValue", "Exif.Image.ShutterSpeedValue"});
     const std::optional<double> stated = in_range(time, 1e6);
+    if (time == 0 && apex == 0) return std::nullopt;  // written for an unknown time
     return stated ? stated : in_range(std::exp2(-apex), 1e6);
 }
 
@@ -41,14 +42,17 @@ bool read_is_manual(const Exiv2::ExifData &exif) {
 
 }  // namespace
 
+double exposure_ev(double time_s, double iso, double f_number) {
+    return std::log2(time_s * iso / 100 / (f_number * f_number));
+}
+
 void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata) {
     metadata.f_number = read_f_number(exif);
     metadata.exposure_time_s = read_exposure_time(exif);
     metadata.iso = read_iso(exif);
     metadata.is_manual = read_is_manual(exif);
     if (metadata.exposure_time_s && metadata.iso && metadata.f_number)
-        metadata.exif_ev =
-            std::log2(*metadata.exposure_time_s * *metadata.iso / 100 / (*metadata.f_number * *metadata.f_number));
+        metadata.exif_ev = exposure_ev(*metadata.exposure_time_s, *metadata.iso, *metadata.f_number);
 }
 
 void write_exposure(const PictureMetadata &metadata, Exiv2::ExifData &exif) {

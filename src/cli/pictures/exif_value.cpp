@@ -1,7 +1,12 @@
 #include "cli/pictures/exif_value.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <iterator>
+
+#include "cli/program/utf8.hpp"
 
 namespace lensprof {
 
@@ -20,6 +25,54 @@ double read_number(const Exiv2::ExifData &exif, std::initializer_list<const char
         if (datum != exif.end()) return number(*datum);
     }
     return NAN;
+}
+
+// EXIF text is ASCII by the standard; text that is neither ASCII nor UTF-8 is treated as Latin-1. It ends at the first
+// NUL, control characters become blanks, and surrounding blanks are removed.
+std::string clean_text(const std::string &raw) {
+    std::string text;
+    for (size_t i = 0; i < raw.size() && raw[i] != '\0';) {
+        const unsigned char c = static_cast<unsigned char>(raw[i]);
+        const size_t length = utf8_length(raw, i);
+        if (length == 0) {
+            text += static_cast<char>(0xc0 | (c >> 6));
+            text += static_cast<char>(0x80 | (c & 0x3f));
+        } else if (c < 0x20 || c == 0x7f) {
+            text += ' ';
+        } else {
+            text.append(raw, i, length);
+        }
+        i += std::max<size_t>(1, length);
+    }
+    const size_t first = text.find_first_not_of(' ');
+    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+// The bytes of text of any type: some programs write BYTE or UNDEFINED, the latter after a character code (EXIF 2.32
+// section 4.6.5, UserComment).
+static std::string raw_text(const Exiv2::Exifdatum &datum) {
+    static const char ascii_code[8] = {'A', 'S', 'C', 'I', 'I', '\0', '\0', '\0'};
+    const Exiv2::TypeId type = datum.typeId();
+    if (type != Exiv2::unsignedByte && type != Exiv2::signedByte && type != Exiv2::undefined) return datum.toString();
+    std::string text(static_cast<size_t>(datum.size()), '\0');
+    datum.copy(reinterpret_cast<Exiv2::byte *>(&text[0]), Exiv2::littleEndian);
+    return text.compare(0, sizeof ascii_code, ascii_code, sizeof ascii_code) == 0 ? text.substr(sizeof ascii_code)
+                                                                                  : text;
+}
+
+std::string read_text(const Exiv2::ExifData &exif, const char *key) {
+    const auto datum = exif.findKey(Exiv2::ExifKey(key));
+    return datum == exif.end() || datum->count() == 0 ? std::string() : clean_text(raw_text(*datum));
+}
+
+bool is_name(const std::string &text) {
+    static const char *const nothing[] = {"n/a",     "N/A",     "None",   "none", "Unknown", "unknown",
+                                          "NO-LENS", "No lens", "0.0 mm", "0 mm", "Manual"};
+    if (text.find_first_not_of("-0. ()") == std::string::npos) return false;
+    if (text.front() == '(' && text.find_first_not_of("0123456789 ", 1) == text.size() - 1) return false;
+    if (text.find_first_not_of("0123456789 ") == std::string::npos) return false;
+    return std::none_of(std::begin(nothing), std::end(nothing),
+                        [&](const char *start) { return text.compare(0, std::strlen(start), start) == 0; });
 }
 
 std::optional<double> in_range(double value, double below) {

@@ -19,8 +19,11 @@
 #include "cli/pictures/coded_metadata.hpp"
 #include "cli/pictures/correction_mark.hpp"
 #include "cli/pictures/exif_exposure.hpp"
+#include "cli/pictures/exif_sensor.hpp"
 #include "cli/pictures/exif_value.hpp"
 #include "cli/pictures/icc.hpp"
+#include "cli/pictures/lens_name.hpp"
+#include "cli/pictures/maker_note.hpp"
 #include "cli/pictures/other_parts.hpp"
 #include "cli/pictures/part_tags.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
@@ -106,27 +109,6 @@ ExivImage open_image(const std::string &path) {
 
 // Reading.
 
-// EXIF text is ASCII by the standard; text that is neither ASCII nor UTF-8 is treated as Latin-1. It ends at the first
-// NUL, control characters become blanks, and surrounding blanks are removed.
-std::string clean_text(const std::string &raw) {
-    std::string text;
-    for (size_t i = 0; i < raw.size() && raw[i] != '\0';) {
-        const unsigned char c = static_cast<unsigned char>(raw[i]);
-        const size_t length = utf8_length(raw, i);
-        if (length == 0) {
-            text += static_cast<char>(0xc0 | (c >> 6));
-            text += static_cast<char>(0x80 | (c & 0x3f));
-        } else if (c < 0x20 || c == 0x7f) {
-            text += ' ';
-        } else {
-            text.append(raw, i, length);
-        }
-        i += std::max<size_t>(1, length);
-    }
-    const size_t first = text.find_first_not_of(' ');
-    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 // Truncates text too long for the field, and records this.
 template <size_t size>
 void store_text(const std::string &text, char (&field)[size], const char *option, PictureMetadata &metadata) {
@@ -134,53 +116,6 @@ void store_text(const std::string &text, char (&field)[size], const char *option
     std::memcpy(field, text.data(), length);
     std::memset(field + length, 0, size - length);
     if (length < text.size()) metadata.cut.emplace_back(option);
-}
-
-std::string read_text(const Exiv2::ExifData &exif, const char *key) {
-    const auto datum = exif.findKey(Exiv2::ExifKey(key));
-    return datum == exif.end() || datum->count() == 0 ? std::string() : clean_text(datum->toString());
-}
-
-template <size_t count>
-bool begins_with_one(const std::string &text, const char *const (&starts)[count]) {
-    return std::any_of(std::begin(starts), std::end(starts),
-                       [&](const char *start) { return text.compare(0, std::strlen(start), start) == 0; });
-}
-
-// Excludes what cameras write for an unknown lens, and what Exiv2 prints if it knows only the number.
-bool is_name(const std::string &text) {
-    static const char *const nothing[] = {"n/a",     "N/A",     "None",    "none",   "Unknown",
-                                          "unknown", "NO-LENS", "No lens", "0.0 mm", "0 mm"};
-    if (text.find_first_not_of("-0. ()") == std::string::npos) return false;
-    if (text.front() == '(' && text.find_first_not_of("0123456789 ", 1) == text.size() - 1) return false;
-    if (text.find_first_not_of("0123456789 ") == std::string::npos) return false;
-    return !begins_with_one(text, nothing);
-}
-
-// "24.0-70.0 mm f/2.8", which fits many lenses.
-bool is_numbers_alone(const std::string &name) {
-    return name.find_first_not_of("0123456789.-/ mfF") == std::string::npos;
-}
-
-// From Nikon's lens numbers; empty if missing or unknown.
-std::string read_nikon_lens(const Exiv2::ExifData &exif) {
-    for (const char *key : {"Exif.NikonLd1.LensIDNumber", "Exif.NikonLd2.LensIDNumber", "Exif.NikonLd3.LensIDNumber"}) {
-        const auto datum = exif.findKey(Exiv2::ExifKey(key));
-        if (datum == exif.end() || datum->count() == 0) continue;
-        const std::string name = clean_text(datum->print(&exif));
-        if (is_name(name)) return name;
-    }
-    return {};
-}
-
-std::string read_lens(const Exiv2::ExifData &exif) {
-    const std::string model = read_text(exif, "Exif.Photo.LensModel");
-    const std::string by_number = is_numbers_alone(model) ? read_nikon_lens(exif) : std::string();
-    if (!by_number.empty()) return by_number;
-    if (is_name(model)) return model;
-    const auto datum = Exiv2::lensName(exif);
-    const std::string name = datum == exif.end() ? std::string() : clean_text(datum->print(&exif));
-    return is_name(name) ? name : std::string();
 }
 
 // The name of the picture style in the maker notes, as text if Exiv2 knows it.
@@ -230,35 +165,13 @@ double read_distance(const Exiv2::ExifData &exif) {
     return datum == exif.end() || datum == stated ? LENSPROF_UNKNOWN : parse_distance(clean_text(datum->print(&exif)));
 }
 
-// 43.27 mm over the sensor diagonal, from the pixel pitch; NaN if the sizes in EXIF are not those of the picture: it
-// was resized or cropped, and the pitch is no longer that of its pixels.
-double read_pitched_crop(const Exiv2::ExifData &exif, PictureSize size) {
-    const double unit = read_number(exif, {"Exif.Photo.FocalPlaneResolutionUnit"}) == 3 ? 10.0 : 25.4;  // mm: cm, inch
-    const double width = read_number(exif, {"Exif.Photo.PixelXDimension"}),
-                 height = read_number(exif, {"Exif.Photo.PixelYDimension"});
-    const bool is_same_size =
-        (width == size.width && height == size.height) || (width == size.height && height == size.width);
-    return is_same_size ? std::hypot(36.0, 24.0)
-                              / std::hypot(width / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit,
-                                           height / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit)
-                        : NAN;
-}
-
-// From the 35 mm equivalent focal length, which is rounded to whole mm; if the pixel pitch agrees with it, or there is
-// no equivalent, from the pitch. A small picture may have been resized by a program that updated its stated size: then
-// the pitch alone is not trusted.
-double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm, PictureSize size) {
-    constexpr double min_pixels = 3e6, same = 0.1;
-    const double equivalent = read_number(exif, {"Exif.Photo.FocalLengthIn35mmFilm"}) / focal_mm;
-    const double pitched = read_pitched_crop(exif, size);
-    const auto is_plausible = [](double crop) { return crop > 0.2 && crop < 50.0; };
-    const bool known = is_plausible(equivalent) && focal_mm > 0.0;
-    const bool is_whole = double(size.width) * size.height >= min_pixels;
-    if (is_plausible(pitched) && (known ? std::fabs(pitched / equivalent - 1.0) < same : is_whole)) return pitched;
-    return known ? equivalent : LENSPROF_UNKNOWN;
-}
-
 // Writing.
+
+template <size_t count>
+bool begins_with_one(const std::string &text, const char *const (&starts)[count]) {
+    return std::any_of(std::begin(starts), std::end(starts),
+                       [&](const char *start) { return text.compare(0, std::strlen(start), start) == 0; });
+}
 
 // Reads, changes and writes the metadata of a file in memory, because Exiv2 does not detect a full disk. False if the
 // excerpt was not sufficient.
@@ -420,18 +333,21 @@ PictureMetadata read_metadata(const std::string &path) {
     PictureMetadata metadata = unknown_metadata();
     if (is_big_tiff(path)) return metadata;
     const ExivImage image = open_image(path);
+    repair_maker_note(*image);
     const Exiv2::ExifData &exif = image->exifData();
     try {
         store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker, "--maker", metadata);
         store_text(read_text(exif, "Exif.Image.Model"), metadata.key.camera_model, "--camera", metadata);
-        store_text(read_lens(exif), metadata.key.lens, "--lens", metadata);
+        const LensName lens = read_lens(exif, image->xmpData());
+        store_text(lens.name, metadata.key.lens, "--lens", metadata);
+        metadata.ambiguous_lens = lens.ambiguous;
         read_exposure(exif, metadata);
         metadata.key.aperture = metadata.f_number.value_or(LENSPROF_UNKNOWN);
         metadata.key.focal_mm = in_range(read_number(exif, {"Exif.Photo.FocalLength", "Exif.Image.FocalLength"}), 1e5)
                                     .value_or(LENSPROF_UNKNOWN);
         metadata.key.distance_m = read_distance(exif);
         metadata.size = {static_cast<uint32_t>(image->pixelWidth()), static_cast<uint32_t>(image->pixelHeight())};
-        metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm, metadata.size);
+        read_sensor(exif, raw_kind(path).has_value(), metadata);
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         store_text(read_style(exif), metadata.key.style, "--style", metadata);
         read_processing(path, *image, metadata);

@@ -3,6 +3,7 @@
 // Threads: any function may run in several threads concurrently.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,6 +17,14 @@ namespace lensprof {
 
 struct PictureSize {
     uint32_t width = 0, height = 0;
+    double shown_diagonal = 1.0;  // of the picture, as a share of the frame's: below 1 if EXIF proves that it was
+                                  // cropped; NaN: it was cropped, but perhaps resized, too
+
+    // The crop factor of the picture if that of the whole frame is known.
+    double of_part(double crop_factor) const {
+        return crop_factor == LENSPROF_UNKNOWN || std::isnan(shown_diagonal) ? LENSPROF_UNKNOWN
+                                                                             : crop_factor / shown_diagonal;
+    }
 };
 
 struct PictureMetadata {
@@ -27,6 +36,8 @@ struct PictureMetadata {
 
     // Unknown whether it is rendered: a 16 bit TIFF without colour profile, as raw converters write linear ones.
     bool may_be_linear = false;
+
+    std::string ambiguous_lens;  // what does not identify the lens, see lens_name.hpp
 
     PictureSize size;           // pixels, as stored; 0 = unknown
     bool is_of_camera = false;  // whether the file is a JPEG or HEIC as cameras write them
@@ -44,8 +55,7 @@ struct PictureMetadata {
     std::optional<double> iso;
     std::optional<double> f_number;  // aperture of the key
 
-    // log2(exposure_time_s * iso / 100 / f_number^2), EV: larger means a brighter rendering of the same scene. Set only
-    // if all three are known.
+    // exposure_ev() of the three: larger means a brighter rendering of the same scene. Set only if all are known.
     std::optional<double> exif_ev;
 
     uint16_t orientation = 1;  // EXIF orientation, 1..8
@@ -53,6 +63,9 @@ struct PictureMetadata {
     bool is_manual = false;  // time, aperture and ISO were set manually according to EXIF's ExposureProgram or
                              // ExposureMode
 };
+
+// log2(time_s * iso / 100 / f_number^2), EV.
+double exposure_ev(double time_s, double iso, double f_number);
 
 // Sets all fields to unknown.
 PictureMetadata unknown_metadata();

@@ -78,8 +78,8 @@ double crop_factor_in_table(lensprof_store *store, const lensprof_profile_key &k
     const auto status = lensprof_store_find_camera(store, key.camera_maker, key.camera_model, &camera, &error);
     if (status == LENSPROF_ERROR_NOT_FOUND) return LENSPROF_UNKNOWN;
     check(status, file, &error);
-    if (camera.crop_factor != LENSPROF_UNKNOWN && !aspect_of(camera)) return camera.crop_factor;
-    if (picture.width == 0 || picture.height == 0) return LENSPROF_UNKNOWN;
+    if (camera.crop_factor != LENSPROF_UNKNOWN && !aspect_of(camera)) return picture.of_part(camera.crop_factor);
+    if (picture.width == 0 || picture.height == 0 || picture.shown_diagonal != 1.0) return LENSPROF_UNKNOWN;
     const double longer = std::max(picture.width, picture.height), shorter = std::min(picture.width, picture.height);
     return crop_factor_of_format(all_cameras(store, file), camera, longer / shorter);
 }

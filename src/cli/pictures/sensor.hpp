@@ -8,8 +8,9 @@
 
 namespace lensprof {
 
-// The crop factor of the key's camera; for a camera whose picture formats use different sensor areas, that of the
-// picture's format. LENSPROF_UNKNOWN if the table does not list it. Throws Failure.
+// The crop factor of the key's camera, for the part of its frame that the picture shows; for a camera whose picture
+// formats use different sensor areas, that of the picture's format. LENSPROF_UNKNOWN if the table does not list it.
+// Throws Failure.
 double crop_factor_in_table(lensprof_store *store, const lensprof_profile_key &key, PictureSize picture);
 
 // From the first of several databases that lists it.

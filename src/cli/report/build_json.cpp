@@ -132,6 +132,15 @@ Json prior_json(const BuildReport &report) {
             {"reason", verdict >= LENSPROF_PROFILE_PRIOR_OVERRULED ? report.verdict.text : report.no_prior}};
 }
 
+// What was used of the exposures in EXIF.
+Json exif_json(const ExifUse &use) {
+    Json fields = Json::array();
+    if (use.images) fields.push_back("time");
+    if (use.images && !use.cancels_iso) fields.push_back("iso");
+    if (use.images && !use.cancels_aperture) fields.push_back("aperture");
+    return {{"images", use.images}, {"fields", fields}, {"note", use.note.empty() ? Json() : Json(use.note)}};
+}
+
 // The results per camera, if there are several.
 Json cameras_json(const BuildReport &report) {
     Json list = Json::array();
@@ -203,6 +212,7 @@ Json build_json(const BuildReport &report) {
     json["left_out"] = left_out_json(report);
     json["seconds"] = {
         {"register", report.register_s}, {"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
+    json["exif_exposures"] = exif_json(report.exif);
     json["prior"] = prior_json(report);
     json["lens_prior"] = {{"falloff_distance", fit.falloff_prior_distance},
                           {"center_distance", fit.center_prior_distance},

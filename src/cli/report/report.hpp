@@ -59,6 +59,13 @@ struct ColourVariance {
     size_t pairs = 0;             // 0: not measured
 };
 
+// What a fit uses of the exposures in EXIF.
+struct ExifUse {
+    size_t images = 0;                                   // with a known exposure
+    bool cancels_iso = false, cancels_aperture = false;  // no picture states it, and it cancels
+    std::string note;                                    // what EXIF states in part; empty: all or nothing
+};
+
 // The report of `build`.
 struct BuildReport {
     std::vector<std::string> names;
@@ -74,6 +81,7 @@ struct BuildReport {
     uint32_t reference = 0;
     bool has_falloff = true;       // else the falloff cancels in these pictures
     bool exposures_given = false;  // on the command line, not by EXIF
+    ExifUse exif;
     ColourVariance variance;       // of a reconstruction
     uint32_t sampling_rounds = 1;  // 2: pairs were drawn again, by the irradiance of the first fit
     std::vector<std::pair<std::string, std::string>> left_out;  // pictures left out, and why
