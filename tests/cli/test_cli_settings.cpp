@@ -1,4 +1,6 @@
 // Pictures at several lens settings: a falloff and a profile for each.
+#include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
+
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli_runs.hpp"
@@ -7,7 +9,7 @@ namespace {
 
 using namespace cli_runs;
 
-constexpr double kOpen = 2.8, kStopped = 8.0;
+constexpr double kOpen = 2.8, kStopped = 8.0, kHfovDeg = 50.0;
 const std::vector<double> kOpenFalloff{-0.55, 0.15, -0.12}, kStoppedFalloff{-0.12, 0.02, -0.03};
 const Words quietly{"--no-store", "--stored", "none", "--json"};
 
@@ -136,6 +138,110 @@ void test_an_aperture_that_is_not_known(void **) {
     }
 }
 
+// Turns a picture as a program does, so that EXIF orientation `turn` (6 or 8) turns it back, with its line in the
+// project; that orientation is written only if `is_stated`.
+void turn_picture(const std::string &pto, size_t number, uint16_t turn, bool is_stated) {
+    const std::string file = work("open/" + numbered(number));
+    const PictureMetadata metadata = read_metadata(file);
+    const Picture from = read_picture(file);
+    Picture to = from;
+    std::swap(to.width, to.height), std::swap(to.frame_width, to.frame_height);
+    const size_t bytes = from.row_bytes / from.width;
+    to.row_bytes = bytes * to.width;
+    for (uint32_t y = 0; y < to.height; y++)
+        for (uint32_t x = 0; x < to.width; x++) {
+            const uint32_t u = turn == 6 ? to.height - 1 - y : y, v = turn == 6 ? x : to.width - 1 - x;
+            std::memcpy(&to.pixels[y * to.row_bytes + bytes * x], &from.pixels[v * from.row_bytes + bytes * u], bytes);
+        }
+    write_picture(file, to);
+    auto image = Exiv2::ImageFactory::open(file);
+    image->readMetadata();
+    if (is_stated) image->exifData()["Exif.Image.Orientation"] = turn;
+    image->writeMetadata();
+    assert_true(write_metadata(file, metadata));
+    std::string text = text_of(pto), line, changed;
+    std::istringstream lines(text);
+    while (std::getline(lines, line)) {
+        if (line[0] == 'i' && contains(line, "n\"" + numbered(number))) {
+            const double degree = std::acos(-1.0) / 180.0, ratio = double(from.height) / from.width;
+            std::istringstream words(line);
+            line.clear();
+            for (std::string word; words >> word;) {
+                if (word[0] == 'w') word = "w" + std::to_string(to.width);
+                if (word[0] == 'h') word = "h" + std::to_string(to.height);
+                if (word[0] == 'v')
+                    word = "v" + std::to_string(2 / degree * std::atan(ratio * std::tan(kHfovDeg / 2 * degree)));
+                if (word[0] == 'r') word = "r" + std::to_string(std::stod(word.substr(1)) + (turn == 6 ? 90 : -90));
+                line += word + " ";
+            }
+        }
+        changed += line + "\n";
+    }
+    save_text(pto, changed);
+}
+
+// Six pictures whose falloff has its centre far from the middle.
+std::string off_centre() {
+    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--center=0.1,-0.06", "--images",
+                     "6", "--seed", "5", "--exif", "--overlap", "0.5", "--noise", "1"});
+    return work("open/pano.pto");
+}
+
+double centre_error(const Json &centre, double x, double y) {
+    return std::hypot(centre[0].get<double>() - x, centre[1].get<double>() - y);
+}
+
+// Frames that a program has turned share the falloff of the others, whose centre turns with them.
+void test_turned_frames(void **) {
+    const std::string pto = off_centre(), out = work("open/result.pto");
+    for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, true);
+    const Json json = json_of(Words{"build", pto, "--pto-out", out} + quietly);
+    assert_true(json["settings"].empty() && json["usable"] == true);
+    assert_true(falloff_error(json["vignetting"]["k"][0], kOpenFalloff) < 0.01);
+    assert_true(centre_error(json["vignetting"]["center"], 0.1, -0.06) < 0.01);
+    // Read again, each picture has the falloff as it is in its own frame.
+    must_exit(done, {"simulate", "-o", work("none"), "--vignetting=0,0,0", "--images", "6", "--seed", "5", "--exif",
+                     "--overlap", "0.5", "--noise", "1"});
+    must_exit(done, {"apply", "--pto", out, "--output-exposure", "keep", "-o", work("even")});
+    for (const size_t i : {0, 1, 3}) {
+        const Picture even = read_picture(work("even/" + numbered(i))),
+                      truth = read_picture(work("none/" + numbered(i)));
+        const uint16_t turn = i == 0 ? 1 : i == 3 ? 8 : 6;
+        const size_t bytes = truth.row_bytes / truth.width;
+        double square = 0.0, count = 0.0;
+        for (uint32_t y = 0; y < even.height; y++)
+            for (uint32_t x = 0; x < even.width; x++) {
+                const uint32_t u = turn == 1   ? x
+                                   : turn == 6 ? even.height - 1 - y
+                                               : y,
+                               v = turn == 1   ? y
+                                   : turn == 6 ? x
+                                               : even.width - 1 - x;
+                const uint8_t *a = &even.pixels[y * even.row_bytes + bytes * x],
+                              *b = &truth.pixels[v * truth.row_bytes + bytes * u];
+                if (*b < 240) square += std::pow(*a - *b, 2), count++;
+            }
+        const double rms = std::sqrt(square / count);
+        print_message("%s: %.2f levels from the picture without falloff\n", numbered(i).c_str(), rms);
+        assert_true(rms < 3.0);
+    }
+}
+
+// Frames whose turn is not stated share the falloff around the middle.
+void test_frames_turned_either_way(void **) {
+    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--center=0,0", "--images", "6",
+                     "--seed", "5", "--exif", "--overlap", "0.5", "--noise", "1"});
+    const std::string pto = work("open/pano.pto");
+    for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, false);
+    const Outcome run = run_words(Words{"build", pto} + quietly);
+    const Json json = Json::parse(run.out);
+    assert_int_equal(run.code, done);
+    assert_true(contains(run.err, "which way the portrait pictures were turned"));
+    assert_true(json["settings"].empty());
+    assert_true(centre_error(json["vignetting"]["center"], 0.0, 0.0) == 0.0);
+    assert_true(falloff_error(json["vignetting"]["k"][0], kOpenFalloff) < 0.01);
+}
+
 // Settings from the project's links alone, without EXIF.
 void test_links_of_a_project(void **) {
     const std::string copy = copy_of("scene");
@@ -174,6 +280,8 @@ int main() {
         CLI_TEST(test_one_lens),
         CLI_TEST(test_profiles),
         CLI_TEST(test_project_with_both),
+        CLI_TEST(test_turned_frames),
+        CLI_TEST(test_frames_turned_either_way),
         CLI_TEST(test_links_of_a_project),
         CLI_TEST(test_a_setting_that_is_not_shown),
     };

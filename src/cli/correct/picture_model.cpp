@@ -4,6 +4,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "cli/correct/turned_profile.hpp"
+#include "cli/pictures/orientation.hpp"
 #include "cli/pictures/sensor.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/format.hpp"
@@ -159,6 +161,7 @@ static std::string crop_note(const PictureSize &size) {
 void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     options_.profile ? take_profile(metadata, job, *profile) : look_up(metadata, job, *profile);
+    turn_profile(sensor_orientation(metadata.size.width, metadata.size.height, metadata.orientation), *profile);
     if (!options_.profile && options_.lookup.crop_factor == LENSPROF_UNKNOWN) job.note = crop_note(metadata.size);
     if (options_.response) {
         profile->responses = 1;

@@ -40,11 +40,11 @@ Json cameras_json(const ProjectFit &state, const Project &project, const std::ve
 
 Json lenses_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata) {
     Json list = Json::array();
-    for (const uint32_t first : state.settings.first)
-        list.push_back(
-            {{"name", describe_setting(metadata[first].key, project.names[first])},
-             {"camera", state.settings.camera_of_image[first]},
-             {"vignetting", vignetting_json(state.best.falloff_of(first), state.best.falloff_curves_of(first))}});
+    for (const uint32_t first : falloff_groups(state.settings).first)
+        list.push_back({{"name", describe_setting(metadata[first].key, project.names[first])},
+                        {"camera", state.settings.camera_of_image[first]},
+                        {"vignetting",
+                         vignetting_json(state.best.falloff_of(first).data(), state.best.falloff_curves_of(first))}});
     return list;
 }
 

@@ -21,7 +21,7 @@ PairEnd end_of(const Fitted &fitted, const Project &project, const lensprof_pair
     PairEnd end{};
     end.image = pair.image[side];
     end.value = pair.value[side][1];
-    const lensprof_vignetting &falloff = fitted.falloff_of(end.image)[channel_of(fitted, end.image)];
+    const lensprof_vignetting falloff = fitted.falloff_of(end.image)[channel_of(fitted, end.image)];
     const lensprof_camera &camera = project.images[end.image].camera;
     const double r2 =
         lensprof_vignetting_r2(&falloff, camera.width, camera.height, pair.xy[side][0], pair.xy[side][1], nullptr);
@@ -109,7 +109,8 @@ Json falloff_points(const std::vector<PairEnds> &all, const Fitted &best) {
     for (const PairEnds &ends : all) {
         const bool second_is_far = ends.end[1].r > ends.end[0].r;
         const PairEnd &far = ends.end[second_is_far], &near = ends.end[!second_is_far];
-        const bool is_of_reference = best.falloff_of(far.image) == best.falloff_of(best.reference);
+        const bool is_of_reference =
+            best.settings.empty() || best.setting_of[far.image] == best.setting_of[best.reference];
         if (!is_of_reference || far.r - near.r < min_radius_difference) continue;
         const double exposure = lensprof_exposure_factor(&best.exposures[far.image], 1);
         bins[bin_of(far.r, radius_bins)].push_back(far.light / near.light * far.attenuation / exposure);

@@ -10,6 +10,7 @@
 
 #include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/project.hpp"
+#include "cli/pictures/orientation.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
@@ -181,8 +182,50 @@ static void allocate_results(const std::vector<lensprof_fit_image> &images, Fitt
     fitted.result.setting_count = last_setting + 1, fitted.result.camera_count = last_camera + 1;
 }
 
+// A place in a picture, as in the frame of its setting.
+template <class Number>
+static void turn_place(uint16_t turn, const lensprof_fit_image &stored, Number xy[2]) {
+    const uint32_t size[2] = {stored.width, stored.height};
+    double x = xy[0] - 0.5 * (size[0] - 1.0), y = xy[1] - 0.5 * (size[1] - 1.0);
+    turn_upright(turn, x, y);
+    xy[0] = static_cast<Number>(x + 0.5 * (size[swaps_sides(turn)] - 1.0));
+    xy[1] = static_cast<Number>(y + 0.5 * (size[!swaps_sides(turn)] - 1.0));
+}
+
+// All pictures in the frames of their settings.
+static FitInput turned_input(const FitInput &input) {
+    FitInput turned = input;
+    turned.turn_of.clear();
+    for (lensprof_pair &pair : turned.pairs)
+        for (int side = 0; side < 2; side++)
+            turn_place(input.turn_of[pair.image[side]], input.images[pair.image[side]], pair.xy[side]);
+    for (lensprof_observation &observation : turned.observations)
+        turn_place(input.turn_of[observation.image], input.images[observation.image], observation.xy);
+    for (size_t i = 0; i < turned.images.size(); i++)
+        if (swaps_sides(input.turn_of[i])) std::swap(turned.images[i].width, turned.images[i].height);
+    double *centre = turned.options.vignetting.center;  // of the reference
+    turn_upright(input.turn_of[input.options.reference], centre[0], centre[1]);
+    return turned;
+}
+
+std::array<lensprof_vignetting, 3> Fitted::falloff_of(uint32_t image) const {
+    std::array<lensprof_vignetting, 3> falloff;
+    const lensprof_vignetting *of_setting =
+        settings.empty() ? result.vignetting : settings[setting_of[image]].vignetting;
+    std::copy_n(of_setting, falloff.size(), falloff.begin());
+    for (lensprof_vignetting &curve : falloff)
+        if (!turn_of.empty()) turn_upright(inverse_orientation(turn_of[image]), curve.center[0], curve.center[1]);
+    return falloff;
+}
+
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
            std::vector<lensprof_fit_image_quality> *quality) {
+    if (!input.turn_of.empty()) {
+        FitInput turned = turned_input(input);
+        Fitted in_settings = fit(turned, reference, item, progress, quality);
+        in_settings.turn_of = input.turn_of;
+        return in_settings;
+    }
     Fitted fitted;
     auto count = static_cast<uint32_t>(input.images.size());
     fitted.exposures.resize(count);

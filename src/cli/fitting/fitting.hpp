@@ -1,6 +1,7 @@
 // The common parts of all commands that fit: options, the call of the library, the report.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -61,6 +62,10 @@ struct FitInput {
     std::vector<lensprof_fit_image> images;
     std::vector<lensprof_pair> pairs;                // used if there are no observations
     std::vector<lensprof_observation> observations;  // tracks, for the method radiance
+
+    // Per image, the orientation that turns the picture into the frame of its setting (pictures/orientation.hpp);
+    // empty: no picture is turned. Places of pairs and tracks are those of the pictures as stored.
+    std::vector<uint16_t> turn_of;
 };
 
 // A result and the exposures that belong to it.
@@ -69,6 +74,7 @@ struct Fitted {
     std::vector<lensprof_exposure> exposures;    // relative to the reference; ev is NaN for images left out
     std::vector<lensprof_fit_setting> settings;  // indexed by the images' `setting`; `result` has that of the reference
     std::vector<uint32_t> setting_of;            // per image
+    std::vector<uint16_t> turn_of;               // of the input
     std::vector<lensprof_fit_camera> cameras;    // indexed by the images' `camera`; `result` has that of the reference
     std::vector<uint32_t> camera_of;             // per image
     uint32_t reference = 0;                      // the requested one, or the result's own if that was left out
@@ -76,10 +82,8 @@ struct Fitted {
     // Whether the pictures can be corrected with it; storing a profile requires a usable result.
     bool corrects() const { return result.usable || result.evens; }
 
-    // The falloff curves of an image, and their number in its camera's fit.
-    const lensprof_vignetting *falloff_of(uint32_t image) const {
-        return settings.empty() ? result.vignetting : settings[setting_of[image]].vignetting;
-    }
+    // The falloff curves of an image, with the centre in the picture as stored, and their number in its camera's fit.
+    std::array<lensprof_vignetting, 3> falloff_of(uint32_t image) const;
     uint32_t falloff_curves_of(uint32_t image) const {
         return has_camera_result(image) ? cameras[camera_of[image]].vignettings : result.vignettings;
     }

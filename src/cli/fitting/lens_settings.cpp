@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <numeric>
+#include <utility>
 
+#include "cli/pictures/orientation.hpp"
 #include "cli/report/report.hpp"
 
 namespace lensprof {
@@ -100,7 +103,45 @@ void number_cameras(const Project &project, const std::vector<PictureMetadata> &
     settings.camera_of_image = cameras.of_image, settings.first_of_camera = cameras.first;
 }
 
+bool is_portrait(const lensprof_pto_image &image) { return image.camera.height > image.camera.width; }
+
+// The turns of all images, unless that of some image of a setting is unknown while others are not. Pictures that may
+// all have been turned stay as they are.
+void set_turns(const Project &project, const std::vector<PictureMetadata> &metadata, LensSettings &settings) {
+    std::vector<uint16_t> &turns = settings.turn_of_image;
+    for (size_t i = 0; i < metadata.size(); i++) {
+        const lensprof_camera &frame = project.images[i].camera;
+        turns.push_back(sensor_orientation(frame.width, frame.height, metadata[i].orientation));
+    }
+    for (uint32_t setting = 0; setting < settings.first.size(); setting++) {
+        bool has_unknown = false, has_known = false;
+        for (size_t i = 0; i < turns.size(); i++)
+            if (settings.of_image[i] == setting) (turns[i] ? has_known : has_unknown) = true;
+        settings.are_centres_unknown |= has_unknown && has_known;
+        for (size_t i = 0; i < turns.size(); i++)
+            if (settings.of_image[i] == setting && has_unknown) turns[i] = 1;
+    }
+}
+
 }  // namespace
+
+bool LensSettings::has_turned_images() const {
+    return std::any_of(turn_of_image.begin(), turn_of_image.end(), [](uint16_t turn) { return turn != 1; });
+}
+
+FalloffGroups falloff_groups(const LensSettings &settings) {
+    FalloffGroups groups;
+    std::map<std::pair<uint32_t, uint16_t>, uint32_t> numbers;
+    for (uint32_t i = 0; i < settings.of_image.size(); i++) {
+        const uint32_t setting = settings.of_image[i];
+        const uint16_t turn = settings.turn_of_image[i];
+        const auto [number, is_new] = numbers.emplace(std::pair(setting, turn), static_cast<uint32_t>(numbers.size()));
+        groups.of_image.push_back(number->second);
+        const uint32_t most_complete = settings.first[setting];
+        if (is_new) groups.first.push_back(settings.turn_of_image[most_complete] == turn ? most_complete : i);
+    }
+    return groups;
+}
 
 // Images that state most come first; one that states less joins the only setting it may belong to or, if there are
 // several, that of images stating as little.
@@ -108,7 +149,12 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
                            const StoreOptions &store, bool one_lens) {
     const auto count = static_cast<uint32_t>(project.images.size());
     const std::vector<uint32_t> all(count, 0), reference{project.reference};
-    if (one_lens) return {all, reference, all, reference};
+    if (one_lens) {
+        LensSettings one;
+        one.of_image = one.camera_of_image = all, one.first = one.first_of_camera = reference;
+        set_turns(project, metadata, one);
+        return one;
+    }
     std::vector<lensprof_profile_key> keys;
     for (const PictureMetadata &entry : metadata) keys.push_back(stated_key(entry.key, store));
     LensSettings cameras;
@@ -120,9 +166,10 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
     for (uint32_t i : order) {
         const auto is_possible = [&](uint32_t other) {
             const auto &a = project.images[i], &b = project.images[other];
-            const bool is_upright = a.camera.height > a.camera.width;  // centres are along the frame's own axes
-            return cameras.camera_of_image[i] == cameras.camera_of_image[other] && a.vignetting_of == b.vignetting_of
-                   && is_upright == (b.camera.height > b.camera.width) && is_same_setting(keys[i], keys[other]);
+            // Hugin does not link portrait and landscape frames.
+            const bool is_linked = a.vignetting_of == b.vignetting_of || is_portrait(a) != is_portrait(b);
+            return cameras.camera_of_image[i] == cameras.camera_of_image[other] && is_linked
+                   && is_same_setting(keys[i], keys[other]);
         };
         std::vector<uint32_t> possible;
         for (uint32_t n = 0; n < first.size(); n++)
@@ -141,6 +188,7 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
                                            + "; give fewer pictures, or use --one-lens to treat all as one");
     LensSettings settings = in_order(found, first);
     settings.camera_of_image = cameras.camera_of_image, settings.first_of_camera = cameras.first_of_camera;
+    set_turns(project, metadata, settings);
     return settings;
 }
 

@@ -15,16 +15,30 @@ struct LensSettings {
     std::vector<uint32_t> of_image;  // setting and camera per image
     std::vector<uint32_t> first;     // per setting, the image with the most complete data
     std::vector<uint32_t> camera_of_image, first_of_camera;
+
+    // Per image, the orientation that turns the picture into the frame of the others of its setting
+    // (pictures/orientation.hpp). Centres are in that frame; unknown: some pictures may have been turned either way.
+    std::vector<uint16_t> turn_of_image;
+    bool are_centres_unknown = false;
+
+    bool has_turned_images() const;
     bool has_several_settings() const { return first.size() > 1; }
     bool has_several_cameras() const { return first_of_camera.size() > 1; }
 };
 
 // According to the project's links and to EXIF, as far as both pictures state it and `store` does not override it.
-// Cameras: by Ra..Re, maker and model. Settings per camera: by Va..Vd, lens, focal length, aperture and focus; upright
-// and other frames are separate. With `one_lens` there is one camera and one setting. Failure (usage) for more settings
-// than a fit takes.
+// Cameras: by Ra..Re, maker and model. Settings per camera: by Va..Vd, lens, focal length, aperture and focus;
+// portrait and landscape frames are one setting. With `one_lens` there is one camera and one setting. Failure (usage)
+// for more settings than a fit takes.
 LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
                            const StoreOptions &store, bool one_lens);
+
+// Images whose pictures have the same falloff: of one setting, and turned in the same way. Numbered in the order of
+// their images; `first` is that of the setting, if possible.
+struct FalloffGroups {
+    std::vector<uint32_t> of_image, first;
+};
+FalloffGroups falloff_groups(const LensSettings &settings);
 
 // Treats all images as from one camera.
 void join_cameras(LensSettings &settings);

@@ -29,7 +29,7 @@ public:
         const uint32_t image = pair.image[side];
         const lensprof_exposure &exposure = fitted_.exposures[image];
         const lensprof_response &response = fitted_.response_of(image);
-        const lensprof_vignetting &falloff =
+        const lensprof_vignetting falloff =
             fitted_.falloff_of(image)[fitted_.falloff_curves_of(image) == 3 ? channel : 0];
         const double r2 = lensprof_vignetting_r2(&falloff, input_.images[image].width, input_.images[image].height,
                                                  pair.xy[side][0], pair.xy[side][1], nullptr);

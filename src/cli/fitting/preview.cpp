@@ -55,7 +55,8 @@ CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, 
     options.input = options.output = LENSPROF_ENCODING_RESPONSE;
     options.response = &fitted.response_of(i);
     options.output_response = &fitted.response_of(fitted.reference), options.output_responses = 1;
-    options.vignettings = fitted.falloff_curves_of(i), options.vignetting = fitted.falloff_of(i);
+    const std::array<lensprof_vignetting, 3> falloff = fitted.falloff_of(i);
+    options.vignettings = fitted.falloff_curves_of(i), options.vignetting = falloff.data();
     options.source = fitted.exposures[i], options.target = target;
     copy.after = applied(source, options, project.files[i]);
     copy.camera = project.images[i].camera;

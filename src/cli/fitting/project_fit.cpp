@@ -74,7 +74,12 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     FitInput &input = state.input;
     std::vector<lensprof_link> &links = state.report.links;
     lensprof_sample_options options = sample_options(o);
-    if (known) options.response = &known->result.response, options.vignetting = &green_falloff(known->result);
+    lensprof_vignetting falloff{};
+    if (known) {
+        falloff = green_falloff(known->result);
+        if (!input.turn_of.empty()) falloff.center[0] = falloff.center[1] = 0.0;  // sampling takes one for all pictures
+        options.response = &known->result.response, options.vignetting = &falloff;
+    }
     // The method radiance makes tracks of pairs if sampling by cameras finds no tracks.
     const bool by_matches = project.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;
     if (o.fit.method == LENSPROF_METHOD_RADIANCE && !by_matches) {
@@ -192,6 +197,13 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &state, Streams &stream
         state.input.images[i].setting = settings.of_image[i];
         state.input.images[i].camera = settings.camera_of_image[i];
     }
+    if (settings.has_turned_images()) state.input.turn_of = settings.turn_of_image;
+    lensprof_fit_options &options = state.input.options;
+    if (!settings.are_centres_unknown || !(options.free & LENSPROF_FREE_CENTER)) return;
+    options.free &= ~uint32_t(LENSPROF_FREE_CENTER);
+    options.vignetting.center[0] = options.vignetting.center[1] = 0.0;
+    note(streams, state.item + ": no orientation states which way the portrait pictures were turned; portrait and "
+                               "landscape pictures share a falloff around the middle of the frame");
 }
 
 // Failure (usage) for images of several cameras with different responses that should share a fixed one, for more
@@ -423,6 +435,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
         warn(streams, "--sampling paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
     input.images = fit_images(project);
+    state.item = o.points.empty() ? project.path : o.points;
     set_settings(o, state, streams);
     if (o.points.empty()) report.exif = add_known_exposures(o.fit, project, metadata, input.images, streams);
     set_reference(report.reference, input);
@@ -431,7 +444,6 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
         input.options.profile = nullptr, report.prior_id = 0;
         report.no_prior = "the reference has another lens setting than " + project.names[project.reference];
     }
-    state.item = o.points.empty() ? project.path : o.points;
     state.best = fit(input, report.reference, state.item, state.progress, &report.quality);
     const bool has_one_camera = !state.settings.has_several_cameras();  // irradiance is compared with one response
     if (has_one_camera && !pictures.empty() && may_connect_more(o, state.best, report.links))

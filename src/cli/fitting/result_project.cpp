@@ -34,15 +34,16 @@ std::string result_text(ProjectFit &state, Project &project, const std::string &
                                   stored.exposures.data(), static_cast<uint32_t>(stored.exposures.size()),
                                   stored.reference, &error),
           project.path, &error);
-    if (state.settings.has_several_settings()) {
+    if (state.settings.has_several_settings() || state.settings.has_turned_images()) {
+        const FalloffGroups groups = falloff_groups(state.settings);
         std::vector<lensprof_vignetting> falloffs;
-        for (uint32_t s = 0; s < stored.settings.size(); s++) {
-            const lensprof_fit_setting &setting = stored.settings[s];
-            const uint32_t curves = stored.falloff_curves_of(state.settings.first[s]);
-            falloffs.push_back(setting.images ? setting.vignetting[curves == 3 ? 1 : 0] : green_falloff(stored.result));
+        for (const uint32_t first : groups.first) {
+            const bool is_fitted = stored.settings[state.settings.of_image[first]].images > 0;
+            const size_t curve = stored.falloff_curves_of(first) == 3 ? 1 : 0;
+            falloffs.push_back(is_fitted ? stored.falloff_of(first)[curve] : green_falloff(stored.result));
         }
-        check(lensprof_pto_set_settings(project.pto.get(), state.settings.of_image.data(),
-                                        static_cast<uint32_t>(state.settings.of_image.size()), falloffs.data(),
+        check(lensprof_pto_set_settings(project.pto.get(), groups.of_image.data(),
+                                        static_cast<uint32_t>(groups.of_image.size()), falloffs.data(),
                                         static_cast<uint32_t>(falloffs.size()), &error),
               project.path, &error);
     }

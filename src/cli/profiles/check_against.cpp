@@ -88,14 +88,20 @@ std::vector<lensprof_pair> pairs_of_one_setting(const Project &project, const st
         if (has_one_setting(pair)) count[setting_of(pair, 0)]++;
     const auto main_setting = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
     first = settings.first[main_setting];
-    const auto other_pictures = static_cast<size_t>(std::count_if(
-        settings.of_image.begin(), settings.of_image.end(), [&](uint32_t setting) { return setting != main_setting; }));
+    const auto is_portrait = [&](uint32_t i) {
+        return project.images[i].camera.height > project.images[i].camera.width;
+    };
+    const auto is_like_first = [&](uint32_t i) {  // the centre of a profile is in one frame
+        return settings.of_image[i] == main_setting && is_portrait(i) == is_portrait(first);
+    };
+    size_t other_pictures = 0;
+    for (uint32_t i = 0; i < project.images.size(); i++) other_pictures += !is_like_first(i);
     if (other_pictures)
         warn(streams, project.path + ": " + counted(other_pictures, "picture")
                           + " of another camera, size or lens setting left out, since a profile describes one "
                             "setting; using those of " + describe_setting(metadata[first].key, project.names[first]));
     const auto is_other = [&](const lensprof_pair &p) {
-        return !has_one_setting(p) || setting_of(p, 0) != main_setting;
+        return !is_like_first(p.image[0]) || !is_like_first(p.image[1]);
     };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_other), pairs.end());
     return pairs;

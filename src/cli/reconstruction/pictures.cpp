@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cli/pictures/metadata.hpp"
+#include "cli/pictures/orientation.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
@@ -32,15 +33,16 @@ size_t count_found(const Reconstruction &r, const std::string &folder) {
 
 // The size after EXIF orientation.
 ReconstructionCamera upright_size(const ReconstructionCamera &stored, uint16_t orientation) {
-    return orientation >= 5 && orientation <= 8 ? ReconstructionCamera{stored.height, stored.width} : stored;
+    return swaps_sides(orientation) ? ReconstructionCamera{stored.height, stored.width} : stored;
 }
 
 // Converts px of the upright picture to px of the stored one, by EXIF orientation.
 void turn_back(const ReconstructionCamera &upright, uint16_t orientation, float xy[2]) {
-    const float u = xy[0], v = xy[1], right = float(upright.width) - 1.0f - u, down = float(upright.height) - 1.0f - v;
-    const float turned[9][2] = {{u, v}, {u, v},     {right, v},    {right, down}, {u, down},
-                                {v, u}, {v, right}, {down, right}, {down, u}};
-    if (orientation < 9) std::copy(turned[orientation], turned[orientation] + 2, xy);
+    const ReconstructionCamera stored = upright_size(upright, orientation);
+    double x = xy[0] - 0.5 * (upright.width - 1.0), y = xy[1] - 0.5 * (upright.height - 1.0);
+    turn_upright(inverse_orientation(orientation), x, y);
+    xy[0] = static_cast<float>(x + 0.5 * (stored.width - 1.0)),
+    xy[1] = static_cast<float>(y + 0.5 * (stored.height - 1.0));
 }
 
 // Failure if two images have the same file: the subfolders of their names are missing.
