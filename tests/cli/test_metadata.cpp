@@ -136,16 +136,16 @@ void test_sensor_by_pitch(void **) {
     assert_close(crop_of_pitch("2400", "1600", 2400, 1600, "27"), 1.5, 1e-9);   // contradiction
     assert_close(crop_of_pitch("2400", "1600", 1200, 800), LENSPROF_UNKNOWN, 0);
     assert_close(crop_of_pitch("2400", "1600", 1200, 800, "70"), 70 / 18.0, 1e-9);
-    assert_close(crop_of_pitch("2400", "1600", 1800, 1350), LENSPROF_UNKNOWN, 0);  // cropped, perhaps resized
-    assert_close(crop_of_pitch("2400", "1600", 1800, 1350, "27"), LENSPROF_UNKNOWN, 0);
+    assert_close(crop_of_pitch("2400", "1600", 1000, 750), LENSPROF_UNKNOWN, 0);  // cropped, perhaps resized
+    assert_close(crop_of_pitch("2400", "1600", 1000, 750, "27"), LENSPROF_UNKNOWN, 0);
     assert_close(crop_of_pitch("1200", "800", 1200, 800), LENSPROF_UNKNOWN, 0);  // reduced, as EXIF states
     assert_close(crop_of_pitch("1200", "800", 1200, 800, "27"), 1.5, 1e-9);
 }
 
-// A crop that still has all pixels of one side: the pitch of its pixels is the camera's, and the frame was larger.
+// A crop that has all pixels of one side, or many: the pitch of its pixels is the camera's, and the frame was larger.
 void test_sensor_of_a_crop(void **) {
     const double full_mm = std::hypot(36, 24), pitch_mm = 0.0039;
-    const uint32_t sizes[][2] = {{2400, 1350}, {1600, 1600}, {1350, 2400}, {1600, 2000}, {2400, 800}};
+    const uint32_t sizes[][2] = {{2400, 1350}, {1600, 1600}, {1350, 2400}, {1600, 2000}, {2400, 800}, {1800, 1350}};
     for (const auto &size : sizes) {
         const double crop = full_mm / (std::hypot(size[0], size[1]) * pitch_mm);
         assert_close(crop_of_pitch("2400", "1600", size[0], size[1], "70"), crop, 1e-9);

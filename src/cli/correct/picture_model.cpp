@@ -154,7 +154,7 @@ static std::string crop_note(const PictureSize &size) {
                "unknown; give --crop-factor";
     return format(
         "EXIF states a larger frame: it was cropped to %.0f %% of the diagonal; the falloff is scaled to "
-        "that, around the middle of the picture",
+        "that, around the middle of the picture (--crop-factor changes the scale)",
         100.0 * size.shown_diagonal);
 }
 

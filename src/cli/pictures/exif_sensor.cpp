@@ -20,19 +20,20 @@ bool is_size_of(StatedSize stated, PictureSize size) {
            || (stated.width == size.height && stated.height == size.width);
 }
 
-// A picture of the stated aspect shows the whole frame, resized at most. One with another aspect was cropped: if it
-// still has all pixels of one side, only across the other. Otherwise it may have been resized as well: NaN.
+// A picture of the stated aspect shows the whole frame, resized at most. One with another aspect was cropped. That it
+// was not resized as well is proven if it has all pixels of one side, and assumed if it has half of both: the falloff
+// is then rather too weak than too strong. NaN for smaller ones.
 double shown_diagonal(StatedSize stated, PictureSize size) {
     constexpr double same_aspect = 0.01;  // the rounding of small pictures
+    constexpr double min_share = 0.5;
     const double longer = std::fmax(size.width, size.height), shorter = std::fmin(size.width, size.height),
                  stated_longer = std::fmax(stated.width, stated.height),
                  stated_shorter = std::fmin(stated.width, stated.height);
     const bool is_part = shorter > 0 && longer <= stated_longer && shorter <= stated_shorter;  // false for NaN
     if (!is_part || std::fabs(longer / shorter * stated_shorter / stated_longer - 1.0) < same_aspect) return 1.0;
-    const bool has_whole_side =
-        size.width == stated.width || size.height == stated.height
-        || (size.height > size.width && (size.width == stated.height || size.height == stated.width));
-    return has_whole_side ? std::hypot(longer, shorter) / std::hypot(stated_longer, stated_shorter) : NAN;
+    const bool has_one_side = longer == stated_longer || shorter == stated_shorter || longer == stated_shorter;
+    const bool has_half = longer >= min_share * stated_longer && shorter >= min_share * stated_shorter;
+    return has_one_side || has_half ? std::hypot(longer, shorter) / std::hypot(stated_longer, stated_shorter) : NAN;
 }
 
 // 43.27 mm over the sensor diagonal, from the pixel pitch; NaN without it.
