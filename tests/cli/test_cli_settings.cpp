@@ -1,6 +1,7 @@
 // Pictures at several lens settings: a falloff and a profile for each.
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
+#include "cli/correct/turned_profile.hpp"
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli_runs.hpp"
@@ -227,6 +228,31 @@ void test_turned_frames(void **) {
     }
 }
 
+// Centre and grid of a profile for a picture that orientation 6 or 8 turns back, or that may have been turned either
+// way.
+void test_turned_profile(void **) {
+    const struct {
+        uint16_t turn;
+        double x, y;
+        std::vector<float> nodes;
+    } turns[] = {{1, 0.1, -0.06, {1, 2, 3, 4, 5, 6}},
+                 {6, -0.06, -0.1, {3, 6, 2, 5, 1, 4}},
+                 {8, 0.06, 0.1, {4, 1, 5, 2, 6, 3}},
+                 {0, 0.0, 0.0, {3.5, 3.5, 3.5, 3.5, 3.5, 3.5}}};
+    for (const auto &expected : turns) {
+        lensprof_profile profile;
+        lensprof_profile_init(&profile);
+        profile.vignetting[0].center[0] = 0.1, profile.vignetting[0].center[1] = -0.06;
+        profile.grid.columns = 3, profile.grid.rows = 2, profile.grid.channels = 1;
+        for (int n = 0; n < 6; n++) profile.grid.attenuation[n] = static_cast<float>(n + 1);
+        turn_profile(expected.turn, profile);
+        assert_close(profile.vignetting[0].center[0], expected.x, 1e-12);
+        assert_close(profile.vignetting[0].center[1], expected.y, 1e-12);
+        assert_int_equal(profile.grid.columns, expected.turn == 1 ? 3 : 2);
+        for (size_t n = 0; n < 6; n++) assert_close(profile.grid.attenuation[n], expected.nodes[n], 0);
+    }
+}
+
 // Frames whose turn is not stated share the falloff around the middle.
 void test_frames_turned_either_way(void **) {
     must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--center=0,0", "--images", "6",
@@ -281,6 +307,7 @@ int main() {
         CLI_TEST(test_profiles),
         CLI_TEST(test_project_with_both),
         CLI_TEST(test_turned_frames),
+        CLI_TEST(test_turned_profile),
         CLI_TEST(test_frames_turned_either_way),
         CLI_TEST(test_links_of_a_project),
         CLI_TEST(test_a_setting_that_is_not_shown),
