@@ -15,48 +15,76 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kMaxSamples = 128;    // of a map, a side: more tell a polynomial nothing
-constexpr double kGridFrom = 0.002;      // relative error of a radial falloff that a grid is for
-constexpr uint32_t kGridNodes = 24;      // along the longer side
-constexpr size_t kFewValues = 4;         // of a map, a node
-constexpr int kRefinements = 20;         // of such a grid: the error of a table of 16 x 12 falls from 3.5 to 0.3 %
-constexpr double kFarthestCenter = 0.5;  // half diagonals; beyond it is not the centre of a falloff
+constexpr uint32_t kMaxSamples = 128;     // of a map, a side: more tell a polynomial nothing
+constexpr double kGridFrom = 0.002;       // relative error of a radial falloff that a grid is for
+constexpr uint32_t kGridNodes = 24;       // along the longer side
+constexpr double kMoreNodesFrom = 0.005;  // relative error of such a grid that one with more nodes is for
+constexpr double kUnknownShare = 0.02;    // of a map, from which it is taken as that of a part of the frame
+constexpr size_t kFewValues = 4;          // of a map, a node
+constexpr int kRefinements = 20;          // of such a grid: the error of a table of 16 x 12 falls from 3.5 to 0.3 %
+constexpr double kFarthestCenter = 0.5;   // half diagonals; beyond it is not the centre of a falloff
 
 [[noreturn]] void fail(const char *text) { throw FalloffFailure{LENSPROF_ERROR_VIGNETTING, text}; }
 
-// A known value of a map.
+// A value of a map.
 struct Sample {
     double x, y, value;
 };
 
-// The known values of a channel over its largest, at most kMaxSamples a side.
+// The values of a channel over its largest, at most kMaxSamples a side: the known ones, and where nothing is known
+// those of the nearest known ones.
 struct Channel {
     double largest;
-    std::vector<Sample> samples;
+    std::vector<Sample> samples, beyond;
 };
+
+// The known value nearest to each value of a channel, in steps along rows and columns.
+std::vector<double> extended(const FalloffMap &map, const double *values, double lowest) {
+    const size_t size = size_t(map.columns) * map.rows;
+    std::vector<double> nearest(size, 0.0);
+    std::vector<size_t> queue;
+    queue.reserve(size);
+    for (size_t i = 0; i < size; i++)
+        if (values[i] >= lowest) nearest[i] = values[i], queue.push_back(i);
+    for (size_t next = 0; next < queue.size(); next++) {
+        const size_t i = queue[next], column = i % map.columns;
+        const auto take = [&](bool exists, size_t neighbour) {
+            if (exists && nearest[neighbour] == 0.0) nearest[neighbour] = nearest[i], queue.push_back(neighbour);
+        };
+        take(column > 0, i - 1), take(column + 1 < map.columns, i + 1);
+        take(i >= map.columns, i - map.columns), take(i + map.columns < size, i + map.columns);
+    }
+    return nearest;
+}
 
 Channel channel_of(const FalloffMap &map, uint32_t index) {
     const size_t size = size_t(map.columns) * map.rows;
     const double *values = map.attenuation.data() + size * index;
-    Channel channel{*std::max_element(values, values + size), {}};
+    Channel channel{*std::max_element(values, values + size), {}, {}};
     if (!(channel.largest > 0.0)) fail("the map has no value above 0; correct it");
+    const std::vector<double> nearest = extended(map, values, kLowestFalloff * channel.largest);
     const uint32_t across = std::min(map.columns, kMaxSamples), down = std::min(map.rows, kMaxSamples);
     for (uint32_t b = 0; b < down; b++)
         for (uint32_t a = 0; a < across; a++) {
             const uint32_t i = static_cast<uint32_t>((2 * uint64_t(a) + 1) * map.columns / (2 * across));
             const uint32_t j = static_cast<uint32_t>((2 * uint64_t(b) + 1) * map.rows / (2 * down));
-            const double value = values[size_t(j) * map.columns + i] / channel.largest;
-            if (value >= kLowestFalloff) channel.samples.push_back({map.x0 + i * map.dx, map.y0 + j * map.dy, value});
+            const size_t at = size_t(j) * map.columns + i;
+            const bool is_known = values[at] >= kLowestFalloff * channel.largest;
+            (is_known ? channel.samples : channel.beyond)
+                .push_back({map.x0 + i * map.dx, map.y0 + j * map.dy, nearest[at] / channel.largest});
         }
     if (channel.samples.size() < 8) fail("too few values of the map are above 0; give one that covers the frame");
     return channel;
 }
 
+// Minimises the sum of squares of the relative error over the known values plus `weight_beyond` times that over the
+// others, which keeps M possible there.
+//
 // Unknowns: scale c0 and c1..c3 = c0 k of every channel, so that with a fixed centre all is linear; then the centre.
 class MapFit {
 public:
-    explicit MapFit(const FalloffMap &map) : map_(map) {
-        for (uint32_t c = 0; c < map.channels; c++) channels_.push_back(channel_of(map, c));
+    MapFit(const FalloffMap &map, const std::vector<Channel> &channels, double weight_beyond)
+        : map_(map), channels_(channels), weight_beyond_(weight_beyond) {
         terms_ = Eigen::VectorXd::Zero(4 * map.channels + 2);
     }
 
@@ -77,6 +105,7 @@ public:
         return {terms_[first + 1] / terms_[first], terms_[first + 2] / terms_[first],
                 terms_[first + 3] / terms_[first]};
     }
+    uint32_t channels() const { return map_.channels; }
     const Channel &channel(uint32_t index) const { return channels_[index]; }
     // What M = 1 is, of the channel's largest value.
     double unit_value(uint32_t channel) const { return terms_[4 * channel]; }
@@ -109,19 +138,32 @@ private:
         constexpr int kPowers[4] = {0, 1, 2, 3};
         for (uint32_t c = 0; c < map_.channels; c++) {
             const lensprof_vignetting v = shape(terms_, c);
-            const std::vector<Sample> &samples = channels_[c].samples;
-            terms_.segment(4 * c, 4) = fit_powers(kPowers, 4, static_cast<int>(samples.size()), 1, [&](int i) {
-                const Sample &s = samples[static_cast<size_t>(i)];
+            const std::vector<Sample> &samples = channels_[c].samples, &beyond = channels_[c].beyond;
+            const size_t known = samples.size(), count = known + (weight_beyond_ > 0.0 ? beyond.size() : 0);
+            terms_.segment(4 * c, 4) = fit_powers(kPowers, 4, static_cast<int>(count), 1, [&](int index) {
+                const size_t i = static_cast<size_t>(index);
+                const Sample &s = i < known ? samples[i] : beyond[i - known];
                 const double r2 = lensprof_vignetting_r2(&v, map_.width, map_.height, s.x, s.y, nullptr);
-                return PowerSample{r2, s.value, 1.0 / (s.value * s.value)};
+                return PowerSample{r2, s.value, (i < known ? 1.0 : weight_beyond_) / (s.value * s.value)};
             });
+        }
+    }
+
+    // Calls use(channel, sample, weight) for every sample that has a weight.
+    template <class Use>
+    void visit(Use use) const {
+        for (uint32_t c = 0; c < map_.channels; c++) {
+            for (const Sample &s : channels_[c].samples) use(c, s, 1.0);
+            for (const Sample &s : channels_[c].beyond)
+                if (weight_beyond_ > 0.0) use(c, s, weight_beyond_);
         }
     }
 
     double cost_of(const Eigen::VectorXd &terms) const {
         double cost = 0.0;
-        for (uint32_t c = 0; c < map_.channels; c++)
-            for (const Sample &s : channels_[c].samples) cost += std::pow(residual(terms, c, s, nullptr), 2);
+        visit([&](uint32_t c, const Sample &s, double weight) {
+            cost += weight * std::pow(residual(terms, c, s, nullptr), 2);
+        });
         return cost;
     }
 
@@ -129,19 +171,19 @@ private:
         const Eigen::Index n = terms_.size();
         QuadraticModel model{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
         Eigen::VectorXd slope;
-        for (uint32_t c = 0; c < map_.channels; c++)
-            for (const Sample &s : channels_[c].samples) {
-                const double left = residual(terms_, c, s, &slope);
-                model.objective += left * left;
-                model.gradient -= left * slope;
-                model.hessian.selfadjointView<Eigen::Lower>().rankUpdate(slope);
-            }
+        visit([&](uint32_t c, const Sample &s, double weight) {
+            const double left = residual(terms_, c, s, &slope);
+            model.objective += weight * left * left;
+            model.gradient -= weight * left * slope;
+            model.hessian.selfadjointView<Eigen::Lower>().rankUpdate(slope, weight);
+        });
         model.hessian = Eigen::MatrixXd(model.hessian.selfadjointView<Eigen::Lower>());
         return model;
     }
 
     const FalloffMap &map_;
-    std::vector<Channel> channels_;
+    const std::vector<Channel> &channels_;
+    double weight_beyond_;
     Eigen::VectorXd terms_;
 };
 
@@ -189,11 +231,13 @@ double left_at(const FalloffMap &map, const lensprof_vignetting &falloff, uint32
     return std::clamp(left, kLowestFalloff, 1.0 / kLowestFalloff);
 }
 
-void set_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profile) {
+// A grid with so many nodes along the longer side. Where nothing is known, the falloff stays that of the nearest known
+// place, so that a correction does not amplify what is there.
+void set_grid(const FalloffMap &map, const MapFit &fit, uint32_t most_nodes, lensprof_profile &profile) {
     lensprof_gain_grid &grid = profile.grid;
     const uint32_t longer = std::max(map.width, map.height);
     const auto nodes = [&](uint32_t side, uint32_t values) {
-        const uint32_t intervals = static_cast<uint32_t>(std::lround(double(kGridNodes - 1) * side / longer)) + 1;
+        const uint32_t intervals = static_cast<uint32_t>(std::lround(double(most_nodes - 1) * side / longer)) + 1;
         return std::clamp<uint32_t>(std::min(intervals, values), 2, LENSPROF_GRID_SIDE);
     };
     grid.columns = nodes(map.width, map.columns), grid.rows = nodes(map.height, map.rows);
@@ -203,20 +247,24 @@ void set_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profil
     for (uint32_t c = 0; c < grid.channels; c++) {
         const double largest = fit.channel(c).largest;
         const Scale scale{fit.unit_value(c) * largest, kLowestFalloff * largest};
+        FalloffMap whole = map;
+        if (!fit.channel(c).beyond.empty()) {
+            double *values = whole.attenuation.data() + size_t(map.columns) * map.rows * c;
+            const std::vector<double> nearest = extended(map, values, scale.lowest);
+            std::copy(nearest.begin(), nearest.end(), values);
+        }
         for (uint32_t j = 0; j < grid.rows; j++)
             for (uint32_t i = 0; i < grid.columns; i++)
                 *node++ = static_cast<float>(
-                    left_at(map, profile.vignetting[c], c, scale, i * step_x, j * step_y, step_x, step_y));
+                    left_at(whole, profile.vignetting[c], c, scale, i * step_x, j * step_y, step_x, step_y));
     }
 }
 
 // Draws the nodes to the values: each by the mean, over the values that it is interpolated for and weighted as they
-// are, of what they are over the model. For tables with few values a node, which planes smooth; where there are many,
-// the planes are means over more of them.
+// are, of what they are over the model.
 void refine_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profile) {
     lensprof_gain_grid &grid = profile.grid;
     const size_t nodes = size_t(grid.columns) * grid.rows;
-    if (size_t(map.columns) * map.rows >= kFewValues * nodes) return;
     for (uint32_t c = 0; c < map.channels; c++) {
         for (int round = 0; round < kRefinements; round++) {
             std::vector<double> sum(nodes), weight(nodes);
@@ -255,6 +303,46 @@ double worst_error(const FalloffMap &map, const MapFit &fit, const lensprof_prof
     return worst;
 }
 
+// Sets the grid that leaves least: of planes alone or refined, and with more nodes if few leave much. Refined are the
+// nodes of tables with few values, and those across the edge of what is known. Returns the largest relative error.
+double set_best_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profile) {
+    double least = INFINITY;
+    lensprof_gain_grid best = profile.grid;
+    const auto keep = [&] {
+        const double worst = worst_error(map, fit, profile);
+        if (worst < least) least = worst, best = profile.grid;
+    };
+    for (const uint32_t nodes : {kGridNodes, static_cast<uint32_t>(LENSPROF_GRID_SIDE)}) {
+        set_grid(map, fit, nodes, profile);
+        const size_t count = size_t(profile.grid.columns) * profile.grid.rows;
+        const bool is_refined = size_t(map.columns) * map.rows < kFewValues * count || !fit.channel(0).beyond.empty();
+        if (!is_refined) keep();
+        if (is_refined || least > kMoreNodesFrom) refine_grid(map, fit, profile), keep();
+        if (!(least > kMoreNodesFrom)) break;
+    }
+    profile.grid = best;
+    return least;
+}
+
+// Whether so many values are unknown that the map is that of a part of the frame, such as the circle of a fisheye.
+bool is_of_part(const std::vector<Channel> &channels) {
+    size_t known = 0, beyond = 0;
+    for (const Channel &channel : channels) known += channel.samples.size(), beyond += channel.beyond.size();
+    return static_cast<double>(beyond) > kUnknownShare * static_cast<double>(known + beyond);
+}
+
+// Sets the radial falloffs; false if one of them is not possible.
+bool set_radial(const MapFit &fit, lensprof_profile &profile) {
+    profile.vignettings = fit.channels();
+    for (uint32_t c = 0; c < profile.vignettings; c++) {
+        lensprof_vignetting &v = profile.vignetting[c];
+        const std::array<double, 3> k = fit.k(c);
+        v = {{k[0], k[1], k[2]}, {fit.center_of(0), fit.center_of(1)}};
+        if (!(fit.unit_value(c) > 0.0) || lensprof_vignetting_validate(&v) != LENSPROF_OK) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 void place_as_cells(FalloffMap &map) {
@@ -268,7 +356,8 @@ FalloffMap sampled_map(uint32_t width, uint32_t height, uint32_t channels, const
         return std::min(side, static_cast<uint32_t>(std::ceil(kMaxSamples * (side / longer))));
     };
     FalloffMap map{width, height, cells(width), cells(height), channels, 0, 0, 0, 0, {}};
-    place_as_cells(map);
+    const auto step = [](uint32_t side, uint32_t count) { return count > 1 ? (side - 1.0) / (count - 1) : 1.0; };
+    map.dx = step(width, map.columns), map.dy = step(height, map.rows);  // with the corners, where errors are largest
     map.attenuation.reserve(size_t(map.columns) * map.rows * channels);
     for (uint32_t c = 0; c < channels; c++)
         for (uint32_t j = 0; j < map.rows; j++)
@@ -281,22 +370,19 @@ double fit_map(const FalloffMap &map, lensprof_profile &profile) {
     for (double value : map.attenuation)
         if (!std::isfinite(value))
             throw FalloffFailure{LENSPROF_ERROR_NOT_FINITE, "the map has a value that is not finite; correct it"};
-    MapFit fit(map);
-    fit.run();
-    profile.vignettings = map.channels;
-    for (uint32_t c = 0; c < map.channels; c++) {
-        lensprof_vignetting &v = profile.vignetting[c];
-        const std::array<double, 3> k = fit.k(c);
-        v = {{k[0], k[1], k[2]}, {fit.center_of(0), fit.center_of(1)}};
-        if (!(fit.unit_value(c) > 0.0) || lensprof_vignetting_validate(&v) != LENSPROF_OK)
-            fail("no radial falloff approximates the map; check that it shows one frame, and its sense");
+    std::vector<Channel> channels;
+    for (uint32_t c = 0; c < map.channels; c++) channels.push_back(channel_of(map, c));
+    const bool is_part = is_of_part(channels);
+    for (const double weight : {0.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0}) {
+        if (is_part == (weight == 0.0)) continue;
+        MapFit fit(map, channels, weight);
+        fit.run();
+        if (!set_radial(fit, profile)) continue;
+        lensprof_gain_grid_init(&profile.grid);
+        const double radial = worst_error(map, fit, profile);
+        return radial > kGridFrom || is_part ? set_best_grid(map, fit, profile) : radial;
     }
-    lensprof_gain_grid_init(&profile.grid);
-    const double worst = worst_error(map, fit, profile);
-    if (!(worst > kGridFrom)) return worst;
-    set_grid(map, fit, profile);
-    refine_grid(map, fit, profile);
-    return worst_error(map, fit, profile);
+    fail("no radial falloff approximates the map; check that it shows one frame, and its sense");
 }
 
 }  // namespace lensprof

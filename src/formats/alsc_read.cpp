@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <lensprof/formats.h>
@@ -16,16 +18,58 @@ namespace {
 constexpr double kMaxGain = 1000.0;
 constexpr size_t kMaxValues = 65536;
 
-// The algorithm's object: the text itself, a member of it, or one of the algorithms of a tuning file.
+// libcamera reads tuning files as YAML, which accepts a comma before a closing bracket. Blanks keep the line numbers.
+std::string without_last_commas(std::string_view text) {
+    std::string plain(text);
+    size_t comma = std::string::npos;  // the one that may be the last of its bracket
+    char before = '[';                 // the last character that is not blank
+    bool is_quoted = false;
+    for (size_t i = 0; i < plain.size(); i++) {
+        const char c = plain[i];
+        if (is_quoted) {
+            if (c == '\\')
+                i++;
+            else
+                is_quoted = c != '"';
+            continue;
+        }
+        if (is_blank(c) || c == '\r' || c == '\n') continue;
+        if ((c == ']' || c == '}') && comma != std::string::npos) plain[comma] = ' ';
+        const bool follows_value = before != '[' && before != '{' && before != ',' && before != ':';
+        comma = c == ',' && follows_value ? i : std::string::npos;
+        is_quoted = c == '"';
+        before = c;
+    }
+    return plain;
+}
+
+[[noreturn]] void fail_without_table(const JsonValue &value, const std::string &what) {
+    value.fail("has no " + what + ", that is, no table of lens shading; give another file", LENSPROF_ERROR_NOT_FOUND);
+}
+
+// The algorithm's object: the text itself, a member of it (tuning files of version 1), or a member of an item of
+// `algorithms` (version 2).
 JsonValue find_alsc(const JsonValue &root) {
     if (!root.is_object()) root.fail("is not an object; give a tuning file of libcamera, or its \"rpi.alsc\"");
     if (const JsonValue direct = root[kAlscName]) return direct;
     if (const JsonValue list = root["algorithms"]) {
         for (JsonValue item = list.first(); item; item = item.next())
             if (item.is_object() && item[kAlscName]) return item[kAlscName];
-        list.fail("has no \"rpi.alsc\"; give another file");
+        fail_without_table(list, "\"rpi.alsc\"");
     }
+    for (JsonValue item = root.first(); item; item = item.next())
+        if (item.path().rfind("rpi.", 0) == 0) fail_without_table(root, "\"rpi.alsc\"");
     return root;
+}
+
+// Green's gains, which libcamera takes as 1 where they are missing.
+JsonValue luminance_of(const JsonValue &root, const JsonValue &alsc) {
+    const bool is_in_tuning_file = alsc.path() != root.path();
+    if (is_in_tuning_file && alsc.is_object() && !alsc["luminance_lut"]) fail_without_table(alsc, "\"luminance_lut\"");
+    if (alsc.is_object() && alsc["corner_strength"])
+        alsc["corner_strength"].fail("makes libcamera ignore \"luminance_lut\"; remove it to read the table",
+                                     LENSPROF_ERROR_UNSUPPORTED);
+    return alsc.required("luminance_lut");
 }
 
 // Columns and rows of a table of so many values.
@@ -83,12 +127,10 @@ struct Shape {
 };
 
 double read_alsc(std::string_view text, double ct, Shape shape, lensprof_profile &profile) {
-    const JsonText json(text);
+    const std::string plain = without_last_commas(text);
+    const JsonText json(plain);
     const JsonValue alsc = find_alsc(json.root());
-    if (alsc.is_object() && alsc["corner_strength"])
-        alsc["corner_strength"].fail("makes libcamera ignore \"luminance_lut\"; remove it to read the table",
-                                     LENSPROF_ERROR_UNSUPPORTED);
-    const JsonValue table = alsc.required("luminance_lut");
+    const JsonValue table = luminance_of(json.root(), alsc);
     const std::vector<double> luminance = gains_of(table);
     const size_t count = luminance.size();
     find_shape(table, count, shape.columns, shape.rows);

@@ -6,7 +6,7 @@
 
 #include <lensprof/formats.h>
 
-#include "formats/falloff/curve_table.hpp"
+#include "formats/responses.hpp"
 
 namespace lensprof {
 namespace {
@@ -116,32 +116,36 @@ void check_index(const Table &table, size_t index) {
                                                  + ", which counts the rows, is not evenly spaced from 0; correct it");
 }
 
+// The irradiances of logarithms, relative to the largest.
+void remove_logarithm(std::vector<double> &values, uint32_t curve) {
+    const double largest = *std::max_element(values.begin(), values.end());
+    for (double &value : values)
+        value = curve == LENSPROF_CURVE_LOG ? std::exp(value - largest) : std::pow(10.0, value - largest);
+}
+
 // The values of a channel as a response.
-lensprof_response read_curve(const Table &table, std::vector<double> values, uint32_t curve) {
+lensprof_response read_curve(const Table &table, std::vector<double> values, uint32_t curve, Repair &repair) {
     if (values.size() < 2) fail_at_line(table.rows[0].line, "only one row; give one per grey value");
     const size_t fall = find_fall(values, false);
-    if (fall < values.size())
+    if (fall < values.size() && !repair.is_allowed)
         fail_at_line(table.rows[fall].line,
                      number_text(values[fall]) + " is below the " + number_text(values[fall - 1])
                          + " before it, but a response cannot decrease; smooth it, or check the kind of table",
                      LENSPROF_ERROR_RESPONSE);
+    if (curve == LENSPROF_CURVE_INVERSE && values.front() < 0.0)
+        fail_at_line(table.rows[0].line,
+                     number_text(values.front())
+                         + " is below 0, which is not an irradiance; check whether the table is logarithmic",
+                     LENSPROF_ERROR_RESPONSE);
+    if (curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10) remove_logarithm(values, curve);
+    if (fall < values.size()) make_increasing(values, 0.0, repair);
     const double first = values.front(), last = values.back();
-    if (curve == LENSPROF_CURVE_INVERSE && first < 0.0)
-        fail_at_line(
-            table.rows[0].line,
-            number_text(first) + " is below 0, which is not an irradiance; check whether the table is logarithmic",
-            LENSPROF_ERROR_RESPONSE);
-    const bool is_log = curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10;
-    if (is_log ? !(last > first) : !(last > 0.0 && last > first))
+    if (!(last > 0.0 && last > first))
         fail_at_line(table.rows.back().line,
                      "the last value is not above the first, or not above 0; give another table",
                      LENSPROF_ERROR_RESPONSE);
     for (double &value : values) {
-        if (curve == LENSPROF_CURVE_LOG)
-            value = std::exp(value - last);
-        else if (curve == LENSPROF_CURVE_LOG10)
-            value = std::pow(10.0, value - last);
-        else if (curve == LENSPROF_CURVE_FORWARD)
+        if (curve == LENSPROF_CURVE_FORWARD)
             value = std::clamp(value / (last - first) - first / (last - first), 0.0, 1.0);
         else
             value /= last;
@@ -161,7 +165,7 @@ struct Curves {
 };
 
 // pfstools: a table a channel, of log10(irradiance), grey value and irradiance.
-void read_matrices(const std::vector<Table> &tables, Curves &curves) {
+void read_matrices(const std::vector<Table> &tables, Repair &repair, Curves &curves) {
     if (tables.size() != 1 && tables.size() != 3)
         throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::to_string(tables.size())
                                                        + " matrices; give one, or one for each of red, green and blue"};
@@ -171,11 +175,12 @@ void read_matrices(const std::vector<Table> &tables, Curves &curves) {
             fail_at_line(tables[c].rows[0].line,
                          "a matrix without 3 columns: log10, grey value and irradiance; correct it");
         check_index(tables[c], 1);
-        curves.response[c] = read_curve(tables[c], column(tables[c], 2), LENSPROF_CURVE_INVERSE);
+        curves.response[c] = read_curve(tables[c], column(tables[c], 2), LENSPROF_CURVE_INVERSE, repair);
     }
 }
 
-void read_columns(const Table &table, bool blue_first, uint32_t curve, Curves &curves) {
+void read_columns(const CurveText &file, uint32_t curve, Repair &repair, Curves &curves) {
+    const Table &table = file.tables()[0];
     const size_t columns = table.rows[0].values.size();
     if (columns > 4)
         fail_at_line(table.rows[0].line,
@@ -184,10 +189,23 @@ void read_columns(const Table &table, bool blue_first, uint32_t curve, Curves &c
     const size_t skipped = columns - curves.count;
     if (skipped && table.rows.size() > 1) check_index(table, 0);
     for (uint32_t c = 0; c < curves.count; c++)
-        curves.response[blue_first ? curves.count - 1 - c : c] = read_curve(table, column(table, skipped + c), curve);
+        curves.response[file.blue_first() ? curves.count - 1 - c : c] =
+            read_curve(table, column(table, skipped + c), curve, repair);
 }
 
 }  // namespace
+
+uint32_t read_curves(std::string_view text, uint32_t curve, Repair &repair, lensprof_response *responses) {
+    const CurveText file(text);
+    Curves curves{};
+    if (!file.tables()[0].name.empty())
+        read_matrices(file.tables(), repair, curves);
+    else
+        read_columns(file, curve, repair, curves);
+    std::copy_n(curves.response.begin(), curves.count, responses);
+    return curves.count;
+}
+
 }  // namespace lensprof
 
 using namespace lensprof;
@@ -200,13 +218,7 @@ lensprof_status lensprof_curves_read(const void *data, size_t size, uint32_t cur
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
-        const CurveText file(view_of(data, size));
-        Curves curves{};
-        if (!file.tables()[0].name.empty())
-            read_matrices(file.tables(), curves);
-        else
-            read_columns(file.tables()[0], file.blue_first(), curve, curves);
-        std::copy_n(curves.response.begin(), curves.count, responses);
-        *count = curves.count;
+        Repair none;
+        *count = read_curves(view_of(data, size), curve, none, responses);
     });
 }

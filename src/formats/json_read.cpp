@@ -266,7 +266,7 @@ lensprof_status lensprof_json_read(const void *data, size_t size, const char *so
         const auto profile = std::make_unique<lensprof_profile>();
         walk(json, source, *profile, [](lensprof_profile &) { return LENSPROF_OK; });  // all are checked first
         visited = walk(json, source, *profile, [&](lensprof_profile &found) {
-            const lensprof_import_entry entry = {&found, 1, 0};
+            const lensprof_import_entry entry = {&found, 1, 0, 0.0};
             return visit(user, &entry);
         });
     });

@@ -24,6 +24,7 @@ namespace lensprof {
 namespace {
 
 constexpr size_t kMaxEntries = 20000, kMaxKnots = 1000;
+constexpr double kLargestRefit = 0.01;  // relative error of a radial falloff without a grid
 
 // A radius in focal lengths and the attenuation there.
 using Knot = std::pair<double, double>;
@@ -207,8 +208,9 @@ lensprof_status LcpReader::walk(Use use) {
     return LENSPROF_OK;
 }
 
-// Ellipses of the same attenuation: a map of the frame. Returns the largest relative error.
-double fit_ellipses(const LcpFalloff &falloff, lensprof_profile &profile) {
+// A falloff that M does not hold, because it has other knots or elliptical contours, as a map of the frame: M and a
+// gain grid. Returns the largest relative error.
+double fit_places(const LcpFalloff &falloff, lensprof_profile &profile) {
     const uint32_t longer = std::max(falloff.width, falloff.height);
     const auto attenuation = [&](double column, double row, uint32_t) {
         const double x = (column + 0.5 - falloff.center[0] * falloff.width) / falloff.focal[0];
@@ -224,7 +226,7 @@ double fit_ellipses(const LcpFalloff &falloff, lensprof_profile &profile) {
 double set_falloff(const LcpFalloff &falloff, lensprof_profile &profile) {
     profile.vignettings = 1;
     lensprof_gain_grid_init(&profile.grid);
-    if (falloff.focal[0] != falloff.focal[1]) return fit_ellipses(falloff, profile);
+    if (falloff.focal[0] != falloff.focal[1]) return fit_places(falloff, profile);
     const double sides[2] = {double(falloff.width), double(falloff.height)};
     const double rho = lensprof_half_diagonal(falloff.width, falloff.height);
     const double unit = falloff.focal[0] * std::max(sides[0], sides[1]) / rho;  // half diagonals
@@ -234,6 +236,7 @@ double set_falloff(const LcpFalloff &falloff, lensprof_profile &profile) {
     if (!falloff.knots.empty())
         refit = refit_radial([&](double r2) { return falloff.attenuation(std::sqrt(r2) / unit); },
                              farthest_corner(v.center, falloff.width, falloff.height));
+    if (refit.worst > kLargestRefit) return fit_places(falloff, profile);
     std::copy(refit.k.begin(), refit.k.end(), v.k);
     return refit.worst;
 }
@@ -248,7 +251,7 @@ lensprof_status visit_falloff(lensprof_profile &profile, const LcpFalloff &fallo
         lensprof_gain_grid_init(&profile.grid);
         profile.vignetting[0] = {{NAN, NAN, NAN}, {0.0, 0.0}};
         put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, failure.text);
-        const lensprof_import_entry entry = {&profile, 0, 0};
+        const lensprof_import_entry entry = {&profile, 0, 0, 0.0};
         return visit(user, &entry);
     }
     return visit_entry(profile, remark, visit, user);

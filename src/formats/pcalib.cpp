@@ -3,7 +3,7 @@
 
 #include <lensprof/formats.h>
 
-#include "formats/falloff/curve_table.hpp"
+#include "formats/responses.hpp"
 
 namespace lensprof {
 namespace {
@@ -13,7 +13,13 @@ constexpr double kFull = 255.0;
 // Between two values: six units of single precision, in which they are read, at 255.
 constexpr double kMinStep = 1e-4;
 
-lensprof_response read_pcalib(std::string_view text) {
+// kMinStep of what 255 is in a file of another scale and number of values.
+double smallest_step(const std::vector<double> &values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return kMinStep / static_cast<double>(values.size()) * (*high - *low);
+}
+
+std::vector<double> read_values(std::string_view text) {
     std::vector<double> values;
     LineReader lines(text);
     while (lines.next())
@@ -26,19 +32,7 @@ lensprof_response read_pcalib(std::string_view text) {
                 throw FormatFailure{LENSPROF_ERROR_SIZE, "over 65536 values; give one per grey value"};
             values.push_back(value);
         }
-    const size_t fall = find_fall(values, true);
-    if (fall < values.size())
-        throw FormatFailure{LENSPROF_ERROR_RESPONSE,
-                            "value " + std::to_string(fall) + " (" + number_text(values[fall])
-                                + ") is not above the one before (" + number_text(values[fall - 1])
-                                + "), but an inverse response must increase; smooth it, or write it with lensprof"};
-    if (values.size() < kRows)
-        throw FormatFailure{
-            LENSPROF_ERROR_SYNTAX,
-            std::to_string(values.size()) + " values, not 256 or more; give the whole file, with one per grey value"};
-    const double first = values.front(), range = values.back() - first;
-    for (double &value : values) value = std::max((value - first) / range, 0.0);
-    return response_of_irradiances(values);
+    return values;
 }
 
 std::string pcalib_text(const lensprof_response &response) {
@@ -55,6 +49,25 @@ std::string pcalib_text(const lensprof_response &response) {
 }
 
 }  // namespace
+
+lensprof_response read_pcalib(std::string_view text, Repair &repair) {
+    std::vector<double> values = read_values(text);
+    const size_t fall = find_fall(values, true);
+    if (fall < values.size() && !repair.is_allowed)
+        throw FormatFailure{LENSPROF_ERROR_RESPONSE,
+                            "value " + std::to_string(fall) + " (" + number_text(values[fall])
+                                + ") is not above the one before (" + number_text(values[fall - 1])
+                                + "), but an inverse response must increase; smooth it, or write it with lensprof"};
+    if (values.size() < kRows)
+        throw FormatFailure{
+            LENSPROF_ERROR_SYNTAX,
+            std::to_string(values.size()) + " values, not 256 or more; give the whole file, with one per grey value"};
+    if (fall < values.size()) make_increasing(values, smallest_step(values), repair);
+    const double first = values.front(), range = values.back() - first;
+    for (double &value : values) value = std::max((value - first) / range, 0.0);
+    return response_of_irradiances(values);
+}
+
 }  // namespace lensprof
 
 using namespace lensprof;
@@ -65,7 +78,10 @@ lensprof_status lensprof_pcalib_read(const void *data, size_t size, lensprof_res
         set_error(error, "lensprof_pcalib_read: data or response is NULL; pass a buffer and a response");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return at_boundary(error, [&] { *response = read_pcalib(view_of(data, size)); });
+    return at_boundary(error, [&] {
+        Repair none;
+        *response = read_pcalib(view_of(data, size), none);
+    });
 }
 
 lensprof_status lensprof_pcalib_write(const lensprof_response *response, void *data, size_t capacity, size_t *count,

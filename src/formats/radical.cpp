@@ -12,6 +12,7 @@
 
 #include "formats/falloff/curve_table.hpp"
 #include "formats/falloff/map.hpp"
+#include "formats/responses.hpp"
 
 namespace lensprof {
 namespace {
@@ -92,30 +93,6 @@ void put_matrix(std::string &data, uint32_t type, uint32_t rows, uint32_t column
         std::memcpy(raw.data(), &value, sizeof value);
         if (!Matrix::is_little_endian()) std::reverse(raw.begin(), raw.end());
         data.append(raw.data(), raw.size());
-    }
-}
-
-void read_responses(std::string_view data, lensprof_response *responses) {
-    const Matrix matrix = take_matrix(data, kFloat3);
-    if (uint64_t{matrix.rows} * matrix.columns != kGreys)
-        fail("a response of " + std::to_string(uint64_t{matrix.rows} * matrix.columns)
-             + " grey values, not 256; give another file");
-    const std::vector<float> values = matrix.numbers<float>();
-    static constexpr const char *kNames[3] = {"red", "green", "blue"};
-    for (size_t c = 0; c < 3; c++) {
-        std::vector<double> greys;
-        for (size_t i = 0; i < kGreys; i++) greys.push_back(double(values[3 * i + 2 - c]));
-        for (size_t i = 0; i < kGreys; i++)
-            if (!std::isfinite(greys[i]) || greys[i] < 0.0)
-                fail(std::string("grey ") + std::to_string(i) + " of " + kNames[c]
-                         + " is not an irradiance; calibrate again",
-                     LENSPROF_ERROR_RESPONSE);
-        const size_t fall = find_fall(greys, false);
-        if (fall < kGreys || !(greys.back() > greys.front()))
-            fail("grey " + std::to_string(std::min<size_t>(fall, kGreys - 1)) + " of " + kNames[c]
-                     + " is darker than the one before; smooth it, or calibrate again",
-                 LENSPROF_ERROR_RESPONSE);
-        responses[c] = response_of_irradiances(greys);
     }
 }
 
@@ -236,6 +213,33 @@ std::string vignetting_data(const lensprof_profile &profile, uint32_t width, uin
 }
 
 }  // namespace
+
+void read_radical_responses(std::string_view data, Repair &repair, lensprof_response *responses) {
+    const Matrix matrix = take_matrix(data, kFloat3);
+    if (uint64_t{matrix.rows} * matrix.columns != kGreys)
+        fail("a response of " + std::to_string(uint64_t{matrix.rows} * matrix.columns)
+             + " grey values, not 256; give another file");
+    const std::vector<float> values = matrix.numbers<float>();
+    static constexpr const char *kNames[3] = {"red", "green", "blue"};
+    for (size_t c = 0; c < 3; c++) {
+        std::vector<double> greys;
+        for (size_t i = 0; i < kGreys; i++) greys.push_back(double(values[3 * i + 2 - c]));
+        for (size_t i = 0; i < kGreys; i++)
+            if (!std::isfinite(greys[i]) || greys[i] < 0.0)
+                fail(std::string("grey ") + std::to_string(i) + " of " + kNames[c]
+                         + " is not an irradiance; calibrate again",
+                     LENSPROF_ERROR_RESPONSE);
+        const size_t fall = find_fall(greys, false);
+        if (fall < kGreys && repair.is_allowed)
+            make_increasing(greys, 0.0, repair);
+        else if (fall < kGreys || !(greys.back() > greys.front()))
+            fail("grey " + std::to_string(std::min<size_t>(fall, kGreys - 1)) + " of " + kNames[c]
+                     + " is darker than the one before; smooth it, or calibrate again",
+                 LENSPROF_ERROR_RESPONSE);
+        responses[c] = response_of_irradiances(greys);
+    }
+}
+
 }  // namespace lensprof
 
 using namespace lensprof;
@@ -248,7 +252,8 @@ lensprof_status lensprof_radical_response_read(const void *data, size_t size, le
     }
     return at_boundary(error, [&] {
         auto found = std::make_unique<std::array<lensprof_response, 3>>();
-        read_responses(view_of(data, size), found->data());
+        Repair none;
+        read_radical_responses(view_of(data, size), none, found->data());
         std::copy(found->begin(), found->end(), responses);
     });
 }

@@ -130,6 +130,41 @@ void test_temperature(void **) {
     assert_true(write(*grey.profile, LENSPROF_UNKNOWN).find("\"ct\":4500") != std::string::npos);
 }
 
+// As libcamera: a comma before a bracket, both versions of tuning files, and files without a table.
+void test_tuning_files(void **) {
+    const std::string plain = tuning_file(), object = write(*lens());
+    const Found expected = read(plain);
+    std::string commas;
+    bool is_quoted = false;
+    for (const char c : plain) {
+        is_quoted ^= c == '"';
+        if (!is_quoted && (c == ']' || c == '}') && commas.back() != '[' && commas.back() != '{') commas += ", \n";
+        commas += c;
+    }
+    const std::string version1 = "{\"rpi.black_level\":{\"black_level\":4096}," + object.substr(1);
+    for (const std::string &text : {commas, version1, with(commas, "1.0", "1.0 "), "\xEF\xBB\xBF" + commas}) {
+        const Found found = read(text);
+        assert_string_equal(found.error.c_str(), "");
+        for (uint32_t c = 0; c < 3; c++)
+            assert_close(shade(*found.profile, c, 0.9), shade(*expected.profile, c, 0.9), 1e-9);
+    }
+    for (const char *wrong : {"{\"luminance_lut\":[,]}", "{,}", "{\"luminance_lut\":[1,1,1,,]}", "{\"a\":,}",
+                              "{\"luminance_lut\":[1,1,1,1],},", "{\"a\":\",]\",\"luminance_lut\":[1,2}"}) {
+        if (read(wrong).status != LENSPROF_ERROR_SYNTAX) fail_msg("%s is accepted", wrong);
+    }
+    const char *const without[] = {"{\"version\":2.0,\"algorithms\":[{\"rpi.awb\":{}},]}",
+                                   "{\"version\":2.0,\"algorithms\":[{\"rpi.alsc\":{\"omega\":1.3,}}]}",
+                                   "{\"rpi.black_level\":{},\"rpi.awb\":{}}",
+                                   "{\"rpi.alsc\":{\"n_iter\":0,\"corner_strength\":1.5}}"};
+    for (const char *text : without) {
+        const Found found = read(text);
+        assert_int_equal(found.status, LENSPROF_ERROR_NOT_FOUND);
+        assert_non_null(strstr(found.error.c_str(), "no table of lens shading"));
+    }
+    // A comma in a text is not one of the JSON.
+    assert_string_equal(read("{\"a\":\",]\\\",}\"," + object.substr(1)).error.c_str(), "");
+}
+
 void test_refused(void **) {
     const std::string good = with_two(1.2, 1.6);
     const struct {
@@ -140,7 +175,7 @@ void test_refused(void **) {
         {"", LENSPROF_ERROR_SYNTAX, "line 1: not JSON"},
         {"[]", LENSPROF_ERROR_SYNTAX, "is not an object"},
         {"{}", LENSPROF_ERROR_SYNTAX, "has no \"luminance_lut\""},
-        {"{\"algorithms\":[{\"rpi.dpc\":{}}]}", LENSPROF_ERROR_SYNTAX, "algorithms has no \"rpi.alsc\""},
+        {"{\"algorithms\":[{\"rpi.dpc\":{}}]}", LENSPROF_ERROR_NOT_FOUND, "algorithms has no \"rpi.alsc\""},
         {"{\"algorithms\":7}", LENSPROF_ERROR_SYNTAX, "algorithms is not an array"},
         {"{\"rpi.alsc\":[]}", LENSPROF_ERROR_SYNTAX, "rpi.alsc is not an object"},
         {"{\"corner_strength\":2.0," + good.substr(1), LENSPROF_ERROR_UNSUPPORTED, "corner_strength makes"},
@@ -182,10 +217,8 @@ void test_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_sense),
-        cmocka_unit_test(test_temperature),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_round_trip),   cmocka_unit_test(test_sense),   cmocka_unit_test(test_temperature),
+        cmocka_unit_test(test_tuning_files), cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

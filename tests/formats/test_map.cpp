@@ -113,6 +113,120 @@ void test_mean(void **) {
     }
 }
 
+// A map of a fisheye: M inside a circle, and dark, blurred or noisy outside of it.
+struct FisheyeMap {
+    uint32_t width, height, channels;
+    double k[3], x, y, radius;  // centre in px, radius in half diagonals
+    double full;                // of the values
+    double noise;               // of what is dark, levels
+    double blur;                // px, of the edge
+    bool is_rectangle;          // half as high as wide instead of a circle
+};
+
+double distance_of(const FisheyeMap &map, double x, double y) {
+    return hypot(x - map.x, y - map.y) / (hypot(map.width, map.height) / 2);
+}
+
+double falloff_of(const FisheyeMap &map, double r) {
+    return 1 + r * r * (map.k[0] + r * r * (map.k[1] + r * r * map.k[2]));
+}
+
+// How far a place is inside, px.
+double depth_of(const FisheyeMap &map, double x, double y) {
+    const double side = map.radius * hypot(map.width, map.height) / 2;
+    if (map.is_rectangle) return fmin(side - fabs(x - map.x), side / 2 - fabs(y - map.y));
+    return side - hypot(x - map.x, y - map.y);
+}
+
+std::vector<float> values_of(const FisheyeMap &map) {
+    std::vector<float> values;
+    uint64_t random = 3;
+    for (uint32_t y = 0; y < map.height; y++)
+        for (uint32_t x = 0; x < map.width; x++)
+            for (uint32_t c = 0; c < map.channels; c++) {
+                const double depth = depth_of(map, x, y), dark = map.noise * lp_random(&random);
+                const double share = map.blur > 0 ? fmin(fmax(0.5 + depth / map.blur, 0), 1) : depth > 0;
+                const double light = share > 0 ? share * falloff_of(map, distance_of(map, x, y)) * map.full : 0;
+                values.push_back(roundf(static_cast<float>(fmax(light, dark))));
+            }
+    return values;
+}
+
+// The falloff inside is that of the formula, within 1 %; outside it stays within what the inside has; the circle is
+// kept.
+void test_fisheye(void **) {
+    const FisheyeMap maps[] = {
+        {424, 400, 1, {-.05, -.6, -1.2}, 213, 203, .60, 65535, 0, 0, false},
+        {424, 400, 1, {-.05, -.6, -1.2}, 213, 203, .60, 255, 0, 0, false},
+        {424, 400, 1, {-.05, -.6, -1.2}, 190, 215, .55, 255, 5, 0, false},
+        {424, 400, 3, {-.3, -.9, -1.5}, 213, 203, .58, 255, 5, 3, false},
+        {400, 640, 1, {-.4, 0, -2.2}, 199.5, 319.5, .52, 65535, 300, 2, false},
+        {1280, 960, 1, {-.2, -.2, -1.9}, 600, 500, .60, 255, 4, 4, false},
+        {1920, 1080, 1, {-.9, .1, 0}, 959.5, 539.5, .49, 65535, 0, 0, false},
+        {640, 480, 1, {-.3, 0, -.4}, 330, 250, .77, 255, 2, 0, false},  // cut by the upper and lower edge
+        {640, 480, 1, {-.3, -.2, -.4}, 319.5, 239.5, .70, 255, 3, 2, true},
+    };
+    for (const FisheyeMap &map : maps) {
+        const std::vector<float> values = values_of(map);
+        const lensprof_map read = {map.width, map.height, map.channels, 0, values.data()};
+        Profile found = new_profile();
+        lensprof_error error;
+        double worst = 99;
+        const lensprof_status status = lensprof_map_read(&read, map.width, map.height, found.get(), &worst, &error);
+        if (status != LENSPROF_OK) fail_msg("radius %g: %s", map.radius, error.text);
+        assert_ok(lensprof_profile_validate(found.get()));
+        const auto at = [&](double x, double y) {
+            return lensprof_profile_falloff(found.get(), 1, map.width, map.height, x, y, nullptr);
+        };
+        double most = 0, lowest = 1;
+        for (uint32_t y = 0; y < map.height; y += 7)
+            for (uint32_t x = 0; x < map.width; x += 7) {
+                const double m = falloff_of(map, distance_of(map, x, y));
+                if (depth_of(map, x, y) > 5 + 1.5 * map.blur + map.width / 150.0) {
+                    most = fmax(most, fabs(at(x, y) / at(map.x, map.y) / m - 1));
+                    lowest = fmin(lowest, m);
+                }
+            }
+        if (most > (map.full == 255 ? .012 : .01)) fail_msg("radius %g: off by %g", map.radius, most);
+        for (uint32_t y = 0; y < map.height; y += 7)
+            for (uint32_t x = 0; x < map.width; x += 7) {
+                const double m = at(x, y) / at(map.x, map.y);
+                if (m < .7 * lowest || m > 1.1) fail_msg("radius %g: %g outside of it", map.radius, m);
+            }
+        double circle[3];
+        const char *text = strstr(found->provenance.source, "valid within r = ");
+        if (map.is_rectangle) {
+            assert_null(text);
+            continue;
+        }
+        assert_non_null(text);
+        assert_int_equal(sscanf(text, "valid within r = %lf of (%lf, %lf)", &circle[0], &circle[1], &circle[2]), 3);
+        const double half = hypot(map.width, map.height) / 2;
+        assert_close(circle[0], map.radius, 0.008);
+        assert_close(circle[1], (map.x - (map.width - 1) / 2.0) / half, 0.006);
+        assert_close(circle[2], (map.y - (map.height - 1) / 2.0) / half, 0.006);
+    }
+}
+
+// A lens that is nearly dark in the corners has no edge there, and specks are not a surround.
+void test_dark_corners_are_known(void **) {
+    std::vector<float> values;
+    for (uint32_t y = 0; y < kHeight; y++)
+        for (uint32_t x = 0; x < kWidth; x++) {
+            const double r = hypot(x - 319.5, y - 239.5) / 400;
+            values.push_back(static_cast<float>(exp2(-6 * r * r)));
+        }
+    values[100 * kWidth + 100] = 0;
+    const lensprof_map map = {kWidth, kHeight, 1, 0, values.data()};
+    Profile found = new_profile();
+    assert_ok(lensprof_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
+    assert_null(strstr(found->provenance.source, "valid"));
+    const auto at = [&](double x, double y) {
+        return lensprof_profile_falloff(found.get(), 1, kWidth, kHeight, x, y, nullptr);
+    };
+    assert_true(at(4, 3) / at(319.5, 239.5) < .03);  // of 2^-6, and not what is left at an edge of .05
+}
+
 void test_refused(void **) {
     std::vector<float> values(64 * 48, 1.0f);
     lensprof_map map = {64, 48, 1, 0, values.data()};
@@ -156,8 +270,14 @@ void test_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_coded), cmocka_unit_test(test_grid),
-        cmocka_unit_test(test_narrow),     cmocka_unit_test(test_mean),  cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_coded),
+        cmocka_unit_test(test_grid),
+        cmocka_unit_test(test_narrow),
+        cmocka_unit_test(test_mean),
+        cmocka_unit_test(test_fisheye),
+        cmocka_unit_test(test_dark_corners_are_known),
+        cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

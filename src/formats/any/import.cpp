@@ -10,6 +10,7 @@
 #include "formats/any/detect.hpp"
 #include "formats/drone_xmp.hpp"
 #include "formats/falloff/import.hpp"
+#include "formats/responses.hpp"
 #include "formats/text/text.hpp"
 
 namespace lensprof {
@@ -29,6 +30,7 @@ struct Input {
 struct Part {
     lensprof_profile profile;
     uint32_t usable = 1;
+    Repair repair;
 };
 
 // Takes the falloff of an entry, its doubt, and the texts of its key that are not known yet.
@@ -54,13 +56,25 @@ void demand_frame(const lensprof_import_options &o) {
                             "the file does not contain the size of the pictures; give width and height of the frame"};
 }
 
-lensprof_status read_response(const Input &in, lensprof_profile &profile, lensprof_error *error) {
+// Throws; a curve that was off by over kLargestDip is doubtful.
+void read_response(const Input &in, Part &part) {
+    constexpr double kLargestDip = 1.0;  // levels
+    lensprof_profile &profile = part.profile;
+    const std::string_view data = view_of(in.data, in.size);
+    part.repair.is_allowed = !in.options.strict;
     switch (in.options.format) {
-    case LENSPROF_FORMAT_PCALIB: return lensprof_pcalib_read(in.data, in.size, profile.response, error);
+    case LENSPROF_FORMAT_PCALIB: profile.response[0] = read_pcalib(data, part.repair); break;
     case LENSPROF_FORMAT_CURVES:
-        return lensprof_curves_read(in.data, in.size, in.options.curve, profile.response, &profile.responses, error);
-    default: profile.responses = 3; return lensprof_radical_response_read(in.data, in.size, profile.response, error);
+        if (in.options.curve > LENSPROF_CURVE_FORWARD)
+            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "the kind of curve is unknown; see lensprof_curve"};
+        profile.responses = read_curves(data, in.options.curve, part.repair, profile.response);
+        break;
+    default: profile.responses = 3; read_radical_responses(data, part.repair, profile.response);
     }
+    char text[sizeof profile.provenance.doubt];
+    std::snprintf(text, sizeof text, "the response decreased; made increasing by up to %.1f levels",
+                  part.repair.change);
+    if (part.repair.change > kLargestDip) put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, text);
 }
 
 lensprof_status read_falloff(const Input &in, Part &part, lensprof_error *error) {
@@ -122,10 +136,13 @@ lensprof_status import_part(const Input &in, uint32_t holds, lensprof_import_vis
         lensprof_profile_init(&profile);
         profile.key = key_of(in.options, is_response);
         set_import_provenance(profile, in.options.name, "");
-        done = is_response ? read_response(in, profile, error) : read_falloff(in, *part, error);
+        if (is_response)
+            read_response(in, *part);
+        else
+            done = read_falloff(in, *part, error);
         if (done != LENSPROF_OK) return;
         if (!is_response && part->usable && !profile.provenance.doubt[0]) doubt_rise(profile);
-        const lensprof_import_entry entry = {&profile, part->usable, holds};
+        const lensprof_import_entry entry = {&profile, part->usable, holds, part->repair.change};
         done = visit(user, &entry);
     });
     return status == LENSPROF_OK ? done : status;
@@ -161,7 +178,7 @@ lensprof_status import_blob(const Input &in, lensprof_import_visitor visit, void
             throw FormatFailure{LENSPROF_ERROR_SYNTAX,
                                 "is not a profile blob, or is damaged; copy it again, or write it again"};
         keep_samples(*profile);
-        const lensprof_import_entry entry = {profile.get(), 1, LENSPROF_HOLDS_PROFILES};
+        const lensprof_import_entry entry = {profile.get(), 1, LENSPROF_HOLDS_PROFILES, 0.0};
         visited = visit(user, &entry);
     });
     return status == LENSPROF_OK ? visited : status;

@@ -1,8 +1,53 @@
 #include "formats/falloff/curve_table.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 namespace lensprof {
+namespace {
+
+constexpr double kLevels = 255.0, kLargestChange = 25.5;  // levels
+
+// The nearest curve that does not fall, by pooling adjacent violators (Ayer et al. 1955).
+std::vector<double> isotonic(const std::vector<double> &values) {
+    struct Block {
+        double sum, count;
+        double mean() const { return sum / count; }
+    };
+    std::vector<Block> blocks;
+    for (const double value : values) {
+        Block block{value, 1.0};
+        for (; !blocks.empty() && blocks.back().mean() > block.mean(); blocks.pop_back())
+            block.sum += blocks.back().sum, block.count += blocks.back().count;
+        blocks.push_back(block);
+    }
+    std::vector<double> fitted;
+    for (const Block &block : blocks) fitted.insert(fitted.end(), static_cast<size_t>(block.count), block.mean());
+    return fitted;
+}
+
+}  // namespace
+
+void make_increasing(std::vector<double> &values, double step, Repair &repair) {
+    // y rises by the step per value exactly if y - i step does not fall.
+    std::vector<double> fitted;
+    for (size_t i = 0; i < values.size(); i++) fitted.push_back(values[i] - step * static_cast<double>(i));
+    fitted = isotonic(fitted);
+    const double flat = fitted.back() - fitted.front();
+    double change = 0.0;
+    for (size_t i = 0; i < values.size(); i++) {
+        fitted[i] += step * static_cast<double>(i);
+        change = std::max(change, std::fabs(fitted[i] - values[i]));
+    }
+    const double range = fitted.back() - fitted.front(), levels = kLevels * change / range;
+    if (!(flat > 0.0) || !std::isfinite(range) || !(levels <= kLargestChange))
+        throw FormatFailure{LENSPROF_ERROR_RESPONSE,
+                            "values decrease so much that no increasing curve is within a tenth of them, so it is not "
+                            "a response; check the file and the kind of table"};
+    values = fitted;
+    repair.change = std::max(repair.change, levels);
+}
 
 size_t find_fall(const std::vector<double> &values, bool strict) {
     for (size_t i = 1; i < values.size(); i++)

@@ -31,7 +31,7 @@ lensprof_status visit_entry(lensprof_profile &profile, const std::string &remark
         if (!found.usable || doubt.text.empty()) doubt = found;
     }
     put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, doubt.text);
-    const lensprof_import_entry entry = {&profile, doubt.usable, 0};
+    const lensprof_import_entry entry = {&profile, doubt.usable, 0, 0.0};
     return visit(user, &entry);
 }
 

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "falloff/known_area.hpp"
 #include "formats/text/text.hpp"
 
 namespace lensprof {
@@ -58,6 +61,16 @@ void fill(const MapValues &form, const float *values, Block side, FalloffMap &ma
     }
 }
 
+// Adds the part of the frame that the falloff is of to the source.
+void note_circle(const Circle &circle, lensprof_profile &profile) {
+    char text[80];
+    std::snprintf(text, sizeof text, "valid within r = %.3f of (%.3f, %.3f)", circle.radius, circle.center[0],
+                  circle.center[1]);
+    lensprof_provenance &provenance = profile.provenance;
+    const std::string source = provenance.source;
+    put_text(provenance.source, sizeof provenance.source, source.empty() ? text : source + "; " + text);
+}
+
 }  // namespace
 
 void check_frame(uint32_t width, uint32_t height) {
@@ -84,7 +97,9 @@ double fit_values(const MapValues &form, const float *values, uint32_t width, ui
     map.x0 += map.dx * (side.columns - 1) / 2.0, map.y0 += map.dy * (side.rows - 1) / 2.0;
     map.dx *= side.columns, map.dy *= side.rows;
     fill(form, values, side, map);
+    const std::optional<Circle> circle = drop_surround(map);
     const double worst = fit_map(map, profile);
+    if (circle) note_circle(*circle, profile);
     profile.covariance_size = 0;
     std::fill(std::begin(profile.covariance), std::end(profile.covariance), 0.0);
     return worst;

@@ -1,0 +1,161 @@
+#include "falloff/known_area.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace lensprof {
+namespace {
+
+constexpr double kDark = 0.05;        // of the largest value: the noise of a coded picture reaches .02
+constexpr double kBright = 2.5;       // times that, on the other side of an edge; a falloff rises less within kEdge
+constexpr uint32_t kEdge = 3;         // least number of values that are means of both sides; more on large maps
+constexpr double kDarkShare = 0.01;   // of a map, below which dark values are specks
+constexpr uint32_t kLeastSide = 48;   // of a map that shows an edge
+constexpr double kRoundShare = 0.95;  // of an outline within kOffCircle values of a circle
+constexpr double kOffCircle = 1.5;
+
+using Mask = std::vector<uint8_t>;
+
+// Whether the channel that is brightest, relative to its largest value, is below `limit`.
+Mask below(const FalloffMap &map, double limit) {
+    const size_t size = size_t(map.columns) * map.rows;
+    Mask dark(size, 1);
+    for (uint32_t c = 0; c < map.channels; c++) {
+        const double *values = map.attenuation.data() + size * c;
+        const double least = limit * *std::max_element(values, values + size);
+        for (size_t i = 0; i < size; i++) dark[i] &= !(values[i] >= least);
+    }
+    return dark;
+}
+
+// The mask and its eight neighbours.
+Mask grown(const FalloffMap &map, const Mask &mask) {
+    Mask result = mask;
+    for (uint32_t j = 0; j < map.rows; j++)
+        for (uint32_t i = 0; i < map.columns; i++) {
+            if (!mask[size_t(j) * map.columns + i]) continue;
+            for (uint32_t y = j - (j > 0); y <= std::min(j + 1, map.rows - 1); y++)
+                for (uint32_t x = i - (i > 0); x <= std::min(i + 1, map.columns - 1); x++)
+                    result[size_t(y) * map.columns + x] = 1;
+        }
+    return result;
+}
+
+// Of what is not blurred, the part that hangs together and has most values: others are noise in the dark.
+Mask largest_part(const FalloffMap &map, const Mask &blurred) {
+    Mask seen = blurred, largest(blurred.size(), 0);
+    size_t most = 0;
+    for (size_t start = 0; start < seen.size(); start++) {
+        if (seen[start]) continue;
+        std::vector<size_t> part{start};
+        seen[start] = 1;
+        for (size_t next = 0; next < part.size(); next++) {
+            const size_t i = part[next], column = i % map.columns;
+            const auto take = [&](bool exists, size_t neighbour) {
+                if (exists && !seen[neighbour]) seen[neighbour] = 1, part.push_back(neighbour);
+            };
+            take(column > 0, i - 1), take(column + 1 < map.columns, i + 1);
+            take(i >= map.columns, i - map.columns), take(i + map.columns < seen.size(), i + map.columns);
+        }
+        if (part.size() <= most) continue;
+        most = part.size();
+        largest.assign(seen.size(), 0);
+        for (const size_t i : part) largest[i] = 1;
+    }
+    return largest;
+}
+
+using Points = std::vector<std::array<double, 2>>;
+
+// The ends of the known values along a line, if they are not at the edge of the map, in values.
+template <class IsDark>
+std::vector<double> ends_of(uint32_t length, IsDark is_dark) {
+    uint32_t first = 0, last = length;
+    while (first < length && is_dark(first)) first++;
+    while (last > first && is_dark(last - 1)) last--;
+    std::vector<double> ends;
+    if (first == last) return ends;
+    if (first > 0) ends.push_back(first - 0.5);
+    if (last < length) ends.push_back(last - 0.5);
+    return ends;
+}
+
+// Places of the outline in the frame, px, found along rows and columns.
+Points outline(const FalloffMap &map, const Mask &dark) {
+    Points points;
+    const auto x_at = [&](double i) { return map.x0 + i * map.dx; };
+    const auto y_at = [&](double j) { return map.y0 + j * map.dy; };
+    for (uint32_t j = 0; j < map.rows; j++)
+        for (const double end : ends_of(map.columns, [&](uint32_t i) { return dark[size_t(j) * map.columns + i]; }))
+            points.push_back({x_at(end), y_at(j)});
+    for (uint32_t i = 0; i < map.columns; i++)
+        for (const double end : ends_of(map.rows, [&](uint32_t j) { return dark[size_t(j) * map.columns + i]; }))
+            points.push_back({x_at(i), y_at(end)});
+    return points;
+}
+
+// Least squares of |p|^2 = 2 a.p + b (Kasa 1976): the centre a, and b + |a|^2 the squared radius.
+std::optional<Circle> circle_through(const FalloffMap &map, const Points &points) {
+    if (points.size() < 16) return std::nullopt;
+    const double half = lensprof_half_diagonal(map.width, map.height);
+    const auto place = [&](const std::array<double, 2> &p) {
+        return Eigen::Vector2d((p[0] - (map.width - 1.0) / 2.0) / half, (p[1] - (map.height - 1.0) / 2.0) / half);
+    };
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (const auto &point : points) {
+        const Eigen::Vector2d p = place(point);
+        const Eigen::Vector3d row(2.0 * p[0], 2.0 * p[1], 1.0);
+        normal += row * row.transpose(), right += row * p.squaredNorm();
+    }
+    const Eigen::Vector3d found = normal.ldlt().solve(right);
+    const Eigen::Vector2d center = found.head<2>();
+    const double radius = std::sqrt(found[2] + center.squaredNorm());
+    const double slack = kOffCircle * std::max(map.dx, map.dy) / half;
+    const auto is_near = [&](const auto &point) { return std::fabs((place(point) - center).norm() - radius) <= slack; };
+    const auto near = static_cast<double>(std::count_if(points.begin(), points.end(), is_near));
+    if (!(near >= kRoundShare * static_cast<double>(points.size()))) return std::nullopt;
+    return Circle{{center[0], center[1]}, radius};
+}
+
+// The median of the values next to the dark ones, of the largest of their channel.
+double median_across(const FalloffMap &map, const Mask &blurred) {
+    const Mask across = grown(map, blurred);
+    const size_t size = blurred.size();
+    std::vector<double> values;
+    for (uint32_t c = 0; c < map.channels; c++) {
+        const double *channel = map.attenuation.data() + size * c;
+        const double largest = *std::max_element(channel, channel + size);
+        for (size_t i = 0; i < size; i++)
+            if (across[i] && !blurred[i]) values.push_back(channel[i] / largest);
+    }
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+std::optional<Circle> drop_surround(FalloffMap &map) {
+    if (std::min(map.columns, map.rows) < kLeastSide) return std::nullopt;
+    const Mask dark = below(map, kDark);
+    const auto count = static_cast<double>(std::count(dark.begin(), dark.end(), 1));
+    if (count < kDarkShare * static_cast<double>(dark.size())) return std::nullopt;
+    const uint32_t edge = std::max(kEdge, std::max(map.columns, map.rows) / 150);
+    Mask blurred = dark;
+    for (uint32_t i = 0; i < edge; i++) blurred = grown(map, blurred);
+    if (median_across(map, blurred) < kBright * kDark) return std::nullopt;
+    const Mask known = largest_part(map, blurred);
+    for (size_t i = 0; i < map.attenuation.size(); i++)
+        if (!known[i % known.size()]) map.attenuation[i] = 0.0;
+    Mask outside = known;
+    for (uint32_t i = 0; i < edge; i++) outside = grown(map, outside);
+    for (size_t i = 0; i < outside.size(); i++) outside[i] = dark[i] || !outside[i];
+    return circle_through(map, outline(map, outside));
+}
+
+}  // namespace lensprof
