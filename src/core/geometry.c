@@ -16,16 +16,18 @@ static double radians(double degrees) { return degrees * (PI / 180); }
 
 /* ---- validity ------------------------------------------------------------------------------------------- */
 
-/* Largest possible field of view in degrees; *open is 1 if the limit itself is not possible. 0 = unknown projection. */
+/* Largest possible field of view in degrees; *open is 1 if the limit itself is not possible. 0 = unknown projection.
+ * The angle of an equidistant fisheye is proportional to the radius, so that a frame may be wider than the image circle
+ * of 360 degrees: such as one that has two circles side by side. */
 static double widest_hfov(uint32_t projection, int *open) {
     *open = 0;
     switch (projection) {
     case LENSPROF_PROJECTION_RECTILINEAR: *open = 1; return 180;
     case LENSPROF_PROJECTION_STEREOGRAPHIC: *open = 1; return 360;
     case LENSPROF_PROJECTION_THOBY: return 180 / THOBY_ANGLE;
-    case LENSPROF_PROJECTION_CYLINDRICAL:
     case LENSPROF_PROJECTION_CIRCULAR_FISHEYE:
-    case LENSPROF_PROJECTION_FULLFRAME_FISHEYE:
+    case LENSPROF_PROJECTION_FULLFRAME_FISHEYE: return 3600;
+    case LENSPROF_PROJECTION_CYLINDRICAL:
     case LENSPROF_PROJECTION_EQUIRECTANGULAR:
     case LENSPROF_PROJECTION_ORTHOGRAPHIC: /* beyond 180 degrees libpano13 means a frame wider than the image circle */
     case LENSPROF_PROJECTION_EQUISOLID: return 360;

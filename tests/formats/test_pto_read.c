@@ -281,6 +281,104 @@ static void test_response_as_hugin_sees_it(void **state) {
     lensprof_pto_destroy(pto);
 }
 
+/* The radius and angle of a pixel of an equidistant fisheye: v is the angle of the whole width. */
+static double angle_deg(double v, double width, double px) { return v / width * px; }
+
+/* Two circles in one file: each image is its circle, which has its own middle and radius. */
+static void test_two_circles(void **state) {
+    (void)state;
+    static const struct {
+        int width, height;
+        double v[2];
+        int crop[2][4]; /* left, right, top, bottom */
+        int lens;
+    } files[] = {{1024, 512, {380, 414}, {{0, 512, 0, 512}, {512, 1024, 0, 512}}, 2},
+                 {3840, 1920, {372.5, 372.5}, {{-12, 1932, -12, 1932}, {1908, 3852, -12, 1932}}, 2},
+                 {7776, 3888, {396, 391}, {{10, 3878, 10, 3878}, {3898, 7766, 10, 3878}}, 3},
+                 {1000, 2000, {190, 200}, {{0, 1000, 0, 1000}, {0, 1000, 1000, 2000}}, 2},
+                 {2560, 1280, {400, 400}, {{1280, 2560, 0, 1280}, {0, 1280, 0, 1280}}, 2}};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
+        char text[1000];
+        size_t end = 0;
+        for (int i = 0; i < 2; i++) {
+            const int *c = files[f].crop[i];
+            end += (size_t)snprintf(text + end, sizeof text - end,
+                                    "i w%d h%d f%d v%g y%d d%g e%g Va1 Vb0 Vc0 Vd0 S%d,%d,%d,%d Vm5 n\"a.jpg\"\n",
+                                    files[f].width, files[f].height, files[f].lens, files[f].v[i], 180 * i,
+                                    0.5 * (c[0] + c[1] - files[f].width), 0.5 * (c[2] + c[3] - files[f].height), c[0],
+                                    c[1], c[2], c[3]);
+        }
+        lensprof_pto *pto = read_pto(text);
+        for (uint32_t i = 0; i < 2; i++) {
+            const lensprof_pto_image image = image_of(pto, i);
+            const int *c = files[f].crop[i];
+            assert_int_equal(image.of_crop, 1);
+            const double half = 0.5 * hypot(c[1] - c[0], c[3] - c[2]), x = 0.5 * (c[0] + c[1]) - 0.5,
+                         y = 0.5 * (c[2] + c[3]) - 0.5;
+            double direction[2];
+            const double out = 0.4 * (c[1] - c[0]);
+            assert_int_equal(lensprof_camera_unproject(&image.camera, x, y + out, direction), 1);
+            assert_close(
+                fabs(direction[1]),
+                fmin(angle_deg(files[f].v[i], files[f].width, out), 180 - angle_deg(files[f].v[i], files[f].width, out))
+                    * M_PI / 180,
+                1e-9);
+            /* A falloff about the circle's middle in the circle's terms is Hugin's polynomial of the whole file. */
+            const lensprof_vignetting falloffs[2] = {{{-.4, .1, -.2}, {.02, -.01}}, {{-.2, 0, -.1}, {0, .03}}};
+            const uint32_t settings[2] = {0, 1};
+            assert_ok(lensprof_pto_set_settings(pto, settings, 2, falloffs, 2, NULL));
+            const lensprof_pto_image again = image_of(pto, i);
+            for (int n = 0; n < 3; n++) assert_close(again.vignetting.k[n], falloffs[i].k[n], 1e-12);
+            for (int n = 0; n < 2; n++) assert_close(again.vignetting.center[n], falloffs[i].center[n], 1e-12);
+            char *written = write_pto(pto), *line = written;
+            for (uint32_t n = 0; n < i; n++) line = strchr(line, '\n') + 1;
+            const double b = strtod(strstr(line, " Vb") + 3, NULL), cc = strtod(strstr(line, " Vc") + 3, NULL),
+                         d = strtod(strstr(line, " Vd") + 3, NULL), vx = strtod(strstr(line, " Vx") + 3, NULL),
+                         vy = strtod(strstr(line, " Vy") + 3, NULL);
+            for (int step = 0; step < 5; step++) {
+                const double px = x + 0.17 * half * step - 3, py = y - 0.1 * half * step;
+                const double ours = lensprof_vignetting_eval(
+                    &again.vignetting,
+                    lensprof_vignetting_r2(&again.vignetting, (uint32_t)(c[1] - c[0]), (uint32_t)(c[3] - c[2]),
+                                           px - c[0], py - c[2], NULL),
+                    NULL);
+                const double whole = hypot(files[f].width, files[f].height) / 2;
+                const double r2 =
+                    pow(hypot(px - (files[f].width - 1) / 2.0 - vx, py - (files[f].height - 1) / 2.0 - vy) / whole, 2);
+                assert_close(ours, 1 + r2 * (b + r2 * (cc + r2 * d)), 1e-9);
+            }
+            free(written);
+        }
+        lensprof_pto_destroy(pto);
+    }
+}
+
+/* One crop of a file, and equal crops, are of the frame as before; what no lens has is refused. */
+static void test_single_crops(void **state) {
+    (void)state;
+    static const char *const of_frame[] = {
+        "i w800 h600 f2 v180 S100,700,0,600 Vb-0.3 Vm5 n\"a\"\n",
+        "i w800 h600 f0 v50 S400,800,0,600 Vb-0.3 Vm5 n\"a\"\n",
+        "i w800 h600 f0 v50 S10,700,0,600 Vb-0.3 Vm5 n\"a\"\ni w800 h600 f0 v50 S10,700,0,600 Vb-0.3 Vm5 n\"a\"\n",
+        "i w800 h600 f0 v50 S10,700,0,600 Vb-0.3 Vm5 n\"a\"\ni w800 h600 f0 v50 S20,700,0,600 Vb-0.3 Vm5 n\"b\"\n"};
+    for (size_t i = 0; i < sizeof of_frame / sizeof *of_frame; i++) {
+        lensprof_pto *pto = read_pto(of_frame[i]);
+        assert_int_equal(image_of(pto, 0).of_crop, 0);
+        assert_true(image_of(pto, 0).vignetting.k[0] == -0.3);
+        lensprof_pto_destroy(pto);
+    }
+    lensprof_pto *pto = read_pto("i w1024 h512 f2 v380 S512,1024,0,512 n\"a\"\n");
+    assert_int_equal(image_of(pto, 0).of_crop, 1); /* a circle off the middle of its file */
+    lensprof_pto_destroy(pto);
+    static const char *const refused[] = {"f2 v0",   "f3 v-10", "f3 v3700", "f2 v1e9", "f0 v190",
+                                          "f1 v380", "f4 v380", "f10 v380", "f21 v380"};
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        char text[100];
+        snprintf(text, sizeof text, "i w1024 h512 %s S0,512,0,512 n\"a\"\n", refused[i]);
+        assert_int_equal(lensprof_pto_read(text, strlen(text), &pto, NULL), LENSPROF_ERROR_SYNTAX);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_first_image), cmocka_unit_test(test_links_resolve_to_the_end_of_the_chain),
@@ -289,6 +387,7 @@ int main(void) {
         cmocka_unit_test(test_names),       cmocka_unit_test(test_spelling),
         cmocka_unit_test(test_errors),      cmocka_unit_test(test_limits),
         cmocka_unit_test(test_arguments),   cmocka_unit_test(test_response_as_hugin_sees_it),
+        cmocka_unit_test(test_two_circles), cmocka_unit_test(test_single_crops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -118,6 +118,14 @@ namespace lensprof {
 // Throws FormatFailure.
 lensprof_pto parse_pto(std::string text);
 
+// The frame of an image's falloff: the picture, or the crop.
+struct PtoFalloffFrame {
+    double half_diagonal;  // px
+    double scale;          // of it, relative to that of the picture, which is Hugin's r = 1
+    double offset[2];      // of its middle from that of the picture, px
+};
+PtoFalloffFrame falloff_frame(const lensprof_pto_image &image);
+
 inline bool has_image(const lensprof_pto *pto, uint32_t index) { return pto && index < pto->images.size(); }
 
 // ARGUMENT with a text for a call about an image that the project does not have, or with NULL for `message`.

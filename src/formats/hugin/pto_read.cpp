@@ -1,6 +1,8 @@
 // Reading a Hugin project: images (`i`), variables (`v`) and masks (`k`). Other lines are kept and not looked at.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "core/sized.h"
 #include "formats/hugin/pto.hpp"
@@ -176,6 +178,50 @@ PtoImage read_image(const LineReader &reader, const std::vector<PtoImage> &befor
     return image;
 }
 
+// ---- images that are crops of their file -------------------------------------------------------------------------
+
+bool has_crop(const lensprof_pto_image &image) {
+    const int32_t frame[4] = {0, 0, static_cast<int32_t>(image.camera.width),
+                              static_cast<int32_t>(image.camera.height)};
+    return !std::equal(frame, frame + 4, image.crop);
+}
+
+// Whether the circle of a fisheye is far from the middle of its file, where a lens's centre is not.
+bool is_off_middle(const lensprof_pto_image &image) {
+    constexpr double kFar = 0.2;  // half diagonals of the picture
+    if (!image.crop_circular) return false;
+    const double x = 0.5 * (image.crop[0] + image.crop[2]) - 0.5 * image.camera.width,
+                 y = 0.5 * (image.crop[1] + image.crop[3]) - 0.5 * image.camera.height;
+    return std::hypot(x, y) > kFar * lensprof_half_diagonal(image.camera.width, image.camera.height);
+}
+
+// From Hugin's terms to those of the crop. Without a falloff, the centre that the line has is that of nothing.
+void move_falloff(lensprof_pto_image &image) {
+    lensprof_vignetting &v = image.vignetting;
+    const PtoFalloffFrame frame = falloff_frame(image);
+    const bool has_falloff = std::any_of(v.k, v.k + 3, [](double k) { return k != 0.0; });
+    double scale = 1.0;
+    for (double &k : v.k) scale *= frame.scale * frame.scale, k *= scale;
+    const double rho = frame.half_diagonal / frame.scale;
+    for (size_t i = 0; i < 2; i++)
+        v.center[i] = has_falloff ? (v.center[i] * rho - frame.offset[i]) / frame.half_diagonal : 0.0;
+}
+
+void find_crops(lensprof_pto &pto) {
+    std::map<std::string_view, std::set<std::array<int32_t, 4>>> crops;
+    const auto crop_of = [](const PtoImage &image) {
+        std::array<int32_t, 4> crop;
+        std::copy_n(image.result.crop, 4, crop.begin());
+        return crop;
+    };
+    for (const PtoImage &image : pto.images) crops[image.name].insert(crop_of(image));
+    for (PtoImage &image : pto.images) {
+        lensprof_pto_image &result = image.result;
+        result.of_crop = has_crop(result) && (crops[image.name].size() > 1 || is_off_middle(result));
+        if (result.of_crop) move_falloff(result);
+    }
+}
+
 // ---- v and k lines: they may come before the images they name ---------------------------------------------------
 
 struct Line {
@@ -237,6 +283,17 @@ PtoMask read_mask(const Line &line, const lensprof_pto &pto) {
 
 }  // namespace
 
+PtoFalloffFrame falloff_frame(const lensprof_pto_image &image) {
+    const lensprof_camera &camera = image.camera;
+    const double whole = lensprof_half_diagonal(camera.width, camera.height);
+    if (!image.of_crop) return {whole, 1.0, {0.0, 0.0}};
+    const int32_t *crop = image.crop;
+    const double half = 0.5 * std::hypot(crop[2] - crop[0], crop[3] - crop[1]);
+    return {half,
+            half / whole,
+            {0.5 * (crop[0] + crop[2]) - 0.5 * camera.width, 0.5 * (crop[1] + crop[3]) - 0.5 * camera.height}};
+}
+
 bool is_left_out_mark(std::string_view line) {
     const size_t end = kLeftOutMark.size();
     const bool ends = line.size() == end || (line.size() > end && (is_blank(line[end]) || line[end] == '\n'));
@@ -280,6 +337,7 @@ lensprof_pto parse_pto(std::string text) {
     if (pto.images.empty()) fail_at_line(reader.number + 1, "end of text without an image; a project has `i` lines");
     for (const Line &line : variables) read_variables(line, pto);
     share_variables(pto);
+    find_crops(pto);
     for (const Line &line : left_out) read_left_out(line.text, pto);
     for (const Line &line : masks) pto.masks.push_back(read_mask(line, pto));
     return pto;

@@ -70,13 +70,16 @@ std::vector<Edit> exposure_edits(const lensprof_exposure &exposure, const lenspr
 
 // Vm5: radial falloff, corrected by division.
 std::vector<Edit> falloff_edits(const lensprof_vignetting &vignetting, const PtoImage &image) {
-    const lensprof_camera &camera = image.result.camera;
-    const double rho = lensprof_half_diagonal(camera.width, camera.height);
+    const PtoFalloffFrame frame = falloff_frame(image.result);
     std::vector<Edit> edits{{"Va", "1"}};
-    for (size_t i = 0; i < 3; i++)
-        edits.push_back({kPtoParameterInfo[kVignettingB + i].name, number_text(vignetting.k[i])});
+    double scale = 1.0;
+    for (size_t i = 0; i < 3; i++) {
+        scale *= frame.scale * frame.scale;
+        edits.push_back({kPtoParameterInfo[kVignettingB + i].name, number_text(vignetting.k[i] / scale)});
+    }
     for (size_t i = 0; i < 2; i++)
-        edits.push_back({kPtoParameterInfo[kCenterX + i].name, number_text(vignetting.center[i] * rho)});
+        edits.push_back({kPtoParameterInfo[kCenterX + i].name,
+                         number_text(vignetting.center[i] * frame.half_diagonal + frame.offset[i])});
     return edits;
 }
 
