@@ -82,6 +82,7 @@ constexpr uint32_t lens_flags =
 // falloff, which a stationary camera does not show.
 Project sequence(const Options &o) {
     Project project = o.pto.empty() ? static_project(o.files, true) : read_project(o.pto);
+    refuse_crops(project, "align");
     if (project.images.size() < 2)
         throw Failure(
             ExitCode::not_usable,

@@ -122,10 +122,16 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
     const OutputExposure chosen = o.exposure != OutputExposure::by_default ? o.exposure
                                   : o.project().empty()                    ? OutputExposure::keep
                                                                            : OutputExposure::mean;
-    for (Correction &job : work.jobs)
-        job.target_exposure = chosen == OutputExposure::keep   ? job.exposure
-                              : chosen == OutputExposure::mean ? work.mean
-                                                               : reference;
+    const auto set_target = [&](auto &correction) {
+        correction.target_exposure = chosen == OutputExposure::keep   ? correction.exposure
+                                     : chosen == OutputExposure::mean ? work.mean
+                                                                      : reference;
+    };
+    for (Correction &job : work.jobs) {
+        set_target(job);
+        for (CropCorrection &crop : job.crops) set_target(crop);
+        if (!job.crops.empty()) job.target_exposure = job.exposure;  // what is not of a crop is not corrected
+    }
     if (source.project && chosen != OutputExposure::keep && !o.kind.linear && !o.kind.simulate)
         encode_alike(source, work.jobs, streams);
     if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);

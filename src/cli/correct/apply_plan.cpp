@@ -56,7 +56,8 @@ void check_shape(const Project &project, uint32_t image, const std::string &file
     const double expected = static_cast<double>(camera.width) / camera.height,
                  shape = static_cast<double>(size.width) / size.height;
     const bool is_same = size.width == camera.width && size.height == camera.height;
-    if (project.models.empty() ? std::abs(shape / expected - 1.0) > 0.01 : !is_same)
+    const bool is_scalable = project.models.empty() && !project.images[image].of_crop;
+    if (is_scalable ? std::abs(shape / expected - 1.0) > 0.01 : !is_same)
         throw Failure(ExitCode::unreadable,
                       file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
                           + format(" states %u x %u; use the pictures that the project was made with", camera.width,
@@ -118,6 +119,45 @@ std::filesystem::path name_below(const std::string &name) {
     return leads_out ? path.filename() : path;
 }
 
+// The images of the project that a file holds: one, or several in crops of their own.
+std::vector<uint32_t> images_of_file(const ApplySource &source, uint32_t first) {
+    std::vector<uint32_t> images{first};
+    const Project &project = *source.project;
+    for (uint32_t i = first + 1; i < project.files.size() && project.images[first].of_crop; i++)
+        if (project.images[i].of_crop && source.images->find(project.files[i]) == first) images.push_back(i);
+    return images;
+}
+
+bool is_left_out(const ApplySource &source, const std::string &file, const std::string &option) {
+    const std::vector<uint32_t> images = images_of_file(source, source.images->at(file, option));
+    return std::all_of(images.begin(), images.end(),
+                       [&](uint32_t i) { return source.project->images[i].left_out != 0; });
+}
+
+// The crops of a picture whose images have a result in the project.
+std::vector<CropCorrection> crops_of(const ApplySource &source, uint32_t first) {
+    std::vector<CropCorrection> crops;
+    for (const uint32_t i : images_of_file(source, first)) {
+        const lensprof_pto_image &image = source.project->images[i];
+        if (!image.of_crop || image.left_out) continue;
+        CropCorrection crop{{}, image.crop_circular != 0, nullptr, source.exposures[i], {}};
+        std::copy_n(image.crop, 4, crop.crop);
+        if (source.has_model) crop.model = model_of_project(*source.project, i);
+        crops.push_back(crop);
+    }
+    return crops;
+}
+
+// The model of what is not of a crop: without falloff.
+std::shared_ptr<const lensprof_profile> without_falloff(const lensprof_profile &model) {
+    auto rest = std::shared_ptr<lensprof_profile>(new_profile());
+    check(lensprof_profile_copy(rest.get(), &model), "");
+    std::fill(std::begin(rest->vignetting), std::end(rest->vignetting), lensprof_vignetting{});
+    lensprof_gain_grid_init(&rest->grid);
+    rest->covariance_size = 0;
+    return rest;
+}
+
 Correction make_job(const ApplyOptions &o, const ApplySource &source, const NamedPicture &picture) {
     Correction job;
     job.source = picture.file;
@@ -128,6 +168,7 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
         const uint32_t image = source.images->at(picture.file, o.project_option());
         check_shape(*source.project, image, picture.file);
         job.exposure = source.exposures[image];
+        job.crops = crops_of(source, image);
         if (source.has_model) job.model = model_of_project(*source.project, image);
         job.model_name = std::filesystem::path(o.project()).filename().string();
         if (!source.project->models.empty()) named = name_below(source.project->names[image]);
@@ -137,6 +178,9 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
     check_mark(o, picture.file, metadata);
     check_several(picture.file);
     if (source.models->are_used()) source.models->choose(metadata, job);
+    for (CropCorrection &crop : job.crops)
+        if (!crop.model) crop.model = job.model;
+    if (!job.crops.empty()) job.model = without_falloff(*job.crops[0].model);
     job.copies_dng = is_dng_name(job.target);
     if (job.copies_dng) check_opcodes(o, picture.file);
     return job;
@@ -225,9 +269,14 @@ ApplySource open_source(const ApplyOptions &o) {
 ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &streams) {
     std::vector<NamedPicture> pictures;
     if (o.files.empty() && source.project)
-        for (const std::string &file : source.project->files) pictures.push_back({file, "", false});
+        for (uint32_t i = 0; i < source.project->files.size(); i++) {
+            const std::string &file = source.project->files[i];
+            const bool is_again = source.project->images[i].of_crop && source.images->find(file) != i;
+            if (!is_again) pictures.push_back({file, "", false});
+        }
     else
         pictures = named_pictures(o.files, o.output), extract_outputs(pictures, streams);
+    if (o.merge) refuse_crops(*source.project, "--merge");
     take_shard(shard_of(o.shard), pictures);
     if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; give pictures or folders");
     ApplyWork work;
@@ -242,7 +291,7 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
             work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project(), false});
             continue;
         }
-        if (source.project && source.project->images[source.images->at(picture.file, o.project_option())].left_out) {
+        if (source.project && is_left_out(source, picture.file, o.project_option())) {
             const std::string reason =
                 picture.file + ": not corrected: the project has no exposure for it; use the original";
             warn(streams, reason);

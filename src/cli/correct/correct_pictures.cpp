@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/correct/correction.hpp"
+#include "cli/correct/crop_plans.hpp"
 #include "cli/correct/left_out_parts.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/correct/strip_pipeline.hpp"
@@ -56,6 +57,7 @@ private:
     PictureReader reader_;
     const lensprof_apply_options options_;
     const Plan plan_;
+    const CropPlans crops_;
     const Picture result_;  // no pixels
     std::unique_ptr<PictureWriter> writer_;
     const bool thumbnails_;
@@ -67,6 +69,7 @@ PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind
       reader_(job.source),
       options_(options_of(reader_.header(), job, kind)),
       plan_(options_, job.source),
+      crops_(reader_.header(), job, kind),
       result_(header_of_result(reader_.header(), options_.target_sample)),
       writer_(std::make_unique<PictureWriter>(job.target, result_, write_options(job, kind))),
       thumbnails_(thumbnail_side > 0),
@@ -97,7 +100,10 @@ bool PictureCorrection::make(Strip &strip) {
     reader_.read(from);
     check_finite(from, next_row_, 1, job_.source);
     if (thumbnails_) before.add(from);
-    check(lensprof_apply(plan_.get(), &from, &strip.written, 0, next_row_), job_.source);
+    if (job_.crops.empty())
+        check(lensprof_apply(plan_.get(), &from, &strip.written, 0, next_row_), job_.source);
+    else
+        crops_.apply(plan_, from, strip.written, next_row_);
     if (thumbnails_) after.add(strip.written);
     next_row_ += rows;
     return true;

@@ -18,6 +18,15 @@
 
 namespace lensprof {
 
+// The correction of a crop of a picture, such as one of two circles of fisheyes. Its model is that of the crop as a
+// frame.
+struct CropCorrection {
+    int32_t crop[4];   // left, top, right, bottom (right and bottom exclusive) in the picture, may exceed it
+    bool is_circular;  // only the circle about the middle that touches the nearer sides
+    std::shared_ptr<const lensprof_profile> model;
+    lensprof_exposure exposure{}, target_exposure{};
+};
+
 // The correction of one picture.
 struct Correction {
     std::string source, target;
@@ -31,6 +40,7 @@ struct Correction {
     std::shared_ptr<const PictureMetadata> exif;        // EXIF of the exposure, replaces that of the source; NULL =
                                                         // keep
     std::string note;                                   // note to print; empty = none
+    std::vector<CropCorrection> crops;                  // what is corrected; the rest is only encoded. Empty = all
     bool copies_dng = false;  // the target is a copy of the source with the falloff as an opcode, pixels unchanged
 };
 

@@ -51,7 +51,9 @@ bool has_falloff(const lensprof_profile &model) {
 CorrectionMark mark_of(const Correction &job, const CorrectionKind &kind) {
     using Falloff = CorrectionMark::Falloff;
     CorrectionMark mark;
-    if (has_falloff(*job.model) && kind.strength > 0.0)
+    const bool crops_have = std::any_of(job.crops.begin(), job.crops.end(),
+                                        [](const CropCorrection &crop) { return has_falloff(*crop.model); });
+    if ((has_falloff(*job.model) || crops_have) && kind.strength > 0.0)
         mark.falloff = kind.simulate ? Falloff::added : Falloff::removed;
     mark.linear = kind.linear;
     mark.software = std::string("lensprof ") + lensprof_version();

@@ -243,7 +243,10 @@ Project open_project(const Options &o, Streams &streams) {
                                            + " is a project; omit the option, or use --pto-out");
     if (is_project) {
         reject_reconstruction_part(o.inputs[0]);
-        return read_project(o.inputs[0]);
+        Project project = read_project(o.inputs[0]);
+        for (const auto &[option, value] : {std::pair("--preview", o.preview), std::pair("--report", o.report)})
+            if (!value.empty()) refuse_crops(project, option);
+        return project;
     }
     if (!o.points.empty())
         throw Failure(ExitCode::usage,

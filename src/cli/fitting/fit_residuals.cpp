@@ -22,11 +22,11 @@ PairEnd end_of(const Fitted &fitted, const Project &project, const lensprof_pair
     end.image = pair.image[side];
     end.value = pair.value[side][1];
     const lensprof_vignetting falloff = fitted.falloff_of(end.image)[channel_of(fitted, end.image)];
-    const lensprof_camera &camera = project.images[end.image].camera;
+    const FalloffFrame frame = falloff_frame_of(project.images[end.image]);
     const double r2 =
-        lensprof_vignetting_r2(&falloff, camera.width, camera.height, pair.xy[side][0], pair.xy[side][1], nullptr);
+        lensprof_vignetting_r2(&falloff, frame.width, frame.height, pair.xy[side][0], pair.xy[side][1], nullptr);
     end.r = std::sqrt(r2);
-    end.across = (pair.xy[side][0] + 0.5) / camera.width, end.down = (pair.xy[side][1] + 0.5) / camera.height;
+    end.across = (pair.xy[side][0] + 0.5) / frame.width, end.down = (pair.xy[side][1] + 0.5) / frame.height;
     end.attenuation =
         lensprof_vignetting_eval(&falloff, r2, nullptr) * lensprof_exposure_factor(&fitted.exposures[end.image], 1);
     end.light = lensprof_response_invert(&fitted.response_of(end.image), end.value, nullptr) / end.attenuation;

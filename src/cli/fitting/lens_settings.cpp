@@ -31,6 +31,11 @@ bool is_same_setting(const lensprof_profile_key &a, const lensprof_profile_key &
     return !are_known(a.distance_m, b.distance_m) || std::fabs(extension(a) - extension(b)) < kSameExtension;
 }
 
+// Crops at other places of a file are circles of other lenses.
+bool is_same_crop(const lensprof_pto_image &a, const lensprof_pto_image &b) {
+    return a.of_crop == b.of_crop && (!a.of_crop || std::equal(a.crop, a.crop + 4, b.crop));
+}
+
 // How many fields of the setting a key states.
 int stated(const lensprof_profile_key &key) {
     return (key.aperture != LENSPROF_UNKNOWN) + (key.focal_mm != LENSPROF_UNKNOWN)
@@ -60,8 +65,8 @@ LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint
     return settings;
 }
 
-// Whether two images are from one camera: according to EXIF, unless sizes or processings differ, or to the project,
-// unless EXIF contradicts. `is_given`: the command line gives the camera of all.
+// Whether two images are from one camera: as crops of one file, or according to EXIF, unless sizes or processings
+// differ, or to the project, unless EXIF contradicts. `is_given`: the command line gives the camera of all.
 bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given, uint32_t i,
                     uint32_t j) {
     const lensprof_profile_key &a = metadata[i].key, &b = metadata[j].key;
@@ -70,6 +75,7 @@ bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &
         is_given
         || (std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.camera_maker, b.camera_maker) == 0);
     if (is_stated && !is_alike) return false;
+    if (project.images[i].of_crop && project.files[i] == project.files[j]) return true;
     if (project.images[i].response_of == project.images[j].response_of) return true;
     const lensprof_camera &frame = project.images[i].camera, &other_frame = project.images[j].camera;
     const bool is_one_kind =
@@ -168,7 +174,7 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
             const auto &a = project.images[i], &b = project.images[other];
             // Hugin does not link portrait and landscape frames.
             const bool is_linked = a.vignetting_of == b.vignetting_of || is_portrait(a) != is_portrait(b);
-            return cameras.camera_of_image[i] == cameras.camera_of_image[other] && is_linked
+            return cameras.camera_of_image[i] == cameras.camera_of_image[other] && is_linked && is_same_crop(a, b)
                    && is_same_setting(keys[i], keys[other]);
         };
         std::vector<uint32_t> possible;

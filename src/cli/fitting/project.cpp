@@ -79,6 +79,25 @@ void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduc
     }
 }
 
+FalloffFrame falloff_frame_of(const lensprof_pto_image &image) {
+    const int32_t *crop = image.crop;
+    if (!image.of_crop) return {0.0, 0.0, image.camera.width, image.camera.height};
+    return {double(crop[0]), double(crop[1]), static_cast<uint32_t>(crop[2] - crop[0]),
+            static_cast<uint32_t>(crop[3] - crop[1])};
+}
+
+bool has_crops(const Project &project) {
+    return std::any_of(project.images.begin(), project.images.end(),
+                       [](const lensprof_pto_image &image) { return image.of_crop != 0; });
+}
+
+void refuse_crops(const Project &project, const std::string &option) {
+    if (!has_crops(project)) return;
+    throw Failure(ExitCode::usage, option + ": does not support " + project.path
+                                       + ", whose images are crops of one file, such as its two circles; use build and "
+                                         "apply without it, or give a file per image");
+}
+
 void add_image(Project &project) {
     lensprof_pto_image image;
     lensprof_pto_image_init(&image);
@@ -235,6 +254,17 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
     return items;
 }
 
+// Moves a place from pixels of the picture to those of the falloff's frame (`sign` 1), or back (-1).
+void move_place(const Project &project, uint32_t image, double sign, double xy[2]) {
+    const FalloffFrame frame = falloff_frame_of(project.images[image]);
+    xy[0] -= sign * frame.left, xy[1] -= sign * frame.top;
+}
+
+void move_places(const Project &project, double sign, std::vector<lensprof_pair> &pairs) {
+    for (lensprof_pair &pair : pairs)
+        for (int side = 0; side < 2; side++) move_place(project, pair.image[side], sign, pair.xy[side]);
+}
+
 using ImagePair = std::pair<uint32_t, uint32_t>;
 
 template <class Item>
@@ -301,13 +331,17 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
     std::vector<lensprof_link> unused_links;
     if (!project.matches.empty() && options.sampling == LENSPROF_SAMPLING_BALANCED)
         return sample_matches(project, pictures, options, range, progress, links ? *links : unused_links);
-    return sample<lensprof_pair>(project, pictures, options, range, progress, links, lensprof_sample_overlap);
+    auto pairs = sample<lensprof_pair>(project, pictures, options, range, progress, links, lensprof_sample_overlap);
+    move_places(project, 1.0, pairs);
+    return pairs;
 }
 
 std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
                                                 lensprof_sample_options options, Progress &progress,
                                                 std::vector<lensprof_link> *links) {
-    return sample<lensprof_observation>(project, pictures, options, {}, progress, links, lensprof_sample_tracks);
+    auto places = sample<lensprof_observation>(project, pictures, options, {}, progress, links, lensprof_sample_tracks);
+    for (lensprof_observation &place : places) move_place(project, place.image, 1.0, place.xy);
+    return places;
 }
 
 std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations) {
@@ -375,10 +409,12 @@ std::vector<lensprof_pair> read_points(const std::string &path, const Project &p
     check(lensprof_points_read(text.data(), text.size(), pairs.data(), found, &found, &error), path, &error);
     for (size_t p = 0; p < pairs.size(); p++)
         for (int side = 0; side < 2; side++) check_point(path, project, pairs[p], side, p + 1);
+    move_places(project, 1.0, pairs);
     return pairs;
 }
 
-std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project) {
+std::string points_text(std::vector<lensprof_pair> pairs, const Project &project) {
+    move_places(project, -1.0, pairs);
     std::vector<lensprof_camera> cameras;
     for (const auto &image : project.images) cameras.push_back(image.camera);
     return written("points", [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
@@ -420,7 +456,8 @@ std::vector<lensprof_fit_image> fit_images(const Project &project) {
     auto exposures = project_exposures(project);
     for (const auto &from : project.images) {
         lensprof_fit_image image;
-        lensprof_fit_image_init(&image, static_cast<uint32_t>(images.size()), from.camera.width, from.camera.height);
+        const FalloffFrame frame = falloff_frame_of(from);
+        lensprof_fit_image_init(&image, static_cast<uint32_t>(images.size()), frame.width, frame.height);
         image.exposure = exposures[images.size()];
         image.free = from.free & (LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE);
         image.ev_of = from.ev_of;

@@ -42,6 +42,18 @@ struct Project {
 // Reads a project. The reference is the first image whose Eev is not free, else image 0.
 Project read_project(const std::string &path);
 
+// The frame of an image's falloff, in pixels of its file: the picture or, for one of several crops, the crop
+// (lensprof_pto_image.of_crop).
+struct FalloffFrame {
+    double left, top;
+    uint32_t width, height;
+};
+FalloffFrame falloff_frame_of(const lensprof_pto_image &image);
+
+// Whether an image is a crop of its file; Failure (usage) with the name of what does not support that.
+bool has_crops(const Project &project);
+void refuse_crops(const Project &project, const std::string &option);
+
 // Adds the next image of the Pto; the caller adds its name and file.
 void add_image(Project &project);
 
@@ -58,7 +70,8 @@ public:
 
     std::optional<uint32_t> find(const std::string &file) const;
 
-    // Failure (usage) for a file that is not an image of the project; the text advises to omit `option`.
+    // Failure (usage) for a file that is not an image of the project; the text advises to omit `option`. The first
+    // image, if there are several in crops of the file.
     uint32_t at(const std::string &file, const std::string &option) const;
 
 private:
@@ -99,12 +112,12 @@ struct GreyRange {
     bool every_pixel = false;  // share of a patch that must be within; else its mean
 };
 
-// An image as the library samples it; its pixels belong to `picture`.
+// An image as the library samples it, in pixels of its file; its pixels belong to `picture`.
 lensprof_sample_image sample_image(const Project &project, uint32_t image, SamplePicture &picture,
                                    const GreyRange &range);
 
-// Sets the progress function of the options. `links` receives the links of the pictures; may be NULL. Pictures with
-// matches give pairs at the matches, not through their cameras.
+// Sets the progress function of the options. Places are in pixels of the falloff's frame. `links` receives the links of
+// the pictures; may be NULL. Pictures with matches give pairs at the matches, not through their cameras.
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, const GreyRange &range, Progress &progress,
                                         std::vector<lensprof_link> *links);
@@ -117,9 +130,9 @@ std::vector<lensprof_observation> sample_tracks(const Project &project, std::vec
 // bounds.
 std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations);
 
-// The pairs of a point file; they must refer to images of the project.
+// The pairs of a point file, which holds pixels of the pictures; they must refer to images of the project.
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project);
-std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project);
+std::string points_text(std::vector<lensprof_pair> pairs, const Project &project);
 
 // The images of the fit: sizes, links, free parameters, and exposures relative to the reference.
 std::vector<lensprof_fit_image> fit_images(const Project &project);

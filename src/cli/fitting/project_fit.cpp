@@ -75,10 +75,11 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     std::vector<lensprof_link> &links = state.report.links;
     lensprof_sample_options options = sample_options(o);
     lensprof_vignetting falloff{};
-    if (known) {
+    if (known) options.response = &known->result.response;
+    if (known && !has_crops(project)) {
         falloff = green_falloff(known->result);
         if (!input.turn_of.empty()) falloff.center[0] = falloff.center[1] = 0.0;  // sampling takes one for all pictures
-        options.response = &known->result.response, options.vignetting = &falloff;
+        options.vignetting = &falloff;
     }
     // The method radiance makes tracks of pairs if sampling by cameras finds no tracks.
     const bool by_matches = project.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;

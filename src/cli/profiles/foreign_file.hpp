@@ -22,7 +22,8 @@ struct ForeignOptions {
     uint32_t curve = LENSPROF_CURVE_INVERSE;
     uint32_t depth = 16;  // bits of a map as PNG
     double color_temperature_k = LENSPROF_UNKNOWN;
-    std::string sense;  // of maps: attenuation, gain, or empty: attenuation for PNG, gain for TIFF
+    bool strict = false;  // refuse responses that decrease anywhere
+    std::string sense;    // of maps: attenuation, gain, or empty: attenuation for PNG, gain for TIFF
     uint32_t opcode = LENSPROF_DNG_AUTO;
 };
 
@@ -37,9 +38,10 @@ void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_im
 // Calls visit for every camera of a Lensfun database. Failure (unreadable) names the file.
 void read_cameras(const std::string &path, lensprof_camera_visitor visit, void *user);
 
-// Stores the response, or the falloff with doubt and known key fields, of a file in a profile.
-void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
-               lensprof_profile &profile);
+// Stores the response, or the falloff with known key fields, of a file in a profile, and adds its doubt and source.
+// Returns the largest change that made a response increasing, levels (lensprof_import_entry.change).
+double read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
+                 lensprof_profile &profile);
 
 // The bytes of a file with these profiles. Failure (usage) for formats that need a picture: maps and opcodes.
 std::string foreign_bytes(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,

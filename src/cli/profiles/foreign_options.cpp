@@ -22,7 +22,11 @@ void declare_foreign(Command &command, ForeignOptions &o, bool is_output) {
         "meaning of maps: attenuation (divide; default for PNG) or gain (multiply; default for float TIFF)");
     command.number("--color-temperature", o.color_temperature_k, {500.0, 50000.0},
                    "colour temperature of alsc tables, K; default that of the file or profile, else 4500");
-    if (!is_output) return;
+    if (!is_output) {
+        command.flag("--strict", o.strict,
+                     "refuse responses that decrease anywhere; default: the nearest increasing curve");
+        return;
+    }
     command.choice("--depth", o.depth, {{"8", 8}, {"16", 16}}, "bits of PNG maps: 8 or 16 (default)");
     command.choice("--opcode", o.opcode,
                    {{"auto", LENSPROF_DNG_AUTO}, {"radial", LENSPROF_DNG_RADIAL}, {"map", LENSPROF_DNG_GAIN_MAP}},

@@ -18,11 +18,28 @@ std::string name_of(const std::string &path) {
     return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
-// Takes the response or falloff of an entry, with its doubt and key.
+// A profile that receives a response and a falloff from two files.
+struct Parts {
+    lensprof_profile &profile;
+    double change = 0.0;
+};
+
+// Adds a text to one that may have others.
+template <size_t size>
+void add_text(char (&text)[size], const char *added) {
+    const std::string all = std::string(text) + (*text && *added ? "; " : "") + added;
+    set_text(text, size, all);
+}
+
+// Takes the response or falloff of an entry, with its doubt, source and key.
 lensprof_status take_part(void *user, const lensprof_import_entry *entry) {
-    lensprof_profile &profile = *static_cast<lensprof_profile *>(user);
+    Parts &parts = *static_cast<Parts *>(user);
+    lensprof_profile &profile = parts.profile;
     const lensprof_profile &found = *entry->profile;
     profile.key = found.key;
+    parts.change = std::max(parts.change, entry->change);
+    add_text(profile.provenance.doubt, found.provenance.doubt);
+    add_text(profile.provenance.source, found.provenance.source);
     if (entry->holds == LENSPROF_HOLDS_RESPONSE) {
         profile.responses = found.responses;
         std::copy_n(found.response, 3, profile.response);
@@ -31,7 +48,6 @@ lensprof_status take_part(void *user, const lensprof_import_entry *entry) {
     profile.vignettings = found.vignettings;
     std::copy_n(found.vignetting, 3, profile.vignetting);
     profile.grid = found.grid;
-    std::copy_n(found.provenance.doubt, sizeof profile.provenance.doubt, profile.provenance.doubt);
     return LENSPROF_OK;
 }
 
@@ -44,6 +60,7 @@ lensprof_import_options options_of(const ForeignRule &rule, const ForeignOptions
     options.columns = o.columns, options.rows = o.rows;
     options.curve = o.curve;
     options.color_temperature_k = o.color_temperature_k;
+    options.strict = o.strict;
     return options;
 }
 
@@ -84,8 +101,7 @@ std::vector<float> values_of(Picture &picture, uint32_t channels) {
 }
 
 // A picture of attenuations or gains.
-void read_map(const std::string &path, const ForeignOptions &o, lensprof_import_options &options,
-              lensprof_profile &profile) {
+void read_map(const std::string &path, const ForeignOptions &o, lensprof_import_options &options, Parts &parts) {
     Picture picture = read_picture(path);
     const uint32_t channels = lensprof_layout_channels(picture.layout) == 3 ? 3 : 1;
     const std::vector<float> values = values_of(picture, channels);
@@ -99,7 +115,7 @@ void read_map(const std::string &path, const ForeignOptions &o, lensprof_import_
     const lensprof_map map = {picture.width, picture.height, channels,
                               is_gain ? LENSPROF_MAP_GAIN : LENSPROF_MAP_ATTENUATION, values.data()};
     options.map = &map;
-    import(path, "", options, take_part, &profile);
+    import(path, "", options, take_part, &parts);
 }
 
 // The bytes of the tag, and what they apply to.
@@ -169,19 +185,26 @@ void read_cameras(const std::string &path, lensprof_camera_visitor visit, void *
           &error);
 }
 
-void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
+double read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
+    Parts parts{profile};
     lensprof_import_options options = options_of(rule, o);
+    const std::string name = name_of(path);
+    options.name = name.c_str();
     lensprof_profile_key key = profile.key;
     const bool is_picture = rule.format == LENSPROF_FORMAT_DNG_OPCODES
                             || (rule.format == LENSPROF_FORMAT_DRONE_XMP && !is_packet_alone(path));
     if (is_picture) complete_key(key, path);
     options.key = &key;
-    if (rule.format == LENSPROF_FORMAT_MAP) return read_map(path, o, options, profile);
+    if (rule.format == LENSPROF_FORMAT_MAP) {
+        read_map(path, o, options, parts);
+        return 0.0;
+    }
     if (rule.format == LENSPROF_FORMAT_ALSC) require_frame(path, o);
     const std::string bytes = rule.format == LENSPROF_FORMAT_DNG_OPCODES ? opcodes_of(path, options)
                               : rule.format == LENSPROF_FORMAT_DRONE_XMP ? packet_of(path, o, options)
                                                                          : read_text(path, max_text_bytes);
-    import(path, bytes, options, take_part, &profile);
+    import(path, bytes, options, take_part, &parts);
+    return parts.change;
 }
 
 }  // namespace lensprof

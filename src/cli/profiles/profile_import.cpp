@@ -93,33 +93,84 @@ lensprof_status import_entry(void *user, const lensprof_import_entry *entry) {
 
 lensprof_status ignore(void *, const lensprof_import_entry *) { return LENSPROF_OK; }
 
-// Files with only a response or a falloff are combined into one profile, whose key the command line gives.
-std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector<Input> &inputs) {
+// Profiles of files that hold only a response or a falloff, and what their reading found.
+struct PartProfiles {
+    std::vector<std::unique_ptr<lensprof_profile>> profiles;
+    Json changed = Json::array();        // file and change, levels, of responses made increasing
+    Json without_table = Json::array();  // file and reason, of tuning files without a table
+};
+
+// The name of a tuning file is that of its sensor, which libcamera's programs write into EXIF as the camera.
+void name_sensor(const std::string &file, lensprof_profile_key &key) {
+    if (*key.camera_model || *key.lens) return;
+    set_text(key.camera_maker, sizeof key.camera_maker, "Raspberry Pi");
+    set_text(key.camera_model, sizeof key.camera_model, std::filesystem::path(file).stem().string());
+}
+
+// The profile of files with a response, a falloff, or both, whose key the command line gives.
+std::unique_ptr<lensprof_profile> read_profile_of(const Options &o, const std::vector<Input> &inputs,
+                                                  PartProfiles &parts) {
     auto profile = new_profile();
-    std::string response, falloff, names;
+    const bool has_response = std::any_of(
+        inputs.begin(), inputs.end(), [](const Input &input) { return input.rule->holds == LENSPROF_HOLDS_RESPONSE; });
+    profile->key = o.key.key(has_response ? LENSPROF_PROCESSING_JPEG : LENSPROF_PROCESSING_RAW);
     for (const Input &input : inputs) {
-        if (input.rule->holds == LENSPROF_HOLDS_PROFILES) continue;
+        if (input.rule->format == LENSPROF_FORMAT_ALSC) name_sensor(input.file, profile->key);
+        const double change = read_part(*input.rule, input.file, o.foreign, *profile);
+        if (change > 0.0) parts.changed.push_back({{"file", input.file}, {"levels", change}});
+    }
+    if (!*profile->key.camera_model && !*profile->key.lens)
+        throw Failure(ExitCode::usage, inputs[0].file + ": does not name camera or lens; give --camera or --lens");
+    set_text(profile->provenance.method, sizeof profile->provenance.method, "import");
+    set_text(profile->provenance.software, sizeof profile->provenance.software,
+             std::string("lensprof ") + lensprof_version());
+    check(lensprof_profile_validate(profile.get()), inputs[0].file);
+    return profile;
+}
+
+// Tuning files of several sensors become a profile each.
+void read_tuning_files(const Options &o, const std::vector<Input> &inputs, PartProfiles &parts) {
+    for (const Input &input : inputs) {
+        try {
+            parts.profiles.push_back(read_profile_of(o, {input}, parts));
+        } catch (const Failure &failure) {
+            if (failure.code != ExitCode::not_found) throw;
+            parts.without_table.push_back({{"file", input.file}, {"reason", failure.what()}});
+        }
+    }
+    if (parts.profiles.empty()) throw Failure(ExitCode::not_found, parts.without_table[0]["reason"].get<std::string>());
+}
+
+// Failure (usage) for two responses or two falloffs, which are of two profiles.
+void check_parts(const Options &o, const std::vector<Input> &inputs) {
+    std::string response, falloff;
+    for (const Input &input : inputs) {
         std::string &source_file = input.rule->holds == LENSPROF_HOLDS_RESPONSE ? response : falloff;
         if (!source_file.empty())
             throw Failure(ExitCode::usage, input.file + ": has a "
                                                + (&source_file == &response ? "response" : "falloff") + ", and so has "
-                                               + source_file + "; import the profiles one after the other");
+                                               + source_file + "; import the profiles one after the other"
+                                               + (o.key.is_empty() ? "" : ", each with its own camera and lens"));
         source_file = input.file;
-        names += (names.empty() ? "" : "; ") + std::filesystem::path(input.file).filename().string();
     }
-    if (names.empty()) return nullptr;
-    profile->key = o.key.key(response.empty() ? LENSPROF_PROCESSING_RAW : LENSPROF_PROCESSING_JPEG);
-    for (const Input &input : inputs)
-        if (input.rule->holds != LENSPROF_HOLDS_PROFILES) read_part(*input.rule, input.file, o.foreign, *profile);
-    if (!*profile->key.camera_model && !*profile->key.lens)
-        throw Failure(ExitCode::usage, (response.empty() ? falloff : response)
-                                           + ": does not name camera or lens; give --camera or --lens");
-    set_text(profile->provenance.method, sizeof profile->provenance.method, "import");
-    set_text(profile->provenance.software, sizeof profile->provenance.software,
-             std::string("lensprof ") + lensprof_version());
-    set_text(profile->provenance.source, sizeof profile->provenance.source, names);
-    check(lensprof_profile_validate(profile.get()), response.empty() ? falloff : response);
-    return profile;
+}
+
+PartProfiles read_parts(const Options &o, const std::vector<Input> &inputs) {
+    PartProfiles parts;
+    std::vector<Input> of_parts;
+    std::copy_if(inputs.begin(), inputs.end(), std::back_inserter(of_parts),
+                 [](const Input &input) { return input.rule->holds != LENSPROF_HOLDS_PROFILES; });
+    const bool are_tuning_files = of_parts.size() > 1 && o.key.is_empty()
+                                  && std::all_of(of_parts.begin(), of_parts.end(), [](const Input &input) {
+                                         return input.rule->format == LENSPROF_FORMAT_ALSC;
+                                     });
+    if (are_tuning_files) {
+        read_tuning_files(o, of_parts, parts);
+    } else if (!of_parts.empty()) {
+        check_parts(o, of_parts);
+        parts.profiles.push_back(read_profile_of(o, of_parts, parts));
+    }
+    return parts;
 }
 
 // Stores a camera of a table, replacing an existing one.
@@ -131,7 +182,7 @@ lensprof_status take_camera(void *user, const lensprof_camera_model *camera) {
 }
 
 // Every profile of every file, and the cameras.
-void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts,
+void visit_all(Import &import, const std::vector<Input> &inputs, const PartProfiles &parts,
                lensprof_import_visitor visit, const std::string &what, Progress &progress) {
     uint32_t done = 0;
     for (const Input &input : inputs) {
@@ -148,24 +199,25 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_
             throw;
         }
     }
-    if (!of_parts) return;
-    const lensprof_import_entry entry = {of_parts, 1, 0};
-    import.file = of_parts->provenance.source;
-    check(visit(&import, &entry), store_path(import.db), &import.error);
+    for (const auto &profile : parts.profiles) {
+        const lensprof_import_entry entry = {profile.get(), 1, 0, 0.0};
+        import.file = profile->provenance.source;
+        check(visit(&import, &entry), store_path(import.db), &import.error);
+    }
 }
 
 // A failure closes the store, and rolls back.
-void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts, Progress &progress) {
+void store_all(Import &import, const std::vector<Input> &inputs, const PartProfiles &parts, Progress &progress) {
     const std::string db = store_path(import.db);
     Store store = open_store(import.db, LENSPROF_STORE_CREATE);
     import.store = store.get();
     import.cameras = 0;
     check(lensprof_store_begin(store.get(), &import.error), db, &import.error);
-    visit_all(import, inputs, of_parts, import_entry, "storing", progress);
+    visit_all(import, inputs, parts, import_entry, "storing", progress);
     check(lensprof_store_commit(store.get(), &import.error), db, &import.error);
 }
 
-void print_import(const Import &import, size_t files, Streams &streams) {
+void print_import(const Import &import, const PartProfiles &parts, size_t files, Streams &streams) {
     const size_t refused = static_cast<size_t>(std::count_if(import.flagged.begin(), import.flagged.end(),
                                                              [](const Json &entry) { return !entry["stored"]; }));
     streams.out << "imported " << counted(import.stored, "profile") << " of "
@@ -174,6 +226,16 @@ void print_import(const Import &import, size_t files, Streams &streams) {
     if (import.cameras)
         streams.out << "with " << counted(import.cameras, "camera") << ": sensor sizes and built-in lenses\n";
     if (import.known) streams.out << format("%u %s stored already\n", import.known, import.known == 1 ? "was" : "were");
+    for (const Json &file : parts.changed)
+        streams.out << file["file"].get<std::string>()
+                    << format(
+                           ": decreases in places; the nearest increasing curve is stored, which differs by at most "
+                           "%.2g of 255 levels\n",
+                           file["levels"].get<double>());
+    if (!parts.without_table.empty())
+        streams.out << "not imported: " << counted(parts.without_table.size(), "file")
+                    << " without a table of lens shading\n";
+    for (const Json &file : parts.without_table) streams.out << "  " << file["file"].get<std::string>() << "\n";
     if (!import.flagged.empty())
         streams.out << "doubtful: " << counted(import.flagged.size(), "profile")
                     << format(
@@ -188,18 +250,18 @@ int run(const Options &o, Streams &streams) {
     std::set<std::string> seen;
     for (const std::string &file : o.files)
         if (seen.insert(canonical_path(file)).second) inputs.push_back({file, &format_to_read(file, o.format)});
-    const std::unique_ptr<lensprof_profile> of_parts = read_parts(o, inputs);
-    if (!of_parts && !o.key.is_empty())
+    const PartProfiles parts = read_parts(o, inputs);
+    if (parts.profiles.empty() && !o.key.is_empty())
         throw Failure(ExitCode::usage,
                       "profile import: these files already name camera and lens; omit --camera, --lens and similar "
                       "options");
     Import import;
     import.db = o.db;
     Progress progress(streams, o.progress);
-    visit_all(import, inputs, of_parts.get(), ignore, "reading", progress);  // before a database is created
+    visit_all(import, inputs, parts, ignore, "reading", progress);  // before a database is created
     const bool is_new = !path_exists(store_path(o.db));
     try {
-        store_all(import, inputs, of_parts.get(), progress);
+        store_all(import, inputs, parts, progress);
     } catch (const Failure &) {
         if (is_new) remove_empty_store(store_path(o.db));
         throw;
@@ -211,10 +273,12 @@ int run(const Options &o, Streams &streams) {
                         {"known", import.known},
                         {"lenses", import.lenses.size()},
                         {"cameras", import.cameras},
+                        {"changed", parts.changed},
+                        {"without_table", parts.without_table},
                         {"flagged", import.flagged}},
                    streams.out);
     else
-        print_import(import, inputs.size(), streams);
+        print_import(import, parts, inputs.size() - parts.without_table.size(), streams);
     return 0;
 }
 
@@ -227,7 +291,8 @@ void declare_profile_import(Command &profile) {
                     "The format is identified from the content, else from the name.");
     auto o = std::make_shared<Options>();
     command.files("FILE", o->files,
-                  "profile files; or, for one profile, a file with a response, a file with a falloff, or both");
+                  "profile files; or, for one profile, a file with a response, a file with a falloff, or both; or "
+                  "Raspberry Pi tuning files, for a profile per sensor, whose name is that of the file");
     command.require("FILE");
     command.choice("--format", o->format, format_choices(false),
                    "format of all files; default identified from content or name");
