@@ -333,21 +333,76 @@ void test_contact_sheet(void **) {
     assert_true(!fs::exists(work("more")) || fs::is_empty(work("more")));
 }
 
+// Two circles in one file: each is corrected by its own falloff, in Hugin's terms (r = 1 in the corner of the file),
+// and its own exposure; what is of no circle stays.
+void test_two_circles(void **) {
+    struct Layout {
+        uint32_t width, height, side;
+        double x[2], y[2];
+    };
+    const Layout layouts[] = {{96, 48, 48, {23.5, 71.5}, {23.5, 23.5}},   // side by side
+                              {96, 48, 48, {71.5, 23.5}, {23.5, 23.5}},   // the second one first
+                              {40, 84, 40, {19.5, 19.5}, {19.5, 62.5}},   // one above the other
+                              {120, 60, 50, {31.5, 85.5}, {30.5, 27.5}},  // with dark around
+                              {90, 50, 50, {22.5, 66.5}, {24.5, 24.5}}};  // that overlap, beyond the file
+    const double k[2][3] = {{-.6, -.1, -.9}, {-1.1, .3, -.4}}, ev[2] = {0, .6};
+    uint64_t state = 1;
+    for (const Layout &of : layouts) {
+        Picture picture = make_noise(of.width, of.height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+        auto *codes = reinterpret_cast<uint16_t *>(picture.pixels.data());
+        for (size_t i = 0; i < size_t(of.width) * of.height * 3; i++)
+            codes[i] = static_cast<uint16_t>(65535 * (.05 + .15 * lp_random(&state)));
+        fs::create_directories(work("in"));
+        write_picture(work("in/pair.tif"), picture);
+        std::ostringstream pto;
+        for (int i = 0; i < 2; i++) {
+            const double half = of.side / 2.0, left = of.x[i] + .5 - half, top = of.y[i] + .5 - half;
+            pto << "i w" << of.width << " h" << of.height << " f2 v" << 200.0 * of.width / of.side << " Rt1 y"
+                << 180 * i << " Eev" << -ev[i] << " Va1 Vb" << k[i][0] << " Vc" << k[i][1] << " Vd" << k[i][2] << " Vx"
+                << of.x[i] - (of.width - 1) / 2.0 << " Vy" << of.y[i] - (of.height - 1) / 2.0 << " S" << left << ","
+                << left + of.side << "," << top << "," << top + of.side << " Vm5 n\"pair.tif\"\n";
+        }
+        save_text(work("in/pair.pto"), pto.str());
+        fs::remove_all(work("out"));
+        const Json json = json_of({"apply", "--pto", work("in/pair.pto"), "--json", "-o", work("out")});
+        assert_int_equal(json["pictures"].size(), 1);
+        const Picture before = read_picture(work("in/pair.tif")), after = read_picture(work("out/pair.tif"));
+        size_t inside = 0, outside = 0;
+        for (uint32_t y = 0; y < of.height; y++)
+            for (uint32_t x = 0; x < of.width; x++) {
+                double distance[2], wanted = 1;
+                for (int i = 0; i < 2; i++) distance[i] = std::hypot(x - of.x[i], y - of.y[i]);
+                const int nearer = distance[1] < distance[0];
+                const double depth = of.side / 2.0 - distance[nearer];
+                if (std::fabs(depth) < 1.5 || std::fabs(distance[0] - distance[1]) < 3) continue;
+                const double r = distance[nearer] / (std::hypot(of.width, of.height) / 2), s = r * r;
+                const double m = 1 + s * (k[nearer][0] + s * (k[nearer][1] + s * k[nearer][2]));
+                if (depth > 0) wanted = std::exp2(.3 - ev[nearer]) / m;  // .3: the mean exposure
+                (depth > 0 ? inside : outside)++;
+                for (uint32_t c = 0; c < 3; c++) {
+                    const size_t at = (size_t(y) * of.width + x) * 3 + c;
+                    assert_close(value_of(after, at), std::min(value_of(before, at) * wanted, 1.0), 2e-4);
+                }
+            }
+        assert_true(inside > 500 && outside > 30);
+    }
+    const Words on = {"apply", "--pto", work("in/pair.pto"), "-o", work("more")};
+    assert_refused(usage, on + Words{"--linear", "--merge"}, {"--merge", "crops of one file"});
+    assert_refused(usage, {"build", work("in/pair.pto"), "--no-store", "--preview", work("p.jpg")},
+                   {"--preview", "crops"});
+    assert_refused(usage, {"align", "--project", work("in/pair.pto"), "-o", work("more")}, {"align", "crops"});
+}
+
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_output_exposures),
-        CLI_TEST(test_linear_is_float),
-        CLI_TEST(test_simulate_undoes_correct),
-        CLI_TEST(test_some_pictures_of_a_project),
-        CLI_TEST(test_overlaps_agree_better),
-        CLI_TEST(test_pictures_keep_their_nature),
-        CLI_TEST(test_profile_by_id_or_exif),
-        CLI_TEST(test_gain_grid_of_a_profile),
-        CLI_TEST(test_contact_sheet),
-        CLI_TEST(test_strength_cap_and_dither),
-        CLI_TEST(test_folder),
+        CLI_TEST(test_output_exposures),        CLI_TEST(test_linear_is_float),
+        CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
+        CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
+        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
+        CLI_TEST(test_contact_sheet),           CLI_TEST(test_two_circles),
+        CLI_TEST(test_strength_cap_and_dither), CLI_TEST(test_folder),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -199,7 +199,9 @@ void test_refused(void **) {
     assert_refused(usage, export_to(work("q.jpg"), {"--frame", "60x40", "--format", "map"}), {"q.jpg", "JPEG"});
     assert_refused(usage, export_to(work("q.tif"), {"--frame", "60000x60000"}), {"q.tif", "--grid"});
     save_text(work("falling.csv"), "0,0\n1,0.5\n2,0.4\n3,1\n");
-    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C"}), {"falling.csv", "line"});
+    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C", "--strict"}), {"falling.csv", "line"});
+    save_text(work("falling.csv"), "0,1\n1,0.5\n2,0.4\n3,0\n");
+    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C"}), {"falling.csv", "not a response"});
     save_text(work("cut.json"), text_of(work("one.json")).substr(0, 100));
     assert_refused(unreadable, import({work("one.json"), work("cut.json")}), {"cut.json"});
     save_text(work("nan.lcp"), "<x><CameraProfiles");
@@ -218,10 +220,52 @@ void test_refused(void **) {
     assert_refused(usage, export_to(work("v.vgn"), {"--blob", work("b")}), {"-o and --blob both name"});
 }
 
+Words import_words() { return {"profile", "import", "--db", work("new.db")}; }
+
+// A curve with dips is stored with the largest change; above a level with a doubt.
+void test_dips(void **) {
+    std::string text;
+    for (int i = 0; i < 256; i++) text += std::to_string(i == 100 ? 98.2 : i == 200 ? 199.8 : double(i)) + " ";
+    save_text(work("dips.txt"), text);
+    const Json json = json_of(import_words() + Words{work("dips.txt"), "--camera", "C", "--json"});
+    assert_int_equal(json["changed"].size(), 1);
+    assert_true(std::fabs(json["changed"][0]["levels"].get<double>() - .4) < .01);  // half of 99 - 98.2
+    assert_int_equal(json["flagged"].size(), 0);
+    text.replace(text.find("98.2"), 4, "94.0");
+    save_text(work("dips.txt"), text);
+    const std::string said = must_exit(done, import_words() + Words{work("dips.txt"), "--camera", "C"});
+    assert_true(contains(said, "decreases in places") && contains(said, "doubtful: 1 profile"));
+}
+
+// Tuning files of several sensors: a profile each, named by the file; those without a table are listed.
+void test_tuning_files(void **) {
+    std::string table = "[";
+    for (int i = 0; i < 192; i++)
+        table += std::to_string(1 + .004 * (std::pow(i % 16 - 7.5, 2) + std::pow(i / 16 - 5.5, 2))) + ", ";
+    table += "]";  // with a comma before it
+    const std::string alsc = "\"rpi.alsc\": {\"n_iter\": 0, \"luminance_lut\": " + table + ", }";
+    save_text(work("imx1.json"),
+              "{\"version\": 2.0, \"target\": \"bcm2835\", \"algorithms\": [{\"rpi.awb\": {}}, {" + alsc + "}, ]}");
+    save_text(work("imx2.json"), "{\"rpi.awb\": {}, " + alsc + "}");
+    save_text(work("imx3.json"), "{\"version\": 2.0, \"algorithms\": [{\"rpi.awb\": {}}]}");
+    const Words files = {work("imx1.json"), work("imx2.json"), work("imx3.json"), "--frame", "1640x1232"};
+    const Json json = json_of(import_words() + files + Words{"--json"});
+    assert_int_equal(json["stored"], 2);
+    assert_int_equal(json["without_table"].size(), 1);
+    assert_true(contains(json["without_table"][0]["file"].get<std::string>(), "imx3.json"));
+    const Json list = json_of({"profile", "list", "--db", work("new.db"), "--json"})["profiles"];
+    assert_true(list[0]["key"]["camera_model"] == "imx1" && list[1]["key"]["camera_model"] == "imx2");
+    assert_refused(not_found, import_words() + Words{work("imx3.json"), "--frame", "1640x1232"},
+                   {"imx3.json", "no table"});
+    assert_refused(usage, import_words() + files + Words{"--camera", "C"}, {"imx2.json", "one after the other"});
+}
+
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_round_trips),
+                                CLI_TEST(test_dips),
+                                CLI_TEST(test_tuning_files),
                                 CLI_TEST(test_two_files_one_profile),
                                 CLI_TEST(test_opcodes),
                                 CLI_TEST(test_opcodes_name_their_camera),

@@ -422,11 +422,12 @@ static void print_structs(void) {
     FIELD(lensprof_pto_image, crop);
     FIELD(lensprof_pto_image, crop_circular);
     FIELD(lensprof_pto_image, left_out);
-    FIELD(lensprof_pto_image, reserved);
+    FIELD(lensprof_pto_image, of_crop);
     STRUCT(lensprof_import_entry);
     FIELD(lensprof_import_entry, profile);
     FIELD(lensprof_import_entry, usable);
     FIELD(lensprof_import_entry, holds);
+    FIELD(lensprof_import_entry, change);
     STRUCT(lensprof_frame_time);
     FIELD(lensprof_frame_time, id);
     FIELD(lensprof_frame_time, time_s);
@@ -457,6 +458,8 @@ static void print_structs(void) {
     FIELD(lensprof_import_options, name);
     FIELD(lensprof_import_options, map);
     FIELD(lensprof_import_options, key);
+    FIELD(lensprof_import_options, strict);
+    FIELD(lensprof_import_options, reserved);
     STRUCT(lensprof_export_options);
     FIELD(lensprof_export_options, struct_size);
     FIELD(lensprof_export_options, format);

@@ -968,7 +968,7 @@ class PtoImage(Structure):
         ("crop", c_int32 * 4),
         ("crop_circular", c_uint32),
         ("left_out", c_uint32),
-        ("reserved", c_uint32),
+        ("of_crop", c_uint32),
     ]
 
 
@@ -977,6 +977,7 @@ class ImportEntry(Structure):
         ("profile", POINTER(Profile)),
         ("usable", c_uint32),
         ("holds", c_uint32),
+        ("change", c_double),
     ]
 
 
@@ -1029,6 +1030,8 @@ class ImportOptions(Structure):
         ("name", c_char_p),
         ("map", POINTER(Map)),
         ("key", POINTER(ProfileKey)),
+        ("strict", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

@@ -519,18 +519,20 @@ def detect_format(data: Union[str, bytes], name: str = "") -> Format:
 def import_profiles(data: Union[str, bytes], name: str = "", *, format: Format = Format.AUTO,
                     key: Optional[ProfileKey] = None, frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0),
                     layout: Layout = Layout.RGB, curve: CurveKind = CurveKind.INVERSE,
-                    color_temperature_k: float = _abi.UNKNOWN) -> list[tuple[Profile, bool]]:
+                    color_temperature_k: float = _abi.UNKNOWN, strict: bool = False) -> list[tuple[Profile, bool]]:
     """The profiles of a file of any format, in the form of lensfun_read. data: the content of the file.
 
     A response or a falloff makes one profile with `key`. name: of the file, for detection and provenance.source. frame:
     width and height of the pictures, which opcodes, XMP and alsc do not contain. tables: columns and rows, of alsc. The
     bytes are those of the format, not of a picture around them: opcodes without their DNG, XMP without its JPEG.
+    strict: refuse a response that decreases anywhere, instead of reading the nearest increasing curve.
     """
     content, options = _content(data), initialised(_abi.ImportOptions)
     options.format, options.layout, options.curve = _format(format), int(Layout(layout)), int(CurveKind(curve))
     options.width, options.height = (integer(side, "frame") for side in frame)
     options.columns, options.rows = (integer(side, "tables") for side in tables)
     options.color_temperature_k = color_temperature_k
+    options.strict = int(strict)
     if key is not None:
         options.key = pointer(_abi.ProfileKey.from_buffer(key))
 
