@@ -268,90 +268,6 @@ void test_maps(void **) {
     assert_non_null(strstr(gain.profiles[0]->provenance.doubt, "is it a gain?"));
 }
 
-// 256 greys of x^gamma, of some range, with a dip of so many levels in front of each of the given greys.
-std::vector<double> with_dips(double gamma, double range, double dip, std::initializer_list<int> greys) {
-    std::vector<double> values;
-    for (int i = 0; i < 256; i++) values.push_back(range * pow(i / 255.0, gamma));
-    for (const int grey : greys) values[grey] = values[grey - 1] - range / 255 * dip;
-    return values;
-}
-
-std::string rows(const std::vector<double> &values, const char *end) {
-    std::string text;
-    char word[40];
-    for (const double value : values) snprintf(word, sizeof word, "%.12g%s", value, end), text += word;
-    return text;
-}
-
-double change_of(const std::string &text, uint32_t format, uint32_t strict, Found &found, uint32_t curve = 0) {
-    auto options = import_options(format);
-    options.strict = strict, options.curve = curve;
-    double change = -1;
-    const auto keep = [](void *user, const lensprof_import_entry *entry) {
-        *static_cast<double *>(user) = entry->change;
-        return LENSPROF_OK;
-    };
-    found = import(text, &options);
-    if (found.status == LENSPROF_OK)
-        assert_ok(lensprof_import(text.data(), text.size(), &options, keep, &change, nullptr));
-    return change;
-}
-
-// Responses that decrease in places are read as the nearest increasing curve, which is never farther from the truth
-// than the dips are; by more than a level they are doubtful, and `strict` refuses them.
-void test_dips(void **) {
-    Found found;
-    for (const double gamma : {0.6, 1.0, 1.9, 2.4})
-        for (const double range : {255.0, 1.0, 40000.0})
-            for (const double dip : {0.0, 0.3, 0.9, 4.0}) {
-                const std::vector<double> values = with_dips(gamma, range, dip, {28, 120, 121, 200});
-                for (const uint32_t format : {LENSPROF_FORMAT_PCALIB, LENSPROF_FORMAT_CURVES}) {
-                    const std::string text = rows(values, format == LENSPROF_FORMAT_PCALIB ? " " : "\n");
-                    const double change = change_of(text, format, 0, found);
-                    assert_string_equal(found.error.c_str(), "");
-                    const lensprof_response &response = found.profiles[0]->response[0];
-                    double off = 0, least = 0;
-                    for (int i = 0; i < 256; i++)
-                        off = fmax(off,
-                                   fabs(lensprof_response_invert(&response, i / 255.0, nullptr) - values[i] / range));
-                    for (int i = 1; i < 256; i++) least = fmax(least, (values[i - 1] - values[i]) / range * 255 / 2);
-                    assert_true(change >= least - 1e-6);  // half a fall is the least that removes it
-                    assert_true(change <= 3 * (dip + 2.5));
-                    assert_true(off * 255 <= change + 0.6);  // of samples that hold the curve
-                    assert_int_equal(*found.profiles[0]->provenance.doubt != 0, change > 1.0);
-                    change_of(text, format, 1, found);
-                    if (dip > 0.0) assert_int_equal(found.status, LENSPROF_ERROR_RESPONSE);
-                }
-            }
-    const std::vector<double> dips = with_dips(2, 1, 0.5, {90});
-    assert_true(change_of(rows(dips, "\n"), LENSPROF_FORMAT_CURVES, 0, found, LENSPROF_CURVE_FORWARD) > 0.2);
-    std::vector<double> logs;
-    for (const double value : dips) logs.push_back(log(value + 1e-5));
-    assert_true(change_of(rows(logs, "\n"), LENSPROF_FORMAT_CURVES, 0, found, LENSPROF_CURVE_LOG) > 0.2);
-    assert_ok(found.status);
-    assert_true(change_of(rows(with_dips(2, 1, 0, {}), "\n"), LENSPROF_FORMAT_CURVES, 0, found) == 0.0
-                || found.status != LENSPROF_OK);
-}
-
-// What is no response at all: falling, noise, a peak, a constant.
-void test_no_response(void **) {
-    std::vector<std::vector<double>> tables(5);
-    uint64_t random = 5;
-    for (int i = 0; i < 256; i++) {
-        tables[0].push_back(255 - i);
-        tables[1].push_back(255 * lp_random(&random));
-        tables[2].push_back(255 * sin(M_PI * i / 255.0));
-        tables[3].push_back(7);
-        tables[4].push_back(i == 128 ? 0 : i);
-    }
-    for (const auto &table : tables)
-        for (const uint32_t format : {LENSPROF_FORMAT_PCALIB, LENSPROF_FORMAT_CURVES}) {
-            Found found;
-            change_of(rows(table, "\n"), format, 0, found);
-            assert_int_equal(found.status, LENSPROF_ERROR_RESPONSE);
-        }
-}
-
 void test_visitors_answer(void **) {
     lensprof_error error{};
     for (const Sample &sample : kSamples) {
@@ -521,8 +437,6 @@ int main() {
         cmocka_unit_test(test_options_are_checked),
         cmocka_unit_test(test_containers_are_the_callers),
         cmocka_unit_test(test_maps),
-        cmocka_unit_test(test_dips),
-        cmocka_unit_test(test_no_response),
         cmocka_unit_test(test_visitors_answer),
         cmocka_unit_test(test_there_and_back),
         cmocka_unit_test(test_opcode_by_its_error),

@@ -168,12 +168,99 @@ void test_refused(void **) {
     assert_int_equal(lensprof_curves_write(r, 3, 0, 256, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_RESPONSE);
 }
 
+// 256 greys of x^gamma, of some range, with a dip of so many levels in front of each of the given greys.
+std::vector<double> with_dips(double gamma, double range, double dip, std::initializer_list<int> greys) {
+    std::vector<double> values;
+    for (int i = 0; i < 256; i++) values.push_back(range * pow(i / 255.0, gamma));
+    for (const int grey : greys) values[grey] = values[grey - 1] - range / 255 * dip;
+    return values;
+}
+
+std::string rows(const std::vector<double> &values, const char *end) {
+    std::string text;
+    char word[40];
+    for (const double value : values) snprintf(word, sizeof word, "%.12g%s", value, end), text += word;
+    return text;
+}
+
+// What lensprof_import makes of a table.
+struct Repaired {
+    lensprof_status status;
+    double change = -1;
+    Profile profile;
+};
+
+Repaired import_table(const std::string &text, uint32_t format, uint32_t strict = 0, uint32_t curve = 0) {
+    lensprof_import_options options;
+    lensprof_import_options_init(&options);
+    options.format = format, options.strict = strict, options.curve = curve;
+    Repaired found;
+    const auto keep = [](void *user, const lensprof_import_entry *entry) {
+        auto &into = *static_cast<Repaired *>(user);
+        into.change = entry->change, into.profile = copy_of(*entry->profile);
+        return LENSPROF_OK;
+    };
+    const std::vector<char> bytes = exact(text);
+    found.status = lensprof_import(bytes.data(), bytes.size(), &options, keep, &found, nullptr);
+    return found;
+}
+
+// Responses that decrease in places are read as the nearest increasing curve, which is never farther from the truth
+// than the dips are; by more than a level they are doubtful, and `strict` refuses them.
+void test_dips(void **) {
+    for (const double gamma : {0.6, 1.0, 1.9, 2.4})
+        for (const double range : {255.0, 1.0, 40000.0})
+            for (const double dip : {0.0, 0.3, 0.9, 4.0}) {
+                const std::vector<double> values = with_dips(gamma, range, dip, {28, 120, 121, 200});
+                for (const uint32_t format : {LENSPROF_FORMAT_PCALIB, LENSPROF_FORMAT_CURVES}) {
+                    const std::string text = rows(values, format == LENSPROF_FORMAT_PCALIB ? " " : "\n");
+                    const Repaired found = import_table(text, format);
+                    const double change = found.change;
+                    assert_ok(found.status);
+                    const lensprof_response &response = found.profile->response[0];
+                    double off = 0, least = 0;
+                    for (int i = 0; i < 256; i++)
+                        off = fmax(off,
+                                   fabs(lensprof_response_invert(&response, i / 255.0, nullptr) - values[i] / range));
+                    for (int i = 1; i < 256; i++) least = fmax(least, (values[i - 1] - values[i]) / range * 255 / 2);
+                    assert_true(change >= least - 1e-6);  // half a fall is the least that removes it
+                    assert_true(change <= 3 * (dip + 2.5));
+                    assert_true(off * 255 <= change + 0.6);  // of samples that hold the curve
+                    assert_int_equal(*found.profile->provenance.doubt != 0, change > 1.0);
+                    if (dip > 0.0) assert_int_equal(import_table(text, format, 1).status, LENSPROF_ERROR_RESPONSE);
+                }
+            }
+    const std::vector<double> dips = with_dips(2, 1, 0.5, {90});
+    std::vector<double> logs;
+    for (const double value : dips) logs.push_back(log(value + 1e-5));
+    assert_true(import_table(rows(dips, "\n"), LENSPROF_FORMAT_CURVES, 0, LENSPROF_CURVE_FORWARD).change > 0.2);
+    assert_true(import_table(rows(logs, "\n"), LENSPROF_FORMAT_CURVES, 0, LENSPROF_CURVE_LOG).change > 0.2);
+}
+
+// Values that are not a response: falling, noise, a peak, a constant.
+void test_no_response(void **) {
+    std::vector<std::vector<double>> tables(5);
+    uint64_t random = 5;
+    for (int i = 0; i < 256; i++) {
+        tables[0].push_back(255 - i);
+        tables[1].push_back(255 * lp_random(&random));
+        tables[2].push_back(255 * sin(M_PI * i / 255.0));
+        tables[3].push_back(7);
+        tables[4].push_back(i == 128 ? 0 : i);
+    }
+    for (const auto &table : tables)
+        for (const uint32_t format : {LENSPROF_FORMAT_PCALIB, LENSPROF_FORMAT_CURVES}) {
+            assert_int_equal(import_table(rows(table, "\n"), format).status, LENSPROF_ERROR_RESPONSE);
+        }
+}
+
 }  // namespace
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_layouts),  cmocka_unit_test(test_channels),   cmocka_unit_test(test_kinds),
-        cmocka_unit_test(test_pfstools), cmocka_unit_test(test_round_trip), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_dips),       cmocka_unit_test(test_no_response), cmocka_unit_test(test_layouts),
+        cmocka_unit_test(test_channels),   cmocka_unit_test(test_kinds),       cmocka_unit_test(test_pfstools),
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -24,7 +24,7 @@ struct Repair {
 };
 
 // Replaces values by the nearest curve, in least squares, that rises by at least `step` per value. Throws RESPONSE if
-// that is off by over a tenth of its range, or flat: then the values are no response.
+// that is off by over a tenth of its range, or flat, which is not a response.
 void make_increasing(std::vector<double> &values, double step, Repair &repair);
 
 // The response with these irradiances at the grey values i / (size - 1), to any scale: the last is that of full grey.
