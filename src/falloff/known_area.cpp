@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDark = 0.05;        // of the largest value: the noise of a coded picture reaches .02
 constexpr double kBright = 2.5;       // times that, on the other side of an edge; a falloff rises less within kEdge
-constexpr uint32_t kEdge = 3;         // least number of values that are means of both sides; more on large maps
+constexpr uint32_t kEdge = 3;         // least number of values that are means of both sides
 constexpr double kDarkShare = 0.01;   // of a map, below which dark values are specks
 constexpr uint32_t kLeastSide = 48;   // of a map that shows an edge
 constexpr double kRoundShare = 0.95;  // of an outline within kOffCircle values of a circle
@@ -42,6 +42,12 @@ Mask grown(const FalloffMap &map, const Mask &mask) {
                     result[size_t(y) * map.columns + x] = 1;
         }
     return result;
+}
+
+bool is_noisy(const FalloffMap &map, const Mask &dark) {
+    for (size_t i = 0; i < map.attenuation.size(); i++)
+        if (dark[i % dark.size()] && map.attenuation[i] > 0.0) return true;
+    return false;
 }
 
 // Of what is not blurred, the part that hangs together and has most values: others are noise in the dark.
@@ -145,7 +151,8 @@ std::optional<Circle> drop_surround(FalloffMap &map) {
     const Mask dark = below(map, kDark);
     const auto count = static_cast<double>(std::count(dark.begin(), dark.end(), 1));
     if (count < kDarkShare * static_cast<double>(dark.size())) return std::nullopt;
-    const uint32_t edge = std::max(kEdge, std::max(map.columns, map.rows) / 150);
+    // Noise in the dark shows a coded picture, whose blocks have ringing at the edge.
+    const uint32_t edge = is_noisy(map, dark) ? std::max(kEdge, std::max(map.columns, map.rows) / 100) : kEdge;
     Mask blurred = dark;
     for (uint32_t i = 0; i < edge; i++) blurred = grown(map, blurred);
     if (median_across(map, blurred) < kBright * kDark) return std::nullopt;

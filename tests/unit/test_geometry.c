@@ -283,11 +283,23 @@ static void test_validate(void **state) {
 
 static void test_validate_field_of_view(void **state) {
     (void)state;
-    const double widest[LENSES] = {179.99, 360, 360, 360, 360, 360, 359.99, 252.4, 360};
-    const double too_wide[LENSES] = {180, 360.01, 360.01, 360.01, 360.01, 360.01, 360, 252.5, 360.01};
+    const double widest[LENSES] = {179.99, 360, 3600, 3600, 360, 360, 359.99, 252.4, 360};
+    const double too_wide[LENSES] = {180, 360.01, 3600.01, 3600.01, 360.01, 360.01, 360, 252.5, 360.01};
     for (size_t i = 0; i < LENSES; i++) {
         lensprof_camera camera = plain_camera(lenses[i], widest[i]);
         INVALID(camera, hfov_deg = too_wide[i]);
+    }
+    /* A fisheye whose frame is wider than 360 degrees: the angle stays proportional to the radius, up to 180. */
+    for (int i = 2; i <= 3; i++) {
+        const lensprof_camera camera = plain_camera(lenses[i], 400);
+        const double middle = (camera.width - 1) / 2.0, side = 90 * camera.width / 400.0;
+        double xy[2], direction[2];
+        assert_int_equal(lensprof_camera_project(&camera, acos(-1) / 2, 0, xy), 1);
+        assert_close(xy[0], middle + side, 1e-9);
+        assert_int_equal(lensprof_camera_unproject(&camera, middle + 1.99 * side, (camera.height - 1) / 2.0, direction),
+                         1);
+        assert_int_equal(lensprof_camera_unproject(&camera, middle + 2.01 * side, (camera.height - 1) / 2.0, direction),
+                         0);
     }
 }
 
