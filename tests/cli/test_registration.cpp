@@ -6,6 +6,7 @@
 
 #include "cli/registration/cameras.hpp"
 #include "cli/registration/candidates.hpp"
+#include "cli/registration/copies.hpp"
 #include "cli/registration/matching.hpp"
 extern "C" {
 #include "support.h"
@@ -177,6 +178,82 @@ void test_groups(void **) {
     assert_true(groups == wanted);
 }
 
+// Detail of a scene, the same for one seed, and different noise for each picture.
+Features picture_of(unsigned scene, unsigned noise, uint32_t width = kWidth, uint32_t height = kHeight) {
+    std::mt19937 random(scene);
+    std::normal_distribution<float> normal(0.0f, 12.0f), error(0.0f, 1.0f);
+    Features picture;
+    picture.width = width, picture.height = height;
+    picture.detail = cv::Mat(64, 64, CV_32F);
+    for (int y = 0; y < 64; y += 2)
+        for (int x = 0; x < 64; x += 2) picture.detail(cv::Rect(x, y, 2, 2)) = normal(random);
+    std::mt19937 own(noise);
+    for (int y = 0; y < 64; y++)
+        for (int x = 0; x < 64; x++) picture.detail.at<float>(y, x) += error(own);
+    return picture;
+}
+
+std::vector<PictureCopy> copies_among(const std::vector<Features> &pictures,
+                                      const std::vector<std::string> &captured = {}) {
+    std::vector<CopyCandidate> all;
+    for (size_t i = 0; i < pictures.size(); i++)
+        all.push_back({&pictures[i], captured.empty() ? "" : captured[i], std::nullopt});
+    return find_copies(all);
+}
+
+// Two photographs in seven other orientations each; the copies name the first.
+void test_turned_copies(void **) {
+    std::vector<Features> pictures{picture_of(1, 1), picture_of(2, 2)};
+    for (unsigned scene : {1u, 2u})
+        for (int turn = 0; turn < 4; turn++)
+            for (bool mirrored : {false, true}) {
+                if (turn == 0 && !mirrored) continue;
+                Features copy = turn % 2 ? picture_of(scene, 90, kHeight, kWidth) : picture_of(scene, 91);
+                if (turn) cv::rotate(copy.detail, copy.detail, turn - 1);
+                if (mirrored) cv::flip(copy.detail, copy.detail, 1);
+                copy.detail = 0.7f * copy.detail;  // of another tone
+                pictures.push_back(copy);
+            }
+    const std::vector<PictureCopy> found = copies_among(pictures);
+    assert_int_equal(found.size(), 14);
+    size_t mirrored = 0;
+    for (const PictureCopy &one : found) {
+        assert_int_equal(one.original, one.copy < 9 ? 0 : 1);
+        mirrored += one.how == ", mirrored";
+    }
+    assert_int_equal(mirrored, 8);
+}
+
+// Upright frames of one size are copies only if the moment is the same; the largest is the original.
+void test_upright_copies(void **) {
+    const std::vector<Features> two{picture_of(1, 1), picture_of(1, 2)};
+    assert_true(copies_among(two).empty());  // frames from a tripod
+    assert_true(copies_among(two, {"10:00:00.10", "10:00:00.20"}).empty());
+    assert_int_equal(copies_among(two, {"10:00:00.10", "10:00:00.10"}).size(), 1);
+    assert_int_equal(copies_among(two, {"", "10:00:00.10"})[0].copy, 0);
+    const std::vector<PictureCopy> resized = copies_among({picture_of(1, 1, 600, 450), picture_of(1, 2)});
+    assert_int_equal(resized.size(), 1);
+    assert_true(resized[0].copy == 0 && resized[0].original == 1 && resized[0].how == ", resized");
+    assert_true(copies_among({picture_of(1, 1, 600, 600), picture_of(1, 2)}).empty());  // another shape
+    CopyCandidate darker{&two[0], "", 0.01}, brighter{&two[1], "1", 0.02};              // a bracket
+    assert_true(find_copies({darker, brighter}).empty());
+}
+
+// Neither blank frames nor a common border with other content are copies.
+void test_no_copies(void **) {
+    std::vector<Features> pictures;
+    for (unsigned n = 0; n < 30; n++)
+        pictures.push_back(picture_of(10 + n, n, kWidth + n % 3 * 400, kHeight + n % 3 * 300));
+    for (unsigned n = 0; n < 4; n++) {
+        Features blank = picture_of(1, n), framed = picture_of(50 + n, n, 400 + 4 * n, 300 + 3 * n);
+        blank.detail *= 0.01;
+        framed.detail.rowRange(0, 8) = 200.0f, framed.detail.rowRange(56, 64) = 200.0f;
+        framed.detail.rowRange(4, 60).colRange(0, 3) = -200.0f;
+        pictures.push_back(blank), pictures.push_back(framed);
+    }
+    assert_true(copies_among(pictures).empty());
+}
+
 }  // namespace
 
 int main() {
@@ -186,6 +263,9 @@ int main() {
         cmocka_unit_test(test_a_camera_that_moved_over_a_plane),
         cmocka_unit_test(test_candidates),
         cmocka_unit_test(test_groups),
+        cmocka_unit_test(test_turned_copies),
+        cmocka_unit_test(test_upright_copies),
+        cmocka_unit_test(test_no_copies),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -33,13 +33,22 @@ using ByFile = std::map<std::string, CorrectedPicture>;
 
 using Reasons = std::map<std::string, std::string>;  // by file
 
+// The mean exposure, lowered so that no picture is lifted by more than 1 EV: what is brighter than half the limit
+// clips.
+lensprof_exposure common_exposure(const std::vector<lensprof_exposure> &exposures) {
+    constexpr double largest_lift_ev = 1.0;
+    lensprof_exposure common = mean_exposure(exposures);
+    for (const lensprof_exposure &exposure : exposures) common.ev = std::min(common.ev, exposure.ev + largest_lift_ev);
+    return common;
+}
+
 // Uses the project and finds its images by file, because somebody may have edited it.
 void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     const std::string text = read_text(panorama.project, max_text_bytes);
     const Project project = read_project(panorama.project);
     const ImagesByFile images(project);
     const std::vector<lensprof_exposure> exposures = relative_to_joined(project);
-    const lensprof_exposure mean = mean_exposure(joined_exposures(project, exposures));
+    const lensprof_exposure common = common_exposure(joined_exposures(project, exposures));
     const auto encoding = common_encoding(project);
     for (const InputPicture *picture : panorama.pictures) {
         const auto image = images.find(picture->file);
@@ -49,10 +58,10 @@ void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reaso
                                               : ": is not in " + panorama.project);
             continue;
         }
-        CorrectedPicture corrected_picture{picture, panorama.name, exposures[*image].ev - mean.ev,
+        CorrectedPicture corrected_picture{picture, panorama.name, exposures[*image].ev - common.ev,
                                            copy_key(*picture, text), job_of(*picture)};
         corrected_picture.job.model = model_of_project(project, *image);
-        corrected_picture.job.exposure = exposures[*image], corrected_picture.job.target_exposure = mean,
+        corrected_picture.job.exposure = exposures[*image], corrected_picture.job.target_exposure = common,
         corrected_picture.job.encoding = encoding;
         corrected_picture.job.model_name = std::filesystem::path(panorama.project).filename().string();
         corrected.emplace(picture->file, std::move(corrected_picture));
@@ -105,6 +114,10 @@ CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inpu
     const PictureModels models(options, o.store.dbs.empty() || !options.dbs.empty());
     CorrectedPictures pictures;
     for (const InputPicture &picture : inputs.pictures) {
+        if (const auto copy = panoramas.copies.find(picture.file); copy != panoramas.copies.end()) {
+            pictures.left_out.push_back({picture.file, copy->second});
+            continue;
+        }
         if (!corrected.count(picture.file)) {
             const std::string failure = plan_by_profile(models, picture, corrected);
             const auto reason = reasons.find(picture.file);

@@ -24,7 +24,7 @@ struct Group {
 
 struct Groups {
     std::vector<Group> list;
-    std::map<std::string, std::string> unjoined, unreadable;  // reason by file
+    std::map<std::string, std::string> unjoined, unreadable, copies;  // reason by file
 };
 
 std::string key_of(const std::vector<const InputPicture *> &pictures, const std::string &more) {
@@ -76,6 +76,9 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
     if (files.empty()) return groups;
     const Registration found = register_pictures(files, o.one_lens, progress);
     for (const auto &[number, reason] : found.unreadable) groups.unreadable[files[number]] = reason;
+    for (const CopiedPicture &picture : found.copies)
+        groups.copies[files[picture.copy]] =
+            files[picture.copy] + ": a copy of " + all[picture.original]->name + picture.how;
     for (const uint32_t number : found.alone)
         groups.unjoined[files[number]] = files[number] + ": no overlap with another picture found";
     for (const uint32_t number : found.foreign)
@@ -112,7 +115,8 @@ Json json_of(const Groups &groups, const std::string &key) {
     return {{"key", key},
             {"groups", list},
             {"unjoined", json_of(groups.unjoined)},
-            {"unreadable", json_of(groups.unreadable)}};
+            {"unreadable", json_of(groups.unreadable)},
+            {"copies", json_of(groups.copies)}};
 }
 
 using ByNotedFile = std::map<std::string, const InputPicture *>;
@@ -155,6 +159,7 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
     }
     return recall_reasons(registration["unjoined"], by_file, groups.unjoined)
            && recall_reasons(registration["unreadable"], by_file, groups.unreadable)
+           && recall_reasons(registration.value("copies", Json::array()), by_file, groups.copies)
            && std::none_of(groups.unreadable.begin(), groups.unreadable.end(),
                            [](const auto &entry) { return is_readable(entry.first); });
 }
@@ -251,6 +256,7 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
         ledger.save();
     }
     panoramas.unjoined = groups.unjoined;
+    panoramas.copies = groups.copies;
     panoramas.unjoined.insert(groups.unreadable.begin(), groups.unreadable.end());
     std::string fit_options = o.one_lens ? "one lens\n" : "\n";
     if (o.store.no_store) fit_options += "no store\n";

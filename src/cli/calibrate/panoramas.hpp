@@ -39,6 +39,7 @@ struct Panorama {
 struct Panoramas {
     std::vector<Panorama> list;                   // largest first
     std::map<std::string, std::string> unjoined;  // reason by file, for pictures in no panorama
+    std::map<std::string, std::string> copies;    // and for copies of other pictures, which are not corrected
     bool is_registered = false;                   // by this run
     uint32_t fitted = 0;                          // by this run
 };

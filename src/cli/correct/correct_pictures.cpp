@@ -4,6 +4,7 @@
 #include <iterator>
 #include <memory>
 
+#include "cli/correct/clipping.hpp"
 #include "cli/correct/correction.hpp"
 #include "cli/correct/crop_plans.hpp"
 #include "cli/correct/left_out_parts.hpp"
@@ -35,6 +36,7 @@ struct Finished {
     std::unique_ptr<PictureWriter> writer;
     std::unique_ptr<OutputFile> copy;  // instead of it, for a DNG
     bool with_metadata = false;
+    double more_clipped = 0.0;  // share of the pixels that the correction clips, minus that clipped before
 };
 
 // One picture in progress.
@@ -60,6 +62,7 @@ private:
     const CropPlans crops_;
     const Picture result_;  // no pixels
     std::unique_ptr<PictureWriter> writer_;
+    ClippedPixels clipped_before_, clipped_after_;
     const bool thumbnails_;
     uint32_t strip_rows_, next_row_ = 0;
 };
@@ -100,11 +103,13 @@ bool PictureCorrection::make(Strip &strip) {
     reader_.read(from);
     check_finite(from, next_row_, 1, job_.source);
     if (thumbnails_) before.add(from);
+    clipped_before_.add(from, next_row_);
     if (job_.crops.empty())
         check(lensprof_apply(plan_.get(), &from, &strip.written, 0, next_row_), job_.source);
     else
         crops_.apply(plan_, from, strip.written, next_row_);
     if (thumbnails_) after.add(strip.written);
+    clipped_after_.add(strip.written, next_row_);
     next_row_ += rows;
     return true;
 }
@@ -119,7 +124,7 @@ Finished PictureCorrection::run(bool split, Throughput &done) {
     make_and_take<Strip>(
         split, [&](Strip &strip) { return make(strip); }, [&](const Strip &strip) { done.add_pixels(take(strip)); });
     bool with_metadata = writer_->finish();
-    return {std::move(writer_), nullptr, with_metadata};
+    return {std::move(writer_), nullptr, with_metadata, clipped_after_.share() - clipped_before_.share()};
 }
 
 // Adds the falloff as an opcode; everything else of the DNG stays unchanged.
@@ -127,7 +132,7 @@ Finished copy_dng(const Correction &job) {
     auto output = std::make_unique<OutputFile>(job.target);
     write_opcodes(job.source, output->temporary(), *job.model);
     output->sync();
-    return {nullptr, std::move(output), true};
+    return {nullptr, std::move(output), true, 0.0};
 }
 
 // The orientation of a picture that was read, for its thumbnails; 1 if its metadata are damaged.
@@ -164,10 +169,12 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     };
     Corrected corrected;
     LeftOutParts parts;
+    CopyLosses losses;
     auto finish = [&](uint32_t i) {
         finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
         parts.add(jobs[i].source, jobs[i].target);
-        finished[i] = {nullptr, nullptr, finished[i].with_metadata};
+        if (!kind.simulate) losses.add(jobs[i], finished[i].more_clipped);
+        finished[i] = {nullptr, nullptr, finished[i].with_metadata, 0.0};
         throughput.add_picture();
         warn_of_written(jobs[i], finished[i].with_metadata, progress);
         Json entry = {{"file", jobs[i].source}, {"output", jobs[i].target}};
@@ -182,6 +189,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         throw;
     }
     parts.warn(progress);
+    for (const std::string &text : losses.warnings()) progress.warn(text);
     corrected.seconds = throughput.seconds();
     corrected.megapixels = throughput.megapixels();
     if (count > 1) progress.print_line("corrected " + throughput.summary());

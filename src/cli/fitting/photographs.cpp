@@ -159,8 +159,15 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
         project.left_out.emplace_back(names[number], reason);
         warn(streams, reason + "; left out");
     }
+    for (const CopiedPicture &picture : found.copies)
+        leave_out({picture.copy}, names, "a copy of " + names[picture.original] + picture.how, project.left_out,
+                  streams);
     if (found.unreadable.size() == files.size())
         throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
+    if (found.unreadable.size() + found.copies.size() + 1 == files.size() && !found.copies.empty())
+        throw Failure(ExitCode::not_usable,
+                      label + ": has only one photograph and copies of it; give at least two that overlap",
+                      LENSPROF_REASON_FEW_PAIRS);
     if (found.projects.empty() && !found.foreign.empty())
         throw Failure(ExitCode::not_usable,
                       label + ": no two pictures of the same camera, size and processing overlap; give more pictures "
@@ -176,6 +183,7 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
     report_found(found, names, label, project.left_out, streams);
 
     const FoundProject &largest = found.projects[0];
+    project.unlinked = found.alone.size();
     project.path = label;
     for (const uint32_t picture : largest.pictures) {
         project.names.push_back(names[picture]);

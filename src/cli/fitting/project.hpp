@@ -36,6 +36,7 @@ struct Project {
     std::vector<lensprof_pair> pairs;   // pairs that came with the project instead of pictures,
     std::vector<uint32_t> pair_points;  // and the scene point per pair
     std::vector<std::pair<std::string, std::string>> left_out;
+    size_t unlinked = 0;  // pictures given that overlap no other
     double register_s = 0.0;
 };
 

@@ -270,6 +270,25 @@ void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &
     join_cameras(state.settings);
 }
 
+// A minority of the pictures may agree by chance. Pictures without overlap count if the others do not show the same
+// content either; otherwise a folder may hold more than one sequence.
+void refuse_minority(const Project &project, ProjectFit &state) {
+    if (project.is_reconstruction || !state.best.corrects()) return;
+    const size_t joined = joined_images(state.best), images = project.images.size();
+    const bool is_verified =
+        state.report.links.empty() || links_of_state(state.report.links, LENSPROF_LINK_VERIFIED) > 0;
+    const size_t all = images + (is_verified ? 0 : project.unlinked);
+    if (2 * joined >= all) return;
+    lensprof_fit_result &result = state.best.result;
+    result.usable = result.evens = 0;
+    result.reason_code = LENSPROF_REASON_IMAGE_GROUPS;
+    std::snprintf(result.reason, sizeof result.reason,
+                  "only %zu of %zu pictures take part in the result%s; give pictures that overlap by a third", joined,
+                  all, is_verified ? "" : " and none of their overlaps shows the same content");
+    for (lensprof_fit_setting &setting : state.best.settings) setting.usable = 0;
+    for (lensprof_fit_camera &camera : state.best.cameras) camera.evens = 0;
+}
+
 // Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
 // no more than those of a scene with glossy surfaces. With false matches they differ more regardless of the correction.
 bool evens_colours(const ColourVariance &variance) {
@@ -450,6 +469,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     if (has_one_camera && !pictures.empty() && may_connect_more(o, state.best, report.links))
         resample(o, project, pictures, state);
     fit_reconstruction(project, state, streams);
+    refuse_minority(project, state);
     report.fit = state.best.result;
     report.verdict = verdict_of(state.best.result);
     warn_of_few_images(o, project, state.best, streams);

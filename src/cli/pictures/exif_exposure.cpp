@@ -40,6 +40,15 @@ bool read_is_manual(const Exiv2::ExifData &exif) {
            || read_number(exif, {"Exif.Photo.ExposureMode"}) == kManual;
 }
 
+// Without the fraction of a second, frames of a burst have the same time.
+std::string read_captured(const Exiv2::ExifData &exif) {
+    const auto time = exif.findKey(Exiv2::ExifKey("Exif.Photo.DateTimeOriginal")),
+               fraction = exif.findKey(Exiv2::ExifKey("Exif.Photo.SubSecTimeOriginal"));
+    if (time == exif.end() || fraction == exif.end()) return {};
+    const std::string digits = fraction->toString();
+    return digits.find_first_of("123456789") == std::string::npos ? "" : time->toString() + "." + digits;
+}
+
 }  // namespace
 
 double exposure_ev(double time_s, double iso, double f_number) {
@@ -50,6 +59,7 @@ void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata) {
     metadata.f_number = read_f_number(exif);
     metadata.exposure_time_s = read_exposure_time(exif);
     metadata.iso = read_iso(exif);
+    metadata.captured = read_captured(exif);
     metadata.is_manual = read_is_manual(exif);
     if (metadata.exposure_time_s && metadata.iso && metadata.f_number)
         metadata.exif_ev = exposure_ev(*metadata.exposure_time_s, *metadata.iso, *metadata.f_number);

@@ -58,6 +58,8 @@ struct PictureMetadata {
     // exposure_ev() of the three: larger means a brighter rendering of the same scene. Set only if all are known.
     std::optional<double> exif_ev;
 
+    std::string captured;  // EXIF's DateTimeOriginal with its fraction of a second; empty if either is missing
+
     uint16_t orientation = 1;  // EXIF orientation, 1..8
 
     bool is_manual = false;  // time, aperture and ISO were set manually according to EXIF's ExposureProgram or

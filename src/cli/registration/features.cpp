@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "cli/pictures/picture.hpp"
 
@@ -67,6 +68,17 @@ cv::Mat stretched(cv::Mat grey, bool is_linear) {
 
 }  // namespace
 
+// The frame as a square of 64 px, minus its blurred version: what a change of tone or a vignetting barely affects.
+static cv::Mat detail_of(const cv::Mat &grey) {
+    constexpr int side = 64;
+    constexpr double blur = 3.0;  // px
+    cv::Mat small, smooth;
+    cv::resize(grey, small, {side, side}, 0, 0, cv::INTER_AREA);
+    small.convertTo(small, CV_32F);
+    cv::GaussianBlur(small, smooth, {}, blur, blur, cv::BORDER_REFLECT);
+    return small - smooth;
+}
+
 void take_roots(cv::Mat &descriptors) {
     for (int y = 0; y < descriptors.rows; y++) {
         cv::Mat row = descriptors.row(y);
@@ -90,6 +102,7 @@ Features find_features(const std::string &file, uint32_t max_count) {
     if (header.width < reduction || header.height < reduction) return found;  // a line
     const cv::Mat grey = stretched(reduced_grey(reader, reduction),
                                    header.sample == LENSPROF_SAMPLE_F32 || header.traits.format == FileFormat::raw);
+    found.detail = detail_of(grey);
     std::vector<cv::KeyPoint> points;
     cv::Mat descriptors;
     cv::SIFT::create(static_cast<int>(max_count), 3, contrast)

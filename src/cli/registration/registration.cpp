@@ -14,6 +14,7 @@
 #include "cli/program/median.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/registration/cameras.hpp"
+#include "cli/registration/copies.hpp"
 #include "cli/registration/features.hpp"
 #include "cli/registration/matching.hpp"
 
@@ -102,7 +103,8 @@ std::vector<PictureLink> links_within(const std::vector<PictureLink> &links, con
 struct RegisteredPicture {
     Features features;
     PictureMetadata metadata;
-    std::string failure;  // reason if it cannot be read
+    std::string failure;   // reason if it cannot be read
+    bool is_copy = false;  // of another picture
 };
 
 // Metadata and features per picture.
@@ -215,6 +217,25 @@ void part_raw(const std::vector<std::string> &files, std::vector<PictureLink> &l
     links.erase(std::remove_if(links.begin(), links.end(), parts), links.end());
 }
 
+// Copies of other pictures, which then have no features and overlap nothing.
+std::vector<CopiedPicture> set_copies_apart(const std::vector<std::string> &files,
+                                            std::vector<RegisteredPicture> &pictures) {
+    std::vector<CopyCandidate> candidates;
+    for (size_t i = 0; i < pictures.size(); i++) {
+        const PictureMetadata &metadata = pictures[i].metadata;
+        candidates.push_back(
+            {&pictures[i].features, metadata.captured, metadata.exposure_time_s, raw_kind(files[i]).has_value()});
+    }
+    std::vector<CopiedPicture> copies;
+    for (const PictureCopy &found : find_copies(candidates)) copies.push_back({found.copy, found.original, found.how});
+    for (const CopiedPicture &found : copies) {
+        pictures[found.copy].is_copy = true;
+        pictures[found.copy].features.places.clear();
+        pictures[found.copy].features.descriptors = cv::Mat();
+    }
+    return copies;
+}
+
 // Pictures in no project, by what they overlap.
 void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, const std::vector<bool> &is_linked,
                  const std::vector<RegisteredPicture> &pictures, Registration &result) {
@@ -222,14 +243,15 @@ void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, 
     for (uint32_t i = 0; i < bodies.size(); i++)
         if (grouping.takes(i)) taken.insert(bodies[i]);
     for (uint32_t i = 0; i < bodies.size(); i++) {
-        if (grouping.takes(i) || !pictures[i].failure.empty()) continue;
+        if (grouping.takes(i) || !pictures[i].failure.empty() || pictures[i].is_copy) continue;
         (!is_linked[i] ? result.alone : taken.count(bodies[i]) ? result.apart : result.foreign).push_back(i);
     }
 }
 
 Registration registered(const std::vector<std::string> &files, bool as_one, Progress &progress) {
-    const std::vector<RegisteredPicture> pictures = read_all(files, progress);
+    std::vector<RegisteredPicture> pictures = read_all(files, progress);
     Registration result;
+    result.copies = set_copies_apart(files, pictures);
     std::vector<Features> features;
     for (uint32_t i = 0; i < pictures.size(); i++) {
         features.push_back(pictures[i].features);  // shares the descriptors

@@ -40,12 +40,19 @@ struct FoundProject {
     bool cameras_fit() const { return 2 * unfit <= links; }
 };
 
+// A picture that repeats another one.
+struct CopiedPicture {
+    uint32_t copy, original;
+    std::string how;  // ", turned, resized", or ""
+};
+
 struct Registration {
     std::vector<FoundProject> projects;  // largest first; stationary cameras last
     std::vector<uint32_t> alone;         // pictures that overlap no other,
     // And those that overlap only pictures of other cameras: with a camera whose own pictures do not overlap, or do.
     std::vector<uint32_t> foreign, apart;
     std::vector<std::pair<uint32_t, std::string>> unreadable;  // and the reasons
+    std::vector<CopiedPicture> copies;                         // in no project
 };
 
 // Whether this program was built with registration (OpenCV).

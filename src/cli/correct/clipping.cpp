@@ -1,0 +1,69 @@
+#include "cli/correct/clipping.hpp"
+
+#include <limits>
+
+#include "cli/program/format.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t row_step = 8;
+constexpr double largest_lift_ev = 2.0, largest_clipped = 0.01;  // share of the pixels
+
+template <class Sample>
+uint64_t count_clipped(const lensprof_image &rows, uint32_t y) {
+    const auto *row = reinterpret_cast<const Sample *>(static_cast<const uint8_t *>(rows.data)
+                                                       + static_cast<ptrdiff_t>(y) * rows.row_bytes);
+    const uint32_t samples = lensprof_layout_samples(rows.layout), channels = lensprof_layout_channels(rows.layout);
+    uint64_t count = 0;
+    for (uint32_t x = 0; x < rows.width; x++) {
+        bool is_clipped = false;
+        for (uint32_t c = 0; c < channels; c++)
+            is_clipped |= row[size_t(x) * samples + c] == std::numeric_limits<Sample>::max();
+        count += is_clipped;
+    }
+    return count;
+}
+
+std::string with_others(const std::string &file, size_t count) {
+    return count > 1 ? file + format(" and %zu more", count - 1) : file;
+}
+
+}  // namespace
+
+void ClippedPixels::add(const lensprof_image &rows, uint32_t first_row) {
+    if (rows.sample != LENSPROF_SAMPLE_U8 && rows.sample != LENSPROF_SAMPLE_U16) return;
+    for (uint32_t y = (row_step - first_row % row_step) % row_step; y < rows.height; y += row_step) {
+        clipped_ +=
+            rows.sample == LENSPROF_SAMPLE_U8 ? count_clipped<uint8_t>(rows, y) : count_clipped<uint16_t>(rows, y);
+        pixels_ += rows.width;
+    }
+}
+
+void CopyLosses::Worst::add(const std::string &source, double of_source, double limit) {
+    if (!(of_source > limit)) return;
+    count++;
+    if (of_source > value) file = source, value = of_source;
+}
+
+void CopyLosses::add(const Correction &job, double more_clipped) {
+    lifted_.add(job.source, job.target_exposure.ev - job.exposure.ev, largest_lift_ev);
+    clipped_.add(job.source, more_clipped, largest_clipped);
+}
+
+std::vector<std::string> CopyLosses::warnings() const {
+    std::vector<std::string> lines;
+    if (lifted_.count)
+        lines.push_back(with_others(lifted_.file, lifted_.count)
+                        + format(": lifted by %s%.1f EV, which shows the noise; use `lensprof apply --output-exposure "
+                                 "keep`, or pictures of 16 bits",
+                                 lifted_.count > 1 ? "up to " : "", lifted_.value));
+    if (clipped_.count)
+        lines.push_back(with_others(clipped_.file, clipped_.count)
+                        + format(": the correction clips %s%.1f %% more of the pixels; use `lensprof apply --linear`, "
+                                 "which clips none, or --output-exposure keep",
+                                 clipped_.count > 1 ? "up to " : "", 100.0 * clipped_.value));
+    return lines;
+}
+
+}  // namespace lensprof

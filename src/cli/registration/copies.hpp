@@ -1,0 +1,30 @@
+// Copies of one photograph: turned, mirrored, resized or compressed again.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/registration/features.hpp"
+
+namespace lensprof {
+
+struct CopyCandidate {
+    const Features *picture;
+    std::string captured;  // moment of the exposure with its fraction of a second; empty = unknown
+    std::optional<double> exposure_time_s;
+    bool is_raw = false;
+};
+
+struct PictureCopy {
+    uint32_t copy, original;
+    std::string how;  // "", ", turned", ", mirrored, resized"
+};
+
+// The pictures that are copies of others, in ascending order. The original is the largest of its copies, then one that
+// states its moment, then the first. Compares the detail of reduced versions in all eight orientations. Frames from a
+// tripod show the same detail: upright copies of one size need the same moment in both, or a moment in one only.
+std::vector<PictureCopy> find_copies(const std::vector<CopyCandidate> &pictures);
+
+}  // namespace lensprof
