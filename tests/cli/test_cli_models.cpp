@@ -253,12 +253,82 @@ void test_unknown_error(void **) {
     }
 }
 
+// Stores a profile of "Bad 50mm"; returns its picture.
+std::string make_bad(const char *db, double k1, double k2, double k3) {
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work(db).c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
+    std::strcpy(p->key.camera_model, "Camera");
+    std::strcpy(p->key.lens, "Bad 50mm");
+    p->key.focal_mm = 50, p->key.aperture = 2, p->key.processing = LENSPROF_PROCESSING_JPEG;
+    p->vignetting[0].k[0] = k1, p->vignetting[0].k[1] = k2, p->vignetting[0].k[2] = k3;
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    return make_picture("bad.png", "Camera", "Bad 50mm");
+}
+
+// Falloffs that no lens has: refused, unless asked for by --doubtful or by number.
+void test_impossible_falloffs(void **) {
+    const struct {
+        double k[3];
+        const char *said;  // NULL: possible
+    } cases[] = {{{0.2, 0, 0}, "rises to 1.20"},
+                 {{-0.98, 0, 0}, "falls to 0.02"},
+                 {{-0.6, 0.3, 0.1}, "rises outward by 0.0"},
+                 {{0.03, 0, 0}, "rises outward by 0.03"},
+                 {{0.015, 0, 0}, nullptr},
+                 {{-0.9, 0, 0}, nullptr},
+                 {{-0.3, 0.1, -0.3}, nullptr}};
+    int number = 0;
+    for (const auto &one : cases) {
+        const std::string db = "bad" + std::to_string(number++) + ".db";
+        const std::string picture = make_bad(db.c_str(), one.k[0], one.k[1], one.k[2]);
+        const Words words{"apply", picture, "--db", work(db), "-o", work(db + "_out")};
+        const Outcome run = run_words(words);
+        assert_int_equal(run.code, one.said ? not_found : done);
+        if (one.said && !contains(run.err, one.said)) fail_msg("%s", run.err.c_str());
+        assert_true(fs::exists(work(db + "_out/bad.png")) == !one.said);
+        must_exit(done, words + Words{"--doubtful"});
+        must_exit(done, words + Words{"--profile", "1"});
+    }
+}
+
+// A prediction far from what is stored has a large error, which is stated.
+void test_uncertain_prediction(void **) {
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("far.db").c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    for (const double k : {-0.1, -0.8}) {
+        auto p = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(p.get());
+        std::strcpy(p->key.camera_model, "Camera");
+        std::strcpy(p->key.lens, "Zoom");
+        p->key.focal_mm = k < -0.5 ? 42 : 60, p->key.aperture = 2, p->key.processing = LENSPROF_PROCESSING_JPEG;
+        p->vignetting[0].k[0] = k;
+        p->covariance_size = 0;
+        assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    }
+    lensprof_store_close(store);
+    const std::string picture = make_picture("far.png", "Camera", "Zoom");
+    const Words words{"apply", picture, "--db", work("far.db"), "-o", work("far_out"), "--crop-factor", "1"};
+    const Json found = json_of(Words{"query", "--db", work("far.db"), "--camera", "Camera", "--lens", "Zoom", "--focal",
+                                     "50", "--aperture", "2", "--crop-factor", "1", "--json"});
+    const double sigma = found["lookup"]["sigma"].is_number() ? found["lookup"]["sigma"].get<double>() : 0.0;
+    const Outcome run = run_words(words);
+    if (run.code != (sigma > 0.1 ? not_found : done) || sigma <= 0.1) fail_msg("%g: %s", sigma, run.err.c_str());
+    assert_true(contains(run.err, "too uncertain") && contains(run.err, "--doubtful"));
+    assert_false(fs::exists(work("far_out/far.png")));
+    must_exit(done, words + Words{"--doubtful"});
+}
+
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_database_by_default),
         CLI_TEST(test_words_in_place_of_exif),
+        CLI_TEST(test_impossible_falloffs),
+        CLI_TEST(test_uncertain_prediction),
         CLI_TEST(test_response_in_place_of_the_profiles),
         CLI_TEST(test_profile_of_another_processing),
         CLI_TEST(test_corrected_in_camera),

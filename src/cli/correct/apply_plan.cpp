@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
+#include "cli/correct/falloff_doubt.hpp"
 #include "cli/fitting/exposure_file.hpp"
 #include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
@@ -226,6 +228,19 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
     return placed;
 }
 
+// A project has no pairs to check its falloffs against. Each doubt is printed once, with the first image.
+void warn_of_falloffs(const ApplySource &source, const std::vector<Correction> &jobs, Streams &streams) {
+    std::map<std::string, std::vector<std::string>> images;  // by doubt
+    for (const Correction &job : jobs) {
+        const lensprof_camera &camera = source.project->images[source.images->at(job.source, "--pto")].camera;
+        const std::string doubt = impossible_falloff(*job.model, camera.width, camera.height);
+        if (!doubt.empty()) images[doubt].push_back(job.source);
+    }
+    for (const auto &[doubt, files] : images)
+        warn(streams, files[0] + (files.size() > 1 ? format(" and %zu more", files.size() - 1) : "") + ": " + doubt
+                          + ", as with no lens; check the result, or fit the project again with `lensprof build`");
+}
+
 void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
     const size_t first = shard.first(pictures.size()), end = shard.end(pictures.size());
     if (first == end && !pictures.empty())
@@ -312,6 +327,7 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
     check_targets(work.jobs, inputs, o.sheet);
     check_older_outputs(work.jobs, o.kind, o.has_output);
     if (source.has_model && !o.pto.empty()) check_has_result(*source.project);
+    if (source.has_model) warn_of_falloffs(source, work.jobs, streams);
     if (o.merge) work.lit = placed_images(o, source, work, streams);
     return work;
 }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "cli/correct/falloff_doubt.hpp"
 #include "cli/correct/turned_profile.hpp"
 #include "cli/pictures/orientation.hpp"
 #include "cli/pictures/sensor.hpp"
@@ -158,11 +159,36 @@ static std::string crop_note(const PictureSize &size) {
         100.0 * size.shown_diagonal);
 }
 
+// A prediction that is worse than no correction for many lenses is used only if asked for.
+static void check_error(const lensprof_lookup &lookup, const std::string &file) {
+    constexpr double largest_sigma = 0.1;  // of M in the corner
+    if (lookup.sigma == LENSPROF_UNKNOWN || lookup.sigma <= largest_sigma) return;
+    throw NotThisOne(ExitCode::not_found, file + ": the falloff is too uncertain, " + describe_error(lookup)
+                                              + format(", above %.1f; make a profile of this setting with `lensprof "
+                                                       "build`, or use `lensprof apply --doubtful`",
+                                                       largest_sigma));
+}
+
+// A falloff that no lens has is applied only if asked for by the number of the profile or by --doubtful.
+void PictureModels::check_possible(const PictureMetadata &metadata, Correction &job,
+                                   const lensprof_profile &profile) const {
+    const std::string doubt = impossible_falloff(profile, metadata.size.width, metadata.size.height);
+    if (doubt.empty() || options_.lookup.doubtful) return;
+    if (!options_.profile)
+        throw NotThisOne(ExitCode::not_found, job.source + ": " + doubt
+                                                  + ", as with no lens; make a profile with `lensprof build`, or use "
+                                                    "`lensprof apply --doubtful`");
+    job.note = doubt + ", as with no lens";
+}
+
 void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     options_.profile ? take_profile(metadata, job, *profile) : look_up(metadata, job, *profile);
+    if (job.lookup && !options_.lookup.doubtful) check_error(job.lookup->lookup, job.source);
+    check_possible(metadata, job, *profile);
     turn_profile(sensor_orientation(metadata.size.width, metadata.size.height, metadata.orientation), *profile);
-    if (!options_.profile && options_.lookup.crop_factor == LENSPROF_UNKNOWN) job.note = crop_note(metadata.size);
+    if (job.note.empty() && !options_.profile && options_.lookup.crop_factor == LENSPROF_UNKNOWN)
+        job.note = crop_note(metadata.size);
     if (options_.response) {
         profile->responses = 1;
         profile->response[0] = *options_.response;

@@ -49,6 +49,7 @@ public:
 private:
     lensprof_profile_key key_of(const PictureMetadata &metadata) const;
     void take_profile(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const;
+    void check_possible(const PictureMetadata &metadata, Correction &job, const lensprof_profile &profile) const;
     void look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const;
 
     const ModelOptions &options_;

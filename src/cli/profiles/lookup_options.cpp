@@ -13,7 +13,9 @@ void LookupOptions::add_options(Command &command) {
          {"farthest", LENSPROF_DISTANCE_FARTHEST}},
         "falloff if the focus distance is unknown: usual (default: the mean over common distances), weakest (of all "
         "stored distances, never overcorrects) or farthest (distance)");
-    command.flag("--doubtful", doubtful, "also use profiles that were imported as doubtful");
+    command.flag("--doubtful", doubtful,
+                 "also use profiles that were imported as doubtful; and, to correct pictures, predictions with an "
+                 "error above 0.1 in the corner and falloffs that no lens has");
 }
 
 lensprof_lookup_options LookupOptions::options() const {
