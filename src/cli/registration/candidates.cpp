@@ -87,7 +87,9 @@ void add_most_similar(const std::vector<Features> &pictures, std::set<PicturePai
     });
     std::vector<uint32_t> order(count);
     for (uint32_t i = 0; i < count; i++) {
-        const Eigen::VectorXf similarity = all * all.row(i).transpose();
+        Eigen::VectorXf similarity = all * all.row(i).transpose();
+        for (uint32_t j = 0; j < count; j++)
+            if (pictures[j].descriptors.rows == 0) similarity[j] = -2.0f;  // after all others: it overlaps nothing
         std::iota(order.begin(), order.end(), 0u);
         const auto end = order.begin() + std::min(count, max_similar + 1);  // including itself
         std::partial_sort(order.begin(), end, order.end(), [&](uint32_t a, uint32_t b) {
