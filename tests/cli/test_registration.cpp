@@ -231,11 +231,11 @@ void test_upright_copies(void **) {
     assert_true(copies_among(two, {"10:00:00.10", "10:00:00.20"}).empty());
     assert_int_equal(copies_among(two, {"10:00:00.10", "10:00:00.10"}).size(), 1);
     assert_int_equal(copies_among(two, {"", "10:00:00.10"})[0].copy, 0);
-    const std::vector<PictureCopy> resized = copies_among({picture_of(1, 1, 600, 450), picture_of(1, 2)});
+    const std::vector<PictureCopy> resized = copies_among({picture_of(1, 1, 600, 450), picture_of(1, 2)}, {"", "1"});
     assert_int_equal(resized.size(), 1);
     assert_true(resized[0].copy == 0 && resized[0].original == 1 && resized[0].how == ", resized");
-    assert_true(copies_among({picture_of(1, 1, 600, 600), picture_of(1, 2)}).empty());  // another shape
-    CopyCandidate darker{&two[0], "", 0.01}, brighter{&two[1], "1", 0.02};              // a bracket
+    assert_true(copies_among({picture_of(1, 1, 600, 600), picture_of(1, 2)}, {"", "1"}).empty());  // another shape
+    CopyCandidate darker{&two[0], "", 0.01}, brighter{&two[1], "1", 0.02};                         // a bracket
     assert_true(find_copies({darker, brighter}).empty());
 }
 

@@ -55,8 +55,6 @@ bool has_same_detail(const cv::Mat &a, const cv::Mat &b) {
     return with_detail >= min_blocks && alike >= share_of_blocks * with_detail;
 }
 
-bool has_same_size(const Features &a, const Features &b) { return a.width == b.width && a.height == b.height; }
-
 // Whether metadata and sizes permit that two pictures are copies in this orientation.
 bool may_be_copies(const CopyCandidate &a, const CopyCandidate &b, int orientation) {
     if (a.is_raw != b.is_raw) return false;
@@ -67,7 +65,7 @@ bool may_be_copies(const CopyCandidate &a, const CopyCandidate &b, int orientati
     if (orientation & is_transposed) other = 1.0 / other;
     if (std::abs(aspect / other - 1.0) > max_aspect_change) return false;
     if (!a.captured.empty() && !b.captured.empty()) return a.captured == b.captured;
-    return orientation != 0 || a.captured != b.captured || !has_same_size(*a.picture, *b.picture);
+    return orientation != 0 || a.captured != b.captured;
 }
 
 // The orientation of `b` in which it shows `a`; upright first.

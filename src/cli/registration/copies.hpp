@@ -24,7 +24,7 @@ struct PictureCopy {
 
 // The pictures that are copies of others, in ascending order. The original is the largest of its copies, then one that
 // states its moment, then the first. Compares the detail of reduced versions in all eight orientations. Frames from a
-// tripod show the same detail: upright copies of one size need the same moment in both, or a moment in one only.
+// tripod show the same detail: upright copies need the same moment in both, or a moment in one only.
 std::vector<PictureCopy> find_copies(const std::vector<CopyCandidate> &pictures);
 
 }  // namespace lensprof
