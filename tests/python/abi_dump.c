@@ -192,6 +192,7 @@ static void print_structs(void) {
     FIELD(lensprof_fit_image, known_ev_sigma);
     FIELD(lensprof_fit_image, camera);
     FIELD(lensprof_fit_image, reserved);
+    FIELD(lensprof_fit_image, f_number_ratio);
     STRUCT(lensprof_fit_options);
     FIELD(lensprof_fit_options, struct_size);
     FIELD(lensprof_fit_options, channels);
@@ -321,7 +322,10 @@ static void print_structs(void) {
     FIELD(lensprof_fit_result, reserved2);
     FIELD(lensprof_fit_result, cameras);
     FIELD(lensprof_fit_result, camera_count);
-    FIELD(lensprof_fit_result, reserved3);
+    FIELD(lensprof_fit_result, model);
+    FIELD(lensprof_fit_result, falloff_prior_distance);
+    FIELD(lensprof_fit_result, center_prior_distance);
+    FIELD(lensprof_fit_result, error_inflation);
     STRUCT(lensprof_flat_image);
     FIELD(lensprof_flat_image, struct_size);
     FIELD(lensprof_flat_image, width);
@@ -685,6 +689,9 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_FALLOFF_RISES);
     VALUE(LENSPROF_REASON_CENTER_ON_LIMIT);
     VALUE(LENSPROF_REASON_FALLOFF_DARK);
+    VALUE(LENSPROF_REASON_SAME_VIEW);
+    VALUE(LENSPROF_REASON_EXPOSURES_ONLY);
+    VALUE(LENSPROF_REASON_NOTHING_BETTER);
     VALUE(LENSPROF_REASON_NOT_RADIAL);
     VALUE(LENSPROF_REASON_FAR_CENTER);
     VALUE(LENSPROF_REASON_FALLOFF_RISES_SOME);
@@ -783,6 +790,10 @@ static void print_values(void) {
     VALUE(LENSPROF_FIT_RESPONSE_OPTIONS);
     VALUE(LENSPROF_FIT_RESPONSE_KIND);
     VALUE(LENSPROF_FIT_RESPONSE_PROFILE);
+    VALUE(LENSPROF_FIT_MODEL_FULL);
+    VALUE(LENSPROF_FIT_MODEL_LENS);
+    VALUE(LENSPROF_FIT_MODEL_EXPOSURES);
+    VALUE(LENSPROF_FIT_MODEL_NOTHING);
     VALUE(LENSPROF_PROFILE_PRIOR_NONE);
     VALUE(LENSPROF_PROFILE_PRIOR_USED);
     VALUE(LENSPROF_PROFILE_PRIOR_OVERRULED);

@@ -6,8 +6,8 @@ stride) raise TypeError or ValueError.
 """
 from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
-                   FitResponse, FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, LinkState, Loss,
-                   MapSense, Method, Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind,
+                   FitModel, FitResponse, FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, LinkState,
+                   Loss, MapSense, Method, Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind,
                    SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, LINK_DTYPE,
@@ -33,8 +33,8 @@ from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow
 __all__ = [
     "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
     "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
-    "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitCamera", "FitImage", "FitOptions", "FitResponse", "FitResult",
-    "FitSetting", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
+    "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitCamera", "FitImage", "FitModel", "FitOptions", "FitResponse",
+    "FitResult", "FitSetting", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
     "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE",
     "Layout", "LinkState", "Lookup", "LookupOptions", "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE",
     "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance",

@@ -189,6 +189,9 @@ class Reason(IntEnum):
     FALLOFF_RISES = 403
     CENTER_ON_LIMIT = 404
     FALLOFF_DARK = 405
+    SAME_VIEW = 406
+    EXPOSURES_ONLY = 407
+    NOTHING_BETTER = 408
     NOT_RADIAL = 451
     FAR_CENTER = 452
     FALLOFF_RISES_SOME = 453
@@ -315,6 +318,14 @@ class FitResponse(IntEnum):
     OPTIONS = 1
     KIND = 2
     PROFILE = 3
+
+
+class FitModel(IntEnum):
+    """lensprof_fit_model; see lensprof/fit.h."""
+    FULL = 0
+    LENS = 1
+    EXPOSURES = 2
+    NOTHING = 3
 
 
 class ProfilePrior(IntEnum):
@@ -686,6 +697,7 @@ class FitImage(Structure):
         ("known_ev_sigma", c_double),
         ("camera", c_uint32),
         ("reserved", c_uint32),
+        ("f_number_ratio", c_double),
     ]
 
 
@@ -835,7 +847,10 @@ class FitResult(Structure):
         ("reserved2", c_uint32),
         ("cameras", POINTER(FitCamera)),
         ("camera_count", c_uint32),
-        ("reserved3", c_uint32),
+        ("model", c_uint32),
+        ("falloff_prior_distance", c_double),
+        ("center_prior_distance", c_double),
+        ("error_inflation", c_double),
     ]
 
 
@@ -1189,6 +1204,7 @@ ENUMS = {
     "LENSPROF_LOSS_": Loss,
     "LENSPROF_GAMMA_": GammaFrom,
     "LENSPROF_FIT_RESPONSE_": FitResponse,
+    "LENSPROF_FIT_MODEL_": FitModel,
     "LENSPROF_PROFILE_PRIOR_": ProfilePrior,
     "LENSPROF_FLAT_LIGHT_": FlatLight,
     "LENSPROF_FLAT_GRID_": FlatGrid,

@@ -8,7 +8,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import CameraKind, FitResponse, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
+from ._abi import CameraKind, FitModel, FitResponse, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
 from ._library import check, lib
 from ._progress import WithProgress, calling
 from ._struct import (Curves, Enumerated, Flag, Nested, Numbers, OptionalReference, Struct, Text, Value, Vector, integer,
@@ -26,7 +26,8 @@ class FitImage(Value, _abi.FitImage):
     by default its own. known_ev: exposure from another source (EXIF), EV up to a common offset, a soft observation;
     known_ev_sigma: its standard error, EV, 0 = unknown. setting: number of the lens setting (lens, focal length,
     aperture and focus), 0..SETTINGS_MAX - 1; each has its own vignetting. camera: number of the camera, 0..CAMERAS_MAX
-    - 1; each has its own response. All images of a setting belong to one camera.
+    - 1; each has its own response. All images of a setting belong to one camera. f_number_ratio: f-number over the
+    widest one of the lens, 0 = unknown.
     """
 
     width: int
@@ -40,6 +41,7 @@ class FitImage(Value, _abi.FitImage):
     camera: int
     known_ev: float
     known_ev_sigma: float
+    f_number_ratio: float
 
     def __init__(self, index: int, width: int, height: int, **fields: Any):
         numbers = [integer(n, what) for n, what in ((index, "index"), (width, "width"), (height, "height"))]
@@ -186,7 +188,10 @@ class FitResult(Struct, _abi.FitResult):
     FitImage.setting; if there are several, vignetting, radius_ends, usable, reason, covariance and gamma_direction of
     the result are those of the reference's setting. cameras: tuple of FitCamera by FitImage.camera; if there are
     several, the other fields of the result describe the reference's camera, except exposures, image_quality and
-    left_out, which cover all.
+    left_out, which cover all. model: what the result consists of, the most complex description that predicts held-out
+    pairs better than all simpler ones. falloff_prior_distance, center_prior_distance: how far the pictures alone are
+    from what lenses have in common, in standard errors. error_inflation: variance of the falloff over that of
+    independent pairs.
     """
 
     usable = Flag()
@@ -223,6 +228,10 @@ class FitResult(Struct, _abi.FitResult):
     reference: int
     response_from = Enumerated(FitResponse)
     light_spread_ev: float
+    model = Enumerated(FitModel)
+    falloff_prior_distance: float
+    center_prior_distance: float
+    error_inflation: float
 
     def __init__(self, image_count: int, options: Optional[FitOptions] = None, setting_count: int = 1,
                  camera_count: int = 1):

@@ -26,6 +26,16 @@ std::optional<double> read_f_number(const Exiv2::ExifData &exif) {
     return apex > 0 ? in_range(std::exp2(apex / 2), 1000) : std::nullopt;
 }
 
+// MaxApertureValue (APEX) is the widest of the lens at the focal length of the picture (EXIF 2.32 section 4.6.5);
+// LensSpecification states those of the shortest and the longest focal length, for one lens both.
+std::optional<double> read_open_f_number(const Exiv2::ExifData &exif) {
+    const double apex = read_number(exif, {"Exif.Photo.MaxApertureValue", "Exif.Image.MaxApertureValue"});
+    if (apex > 0) return in_range(std::exp2(apex / 2), 1000);
+    const auto lens = exif.findKey(Exiv2::ExifKey("Exif.Photo.LensSpecification"));
+    if (lens == exif.end() || lens->count() < 4 || lens->toFloat(2) != lens->toFloat(3)) return std::nullopt;
+    return in_range(lens->toFloat(2), 1000);
+}
+
 // Exiv2 knows where makers store it; the readable form is the standard number, the raw one often is not.
 std::optional<double> read_iso(const Exiv2::ExifData &exif) {
     const auto datum = Exiv2::isoSpeed(exif);
@@ -57,6 +67,7 @@ double exposure_ev(double time_s, double iso, double f_number) {
 
 void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata) {
     metadata.f_number = read_f_number(exif);
+    metadata.open_f_number = read_open_f_number(exif);
     metadata.exposure_time_s = read_exposure_time(exif);
     metadata.iso = read_iso(exif);
     metadata.captured = read_captured(exif);

@@ -7,7 +7,7 @@
 
 namespace lensprof {
 
-// Fills exposure_time_s, f_number, iso, exif_ev and is_manual.
+// Fills exposure_time_s, f_number, open_f_number, iso, exif_ev, captured and is_manual.
 void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata);
 
 // Writes the known values; the aperture is taken from the key.

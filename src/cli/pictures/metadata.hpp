@@ -53,7 +53,8 @@ struct PictureMetadata {
 
     std::optional<double> exposure_time_s;
     std::optional<double> iso;
-    std::optional<double> f_number;  // aperture of the key
+    std::optional<double> f_number;       // aperture of the key
+    std::optional<double> open_f_number;  // widest of the lens at its focal length
 
     // exposure_ev() of the three: larger means a brighter rendering of the same scene. Set only if all are known.
     std::optional<double> exif_ev;

@@ -190,9 +190,9 @@ void OverlapFit::free_response(const Gauge &requested, Loss &used, Candidate &be
 // From the present estimates, with the present knowledge.
 void OverlapFit::solve_again() {
     set_vignettings(all_.vignettings);
-    Loss used = used_;
-    solve(train_, prior_, gauge_, used, true, control_, best_.estimate);
-    outcome_ = solve(all_, prior_, gauge_, used_, true, control_, estimate_);
+    Loss used = found_.used;
+    solve(train_, prior_, gauge_, used, true, control_, found_.best.estimate);
+    found_.outcome = solve(all_, prior_, gauge_, found_.used, true, control_, found_.estimate);
 }
 
 // Weighs the knowledge of lenses against what the pictures show, of which errors common to neighbouring pairs leave
@@ -200,17 +200,17 @@ void OverlapFit::solve_again() {
 void OverlapFit::weigh_lens_knowledge() {
     constexpr int kRounds = 2;
     for (int round = 0; round < kRounds; round++) {
-        inflation_ = error_inflation(all_, prior_, gauge_, used_, estimate_);
-        const Covariance found = covariance(all_, prior_, gauge_, used_, estimate_);
+        inflation_ = error_inflation(all_, prior_, gauge_, found_.used, found_.estimate);
+        const Covariance found = covariance(all_, prior_, gauge_, found_.used, found_.estimate);
         if (!found.is_determined || stored_) return;  // a profile replaces the knowledge of all lenses
-        lenses_ = weigh_lenses(all_, prior_, options_.prior_weight, estimate_, found, inflation_);
+        lenses_ = weigh_lenses(all_, prior_, options_.prior_weight, found_.estimate, found, inflation_);
         solve_again();
     }
     free_center();
     hold_falling();
 }
 
-// A crop has its optical axis far from its middle, as no lens has. Pictures that say so must predict held-out pairs
+// A crop has its optical axis far from its middle, as no lens has. The pictures must predict held-out pairs
 // clearly better for it: a drift of exposures along a row looks much like it.
 void OverlapFit::free_center() {
     constexpr double kFar = 3.0, kFreedom = 2.0, kGain = 0.04;  // of the loss: 2 % of the residual
@@ -223,33 +223,26 @@ void OverlapFit::free_center() {
         is_far = true;
     }
     if (!is_far) return;
-    const Candidate held = best_;
-    const Estimate of_all = estimate_;
-    const Loss used = used_;
-    const Outcome outcome = outcome_;
+    const Fitted held = found_;
+    const HeldoutLoss before = loss_of(*this);
     solve_again();
-    const Problem &tested = has_heldout_ ? heldout_ : all_;
-    const HeldoutLoss before = heldout_loss(tested, held.estimate, common_),
-                      after = heldout_loss(tested, best_.estimate, common_);
     double error;
-    const double gain = -loss_difference_by_place(tested, after, before, error);
+    const double gain = -loss_difference_by_place(tested(), loss_of(*this), before, error);
     if (gain > 3.0 * error && gain > kGain * before.mean) return;
-    lenses_ = lenses, best_ = held, estimate_ = of_all, used_ = used, outcome_ = outcome;
+    lenses_ = lenses, found_ = held;
     set_vignettings(all_.vignettings);
 }
 
-// Falloffs that rise outward, as hardly any lens does, must predict held-out pairs clearly better than the best ones
+// Falloffs that rise outward, as almost no lens does, must predict held-out pairs clearly better than the best ones
 // that do not.
 void OverlapFit::hold_falling() {
     bool any_rises = false;
-    for (const Falloffs &curves : estimate_.vignetting)
+    for (const Falloffs &curves : found_.estimate.vignetting)
         for (const lensprof_vignetting &v : curves) any_rises = any_rises || outward_rise(v) > kSmallRise;
     if (!any_rises || (options_.free & kFalloffFlags) != kFalloffFlags) return;
-    const Estimate of_all = estimate_;
-    const Candidate best = best_;
-    const Loss used = used_;
-    const Outcome outcome = outcome_;
-    for (Estimate *estimate : {&estimate_, &best_.estimate})
+    const Fitted rising = found_;
+    const HeldoutLoss rising_loss = loss_of(*this);
+    for (Estimate *estimate : {&found_.estimate, &found_.best.estimate})
         for (Falloffs &curves : estimate->vignetting)
             for (lensprof_vignetting &v : curves) {
                 const double corner = lensprof_vignetting_eval(&v, 1.0, nullptr) - 1.0;
@@ -258,18 +251,15 @@ void OverlapFit::hold_falling() {
     control_.falls = true;
     solve_again();
     double error;
-    const Problem &tested = has_heldout_ ? heldout_ : all_;
-    const HeldoutLoss falling = heldout_loss(tested, best_.estimate, common_),
-                      rising = heldout_loss(tested, best.estimate, common_);
-    if (loss_difference_by_place(tested, falling, rising, error) <= 3.0 * error) return;
+    if (loss_difference_by_place(tested(), loss_of(*this), rising_loss, error) <= 3.0 * error) return;
     control_.falls = false;
-    estimate_ = of_all, best_ = best, used_ = used, outcome_ = outcome;
+    found_ = rising;
 }
 
 const Problem &OverlapFit::tested() const { return has_heldout_ ? heldout_ : all_; }
 
 HeldoutLoss OverlapFit::loss_of(const OverlapFit &other) const {
-    return heldout_loss(tested(), has_heldout_ ? other.best_.estimate : other.estimate_, common_);
+    return heldout_loss(tested(), has_heldout_ ? other.found_.best.estimate : other.found_.estimate, common_);
 }
 
 bool OverlapFit::predicts_better(const HeldoutLoss &simpler) const {
@@ -281,7 +271,7 @@ bool OverlapFit::predicts_better_than(const OverlapFit &simpler) const { return 
 
 // Nothing: the pictures as they are.
 bool OverlapFit::predicts_better_than_nothing() const {
-    Estimate nothing = estimate_;
+    Estimate nothing = found_.estimate;
     lensprof_response linear;
     lensprof_response_set_linear(&linear);
     set_fixed(nothing, linear);
@@ -294,34 +284,34 @@ void OverlapFit::run() {
     bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMaxRefinedImages;
     const Gauge requested = gauge_;
     if (frees) gauge_ = gauge_.by_prior();
-    used_ = loss();
-    used_.distrusts = true;
-    best_ = choose(used_);
-    estimate_ = best_.estimate;
-    if (has_heldout_) reconsider(all_, used_, estimate_);
-    outcome_ = solve(all_, prior_, gauge_, used_, true, control_, estimate_);
+    found_.used = loss();
+    found_.used.distrusts = true;
+    found_.best = choose(found_.used);
+    found_.estimate = found_.best.estimate;
+    if (has_heldout_) reconsider(all_, found_.used, found_.estimate);
+    found_.outcome = solve(all_, prior_, gauge_, found_.used, true, control_, found_.estimate);
     inflation_ = Inflation(all_.settings);
     if (options_.prior_weight > 0.0 && frees_lens() && !is_static(all_)) weigh_lens_knowledge();
     if (frees)
-        free_response(requested, used_, best_, estimate_, outcome_);
+        free_response(requested, found_.used, found_.best, found_.estimate, found_.outcome);
     else
         take_all();
 }
 
 double OverlapFit::worse_than(const OverlapFit &other) const {
     if (!has_heldout_) return 0.0;
-    HeldoutLoss own_loss = heldout_loss(other.heldout_, best_.estimate, other.common_),
-                other_loss = heldout_loss(other.heldout_, other.best_.estimate, other.common_);
+    HeldoutLoss own_loss = heldout_loss(other.heldout_, found_.best.estimate, other.common_),
+                other_loss = heldout_loss(other.heldout_, other.found_.best.estimate, other.common_);
     double error, difference = loss_difference(own_loss, other_loss, error);
     return error > 0.0 ? difference / error : 0.0;
 }
 
 void OverlapFit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
-    Loss last = used_;
-    last.noise = estimate_noise(all_, estimate_, used_.noise);
-    const Covariance found = covariance(all_, prior_, gauge_, last, estimate_, &inflation_);
-    finish({all_, gauge_, estimate_, has_heldout_ ? heldout_ : all_, best_.estimate, has_heldout_, last.noise, found,
-            static_cast<uint32_t>(outcome_.iterations), outcome_.converged},
+    Loss last = found_.used;
+    last.noise = estimate_noise(all_, found_.estimate, found_.used.noise);
+    const Covariance found = covariance(all_, prior_, gauge_, last, found_.estimate, &inflation_);
+    finish({all_, gauge_, found_.estimate, has_heldout_ ? heldout_ : all_, found_.best.estimate, has_heldout_,
+            last.noise, found, static_cast<uint32_t>(found_.outcome.iterations), found_.outcome.converged},
            nullptr, exposures, result);
     result.falloff_prior_distance = result.center_prior_distance = 0.0;
     for (const WeighedLens &lens : lenses_) {

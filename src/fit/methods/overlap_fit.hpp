@@ -54,7 +54,7 @@ public:
 
     double falloff_distance(const lensprof_fit_result &alone) const { return stored_->falloff_distance(alone); }
     double response_distance(const lensprof_fit_result &alone) const { return stored_->response_distance(alone); }
-    double gamma_distance() const { return gauge_.contradiction(estimate_); }
+    double gamma_distance() const { return gauge_.contradiction(found_.estimate); }
 
     void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
 
@@ -109,10 +109,12 @@ private:
     const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
     std::unique_ptr<StoredPrior> stored_;
     Gauge gauge_;
-    Loss used_;
-    Candidate best_;     // of the training pairs
-    Estimate estimate_;  // of all
-    Outcome outcome_;
+    struct Fitted {
+        Candidate best;     // of the training pairs
+        Estimate estimate;  // of all
+        Loss used;
+        Outcome outcome;
+    } found_;
     Control control_;
     Inflation inflation_{1};
     std::vector<WeighedLens> lenses_;  // per setting, once weighed
