@@ -69,6 +69,21 @@ void print_prior(const BuildReport &report, std::ostream &out) {
                 : ", overruled by the pictures\n");
 }
 
+// What lenses have in common against the pictures, and what the result was left with.
+void print_lens_prior(const lensprof_fit_result &fit, std::ostream &out) {
+    if (fit.model == LENSPROF_FIT_MODEL_EXPOSURES)
+        out << "model     exposures and white balances alone: no falloff is corrected\n";
+    else if (fit.model == LENSPROF_FIT_MODEL_LENS)
+        out << "model     exposures and white balances, and the stored falloff as it is\n";
+    else if (fit.model == LENSPROF_FIT_MODEL_NOTHING)
+        out << "model     nothing: the values above are not better than the pictures as they are\n";
+    if (fit.falloff_prior_distance > 0.0 || fit.center_prior_distance > 0.0)
+        out << format(
+            "lens      the pictures alone are %.1f (falloff) and %.1f (centre) standard errors from what lenses have in "
+            "common; errors in common: %.1f times the variance\n",
+            fit.falloff_prior_distance, fit.center_prior_distance, fit.error_inflation);
+}
+
 // "links     12 verified, 2 not (too little texture to check the alignment), 1 contradicted".
 std::string links_row(const std::vector<lensprof_link> &links) {
     size_t count[LENSPROF_LINK_CONTRADICTED + 1] = {};
@@ -128,6 +143,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
     print_responses(report, out);
     print_gamma(report, out);
     print_prior(report, out);
+    if (report.has_falloff) print_lens_prior(fit, out);
     std::string heldout = "not measured: too few pairs";
     if (fit.heldout_rms != LENSPROF_UNKNOWN)
         heldout = format("%.2f (RMS; median %.2f) on pairs left out of the fit", fit.heldout_rms, fit.heldout_median);

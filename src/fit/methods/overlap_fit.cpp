@@ -202,7 +202,8 @@ void OverlapFit::weigh_lens_knowledge() {
     for (int round = 0; round < kRounds; round++) {
         inflation_ = error_inflation(all_, prior_, gauge_, found_.used, found_.estimate);
         const Covariance found = covariance(all_, prior_, gauge_, found_.used, found_.estimate);
-        if (!found.is_determined || stored_) return;  // a profile replaces the knowledge of all lenses
+        if (!found.is_determined) return;
+        if (stored_ && all_.settings == 1) return;  // the profile replaces the knowledge of all lenses
         lenses_ = weigh_lenses(all_, prior_, options_.prior_weight, found_.estimate, found, inflation_);
         solve_again();
     }
