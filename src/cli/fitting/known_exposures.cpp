@@ -101,10 +101,10 @@ ExifExposures exif_exposures(const std::vector<PictureMetadata> &metadata, const
     return exposures;
 }
 
-// Whether EXIF states anything about exposures.
+// Whether EXIF states anything about exposures; the aperture alone describes the lens.
 static bool states_exposures(const std::vector<PictureMetadata> &metadata) {
     return std::any_of(metadata.begin(), metadata.end(),
-                       [](const PictureMetadata &m) { return m.exposure_time_s || m.iso || m.f_number; });
+                       [](const PictureMetadata &m) { return m.exposure_time_s || m.iso; });
 }
 
 ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetadata> &metadata,
