@@ -8,6 +8,12 @@ using namespace batch_runs;
 
 namespace {
 
+// Whether all that was printed is one line that states clipping.
+bool is_clipping_alone(const std::string &said) {
+    return contains(said, "lensprof: warning: ") && contains(said, ": the correction clips up to ")
+           && std::count(said.begin(), said.end(), '\n') == 1;
+}
+
 // One picture for every way of reading and writing rows.
 Words make_kinds() {
     Words files;
@@ -97,7 +103,7 @@ std::map<std::string, Bytes> correct_by(const Words &files, bool linear, uint32_
     assert_int_equal(corrected.pictures.size(), files.size());
     for (size_t i = 0; i < files.size(); ++i)
         assert_string_equal(corrected.pictures[i]["file"].get<std::string>().c_str(), files[i].c_str());
-    assert_string_equal(said.str().c_str(), "");
+    assert_true(linear ? said.str().empty() : is_clipping_alone(said.str()));  // of noise, a part turns white
     return contents(out);
 }
 
@@ -254,7 +260,7 @@ void test_speed_is_said(void **) {
     assert_true(seconds > 0);
     assert_close(seconds * rate, 5 * 300 * 200 * 1e-6, 1e-9);
 
-    assert_string_equal(run_words(corrected_into("out", files)).err.c_str(), "");
+    assert_true(is_clipping_alone(run_words(corrected_into("out", files)).err));
     const std::string said = run_words(corrected_into("out", Words{"--progress"} + files)).err;
     assert_true(contains(said, "correcting 0 %, 0 of 5 pictures"));
     assert_true(contains(said, " of 5 pictures, "));
