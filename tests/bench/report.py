@@ -33,13 +33,6 @@ its places of the difference between a picture and its prediction from the other
 shows the median over all links (and the worst). Places come from features of the pictures, not from a project or a
 tool. Only links of which lensprof joined both images are measured."""
 
-READING_VERDICTS = """Rendered sequences, every option drawn from the seed. Good ones (smooth: sky and walls; hard:
-parallax, sharpening, white areas, moving objects) should be accepted, bad ones (noise, negatives, local tone
-mapping, misplaced pictures) refused. Failed: accepted with a clean residual above 5 levels, over the joined images.
-Exposures (relative to the reference) and M in the corner: share of errors within the stated standard error, without
-alignment, over the accepted good sequences. Targets are in brackets. To repeat a case:
-`run.sh --only verdicts --match "smooth 17"{tune}`."""
-
 
 def number(value):
     """Three significant digits, at most four decimal places."""
@@ -196,50 +189,6 @@ def refused(records):
         figures = [number(median(of, key)) for key in ("ev_raw", "falloff_raw", "clean_rms")]
         lines.append(row(group, len(of), refusals(of), *figures))
     return lines + [""]
-
-
-def verdicts(results):
-    """Both errors of the verdict, and the sequences concerned."""
-    if not results or not (results["records"] or results["skipped"]):
-        return []
-    from verdicts import BAD, GOOD, LIMITS, NEED_OPENCV, is_missed
-    lines = ["## Verdicts", "", READING_VERDICTS.format(tune=" --tune" if results["tune"] else ""), ""]
-    lines += header("kind", "sequences", "refused", "accepted without a word", "accepted with a warning", "evened",
-                    "failed", "exposures within their standard error", "corners")
-    for kind in GOOD + BAD:
-        of = [r for r in results["records"] if r["kind"] == kind]
-        if of:
-            lines.append(verdict_row(kind, of, kind in GOOD, LIMITS))
-        elif kind in results["skipped"]:
-            lines.append(row(kind, "SKIPPED: no OpenCV", *[""] * 7))
-    missed = [r for r in results["records"] if is_missed(r)]
-    if missed:
-        lines += ["", "Missed.", "", *header("case", "what", "clean residual", "reason")]
-        lines += [row("%s %d" % (r["kind"], r["number"]), is_missed(r), number(r.get("clean_rms")),
-                      r["reason"] or "none") for r in missed]
-    return lines + [""]
-
-
-def verdict_row(kind, of, good, limits):
-    accepted = [r for r in of if r["usable"]]
-    wordless = count(accepted, lambda r: not r["reason"])
-    evened = [r["evens"] for r in of if r["evens"] is not None]
-    missed = len(of) - len(accepted) if good else wordless
-    target = "%d (at most %.0f %%%s)" % (missed, 100 * limits[good],
-                                         "" if missed <= limits[good] * len(of) else "; **not met**")
-    holds = [held([z for r in accepted for z in r["z"][what]]) for what in ("ev", "corner")] if good else ["", ""]
-    return row(kind, len(of), target if good else len(of) - len(accepted), wordless if good else target,
-               len(accepted) - wordless, sum(evened) if evened else "–", failures(accepted) if good else "", *holds)
-
-
-def held(z):
-    """Share of errors within their standard error, with the target."""
-    from verdicts import HOLDS
-    if not z:
-        return "–"
-    share = sum(abs(v) < 1.0 for v in z) / len(z)
-    return "%.0f %% of %d (%.0f to %.0f %%%s)" % (100 * share, len(z), *(100 * h for h in HOLDS),
-                                                "" if HOLDS[0] <= share <= HOLDS[1] else "; **not met**")
 
 
 def flat(records):
@@ -489,6 +438,7 @@ def ratio_of(ours, theirs, key):
 
 def document(results):
     from reconstruction_tables import tables
+    from verdict_tables import verdicts
     lines = ["# Benchmark", "", results["machine"], ""]
     if results["skipped"]:
         lines += ["**SKIPPED: %s**" % results["skipped"], ""]

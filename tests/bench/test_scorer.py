@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Tests of the scorer: truth scores zero, and only the ambiguity between response and exposure is removed."""
 import json
+import math
 import pathlib
 import random
 import re
@@ -22,6 +23,7 @@ import report
 import scorer
 import seams
 import tools
+import verdict_tables
 import verdicts
 
 SIZES = np.array([[800, 600]] * 5)
@@ -294,7 +296,7 @@ class Verdicts(unittest.TestCase):
 
         report_on, tune = drawn(False), drawn(True)
         self.assertEqual(report_on, drawn(False))
-        self.assertEqual(len(report_on), 2 * 100 + 4 * 50)
+        self.assertEqual(len(report_on), 2 * 100 + 4 * 50 + 7 * 45)
         self.assertEqual(report_on.keys(), tune.keys())
         self.assertFalse([name for name in tune if tune[name] == report_on[name]])
         quick = {s.name: s.arguments for s in verdicts.sequences(True, False)}
@@ -326,6 +328,32 @@ class Verdicts(unittest.TestCase):
         np.testing.assert_allclose(z["ev"], [0.5, -3.0])
         np.testing.assert_allclose(z["corner"], [0.04 / 0.02])
         self.assertEqual(verdicts.standardised(dict(data, covariance=[]), truth)["corner"], [])
+
+    def test_what_is_applied(self):
+        """Image 2 is not joined; older programs do not name a model."""
+        truth, model = scorer.identity(4), scorer.identity(4)
+        truth.k, model.k = np.array([[-0.3, 0.0, 0.0]]), np.array([[-0.1, -0.1, 0.05]])
+        model.ev = np.array([0.0, 0.3, 7.0, -0.3])
+        images = [{"ev": 0.0}, {"ev": 0.3}, {"ev": 7.0, "joined": False}, {"ev": -0.3}]
+        found = verdicts.applied({"usable": False, "evens": True, "model": "exposures", "images": images}, truth, model)
+        self.assertEqual(found["applied"], "exposures")
+        np.testing.assert_allclose([found[key] for key in ("corner", "corner_error", "ev_range", "ev_deviation")],
+                                   [0.85, 0.15, 0.6, math.sqrt(0.06)])
+        for usable, expected in ((True, "full"), (False, "nothing")):
+            old = verdicts.applied({"usable": usable, "images": images}, truth, model)
+            self.assertEqual(old["applied"], expected)
+
+    def test_table_of_what_is_open(self):
+        record = {"kind": "sky", "z": {"corner": [0.5]}, "ev_range": 0.1, "ev_deviation": 0.05, "worse": False}
+        full = [dict(record, applied="full", corner_error=e) for e in (0.02, 0.04, 0.9)]
+        other = [dict(record, applied="exposures", corner_error=3.0, worse=True), {"kind": "sky", "failed": True}]
+        lines = verdict_tables.open_table(full + other)
+        cells = [cell.strip() for cell in lines[-2].split("|")[1:-1]]
+        self.assertEqual(cells[:8], ["sky", "5", "3", "0", "1", "1", "0.0400", "0.900"])
+        self.assertIn("100 % of 3", cells[8])
+        self.assertEqual(cells[9:], ["0.100", "0.100", "0.0500", "0.0500", "1 (at most 0; **not met**)"])
+        self.assertEqual(len(lines[-3].split("|")), len(lines[-1].split("|")))
+        self.assertEqual(verdict_tables.open_table([dict(record, kind="smooth")]), [])
 
     def test_what_is_missed(self):
         def missed(kind, usable, reason="", failed=False):
