@@ -273,6 +273,32 @@ void test_an_image_without_pairs_is_unconnected(void **) {
     assert_true(says(run_fit(s, options), LENSPROF_REASON_IMAGES_LEFT_OUT, "(1, including image 7)"));
 }
 
+// Two pairs for each of seven images: all are left out together, because they are more than the fits that are tried.
+void test_images_with_few_pairs_are_left_out_together(void **) {
+    Simulation s;
+    s.response = srgb_response();
+    s.images = 24, s.reach = 3;
+    s.make(4000, 1.0, 0.0, 1.0, 42);
+    const auto is_weak = [](uint32_t i) { return i > 0 && i % 3 == 0; };
+    std::vector<uint32_t> kept(s.images, 0);
+    drop(s, [&](const lensprof_pair &p) {
+        if (is_weak(p.image[0]) == is_weak(p.image[1])) return is_weak(p.image[0]);
+        return ++kept[p.image[is_weak(p.image[0]) ? 0 : 1]] > 2;
+    });
+    lensprof_fit_options options = default_fit();
+    const FitRun run = run_fit(s, options);
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.left_out, 7);
+    for (uint32_t i = 0; i < s.images; i++) assert_int_equal(std::isnan(run.exposures[i].ev), is_weak(i));
+    std::vector<lensprof_exposure> exposures(s.images);  // the same without a place for the images' quality
+    lensprof_fit_result result;
+    lensprof_fit_result_init(&result);
+    assert_ok(lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
+                                   static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, nullptr));
+    assert_int_equal(result.left_out, 7);
+    assert_close(exposures[1].ev, run.exposures[1].ev, 0.0);
+}
+
 // Two images, each connected to the other alone, are unconnected; with an image that disagrees, the reason is about
 // that.
 void test_images_that_disagree_come_first(void **) {
@@ -455,6 +481,7 @@ int main() {
         cmocka_unit_test(test_a_misplaced_reference_is_replaced),
         cmocka_unit_test(test_an_image_without_pairs_is_unconnected),
         cmocka_unit_test(test_images_that_disagree_come_first),
+        cmocka_unit_test(test_images_with_few_pairs_are_left_out_together),
         cmocka_unit_test(test_a_broken_link_is_left_out_alone),
         cmocka_unit_test(test_an_exposure_must_rest_on_pairs),
         cmocka_unit_test(test_gamma_is_no_doubt_of_an_exposure),

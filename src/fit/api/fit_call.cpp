@@ -123,8 +123,9 @@ lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fi
     }
     if (status == LENSPROF_OK) status = take_images(images, image_count, call.images, error);
     lensprof_fit_result_init(&call.result);
-    if (status == LENSPROF_OK && result->image_quality) call.quality.resize(image_count);
-    call.result.image_quality = call.quality.empty() ? nullptr : call.quality.data();
+    if (status == LENSPROF_OK)
+        call.quality.resize(image_count);  // images are left out by it, even if nobody asks for it
+    call.result.image_quality = call.quality.data();
     return status == LENSPROF_OK ? take_settings(*result, call, error) : status;
 }
 

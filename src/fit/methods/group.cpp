@@ -29,11 +29,13 @@ public:
     void run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_fit_result &result);
 
 private:
-    Problem problem() const;
+    Problem problem(uint32_t reference) const;
+    Problem problem() const { return problem(options_.reference); }
     void join_all();
     bool take_largest(const Problem &all);
     void choose_reference();
     bool leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r);
+    std::vector<uint32_t> undetermined(const lensprof_exposure *exposures, const lensprof_fit_result &r) const;
     bool break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r);
     void note_quality(const lensprof_fit_result &r);
     void describe(lensprof_exposure *exposures, lensprof_fit_result &r) const;
@@ -73,11 +75,13 @@ std::vector<uint32_t> tied_groups(const Problem &problem) {
 }
 
 // The problem of all images, with the pairs of the group's images along links that are not broken.
-Problem GroupFit::problem() const {
+Problem GroupFit::problem(uint32_t reference) const {
     const std::vector<lensprof_pair> pairs = pairs_within_(group_);
     std::vector<uint32_t> keep(pairs.size());
     std::iota(keep.begin(), keep.end(), 0u);
-    return make_problem(options_, images_, count_, pairs.data(), keep);
+    lensprof_fit_options options = options_;
+    options.reference = reference;
+    return make_problem(options, images_, count_, pairs.data(), keep);
 }
 
 void GroupFit::join_all() {
@@ -152,16 +156,31 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fi
     return any;
 }
 
-// Breaks links that disagree; otherwise leaves out the image that the verdict is about. Returns whether the group
-// changed.
+// The images that have the fault of the verdict, which is about the exposure of the first or worst of them.
+std::vector<uint32_t> GroupFit::undetermined(const lensprof_exposure *exposures, const lensprof_fit_result &r) const {
+    std::vector<uint32_t> images;
+    if (r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE)
+        for (const FewInliers &few : images_with_few_inliers(problem(group_.reference), r)) images.push_back(few.image);
+    if (r.reason_code == LENSPROF_REASON_EXPOSURE_UNCERTAIN)
+        for (uint32_t i = 0; i < count_; i++)
+            if (ev_sigma_of_pairs(r, i, exposures[i].ev - exposures[group_.reference].ev) > kLargestEvSigma)
+                images.push_back(i);
+    return images;
+}
+
+// Breaks links that disagree; otherwise leaves out the image that the verdict is about, and with it all that have the
+// same fault, unless most have: then the fault is the reference's. Returns whether the group changed.
 bool GroupFit::leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
-    bool any = break_links(exposures, r);
+    const bool any = break_links(exposures, r);
     const bool is_image_reason = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE
                                  || r.reason_code == LENSPROF_REASON_IMAGE_DISAGREES
                                  || r.reason_code == LENSPROF_REASON_EXPOSURE_UNCERTAIN;
-    if (!any && !r.usable && is_image_reason && r.reason_item.kind == LENSPROF_ITEM_IMAGE)
-        any = banned_[r.reason_item.index] = true;
-    return any;
+    if (any || r.usable || !is_image_reason || r.reason_item.kind != LENSPROF_ITEM_IMAGE) return any;
+    banned_[r.reason_item.index] = true;
+    const auto joined = static_cast<size_t>(std::count(group_.joined.begin(), group_.joined.end(), true));
+    const std::vector<uint32_t> images = undetermined(exposures, r);
+    for (uint32_t i : images) banned_[i] = banned_[i] || 2 * images.size() < joined;
+    return true;
 }
 
 // Counts the images of the group that no verified links join to the reference, and finds the first of them.

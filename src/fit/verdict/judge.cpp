@@ -33,7 +33,6 @@ constexpr double kStillPattern = 1.0;          // the same if no falloff can be 
 constexpr double kHarmfulStillPattern = 2.0;
 constexpr double kNotRadial = 0.3;           // share explained by one map over the frame
 constexpr double kLargestCornerSigma = 0.1;  // of M
-constexpr double kLargestEvSigma = 0.3;      // EV, without the error of gamma
 constexpr uint32_t kMinInliers = 3;          // of an image: fewer agree by chance,
 constexpr double kSmallestShare = 0.2;       // or a smaller share of its pairs
 constexpr double kSmallestStillShare = 0.7;  // of all pairs, if equal places are compared,
@@ -181,9 +180,8 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
         auto measured = static_cast<size_t>(problem.measured_channel());
         double log_ratio = estimate.log_exposure[i][measured] - estimate.log_exposure[problem.reference][measured];
-        double of_gamma = std::max(r.gamma_sigma, 0.0) * log_ratio / kLn2, sigma = r.image_quality[i].ev_sigma;
-        double pair_sigma = std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
-        if (pair_sigma > limit) limit = pair_sigma, worst = static_cast<int>(i);
+        const double sigma = ev_sigma_of_pairs(r, i, log_ratio / kLn2);
+        if (sigma > limit) limit = sigma, worst = static_cast<int>(i);
     }
     return worst;
 }
@@ -241,21 +239,6 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
     return false;
 }
 
-// The first image whose exposure is supported by fewer pairs than could agree by chance. Images that share an exposure
-// count together; so do those that are held, including the reference.
-bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint32_t &image, uint32_t &inliers) {
-    if (problem.image_unknowns == 0 || !r.image_quality) return false;
-    auto held = static_cast<size_t>(problem.image_unknowns);
-    auto owner = [&](uint32_t i) {
-        return problem.ev_unknown[i] < 0 ? held : static_cast<size_t>(problem.ev_unknown[i]);
-    };
-    std::vector<uint32_t> owner_inliers(held + 1, 0u);
-    for (uint32_t i = 0; i < problem.image_count; i++) owner_inliers[owner(i)] += r.image_quality[i].inliers;
-    for (image = 0; image < problem.image_count; image++)
-        if (is_joined(problem, image) && (inliers = owner_inliers[owner(image)]) < kMinInliers) return true;
-    return false;
-}
-
 // The first image with almost no pair that agrees.
 bool disagrees(const Problem &problem, const lensprof_fit_result &r, uint32_t &image) {
     for (image = 0; image < problem.image_count && r.image_quality; image++)
@@ -277,11 +260,11 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
     if (const double darkest = darkest_of(problem, r); darkest < kSmallestM)
         return refuse(r, {LENSPROF_REASON_FALLOFF_DARK, {darkest}});
     const bool still = is_static(problem);
-    uint32_t image, inliers;
-    if (has_few_inliers(problem, r, image, inliers))
-        return refuse(
-            r, of_image(still ? LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE : LENSPROF_REASON_FEW_BEHIND_EXPOSURE, image,
-                        {double(inliers)}));
+    if (const auto few = images_with_few_inliers(problem, r); !few.empty())
+        return refuse(r,
+                      of_image(still ? LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE : LENSPROF_REASON_FEW_BEHIND_EXPOSURE,
+                               few[0].image, {double(few[0].inliers)}));
+    uint32_t image;
     if (disagrees(problem, r, image))
         return refuse(r,
                       of_image(still ? LENSPROF_REASON_STILL_IMAGE_DISAGREES : LENSPROF_REASON_IMAGE_DISAGREES, image,
@@ -374,6 +357,25 @@ bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_f
 }
 
 }  // namespace
+
+std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const lensprof_fit_result &r) {
+    std::vector<FewInliers> few;
+    if (problem.image_unknowns == 0 || !r.image_quality) return few;
+    auto held = static_cast<size_t>(problem.image_unknowns);
+    auto owner = [&](uint32_t i) {
+        return problem.ev_unknown[i] < 0 ? held : static_cast<size_t>(problem.ev_unknown[i]);
+    };
+    std::vector<uint32_t> inliers(held + 1, 0u);
+    for (uint32_t i = 0; i < problem.image_count; i++) inliers[owner(i)] += r.image_quality[i].inliers;
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        if (is_joined(problem, i) && inliers[owner(i)] < kMinInliers) few.push_back({i, inliers[owner(i)]});
+    return few;
+}
+
+double ev_sigma_of_pairs(const lensprof_fit_result &r, uint32_t image, double ev) {
+    const double sigma = r.image_quality[image].ev_sigma, of_gamma = std::max(r.gamma_sigma, 0.0) * ev;
+    return std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
+}
 
 void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     if (lacks_data(problem, estimate, r) || contradicts_model(problem, estimate, r)

@@ -42,6 +42,18 @@ double light_spread(const Problem &problem, const Estimate &estimate);
 // Writes the exposures of all images, as far as they were free.
 void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_exposure *exposures);
 
+// Images, joined to the reference, whose exposures are supported by fewer pairs than could agree by chance. Images that
+// share an exposure count together; so do those that are held, including the reference.
+struct FewInliers {
+    uint32_t image, inliers;
+};
+std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const lensprof_fit_result &result);
+
+// Standard error, EV, that the pairs alone leave to an image's exposure: without that of gamma. `ev`: its exposure
+// relative to the reference. Above the limit the exposure is not determined.
+constexpr double kLargestEvSigma = 0.3;
+double ev_sigma_of_pairs(const lensprof_fit_result &result, uint32_t image, double ev);
+
 // Fills `usable` and `reason` from everything else.
 void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &result);
 
