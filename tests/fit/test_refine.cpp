@@ -58,6 +58,30 @@ double transfer_error(const Simulation &s, const FitRun &run) {
     return worst;
 }
 
+// The same for dark grey values, 1.5 EV darker.
+double dark_error(const Simulation &s, const FitRun &run) {
+    double worst = 0.0, e = std::exp2(run.exposures[0].ev - run.exposures[1].ev);
+    for (int level = 6; level <= 30; level++) {
+        const double b = level / 255.0, x = lp_curve_invert(run.result.response.table, b, nullptr);
+        const double truth =
+            lp_curve_eval(s.response.table, lp_curve_invert(s.response.table, b, nullptr) * std::exp2(-1.5), nullptr);
+        worst = std::max(worst, 255.0 * std::abs(lp_curve_eval(run.result.response.table, x * e, nullptr) - truth));
+    }
+    return worst;
+}
+
+// A linear response of unknown exponent becomes almost a square root by the prior, whose dark end is steeper than the
+// first sample of a table: off by 1.8 levels there, unless the exponent leaves its expected value.
+void test_resolves_the_dark_end(void **) {
+    const Simulation s = still(linear_response(), 12000, 0.0, 17);
+    const FitRun run = run_fit(s, bracket_fit(1));
+    assert_int_equal(run.result.gamma_from, LENSPROF_GAMMA_PRIOR);
+    print_message("dark end: off by %.2f levels, first sample at %.2f, ln gamma off by %.2f, expected %.2f\n",
+                  dark_error(s, run), 255.0 * run.result.response.table[1], std::log(s.gamma(run.exposures)),
+                  run.result.gamma_sigma);
+    assert_true(dark_error(s, run) < 1.0);
+}
+
 void test_refines_what_modes_cannot_follow(void **) {
     Simulation s = still(kinked_response(), 12000, 0.7, 11);
     know_exposures(s);
@@ -201,6 +225,7 @@ int main(int argc, char **) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_refines_what_modes_cannot_follow),
         cmocka_unit_test(test_does_no_harm_where_modes_follow),
+        cmocka_unit_test(test_resolves_the_dark_end),
         cmocka_unit_test(test_table_of_early_white),
         cmocka_unit_test(test_known_exposures_settle_gamma),
         cmocka_unit_test(test_any_number_of_threads_gives_the_same),

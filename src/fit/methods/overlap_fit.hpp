@@ -100,6 +100,7 @@ private:
     const Problem &tested() const;
     HeldoutLoss loss_of(const OverlapFit &other) const;
     bool predicts_better(const HeldoutLoss &simpler) const;
+    void resolve_dark_end(Loss &used, Candidate &best, Estimate &estimate);
     void free_response(const Gauge &requested, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
 
     uint32_t image_count_;
