@@ -102,7 +102,7 @@ void test_noise_is_neither(void **) {
 // One exposure, and a falloff corrected by the camera: the response is typical of the kind of camera, and a reason
 // reports it.
 void test_pictures_that_show_no_response(void **) {
-    simulate("flat", {"--ev", "0", "--wb", "0", "--vignetting", "0,0,0"});
+    simulate("flat", {"--ev", "0", "--wb", "0", "--vignetting=-.04,0,0"});
     const Json json = json_of({"build", pto("flat"), "--no-store", "--json"});
     assert_true(json["usable"] == true && json["evens"] == true);
     assert_true(json["reason_code"] == "response_not_shown" && json["response"]["from"] == "kind");
@@ -110,6 +110,9 @@ void test_pictures_that_show_no_response(void **) {
     assert_close(json["gamma"]["sigma"].get<double>(), 0.264, 0.001);
     const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--seed", "7"});
     assert_true(other["response"]["values"] == json["response"]["values"]);  // independent of noise
+    simulate("equal", {"--ev", "0", "--wb", "0", "--vignetting", "0,0,0"});  // nothing to correct
+    const Json equal = json_of({"build", pto("equal"), "--no-store", "--json"}, not_usable);
+    assert_true(equal["reason_code"] == "nothing_better" && equal["model"] == "nothing");
     simulate("shown", {});
     assert_true(json_of({"build", pto("shown"), "--no-store", "--json"})["response"]["from"] == "pictures");
 }
