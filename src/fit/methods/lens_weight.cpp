@@ -38,7 +38,13 @@ ShownFalloff shown_falloff(const Problem &problem, const FalloffPrior &prior, co
     const Eigen::Matrix3d all = covariance.inverse();
     if (!all.allFinite()) return {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
     const Eigen::Matrix3d alone = positive_part<Eigen::Matrix3d>(all - prior.precision);
-    return {alone / inflation, (all * u - prior.precision * prior.mean) / inflation};
+    // The estimate minimises both: alone * own = all * u - prior * mean, within what the pictures show at all.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(alone);
+    const double smallest = 1e-6 * parts.eigenvalues()[2];
+    const Eigen::Matrix3d seen = parts.eigenvectors()
+                                 * (parts.eigenvalues().array() > smallest).cast<double>().matrix().asDiagonal()
+                                 * parts.eigenvectors().transpose();
+    return {alone / inflation, seen * (all * u - prior.precision * prior.mean) / inflation};
 }
 
 // The pictures' own centre relative to the middle of the frame, in standard errors of both.

@@ -222,7 +222,7 @@ void OverlapFit::weigh_lens_knowledge() {
     for (int round = 0; round < kRounds; round++) {
         inflation_ = error_inflation(all_, prior_, gauge_, found_.used, found_.estimate);
         const Covariance found = covariance(all_, prior_, gauge_, found_.used, found_.estimate);
-        if (!found.is_determined) return;
+        if (!found.is_determined) break;
         if (stored_ && all_.settings == 1) return;  // the profile replaces the knowledge of all lenses
         lenses_ = weigh_lenses(all_, prior_, options_.prior_weight, found_.estimate, found, inflation_);
         solve_again();
@@ -285,7 +285,11 @@ HeldoutLoss OverlapFit::loss_of(const OverlapFit &other) const {
 
 bool OverlapFit::predicts_better(const HeldoutLoss &simpler) const {
     double error;
-    return loss_difference_by_place(tested(), loss_of(*this), simpler, error) < -2.0 * error;
+    const double difference = loss_difference_by_place(tested(), loss_of(*this), simpler, error);
+    // Few pairs, all of which were fitted: the gain must also pay for the unknowns (Akaike 1974).
+    const auto unknowns = static_cast<double>(free_columns(all_, found_.estimate.modes).size());
+    const double cost = has_heldout_ ? 0.0 : unknowns / static_cast<double>(simpler.losses.size());
+    return difference + cost < -2.0 * error;
 }
 
 bool OverlapFit::predicts_better_than(const OverlapFit &simpler) const { return predicts_better(loss_of(simpler)); }

@@ -115,7 +115,7 @@ void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposu
     const Output refused(r, exposures, data.image_count);
     if (found.evens) simpler.write(r, exposures);
     r.evens = found.evens;
-    if (!found.evens && !is_better) r.model = LENSPROF_FIT_MODEL_NOTHING;
+    if (!found.evens) r.model = LENSPROF_FIT_MODEL_NOTHING;
     const auto keep_verdict = [&](auto &verdict, const auto &before) {
         if (before.usable)
             refuse(verdict, {found.evens ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER, {}});

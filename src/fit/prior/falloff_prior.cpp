@@ -13,7 +13,7 @@ namespace lensprof {
 namespace {
 
 constexpr double kRadius[3] = {0.5, 0.75, 1.0};  // as in make_falloff_prior.py
-constexpr double kSmallestM = 1e-3;
+constexpr double kLowestM = 1e-3;
 constexpr double kNothing = 1e-4;  // precision of u that adds no information: a standard error of 100
 
 // Pictures whose camera corrected the falloff: M within some per cent of 1. Nobody has counted them; one in seven.
@@ -53,7 +53,9 @@ Mixture mixture_of(double stops) {
     return mixture;
 }
 
-// The normal distribution with the mean and covariance of the mixture.
+// The normal distribution with the mean of the mixture, and its covariance with the scatter of each component. The
+// variance of a t distribution is twice its scatter at 4 degrees of freedom, but due to its tails: the middle, which
+// counts unless pictures are far off, has the scatter.
 FalloffPrior moments_of(const Mixture &mixture) {
     double total = 0.0;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -69,11 +71,10 @@ FalloffPrior moments_of(const Mixture &mixture) {
 
 // Squared distance between the pictures and a component, in the covariance of both, and that covariance's inverse.
 double distance2_of(const Component &part, const Eigen::Matrix3d &shown, const Eigen::Vector3d &u,
-                    Eigen::Matrix3d *inverse) {
-    const Eigen::Matrix3d both = (part.scatter + shown).inverse();
-    if (inverse) *inverse = both;
+                    Eigen::Matrix3d &inverse) {
+    inverse = (part.scatter + shown).inverse();
     const Eigen::Vector3d off = u - part.mean;
-    return off.dot(both * off);
+    return off.dot(inverse * off);
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ Eigen::Vector3d log_falloff(const double k[3], Eigen::Matrix3d *slope) {
     Eigen::Vector3d u;
     for (int i = 0; i < 3; i++) {
         const double r2 = kRadius[i] * kRadius[i];
-        const double m = std::max(1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[2])), kSmallestM);
+        const double m = std::max(1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[2])), kLowestM);
         u[i] = std::log(m);
         if (slope) slope->row(i) << r2 / m, r2 * r2 / m, r2 * r2 * r2 / m;
     }
@@ -96,26 +97,24 @@ FalloffPrior falloff_given(const ShownFalloff &shown, double stops, double &dist
     const Eigen::Matrix3d covariance = precision.inverse();
     const Eigen::Vector3d u = covariance * shown.weighted;
     Mixture mixture = mixture_of(stops);
-    std::array<double, kCount> log_density{};
+    std::array<double, kCount> log_density{}, distance2{};
     double highest = -HUGE_VAL, nearest2 = HUGE_VAL;
     for (size_t n = 0; n < kCount; n++) {
         const Component &part = mixture[n];
         Eigen::Matrix3d both;
-        const double distance2 = distance2_of(part, covariance, u, &both);
-        const double tail =
-            part.has_tails ? 0.5 * (kFalloffFreedom + 3.0) * std::log1p(distance2 / kFalloffFreedom) : 0.5 * distance2;
+        distance2[n] = distance2_of(part, covariance, u, both);
+        const double tail = part.has_tails ? 0.5 * (kFalloffFreedom + 3.0) * std::log1p(distance2[n] / kFalloffFreedom)
+                                           : 0.5 * distance2[n];
         log_density[n] =
             part.share > 0.0 ? std::log(part.share) + 0.5 * std::log(both.determinant()) - tail : -HUGE_VAL;
         highest = std::max(highest, log_density[n]);
-        if (part.share > 0.0) nearest2 = std::min(nearest2, distance2);
+        if (part.share > 0.0) nearest2 = std::min(nearest2, distance2[n]);
     }
     distance = std::sqrt(nearest2);
     for (size_t n = 0; n < kCount; n++) {
         Component &part = mixture[n];
         // A t distribution about pictures that are far from it is as wide as that of the scale that explains them best.
-        if (part.has_tails)
-            part.scatter *=
-                std::max(1.0, (kFalloffFreedom + distance2_of(part, covariance, u, nullptr)) / (kFalloffFreedom + 3.0));
+        if (part.has_tails) part.scatter *= std::max(1.0, (kFalloffFreedom + distance2[n]) / (kFalloffFreedom + 3.0));
         part.share = std::exp(log_density[n] - highest);
     }
     return moments_of(mixture);

@@ -2,7 +2,7 @@
 //
 // A falloff is described by u = ln M at three radii, which are one to one with k1, k2, k3. Over measured lenses u has a
 // distribution per class of stops from wide open, with heavy tails (multivariate t), and pictures that the camera
-// corrected have u near 0. A fit uses the normal distribution with the mean and covariance of this mixture, whose
+// corrected have u near 0. A fit uses the normal distribution with the mean and scatter of this mixture, whose
 // components are weighted by how well they predict what the pictures show (empirical Bayes).
 #pragma once
 

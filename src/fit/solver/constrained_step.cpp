@@ -11,7 +11,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kRadii = 33;  // samples of r^2 at which M is held positive
-constexpr double kSmallestM = 0.01;
+constexpr double kLowerBound = 0.01;
 constexpr double kFallStep = 1.0 / kRadii;  // of r^2
 constexpr double kReach2 = 1.8 * 1.8;       // (1 + largest |centre|)^2 that the bound below allows
 
@@ -64,7 +64,7 @@ public:
             case Kind::upper: of_bound = *k - kLargestCenter; break;
             case Kind::lower: of_bound = -*k - kLargestCenter; break;
             case Kind::fall: of_bound = rise_at(value, bound); break;
-            case Kind::positive: of_bound = kSmallestM - value_at(value, bound, bound.radius2); break;
+            case Kind::positive: of_bound = kLowerBound - value_at(value, bound, bound.radius2); break;
             }
         }
         return gap;

@@ -74,8 +74,11 @@ double loss_difference_by_place(const Problem &heldout, const HeldoutLoss &a, co
     }
     double sum2 = 0.0;
     for (const auto &[place, sum] : sums) sum2 += sum * sum;
+    // Too few places show no scatter; their pairs then count as independent.
+    constexpr size_t kMinPlaces = 4;
+    if (sums.size() < kMinPlaces) return loss_difference(a, b, standard_error);
     const auto places = static_cast<double>(sums.size());
-    standard_error = std::sqrt(sum2 * places / std::max(places - 1.0, 1.0)) / static_cast<double>(a.losses.size());
+    standard_error = std::sqrt(sum2 * places / (places - 1.0)) / static_cast<double>(a.losses.size());
     return difference;
 }
 
