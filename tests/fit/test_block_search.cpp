@@ -11,7 +11,7 @@ using namespace lensprof;
 
 namespace {
 
-constexpr int kWidth = 70, kHeight = 60, kReach = 4, kSide = 2 * kReach + 1;
+constexpr int kWidth = 70, kHeight = 60, kReach = 4;
 constexpr double kPixel = 4.0;  // px of the full frame
 constexpr double kTurned[2][2] = {{0.9531, -0.1973}, {0.1517, 1.0479}};
 

@@ -66,7 +66,9 @@ std::string panorama_line(const Panorama &panorama) {
     const std::string stored = stored_text(result);
     text += stored.empty() ? "corrected, no profile stored" : stored;
     const double corner = corner_of(result);
-    if (corner > 0.0)
+    if (result.value("model", "full") == "exposures")
+        text += ", exposures and white balances only";
+    else if (corner > 0.0)
         text += format(", relative illuminance in the corners %.2f (%+.2f EV)", corner, std::log2(corner));
     if (stored.empty() && !summary["not_stored"].is_null())
         return text + ": " + summary["not_stored"].get<std::string>();

@@ -61,7 +61,7 @@ std::vector<std::string> CopyLosses::warnings() const {
     if (clipped_.count)
         lines.push_back(with_others(clipped_.file, clipped_.count)
                         + format(": the correction clips %s%.1f %% more of the pixels; use `lensprof apply --linear`, "
-                                 "which clips none, or --output-exposure keep",
+                                 "which clips none",
                                  clipped_.count > 1 ? "up to " : "", 100.0 * clipped_.value));
     return lines;
 }

@@ -256,7 +256,8 @@ void warn_of_few_images(const ProjectFitOptions &o, const Project &project, cons
     size_t images = joined_images(fitted);  // or of the camera with fewest
     for (const lensprof_fit_camera &camera : fitted.cameras)
         if (camera.images) images = std::min<size_t>(images, camera.images);
-    if (!project.by_matches || !fitted.corrects() || images >= min_images) return;
+    const bool has_falloff = fitted.result.model == LENSPROF_FIT_MODEL_FULL;
+    if (!project.by_matches || !fitted.corrects() || !has_falloff || images >= min_images) return;
     warn(streams, project.path
                       + format(": the falloff is from only %zu pictures of a moving camera; its error may be several "
                                "times the stated one. Give %zu pictures or more%s",

@@ -79,8 +79,8 @@ void print_lens_prior(const lensprof_fit_result &fit, std::ostream &out) {
         out << "model     nothing: the values above are not better than the pictures as they are\n";
     if (fit.falloff_prior_distance > 0.0 || fit.center_prior_distance > 0.0)
         out << format(
-            "lens      the pictures alone are %.1f (falloff) and %.1f (centre) standard errors from what lenses have in "
-            "common; errors in common: %.1f times the variance\n",
+            "lens      the pictures alone are %.1f (falloff) and %.1f (centre) standard errors from what lenses have "
+            "in common; errors that neighbouring pairs share: %.1f times the variance of independent ones\n",
             fit.falloff_prior_distance, fit.center_prior_distance, fit.error_inflation);
 }
 
