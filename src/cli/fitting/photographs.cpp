@@ -8,6 +8,7 @@
 #include <set>
 
 #include "cli/fitting/fitting.hpp"
+#include "cli/pictures/other_parts.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/output_file.hpp"
@@ -139,6 +140,7 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
     require_one_kind(list.files);
     if (list.files.size() < 2) {
         for (const std::string &file : list.files) read_header(file);  // for its errors
+        note_several(list.files, streams);
         throw Failure(ExitCode::not_usable,
                       list.label + (list.files.empty() ? ": has only corrected pictures" : ": has only one picture")
                           + "; give at least two that overlap",
