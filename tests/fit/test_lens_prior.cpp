@@ -79,7 +79,7 @@ void test_errors_in_common_are_measured(void **) {
     }
 }
 
-// A drift along the row is no reason to move the centre.
+// A drift along the row does not move the centre.
 void test_a_row_stays_level(void **) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
         const FitRun run = run_fit(row(0.03, seed));
@@ -126,7 +126,7 @@ void test_corners_that_are_not_seen(void **) {
     assert_true(squares < 0.25 * free_squares);
 }
 
-// Copies and tripod frames: places that hardly move in the frame determine no falloff.
+// Copies and tripod frames: places that barely move in the frame determine no falloff.
 void test_the_same_view_shows_no_falloff(void **) {
     Simulation s;
     s.response = srgb_response();
