@@ -132,13 +132,15 @@ lensprof_response read_curve(const Table &table, std::vector<double> values, uin
                      number_text(values[fall]) + " is below the " + number_text(values[fall - 1])
                          + " before it, but a response cannot decrease; smooth it, or check the kind of table",
                      LENSPROF_ERROR_RESPONSE);
-    if (curve == LENSPROF_CURVE_INVERSE && values.front() < 0.0)
-        fail_at_line(table.rows[0].line,
-                     number_text(values.front())
-                         + " is below 0, which is not an irradiance; check whether the table is logarithmic",
-                     LENSPROF_ERROR_RESPONSE);
+    const size_t lowest = static_cast<size_t>(std::min_element(values.begin(), values.end()) - values.begin());
+    const double smallest = values[lowest];
     if (curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10) remove_logarithm(values, curve);
     if (fall < values.size()) make_increasing(values, 0.0, repair);
+    if (curve == LENSPROF_CURVE_INVERSE && values.front() < 0.0)
+        fail_at_line(
+            table.rows[lowest].line,
+            number_text(smallest) + " is below 0, which is not an irradiance; check whether the table is logarithmic",
+            LENSPROF_ERROR_RESPONSE);
     const double first = values.front(), last = values.back();
     if (!(last > 0.0 && last > first))
         fail_at_line(table.rows.back().line,

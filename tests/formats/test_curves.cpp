@@ -254,13 +254,33 @@ void test_no_response(void **) {
         }
 }
 
+// An inverse curve stays below 0 when its dips are removed: 0, then eight times -0.05.
+void test_repaired_below_zero(void **) {
+    for (const double start : {0.0, 0.01})
+        for (const double scale : {1.0, 255.0}) {
+            std::vector<double> values{start * scale};
+            for (int i = 1; i < 256; i++) values.push_back(scale * (i <= 8 ? -0.05 : i / 255.0));
+            assert_int_equal(import_table(rows(values, "\n"), LENSPROF_FORMAT_CURVES).status, LENSPROF_ERROR_RESPONSE);
+            values[1] = values[0];
+            for (int i = 2; i <= 8; i++) values[size_t(i)] = scale * 0.03;
+            values[3] = scale * 0.02;
+            assert_ok(import_table(rows(values, "\n"), LENSPROF_FORMAT_CURVES).status);
+        }
+}
+
 }  // namespace
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_dips),       cmocka_unit_test(test_no_response), cmocka_unit_test(test_layouts),
-        cmocka_unit_test(test_channels),   cmocka_unit_test(test_kinds),       cmocka_unit_test(test_pfstools),
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_dips),
+        cmocka_unit_test(test_no_response),
+        cmocka_unit_test(test_layouts),
+        cmocka_unit_test(test_channels),
+        cmocka_unit_test(test_kinds),
+        cmocka_unit_test(test_pfstools),
+        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_repaired_below_zero),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
