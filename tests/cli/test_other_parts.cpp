@@ -329,6 +329,9 @@ void test_pages(void **) {
         {{page, {700, 500, FILETYPE_PAGE}, {700, 500, FILETYPE_PAGE}}, "has 3 pages"},
         {{page, small}, ""},
         {{page, {400, 300}}, "has 2 pages"},
+        {{page, small, small}, "has 3 pages"},
+        {{page, page, small}, "has 3 pages"},
+        {{page, {350, 250, FILETYPE_REDUCEDIMAGE}, small}, "has 2 pages"},
         {{page, {350, 250, FILETYPE_REDUCEDIMAGE}, {175, 125, FILETYPE_REDUCEDIMAGE}}, ""},
         {{page, {700, 500, FILETYPE_MASK}}, "", "a mask"},
     };
@@ -353,6 +356,9 @@ void test_pages(void **) {
         save(work("a.tif"), changed);
         several_pictures(work("a.tif"));
         read_picture(work("a.tif"));
+        const Words names = other_parts(work("a.tif"), work("b.tif")).left_out;
+        assert_int_equal(names.size(), next == 0x7fffffffu);
+        if (!names.empty()) assert_true(contains(names[0], "damaged"));
     }
 }
 

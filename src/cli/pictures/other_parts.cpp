@@ -144,6 +144,7 @@ OtherParts other_parts(const std::string &source, const std::string &target) {
         const codec::TiffPages pages = codec::tiff_pages(source);
         if (pages.has_layers) parts.left_out.push_back("its layers");
         if (pages.has_mask) parts.left_out.push_back("a mask");
+        if (pages.is_damaged) parts.left_out.push_back("further pages, whose directory is damaged");
         break;
     }
     case Kind::heif: parts.left_out = codec::heif_parts(source, coded_kind(source)->name).names; break;

@@ -15,14 +15,14 @@ namespace {
 constexpr uint32_t max_pages = 4096;  // examined
 constexpr uint32_t thumbnail_max_side = 320;
 
-// TIFF 6.0, tag 254, and Exif 2.32, 4.5.5: the second directory is a
-// thumbnail, without a mark of its own.
+// TIFF 6.0, tag 254, and Exif 2.32, 4.5.5: the second of two directories is a thumbnail, without a mark of its own.
 enum class PageKind {
     page,
     reduced,
     mask
 };
 
+// `first_side`: of the picture that a directory without a mark may be a thumbnail of; 0 = of none.
 PageKind kind_of(const Tiff &tiff, uint32_t first_side) {
     const uint32_t type = tiff.field<uint32_t>(TIFFTAG_SUBFILETYPE, 0);
     if (type & FILETYPE_MASK) return PageKind::mask;
@@ -59,7 +59,7 @@ std::vector<uint64_t> children_of(const Tiff &tiff) {
 }  // namespace
 
 TiffPages tiff_pages(const std::string &path) {
-    const Tiff tiff(path, "rm");
+    Tiff tiff(path, "rm");
     TiffPages pages;
     if (!tiff.handle) return pages;
     pages.pages = 1;
@@ -67,11 +67,14 @@ TiffPages tiff_pages(const std::string &path) {
     const std::vector<uint64_t> children = children_of(tiff);
     const uint32_t first_side =
         std::max(tiff.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0), tiff.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0));
+    tiff.message = {};
     const uint32_t directories = std::min<uint32_t>(TIFFNumberOfDirectories(tiff.handle), max_pages);
+    pages.is_damaged = tiff.failed();
+    const bool may_be_exif = directories == 2;
     for (uint32_t i = 1; i < directories; ++i) {
         if (TIFFReadDirectory(tiff.handle))
-            count(kind_of(tiff, first_side), pages);
-        else if (i > 1)  // a thumbnail of EXIF states no size
+            count(kind_of(tiff, may_be_exif ? first_side : 0), pages);
+        else if (!may_be_exif)  // a thumbnail of EXIF states no size
             count(PageKind::page, pages);
     }
     for (const uint64_t child : children)
