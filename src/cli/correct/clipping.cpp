@@ -1,5 +1,6 @@
 #include "cli/correct/clipping.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "cli/program/format.hpp"
@@ -25,6 +26,13 @@ uint64_t count_clipped(const lensprof_image &rows, uint32_t y) {
     return count;
 }
 
+// EV; of crops, the largest.
+double lift_of(const Correction &job) {
+    double lift = job.target_exposure.ev - job.exposure.ev;
+    for (const CropCorrection &crop : job.crops) lift = std::max(lift, crop.target_exposure.ev - crop.exposure.ev);
+    return lift;
+}
+
 std::string with_others(const std::string &file, size_t count) {
     return count > 1 ? file + format(" and %zu more", count - 1) : file;
 }
@@ -47,7 +55,7 @@ void CopyLosses::Worst::add(const std::string &source, double of_source, double 
 }
 
 void CopyLosses::add(const Correction &job, double more_clipped) {
-    lifted_.add(job.source, job.target_exposure.ev - job.exposure.ev, largest_lift_ev);
+    lifted_.add(job.source, lift_of(job), largest_lift_ev);
     clipped_.add(job.source, more_clipped, largest_clipped);
 }
 
