@@ -393,16 +393,57 @@ void test_two_circles(void **) {
     assert_refused(usage, {"align", "--project", work("in/pair.pto"), "-o", work("more")}, {"align", "crops"});
 }
 
+// Each crop is judged: the falloffs of a circle by its circle, that of a rectangle by its corners, and the largest
+// lift.
+void test_doubts_of_crops(void **) {
+    fs::create_directories(work("in"));
+    write_picture(work("in/pair.tif"), make_smooth(96, 48, LENSPROF_LAYOUT_RGB));
+    const struct {
+        const char *second;  // Vb of the second crop, and its exposure
+        int circular;
+        const char *warning;
+    } cases[] = {{"Vb-0.5 Eev0", 1, ""},
+                 {"Vb-0.5 Eev0", 0, ""},
+                 {"Vb1 Eev0", 1, "its falloff rises"},
+                 {"Vb1 Eev0", 0, "its falloff rises"},
+                 {"Vb-2.45 Eev0", 1, ""},  // M = 0.51 at the edge of the circle, 0.02 in the corner
+                 {"Vb-2.45 Eev0", 0, "its falloff falls"},
+                 {"Vb-0.5 Eev8", 1, "lifted by 4.0 EV"}};
+    for (const auto &of : cases) {
+        std::ostringstream pto;
+        for (int i = 0; i < 2; i++)
+            pto << "i w96 h48 f2 v400 Rt1 y" << 180 * i << " Va1 " << (i ? of.second : "Vb-0.4 Eev0") << " Vx"
+                << 48 * i - 24 << " S" << 48 * i << "," << 48 * i + 48 << ",0,48 Vm5 n\"pair.tif\"\n";
+        std::string text = pto.str();
+        if (!of.circular)
+            for (size_t at; (at = text.find(" f2 ")) != text.npos;) text.replace(at, 4, " f3 ");
+        save_text(work("in/pair.pto"), text);
+        fs::remove_all(work("out"));
+        const Outcome outcome = run_words({"apply", "--pto", work("in/pair.pto"), "-o", work("out")});
+        assert_int_equal(outcome.code, done);
+        const bool is_warned = contains(outcome.err, "its falloff") || contains(outcome.err, "lifted");
+        if (is_warned != (*of.warning != 0) || !contains(outcome.err, of.warning))
+            fail_msg("%s, %d: %s", of.second, of.circular, outcome.err.c_str());
+    }
+}
+
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_output_exposures),        CLI_TEST(test_linear_is_float),
-        CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
-        CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
-        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
-        CLI_TEST(test_contact_sheet),           CLI_TEST(test_two_circles),
-        CLI_TEST(test_strength_cap_and_dither), CLI_TEST(test_folder),
+        CLI_TEST(test_output_exposures),
+        CLI_TEST(test_linear_is_float),
+        CLI_TEST(test_simulate_undoes_correct),
+        CLI_TEST(test_some_pictures_of_a_project),
+        CLI_TEST(test_overlaps_agree_better),
+        CLI_TEST(test_pictures_keep_their_nature),
+        CLI_TEST(test_profile_by_id_or_exif),
+        CLI_TEST(test_gain_grid_of_a_profile),
+        CLI_TEST(test_contact_sheet),
+        CLI_TEST(test_two_circles),
+        CLI_TEST(test_doubts_of_crops),
+        CLI_TEST(test_strength_cap_and_dither),
+        CLI_TEST(test_folder),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -231,10 +231,17 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
 // A project has no pairs to check its falloffs against. Each doubt is printed once, with the first image.
 void warn_of_falloffs(const ApplySource &source, const std::vector<Correction> &jobs, Streams &streams) {
     std::map<std::string, std::vector<std::string>> images;  // by doubt
+    const auto add = [&](const std::string &file, const std::string &doubt) {
+        if (doubt.empty()) return;
+        std::vector<std::string> &files = images[doubt];
+        if (files.empty() || files.back() != file) files.push_back(file);
+    };
     for (const Correction &job : jobs) {
         const lensprof_camera &camera = source.project->images[source.images->at(job.source, "--pto")].camera;
-        const std::string doubt = impossible_falloff(*job.model, camera.width, camera.height);
-        if (!doubt.empty()) images[doubt].push_back(job.source);
+        for (const CropCorrection &of : job.crops)
+            add(job.source, impossible_falloff(*of.model, static_cast<uint32_t>(of.crop[2] - of.crop[0]),
+                                               static_cast<uint32_t>(of.crop[3] - of.crop[1]), of.is_circular));
+        if (job.crops.empty()) add(job.source, impossible_falloff(*job.model, camera.width, camera.height));
     }
     for (const auto &[doubt, files] : images)
         warn(streams, files[0] + (files.size() > 1 ? format(" and %zu more", files.size() - 1) : "") + ": " + doubt

@@ -13,10 +13,11 @@ constexpr double largest_rise = 0.02;       // of M with growing r; 99 % of Lens
 constexpr double errors_of_evidence = 2.0;  // standard errors
 constexpr int steps = 64;                   // of r
 
-// Half diagonals from the centre of the falloff to the farthest corner.
-double farthest_corner(const lensprof_vignetting &falloff, uint32_t width, uint32_t height) {
+// Half diagonals from the centre of the falloff to the farthest corner, or place of the circle.
+double farthest_place(const lensprof_vignetting &falloff, uint32_t width, uint32_t height, bool is_circular) {
     if (width == 0 || height == 0) width = 3, height = 2;
     const double diagonal = std::hypot(width, height);
+    if (is_circular) return std::hypot(falloff.center[0], falloff.center[1]) + std::min(width, height) / diagonal;
     return std::hypot(std::abs(falloff.center[0]) + width / diagonal, std::abs(falloff.center[1]) + height / diagonal);
 }
 
@@ -41,10 +42,10 @@ std::string impossible_curve(const lensprof_profile &profile, uint32_t channel, 
 
 }  // namespace
 
-std::string impossible_falloff(const lensprof_profile &profile, uint32_t width, uint32_t height) {
+std::string impossible_falloff(const lensprof_profile &profile, uint32_t width, uint32_t height, bool is_circular) {
     std::string text;
     for (uint32_t c = 0; c < profile.vignettings && text.empty() && profile.grid.columns == 0; c++)
-        text = impossible_curve(profile, c, farthest_corner(profile.vignetting[c], width, height));
+        text = impossible_curve(profile, c, farthest_place(profile.vignetting[c], width, height, is_circular));
     return text;
 }
 
