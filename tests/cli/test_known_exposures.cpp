@@ -118,6 +118,9 @@ void test_a_field_that_all_lack_cancels(void **) {
     assert_steps(known_of(m), "by time and aperture: it states no ISO");
     for (auto &metadata : m) metadata.exposure_time_s.reset();
     assert_sigmas(known_of(m).sigmas, {0.0, 0.0, 0.0});  // cameras vary the time
+    assert_true(known_of(m).note.empty());               // an aperture alone describes the lens
+    for (auto &metadata : m) metadata.iso = 200.0;
+    assert_sigmas(known_of(m).sigmas, {0.0, 0.0, 0.0});
     assert_true(known_of(m).note.find("0 of 3 pictures") != std::string::npos);
     assert_true(known_of({unknown_metadata(), unknown_metadata()}).note.empty());
 }
