@@ -53,7 +53,7 @@ void check_outcome(lensprof_status status, const lensprof_error &error) {
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_UNSUPPORTED
                || status == LENSPROF_ERROR_SIZE || status == LENSPROF_ERROR_RESPONSE
                || status == LENSPROF_ERROR_VIGNETTING || status == LENSPROF_ERROR_NOT_FINITE
-               || status == LENSPROF_ERROR_ARGUMENT,
+               || status == LENSPROF_ERROR_ARGUMENT || status == LENSPROF_ERROR_NOT_FOUND,
            "unexpected status");
     demand((status == LENSPROF_OK) == !error.text[0], "status and error text contradict each other");
 }
