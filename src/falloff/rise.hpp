@@ -25,6 +25,17 @@ inline Highest highest_of(const lensprof_vignetting &v) {
     return highest;
 }
 
+// The smallest M of the falloff about its own centre, at most 1.
+inline double lowest_of(const lensprof_vignetting &v) {
+    constexpr int kSteps = 20;  // of r^2
+    double lowest = 1.0;
+    for (int i = 1; i <= kSteps; i++) {
+        const double m = lensprof_vignetting_eval(&v, double(i) / kSteps, nullptr);
+        lowest = m < lowest ? m : lowest;
+    }
+    return lowest;
+}
+
 // The largest rise of M from a place to one farther from its centre.
 inline double outward_rise(const lensprof_vignetting &v) {
     constexpr int kSteps = 40;  // of r^2

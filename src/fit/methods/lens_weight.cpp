@@ -1,6 +1,5 @@
 #include "fit/methods/lens_weight.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -11,12 +10,21 @@
 namespace lensprof {
 namespace {
 
-// Without its negative eigenvalues, which are rounding.
+// A symmetric matrix without its negative eigenvalues, which are rounding, and the projection on those that count.
 template <class Matrix>
-Matrix positive_part(const Matrix &symmetric) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> parts(0.5 * (symmetric + symmetric.transpose()));
-    return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() * parts.eigenvectors().transpose();
-}
+struct PositivePart {
+    Matrix matrix, projection;
+
+    explicit PositivePart(const Matrix &symmetric) {
+        const Eigen::SelfAdjointEigenSolver<Matrix> parts(0.5 * (symmetric + symmetric.transpose()));
+        const auto &vectors = parts.eigenvectors();
+        const auto values = parts.eigenvalues().cwiseMax(0.0).eval();
+        const double smallest = 1e-6 * values.maxCoeff();
+        matrix = vectors * values.asDiagonal() * vectors.transpose();
+        projection =
+            vectors * (values.array() > smallest).template cast<double>().matrix().asDiagonal() * vectors.transpose();
+    }
+};
 
 // Stops from wide open of a setting: the mean of its images that know them.
 double stops_of(const Problem &problem, int setting) {
@@ -37,14 +45,9 @@ ShownFalloff shown_falloff(const Problem &problem, const FalloffPrior &prior, co
     covariance = slope * covariance * slope.transpose();
     const Eigen::Matrix3d all = covariance.inverse();
     if (!all.allFinite()) return {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
-    const Eigen::Matrix3d alone = positive_part<Eigen::Matrix3d>(all - prior.precision);
+    const PositivePart<Eigen::Matrix3d> alone(all - prior.precision);
     // The estimate minimises both: alone * own = all * u - prior * mean, within what the pictures show at all.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(alone);
-    const double smallest = 1e-6 * parts.eigenvalues()[2];
-    const Eigen::Matrix3d seen = parts.eigenvectors()
-                                 * (parts.eigenvalues().array() > smallest).cast<double>().matrix().asDiagonal()
-                                 * parts.eigenvectors().transpose();
-    return {alone / inflation, seen * (all * u - prior.precision * prior.mean) / inflation};
+    return {alone.matrix / inflation, alone.projection * (all * u - prior.precision * prior.mean) / inflation};
 }
 
 // The pictures' own centre relative to the middle of the frame, in standard errors of both.
@@ -56,7 +59,7 @@ double center_distance(const Prior &prior, const Estimate &estimate, const Covar
                           of_prior = prior.precision.block<2, 2>(center, center);
     if (!all.allFinite() || !(of_prior(0, 0) > 0.0)) return 0.0;
     const Eigen::Vector2d at = Eigen::Vector2d::Map(estimate.vignetting[static_cast<size_t>(setting)][0].center);
-    const Eigen::Matrix2d alone = positive_part<Eigen::Matrix2d>(all - of_prior) / inflation;
+    const Eigen::Matrix2d alone = PositivePart<Eigen::Matrix2d>(all - of_prior).matrix / inflation;
     const Eigen::Matrix2d error = (alone + kNothing * Eigen::Matrix2d::Identity()).inverse();
     const Eigen::Vector2d own = error * (all * at) / inflation;
     const Eigen::Matrix2d both = error + kCenterSigma * kCenterSigma * Eigen::Matrix2d::Identity();

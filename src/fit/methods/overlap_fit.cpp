@@ -335,8 +335,8 @@ void OverlapFit::describe(lensprof_exposure *exposures, lensprof_fit_result &res
     Loss last = found_.used;
     last.noise = estimate_noise(all_, found_.estimate, found_.used.noise);
     const Covariance found = covariance(all_, prior_, gauge_, last, found_.estimate, &inflation_);
-    finish({all_, gauge_, found_.estimate, has_heldout_ ? heldout_ : all_, found_.best.estimate, has_heldout_,
-            last.noise, found, static_cast<uint32_t>(found_.outcome.iterations), found_.outcome.converged},
+    finish({all_, gauge_, found_.estimate, tested(), found_.best.estimate, has_heldout_, last.noise, found,
+            static_cast<uint32_t>(found_.outcome.iterations), found_.outcome.converged},
            nullptr, exposures, result);
     result.falloff_prior_distance = result.center_prior_distance = 0.0;
     for (const WeighedLens &lens : lenses_) {

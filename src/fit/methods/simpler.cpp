@@ -1,12 +1,11 @@
 #include "fit/methods/simpler.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <stdexcept>
 
 #include "core/covariance.h"
 #include "falloff/rise.hpp"
+#include "fit/methods/unshown.hpp"
 #include "fit/verdict/output.hpp"
 #include "fit/verdict/reason.hpp"
 
@@ -35,10 +34,7 @@ bool is_possible(const lensprof_fit_options &options, lensprof_fit_result &r) {
     bool all = true;
     for_each_verdict(r, [&](const auto &found) {
         for (const lensprof_vignetting &v : found.vignetting)
-            for (int i = 0; i <= 20; i++) {
-                const double m = lensprof_vignetting_eval(&v, i / 20.0, nullptr);
-                all = all && m >= kSmallestM && m <= kLargestRise;
-            }
+            all = all && lowest_of(v) >= kSmallestM && highest_of(v).m <= kLargestRise;
     });
     return all;
 }
@@ -68,14 +64,7 @@ public:
                   lensprof_fit_result &r) {
         fit_->describe(exposures, r);
         r.model = model;
-        if (!(gamma_sigma_ > 0.0)) return;
-        r.response_from = LENSPROF_FIT_RESPONSE_KIND;
-        r.gamma_from = LENSPROF_GAMMA_PRIOR;
-        r.gamma_sigma = gamma_sigma_;
-        for (uint32_t i = 0; i < image_count && r.image_quality; i++) {
-            double &sigma = r.image_quality[i].ev_sigma;
-            if (sigma > 0.0) sigma = std::hypot(sigma, gamma_sigma_ * (exposures[i].ev - exposures[r.reference].ev));
-        }
+        if (gamma_sigma_ > 0.0) state_typical(gamma_sigma_, image_count, exposures, r);
     }
 
 private:

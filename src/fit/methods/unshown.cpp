@@ -60,18 +60,22 @@ void hold_typical(const lensprof_fit_options &options, uint32_t image_count, con
     held.response = &typical;
     held.profile = nullptr;
     fit(held, exposures, r);
-    r.response_from = LENSPROF_FIT_RESPONSE_KIND;
-    r.gamma_from = LENSPROF_GAMMA_PRIOR;
-    r.gamma_sigma = sigma;
+    state_typical(sigma, image_count, exposures, r);
     for_each_verdict(r, [&](auto &part) { state_errors(covariance.data(), r, part); });
-    for (uint32_t i = 0; i < image_count && r.image_quality; i++) {
-        auto &q = r.image_quality[i];
-        if (q.ev_sigma > 0.0)
-            q.ev_sigma = std::hypot(q.ev_sigma, sigma * (exposures[i].ev - exposures[r.reference].ev));
-    }
 }
 
 }  // namespace
+
+void state_typical(double gamma_sigma, uint32_t image_count, const lensprof_exposure *exposures,
+                   lensprof_fit_result &r) {
+    r.response_from = LENSPROF_FIT_RESPONSE_KIND;
+    r.gamma_from = LENSPROF_GAMMA_PRIOR;
+    r.gamma_sigma = gamma_sigma;
+    for (uint32_t i = 0; i < image_count && r.image_quality; i++) {
+        double &sigma = r.image_quality[i].ev_sigma;
+        if (sigma > 0.0) sigma = std::hypot(sigma, gamma_sigma * (exposures[i].ev - exposures[r.reference].ev));
+    }
+}
 
 void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
                                  lensprof_exposure *exposures, lensprof_fit_result &r) {

@@ -11,6 +11,11 @@ namespace lensprof {
 using FitHeld =
     std::function<void(const lensprof_fit_options &options, lensprof_exposure *exposures, lensprof_fit_result &result)>;
 
+// States that a result has the typical response of its kind of camera, whose ln gamma has this standard error, which
+// the exposures share.
+void state_typical(double gamma_sigma, uint32_t image_count, const lensprof_exposure *exposures,
+                   lensprof_fit_result &result);
+
 // If the light at the ends of the pairs differs too little to determine a response, replaces the result by one with a
 // held response, including its errors: that of the prior profile, or else, by another fit, the typical response of the
 // kind of camera. The paper's own variant, without a prior, is unchanged.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <lensprof/profile.h>

@@ -131,8 +131,7 @@ double radius_change(const Problem &problem) {
 double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
     double darkest = 1.0;
     for (int curve = 0; curve < problem.vignettings && frees_falloff(problem); curve++)
-        for (int i = 1; i <= 20; i++)
-            darkest = std::min(darkest, lensprof_vignetting_eval(&r.vignetting[curve], i / 20.0, nullptr));
+        darkest = std::min(darkest, lowest_of(r.vignetting[curve]));
     return darkest;
 }
 
