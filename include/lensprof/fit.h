@@ -307,7 +307,8 @@ typedef struct lensprof_fit_result {
     lensprof_fit_setting *settings; /* the caller's array of setting_count initialised elements, indexed by setting, set
                                        before the call; or NULL */
     uint32_t setting_count;
-    uint32_t reserved2;           /* 0 */
+    uint32_t equal_exposures;     /* 1: no exposure was known and the pictures show no difference, so that all are taken
+                                     as equal */
     lensprof_fit_camera *cameras; /* the caller's array of camera_count initialised elements, indexed by camera, set
                                      before the call; or NULL */
     uint32_t camera_count;

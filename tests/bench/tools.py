@@ -17,7 +17,7 @@ from scorer import Curve, Model, model_of_json
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 WORK = ROOT / "build" / "bench"
-LENSPROF = os.environ.get("LENSPROF", str(ROOT / "build" / "lensprof"))
+LENSPROF = os.path.abspath(os.environ.get("LENSPROF", ROOT / "build" / "lensprof"))
 VIG_OPTIMIZE = shutil.which("vig_optimize")
 OPENCV = importlib.util.find_spec("cv2") is not None
 NO_OPENCV = "no OpenCV for Python (package python3-opencv)"

@@ -59,36 +59,52 @@ void test_pictures_choose_among_lenses(void **) {
     assert_true(far.precision.determinant() < 0.1 * any.precision.determinant());
 }
 
-// A row of pictures of one exposure; `local_ev`: light that each picture changes locally.
-Simulation row(double local_ev, uint64_t seed) {
+// A row of pictures, every other one brighter by `ev`; `local_ev`: light that each picture changes locally.
+Simulation row(double ev, double local_ev, uint64_t seed, uint32_t images = 8, double center_x = 0.0) {
     Simulation s;
     s.response = srgb_response();
-    s.vignetting = {{-0.25, 0.02, -0.05}, {0.0, 0.0}};
-    s.images = 8;
+    s.vignetting = {{-0.25, 0.02, -0.05}, {center_x, 0.0}};
+    s.images = images;
     s.shift = 0.6;
     s.local_ev = local_ev;
-    s.exposures.assign(s.images, {0.0, {1.0, 1.0, 1.0}});
+    for (uint32_t i = 0; i < images; i++) s.exposures.push_back({i % 2 ? ev : 0.0, {1.0, 1.0, 1.0}});
     s.make(3000, 1.0, 0.05, 0.0, seed);
     return s;
 }
 
 void test_errors_in_common_are_measured(void **) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
-        assert_true(run_fit(row(0.0, seed)).result.error_inflation < 2.0);
-        assert_true(run_fit(row(0.05, seed)).result.error_inflation > 3.0);
+        assert_true(run_fit(row(0.0, 0.0, seed)).result.error_inflation < 2.0);
+        assert_true(run_fit(row(0.0, 0.05, seed)).result.error_inflation > 3.0);
     }
 }
 
 // A drift along the row does not move the centre.
 void test_a_row_stays_level(void **) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
-        const FitRun run = run_fit(row(0.03, seed));
+        const Simulation s = row(0.3, 0.03, seed);
+        const FitRun run = run_fit(s);
         const lensprof_vignetting &v = run.result.vignetting[1];
-        double low = 0.0, high = 0.0;
-        for (const auto &e : run.exposures) low = std::min(low, e.ev), high = std::max(high, e.ev);
+        assert_int_equal(run.result.equal_exposures, 0);
         assert_true(std::hypot(v.center[0], v.center[1]) < 0.05);
-        assert_true(high - low < 0.12);
+        assert_true(s.exposure_error(run.exposures, s.gamma(run.exposures)) < 0.06);
     }
+}
+
+// Exposures that the pictures do not tell apart are equal. The centre then follows from the pictures.
+void test_equal_exposures_are_recognised(void **) {
+    const Simulation s = row(0.0, 0.02, 1, 8, 0.03);
+    const FitRun run = run_fit(s);
+    assert_int_equal(run.result.equal_exposures, 1);
+    assert_close(run.result.vignetting[1].center[0], 0.03, 0.01);
+    for (const lensprof_exposure &e : run.exposures) assert_close(e.ev, 0.0, 0.01);
+    assert_true(run.quality[4].ev_sigma > 0.0);
+
+    assert_int_equal(run_fit(row(0.0, 0.02, 1, 2)).result.equal_exposures, 0);  // one may be equal by accident
+    lensprof_fit_options options = default_fit();
+    options.prior_weight = 0.0;
+    assert_int_equal(run_fit(s, options).result.equal_exposures, 0);
+    assert_int_equal(run_fit(row(0.1, 0.0, 1)).result.equal_exposures, 0);
 }
 
 void test_a_crop_moves_the_centre(void **) {
@@ -169,6 +185,7 @@ int main() {
         cmocka_unit_test(test_pictures_choose_among_lenses),
         cmocka_unit_test(test_errors_in_common_are_measured),
         cmocka_unit_test(test_a_row_stays_level),
+        cmocka_unit_test(test_equal_exposures_are_recognised),
         cmocka_unit_test(test_a_crop_moves_the_centre),
         cmocka_unit_test(test_corners_that_are_not_seen),
         cmocka_unit_test(test_the_same_view_shows_no_falloff),

@@ -319,7 +319,7 @@ static void print_structs(void) {
     FIELD(lensprof_fit_result, light_spread_ev);
     FIELD(lensprof_fit_result, settings);
     FIELD(lensprof_fit_result, setting_count);
-    FIELD(lensprof_fit_result, reserved2);
+    FIELD(lensprof_fit_result, equal_exposures);
     FIELD(lensprof_fit_result, cameras);
     FIELD(lensprof_fit_result, camera_count);
     FIELD(lensprof_fit_result, model);

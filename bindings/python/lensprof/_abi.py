@@ -844,7 +844,7 @@ class FitResult(Structure):
         ("light_spread_ev", c_double),
         ("settings", POINTER(FitSetting)),
         ("setting_count", c_uint32),
-        ("reserved2", c_uint32),
+        ("equal_exposures", c_uint32),
         ("cameras", POINTER(FitCamera)),
         ("camera_count", c_uint32),
         ("model", c_uint32),

@@ -191,7 +191,8 @@ class FitResult(Struct, _abi.FitResult):
     left_out, which cover all. model: what the result consists of, the most complex description that predicts held-out
     pairs better than all simpler ones. falloff_prior_distance, center_prior_distance: how far the pictures alone are
     from what lenses have in common, in standard errors. error_inflation: variance of the falloff over that of
-    independent pairs.
+    independent pairs. equal_exposures: no exposure was known and the pictures show no difference, so that all are taken
+    as equal.
     """
 
     usable = Flag()
@@ -232,6 +233,7 @@ class FitResult(Struct, _abi.FitResult):
     falloff_prior_distance: float
     center_prior_distance: float
     error_inflation: float
+    equal_exposures = Flag()
 
     def __init__(self, image_count: int, options: Optional[FitOptions] = None, setting_count: int = 1,
                  camera_count: int = 1):

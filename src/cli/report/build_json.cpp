@@ -213,6 +213,7 @@ Json build_json(const BuildReport &report) {
     json["seconds"] = {
         {"register", report.register_s}, {"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
     json["exif_exposures"] = exif_json(report.exif);
+    json["equal_exposures"] = fit.equal_exposures != 0;
     json["prior"] = prior_json(report);
     json["lens_prior"] = {{"falloff_distance", fit.falloff_prior_distance},
                           {"center_distance", fit.center_prior_distance},

@@ -77,6 +77,7 @@ void print_lens_prior(const lensprof_fit_result &fit, std::ostream &out) {
         out << "model     exposures and white balances, and the stored falloff as it is\n";
     else if (fit.model == LENSPROF_FIT_MODEL_NOTHING)
         out << "model     nothing: the values above are not better than the pictures as they are\n";
+    if (fit.equal_exposures) out << "exposure  taken as equal: none was known, and the pictures show no difference\n";
     if (fit.falloff_prior_distance > 0.0 || fit.center_prior_distance > 0.0)
         out << format(
             "lens      the pictures alone are %.1f (falloff) and %.1f (centre) standard errors from what lenses have "

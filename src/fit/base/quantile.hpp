@@ -1,7 +1,8 @@
-// Quantiles of unordered values.
+// Quantiles of unordered values, and of chi-squared.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace lensprof {
@@ -18,6 +19,13 @@ Value quantile(std::vector<Value> &values, double share) {
 template <class Value>
 Value median(std::vector<Value> &values) {
     return quantile(values, 0.5);
+}
+
+// The 99 % quantile of chi-squared, by Wilson and Hilferty (1931).
+inline double chi_squared_limit(int freedom) {
+    constexpr double kOneIn = 2.33;  // standard deviations that a normal variable exceeds with probability 1 %
+    const double share = 2.0 / (9.0 * freedom), root = 1.0 - share + kOneIn * std::sqrt(share);
+    return freedom * root * root * root;
 }
 
 }  // namespace lensprof

@@ -5,6 +5,7 @@
 
 #include "falloff/rise.hpp"
 #include "fit/base/constants.hpp"
+#include "fit/base/quantile.hpp"
 #include "fit/methods/refine.hpp"
 #include "fit/problem/curve_shape.hpp"
 #include "fit/solver/objective.hpp"
@@ -227,8 +228,30 @@ void OverlapFit::weigh_lens_knowledge() {
         lenses_ = weigh_lenses(all_, prior_, options_.prior_weight, found_.estimate, found, inflation_);
         solve_again();
     }
+    hold_equal_exposures();
     free_center();
     hold_falling();
+}
+
+// Exposures that drift along a row look much like a centre that is off the middle. Many cameras hold their exposure
+// along a row, and others hardly ever give equal exposures by accident: they are taken as equal unless a likelihood
+// ratio test (Wilks 1938) rejects it.
+void OverlapFit::hold_equal_exposures() {
+    constexpr int kFewest = 2;  // unknown exposures: a single one may be equal by accident
+    int unknown = 0;
+    for (uint32_t i = 0; i < all_.image_count; i++)
+        unknown += all_.ev_unknown[i] >= 0 && all_.component[i] == all_.component[all_.reference];
+    if (gauge_.knows() || unknown < kFewest) return;
+    const Fitted different = found_;
+    Gauge open = gauge_;
+    Prior prior = prior_of(prior_, different.estimate.modes);
+    open.renew(all_, different.estimate, prior);
+    const auto objective = make_objective(all_, prior, different.used, different.estimate);
+    gauge_.expect_equal_exposures();
+    solve_again();
+    const double ratio = objective->value_at(found_.estimate) - objective->value_at(different.estimate);
+    if (2.0 * ratio / inflation_.exposures < chi_squared_limit(unknown)) return;
+    gauge_ = open, found_ = different;
 }
 
 // A crop has its optical axis far from its middle, as no lens has. The pictures must predict held-out pairs
@@ -307,7 +330,7 @@ bool OverlapFit::predicts_better_than_nothing() const {
 
 void OverlapFit::run() {
     bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMaxRefinedImages;
-    const Gauge requested = gauge_;
+    Gauge requested = gauge_;
     if (frees) gauge_ = gauge_.by_prior();
     found_.used = loss();
     found_.used.distrusts = true;
@@ -317,6 +340,7 @@ void OverlapFit::run() {
     found_.outcome = solve(all_, prior_, gauge_, found_.used, true, control_, found_.estimate);
     inflation_ = Inflation(all_.settings);
     if (options_.prior_weight > 0.0 && frees_lens() && !is_static(all_)) weigh_lens_knowledge();
+    if (gauge_.expects_equal_exposures()) requested.expect_equal_exposures();
     if (frees)
         free_response(requested, found_.used, found_.best, found_.estimate, found_.outcome);
     else
@@ -338,6 +362,7 @@ void OverlapFit::describe(lensprof_exposure *exposures, lensprof_fit_result &res
     finish({all_, gauge_, found_.estimate, tested(), found_.best.estimate, has_heldout_, last.noise, found,
             static_cast<uint32_t>(found_.outcome.iterations), found_.outcome.converged},
            nullptr, exposures, result);
+    result.equal_exposures = gauge_.expects_equal_exposures();
     result.falloff_prior_distance = result.center_prior_distance = 0.0;
     for (const WeighedLens &lens : lenses_) {
         result.falloff_prior_distance = std::max(result.falloff_prior_distance, lens.falloff_distance);

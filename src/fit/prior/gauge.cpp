@@ -200,6 +200,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
         compare_known(problem, estimate);
     }
     put_known(problem, prior);
+    if (expects_equal_) put_equal(problem, estimate, prior);
 }
 
 Eigen::VectorXd Gauge::direction(const Problem &problem, const Estimate &estimate) {

@@ -35,6 +35,10 @@ public:
     // exposures ask for, which would also bias the pictures' exposures. A refined response can follow exactly.
     Gauge by_prior() const;
 
+    // Expects the exposures of the reference's component to be equal. For problems without known exposures.
+    void expect_equal_exposures() { expects_equal_ = true; }
+    bool expects_equal_exposures() const { return expects_equal_; }
+
     // Moves the estimate along its family to the determined gamma, as well as its modes and falloff can follow.
     void apply_gamma(const Problem &problem, Estimate &estimate);
 
@@ -66,13 +70,14 @@ private:
     void compare_known(const Problem &problem, const Estimate &estimate);
     void leave_out(const Problem &problem, const std::vector<double> &off);
     void put_known(const Problem &problem, Prior &prior) const;
+    void put_equal(const Problem &problem, const Estimate &estimate, Prior &prior) const;
 
     double expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const;
 
     GammaPrior prior_;
     const StoredPrior *stored_;  // a profile that knows gamma; or NULL
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
-    bool open_ = false, is_loose_ = false;
+    bool open_ = false, is_loose_ = false, expects_equal_ = false;
     double sigma_ = 0.0, expected_sigma_ = 0.0, oddness_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
     double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; at least 1
     std::vector<double> known_weight_;   // trust in each known exposure, 0..1

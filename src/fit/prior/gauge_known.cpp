@@ -20,8 +20,16 @@ constexpr size_t kMinKnownForLevels = 6;  // known exposures: with fewer, it is 
 // along a row of pictures like a drift, and the hold scales accordingly.
 constexpr double kRepeatable = 0.05, kLinkPairs = 40.0;
 
+// Exposures that are taken as equal: standard error, EV, for the differences that the test of equality misses.
+constexpr double kEqualSigma = 0.05;
+
 bool is_known(const Problem &problem, uint32_t i) {
     return problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference];
+}
+
+double hold_of(const Problem &problem) {
+    const double links = static_cast<double>(std::max<size_t>(problem.edges.size(), 1));
+    return std::max(1.0, static_cast<double>(problem.pairs.size()) / links / kLinkPairs);
 }
 
 // The known exposures of the reference's group and what was found, EV, by image.
@@ -150,17 +158,25 @@ void Gauge::put_known(const Problem &problem, Prior &prior) const {
     prior.known.clear();
     if (known_weight_.empty()) return;
     prior.known.resize(problem.image_count);
-    const double pairs =
-        static_cast<double>(problem.pairs.size()) / static_cast<double>(std::max<size_t>(problem.edges.size(), 1));
     for (uint32_t i = 0; i < problem.image_count; i++) {
         const auto &image = problem.images[i];
         if (!is_known(problem, i)) continue;
         auto &known = prior.known[i];
         known.log_exposure = level_offset_[i] + slope_ * kLn2 * image.known_ev;
         known.precision = known_weight_[i] / std::pow(slope_ * kLn2 * scatter_ * known_sigma(image), 2);
-        if (scatter_ * known_sigma(image) < kRepeatable) known.hold = std::max(1.0, pairs / kLinkPairs);
+        if (scatter_ * known_sigma(image) < kRepeatable) known.hold = hold_of(problem);
         known.precision *= known.hold;
     }
+}
+
+// Held as firmly as known exposures that are equal.
+void Gauge::put_equal(const Problem &problem, const Estimate &estimate, Prior &prior) const {
+    const double precision = hold_of(problem) / std::pow(kLn2 * kKnownSigma, 2);
+    const double expected = estimate.log_exposure[problem.reference][static_cast<size_t>(problem.measured_channel())];
+    prior.known.resize(problem.image_count);
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        if (problem.component[i] == problem.component[problem.reference])
+            prior.known[i] = {expected, precision, precision * std::pow(kLn2 * kEqualSigma, 2)};
 }
 
 }  // namespace lensprof

@@ -6,22 +6,16 @@
 
 #include "falloff/dense.hpp"
 #include "fit/base/constants.hpp"
+#include "fit/base/quantile.hpp"
 #include "fit/prior/gauge.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double kOneIn = 2.33;         // standard deviations that a normal variable exceeds with probability 1 %
 constexpr double kReportableEv = 0.1;   // EV
 constexpr double kClearSpread = 0.7;    // EV, from the darkest to the brightest: visible in any pictures
 constexpr double kFlatSlope = 0.1;      // of the known exposures against the found ones: they belong to something else
 constexpr double kClearlyBetter = 4.0;  // in chi-squared, than the next explanation
-
-// The 99 % quantile of chi-squared, by Wilson and Hilferty (1931).
-double limit(int freedom) {
-    double share = 2.0 / (9.0 * freedom), root = 1.0 - share + kOneIn * std::sqrt(share);
-    return freedom * root * root * root;
-}
 
 struct Line {
     double chi2, slope, step, largest;
@@ -100,7 +94,8 @@ void explain(const Known &known, KnownExposures &result) {
     };
     for (size_t m = 0; m < known.count(); m++) consider(m, m + 1, KnownExposures::Explanation::single_image);
     for (size_t m = 2; m + 1 < known.count(); m++) consider(m, known.count(), KnownExposures::Explanation::step);
-    bool is_clear = known.freedom() > 1 && best < limit(known.freedom() - 1) && next - best > kClearlyBetter;
+    bool is_clear =
+        known.freedom() > 1 && best < chi_squared_limit(known.freedom() - 1) && next - best > kClearlyBetter;
     if (!is_clear) result.explanation = KnownExposures::Explanation::any;
 }
 
@@ -118,7 +113,7 @@ KnownExposures compare_known(const Problem &problem, const Estimate &estimate, b
     if (known.freedom() < 1) return result;
     Line line = known.fit(0, 0);
     result.slope = 1.0 / line.slope;
-    if (line.chi2 < limit(known.freedom()) || line.largest < kReportableEv) return result;
+    if (line.chi2 < chi_squared_limit(known.freedom()) || line.largest < kReportableEv) return result;
     explain(known, result);
     if (result.explanation == KnownExposures::Explanation::any) result.off_ev = line.largest;
     return result;
