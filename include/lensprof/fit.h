@@ -97,6 +97,7 @@ typedef struct lensprof_fit_image {
     uint32_t reserved; /* 0 */
     double f_number_ratio; /* f-number over the widest one of the lens, 1..1024: 1 wide open, 2 two stops down; 0 =
                               unknown. Selects the lenses whose falloffs a falloff that pictures leave open resembles */
+    double crop_factor;    /* diagonal of 36 x 24 mm over that of the sensor, 0.1..100; 0 = unknown. The same */
 } lensprof_fit_image;
 
 /* Image `index` of the array, with a frame of width x height px: setting 0, camera 0; exposure and white balance not

@@ -29,7 +29,9 @@ void test_derivatives_of_log_falloff(void **) {
 void test_falloffs_weaken_with_every_stop(void **) {
     double last = 0.0;
     for (const double stops : {0.0, 1.0, 2.0, 3.0, 9.0}) {
-        const FalloffPrior prior = expected_falloff(stops);
+        const FalloffPrior prior = expected_falloff({stops, LENSPROF_UNKNOWN});
+        assert_true(expected_falloff({stops, 1.0}).mean[2] < prior.mean[2]);  // full frame
+        assert_true(expected_falloff({stops, 1.5}).mean[2] > prior.mean[2]);
         const double corner = std::exp(prior.mean[2]), sigma = std::sqrt(prior.precision.inverse()(2, 2));
         assert_true(corner >= last && corner > 0.45 && corner < 0.9);
         assert_true(sigma > 0.1 && sigma < 0.6);
@@ -46,17 +48,30 @@ void test_pictures_choose_among_lenses(void **) {
     double distance;
     const double corrected[3] = {0.001, -0.003, -0.004}, wide_open[3] = {-0.19, -0.42, -0.76},
                  rising[3] = {0.2, 0.5, 1.1};
-    const FalloffPrior any = expected_falloff(LENSPROF_UNKNOWN);
-    const FalloffPrior nothing = falloff_given(shown(wide_open, 30.0), LENSPROF_UNKNOWN, distance);
+    const FalloffPrior any = expected_falloff({});
+    const FalloffPrior nothing = falloff_given(shown(wide_open, 30.0), {}, distance);
     for (int i = 0; i < 3; i++) assert_close(nothing.mean[i], any.mean[i], 0.02);
     assert_true(distance < 0.1);
-    const FalloffPrior flat = falloff_given(shown(corrected, 0.005), LENSPROF_UNKNOWN, distance);
+    const FalloffPrior flat = falloff_given(shown(corrected, 0.005), {}, distance);
     assert_true(std::abs(flat.mean[2]) < 0.05 && distance < 1.0);
-    const FalloffPrior steep = falloff_given(shown(wide_open, 0.02), LENSPROF_UNKNOWN, distance);
+    const FalloffPrior steep = falloff_given(shown(wide_open, 0.02), {}, distance);
     assert_true(steep.mean[2] < any.mean[2] && distance < 1.5);
-    const FalloffPrior far = falloff_given(shown(rising, 0.01), LENSPROF_UNKNOWN, distance);
+    const FalloffPrior far = falloff_given(shown(rising, 0.01), {}, distance);
     assert_true(distance > 4.0);  // no lens: the prior loses its weight
     assert_true(far.precision.determinant() < 0.1 * any.precision.determinant());
+}
+
+// The same pictures with a deeper falloff and a larger exponent: lenses say which is likelier.
+void test_the_depth_of_a_falloff_informs_gamma(void **) {
+    Simulation s;
+    s.response = srgb_response();
+    s.make(2000, 1.0, 0.0, 0.7, 5);
+    const FitRun unknown = run_fit(s);
+    for (lensprof_fit_image &image : s.fit_images) image.f_number_ratio = image.crop_factor = 1.0;
+    const FitRun wide_open = run_fit(s);  // most lenses have a corner of .35 then, and not of .6
+    const auto ev_of = [](const FitRun &run) { return std::abs(run.exposures[1].ev); };
+    assert_true(ev_of(wide_open) > 1.05 * ev_of(unknown));
+    assert_true(wide_open.result.gamma_sigma < unknown.result.gamma_sigma);
 }
 
 // A row of pictures, every other one brighter by `ev`; `local_ev`: light that each picture changes locally.
@@ -183,6 +198,7 @@ int main() {
         cmocka_unit_test(test_derivatives_of_log_falloff),
         cmocka_unit_test(test_falloffs_weaken_with_every_stop),
         cmocka_unit_test(test_pictures_choose_among_lenses),
+        cmocka_unit_test(test_the_depth_of_a_falloff_informs_gamma),
         cmocka_unit_test(test_errors_in_common_are_measured),
         cmocka_unit_test(test_a_row_stays_level),
         cmocka_unit_test(test_equal_exposures_are_recognised),

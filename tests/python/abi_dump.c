@@ -193,6 +193,7 @@ static void print_structs(void) {
     FIELD(lensprof_fit_image, camera);
     FIELD(lensprof_fit_image, reserved);
     FIELD(lensprof_fit_image, f_number_ratio);
+    FIELD(lensprof_fit_image, crop_factor);
     STRUCT(lensprof_fit_options);
     FIELD(lensprof_fit_options, struct_size);
     FIELD(lensprof_fit_options, channels);

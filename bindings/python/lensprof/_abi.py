@@ -698,6 +698,7 @@ class FitImage(Structure):
         ("camera", c_uint32),
         ("reserved", c_uint32),
         ("f_number_ratio", c_double),
+        ("crop_factor", c_double),
     ]
 
 

@@ -27,7 +27,7 @@ class FitImage(Value, _abi.FitImage):
     known_ev_sigma: its standard error, EV, 0 = unknown. setting: number of the lens setting (lens, focal length,
     aperture and focus), 0..SETTINGS_MAX - 1; each has its own vignetting. camera: number of the camera, 0..CAMERAS_MAX
     - 1; each has its own response. All images of a setting belong to one camera. f_number_ratio: f-number over the
-    widest one of the lens, 0 = unknown.
+    widest one of the lens, 0 = unknown. crop_factor: diagonal of 36 x 24 mm over that of the sensor, 0 = unknown.
     """
 
     width: int
@@ -42,6 +42,7 @@ class FitImage(Value, _abi.FitImage):
     known_ev: float
     known_ev_sigma: float
     f_number_ratio: float
+    crop_factor: float
 
     def __init__(self, index: int, width: int, height: int, **fields: Any):
         numbers = [integer(n, what) for n, what in ((index, "index"), (width, "width"), (height, "height"))]

@@ -207,11 +207,14 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &state, Streams &stream
                                "landscape pictures share a falloff around the middle of the frame");
 }
 
-// How far each lens was stopped down, if EXIF states it: falloffs become weaker with every stop.
-void set_f_number_ratios(const std::vector<PictureMetadata> &metadata, std::vector<lensprof_fit_image> &images) {
-    for (size_t i = 0; i < images.size(); i++)
+// How far each lens was stopped down, and the size of the sensor, if EXIF states them: falloffs depend on both.
+void set_lens_facts(const std::vector<PictureMetadata> &metadata, std::vector<lensprof_fit_image> &images) {
+    for (size_t i = 0; i < images.size(); i++) {
         if (metadata[i].f_number && metadata[i].open_f_number)
             images[i].f_number_ratio = std::clamp(*metadata[i].f_number / *metadata[i].open_f_number, 1.0, 64.0);
+        const double crop_factor = metadata[i].key.crop_factor;
+        if (crop_factor != LENSPROF_UNKNOWN) images[i].crop_factor = std::clamp(crop_factor, 0.1, 100.0);
+    }
 }
 
 // Failure (usage) for images of several cameras with different responses that should share a fixed one, for more
@@ -465,7 +468,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     input.images = fit_images(project);
     state.item = o.points.empty() ? project.path : o.points;
     set_settings(o, state, streams);
-    set_f_number_ratios(metadata, input.images);
+    set_lens_facts(metadata, input.images);
     if (o.points.empty()) report.exif = add_known_exposures(o.fit, project, metadata, input.images, streams);
     set_reference(report.reference, input);
     const auto setting_of = [&](uint32_t image) { return state.settings.of_image[image]; };

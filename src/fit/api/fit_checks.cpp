@@ -104,6 +104,9 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
         if (image.f_number_ratio != 0.0 && !(image.f_number_ratio >= 1.0 && image.f_number_ratio <= 1024.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "f_number_ratio must be 0 (unknown) or 1..1024");
+        if (image.crop_factor != 0.0 && !(image.crop_factor >= 0.1 && image.crop_factor <= 100.0))
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "crop_factor must be 0 (unknown) or 0.1..100");
         if (image.free & ~kImageFlags)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "only EV, RED and BLUE can be free in an image");

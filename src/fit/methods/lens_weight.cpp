@@ -26,15 +26,6 @@ struct PositivePart {
     }
 };
 
-// Stops from wide open of a setting: the mean of its images that know them.
-double stops_of(const Problem &problem, int setting) {
-    double sum = 0.0, count = 0.0;
-    for (uint32_t i = 0; i < problem.image_count; i++)
-        if (problem.setting_of[i] == setting && problem.images[i].f_number_ratio > 0.0)
-            sum += 2.0 * std::log2(problem.images[i].f_number_ratio), count += 1.0;
-    return count > 0.0 ? sum / count : LENSPROF_UNKNOWN;
-}
-
 // What the pictures show of the falloff: information of the estimate minus that of the prior, over the inflation.
 ShownFalloff shown_falloff(const Problem &problem, const FalloffPrior &prior, const Estimate &estimate,
                            const Covariance &found, double inflation, int setting) {
@@ -76,11 +67,11 @@ std::vector<WeighedLens> weigh_lenses(const Problem &problem, const Prior &prior
         WeighedLens lens;
         const double inflated = inflation.lens[n];
         const bool is_whole = (problem.free & kFalloffFlags) == kFalloffFlags;
-        const double stops = stops_of(problem, s);
-        lens.knowledge = {expected_falloff(stops), weight * inflated, weight * inflated};
+        const LensFacts facts = facts_of(problem, s);
+        lens.knowledge = {expected_falloff(facts), weight * inflated, weight * inflated};
         if (is_whole)
             lens.knowledge.falloff = falloff_given(
-                shown_falloff(problem, prior.falloff[n], estimate, found, inflated, s), stops, lens.falloff_distance);
+                shown_falloff(problem, prior.falloff[n], estimate, found, inflated, s), facts, lens.falloff_distance);
         if (problem.free & LENSPROF_FREE_CENTER)
             lens.center_distance = center_distance(prior, estimate, found, inflated, s);
         lenses.push_back(lens);

@@ -6,12 +6,11 @@
 
 #include <Eigen/LU>
 
-#include <lensprof/profile.h>
-
 namespace lensprof {
 namespace {
 
 constexpr double kRadius[3] = {0.5, 0.75, 1.0};  // as in make_falloff_prior.py
+constexpr double kSmallerSensor = 1.2;           // crop factor, as in make_falloff_prior.py
 constexpr double kLowestM = 1e-3;
 constexpr double kNothing = 1e-4;  // precision of u that adds no information: a standard error of 100
 
@@ -26,24 +25,31 @@ struct Component {
     bool has_tails;  // a t distribution
 };
 
-constexpr int kCount = kFalloffClassCount + 1;
+constexpr int kCount = kSensorClassCount * kStopClassCount + 1;
 using Mixture = std::array<Component, kCount>;
 
-// Shares of the classes: a linear transition from one to the next if the stops are known, else equal parts.
-double share_of(int of_class, double stops) {
-    if (stops == LENSPROF_UNKNOWN) return 1.0 / kFalloffClassCount;
-    const double place = std::clamp(stops, 0.0, kFalloffClassCount - 1.0);
+// Shares of the classes of stops: a linear transition from one to the next if they are known, else equal parts.
+double share_of_stops(int of_class, double stops) {
+    if (stops == LENSPROF_UNKNOWN) return 1.0 / kStopClassCount;
+    const double place = std::clamp(stops, 0.0, kStopClassCount - 1.0);
     return std::max(0.0, 1.0 - std::abs(place - of_class));
 }
 
-Mixture mixture_of(double stops) {
+double share_of_sensor(int of_class, double crop_factor) {
+    if (crop_factor == LENSPROF_UNKNOWN) return 1.0 / kSensorClassCount;
+    return (of_class == 0) == (crop_factor < kSmallerSensor) ? 1.0 : 0.0;
+}
+
+Mixture mixture_of(const LensFacts &lens) {
     Mixture mixture;
-    for (int n = 0; n < kFalloffClassCount; n++) {
-        const FalloffClass &of_class = kFalloffClasses[n];
-        mixture[static_cast<size_t>(n)] = {(1.0 - kCorrectedShare) * share_of(n, stops),
-                                           Eigen::Vector3d::Map(of_class.mean),
-                                           Eigen::Map<const Eigen::Matrix3d>(&of_class.scatter[0][0]), true};
-    }
+    size_t n = 0;
+    for (int sensor = 0; sensor < kSensorClassCount; sensor++)
+        for (int stop = 0; stop < kStopClassCount; stop++) {
+            const FalloffClass &of_class = kFalloffClasses[sensor][stop];
+            const double share = share_of_sensor(sensor, lens.crop_factor) * share_of_stops(stop, lens.stops);
+            mixture[n++] = {(1.0 - kCorrectedShare) * share, Eigen::Vector3d::Map(of_class.mean),
+                            Eigen::Map<const Eigen::Matrix3d>(&of_class.scatter[0][0]), true};
+        }
     Component &corrected = mixture.back();
     corrected = {kCorrectedShare, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero(), false};
     for (int i = 0; i < 3; i++)
@@ -89,13 +95,13 @@ Eigen::Vector3d log_falloff(const double k[3], Eigen::Matrix3d *slope) {
     return u;
 }
 
-FalloffPrior expected_falloff(double stops) { return moments_of(mixture_of(stops)); }
+FalloffPrior expected_falloff(const LensFacts &lens) { return moments_of(mixture_of(lens)); }
 
-FalloffPrior falloff_given(const ShownFalloff &shown, double stops, double &distance) {
+FalloffPrior falloff_given(const ShownFalloff &shown, const LensFacts &lens, double &distance) {
     const Eigen::Matrix3d precision = shown.precision + kNothing * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d covariance = precision.inverse();
     const Eigen::Vector3d u = covariance * shown.weighted;
-    Mixture mixture = mixture_of(stops);
+    Mixture mixture = mixture_of(lens);
     std::array<double, kCount> log_density{}, distance2{};
     double highest = -HUGE_VAL, nearest2 = HUGE_VAL;
     for (size_t n = 0; n < kCount; n++) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
 #include "core/response.h"
+
 #include "falloff/power_fit.hpp"
 #include "fit/base/constants.hpp"
 #include "fit/problem/curve_shape.hpp"
@@ -89,6 +91,11 @@ Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem, const 
     bool is_family = nothing_fixes_gamma(options, problem);
     open_ = is_family && options.prior_weight > 0.0;
     if (is_family && !open_) from_ = LENSPROF_GAMMA_NONE;
+    if (open_ && !is_static(problem) && (options.free & kFalloffFlags) == kFalloffFlags) {
+        const FalloffPrior lens = expected_falloff(facts_of(problem, 0));
+        depth_ = -lens.mean[2];
+        depth_sigma_ = std::sqrt(lens.precision.inverse()(2, 2)) / depth_;
+    }
     bool any = false;
     for (uint32_t i = 0; i < problem.image_count; i++) any = any || problem.images[i].known_ev_sigma > 0.0;
     if (any) known_weight_.assign(problem.image_count, 1.0);
@@ -109,15 +116,45 @@ Gauge Gauge::by_prior() const {
     return other;
 }
 
+namespace {
+
+// Two values of ln gamma with their standard errors, of which those of falloffs have heavy tails: if the two contradict
+// each other, the falloff has less weight.
+struct Weighed {
+    double kind, falloff;  // precisions
+
+    Weighed(double off, double kind_sigma, double falloff_sigma) {
+        const double z = off / std::hypot(kind_sigma, falloff_sigma);
+        kind = 1.0 / (kind_sigma * kind_sigma), falloff = 1.0 / (falloff_sigma * falloff_sigma * (1.0 + z * z));
+    }
+    double mean(double of_kind, double of_falloff, double &sigma) const {
+        sigma = 1.0 / std::sqrt(kind + falloff);
+        return (kind * of_kind + falloff * of_falloff) / (kind + falloff);
+    }
+};
+
+}  // namespace
+
+// Distance to the gamma of cameras of the kind, and of lenses: M^gamma is deeper than that of most if gamma is large.
+double Gauge::expected_of_kind(const Estimate &estimate, double &sigma) const {
+    constexpr double kShallowest = 0.02;  // depth: a corrected falloff says nothing
+    const double *table = estimate.curve.table.data();
+    const double of_kind = gamma_position(table) - prior_.position();
+    sigma = prior_.sigma_of(table);
+    const double depth = -log_falloff(estimate.vignetting[0][0].k, nullptr)[2];
+    if (!(depth_sigma_ > 0.0) || depth < kShallowest) return of_kind;
+    const double of_lenses = std::log(depth / depth_);
+    return Weighed(of_kind - of_lenses, sigma, depth_sigma_).mean(of_kind, of_lenses, sigma);
+}
+
 // Distance to the gamma expected from cameras of the kind, or from the profile. A response's own gamma replaces that of
 // the kind, which it may include. A falloff alone is combined with that of the kind, unless its gamma may come from
 // there.
 double Gauge::expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const {
+    from = LENSPROF_GAMMA_PRIOR;
+    if (!stored_) return expected_of_kind(estimate, sigma);
     const double *table = estimate.curve.table.data();
     const double of_kind = gamma_position(table) - prior_.position(), kind_sigma = prior_.sigma_of(table);
-    sigma = kind_sigma;
-    from = LENSPROF_GAMMA_PRIOR;
-    if (!stored_) return of_kind;
     bool by_falloff;
     const double of_stored = stored_->gamma_offset(estimate, sigma, by_falloff), stored_sigma = sigma;
     from = by_falloff ? LENSPROF_GAMMA_FALLOFF : LENSPROF_GAMMA_PROFILE;
@@ -128,13 +165,9 @@ double Gauge::expected(const Estimate &estimate, double &sigma, lensprof_gamma_f
         sigma = std::min(kind_sigma, stored_sigma);
         return is_of_kind ? of_kind : of_stored;
     }
-    // errors of falloffs of other settings have heavy tails, those of a kind do not: if they contradict, the falloff
-    // has less weight
-    const double z = (of_kind - of_stored) / std::hypot(kind_sigma, stored_sigma);
-    const double kind = 1.0 / (kind_sigma * kind_sigma), stored = 1.0 / (stored_sigma * stored_sigma * (1.0 + z * z));
-    from = kind > stored ? LENSPROF_GAMMA_PRIOR : LENSPROF_GAMMA_FALLOFF;
-    sigma = 1.0 / std::sqrt(kind + stored);
-    return (kind * of_kind + stored * of_stored) / (kind + stored);
+    const Weighed weighed(of_kind - of_stored, kind_sigma, stored_sigma);
+    from = weighed.kind > weighed.falloff ? LENSPROF_GAMMA_PRIOR : LENSPROF_GAMMA_FALLOFF;
+    return weighed.mean(of_kind, of_stored, sigma);
 }
 
 double Gauge::contradiction(const Estimate &estimate) const {

@@ -73,9 +73,11 @@ private:
     void put_equal(const Problem &problem, const Estimate &estimate, Prior &prior) const;
 
     double expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const;
+    double expected_of_kind(const Estimate &estimate, double &sigma) const;
 
     GammaPrior prior_;
-    const StoredPrior *stored_;  // a profile that knows gamma; or NULL
+    const StoredPrior *stored_;               // a profile that knows gamma; or NULL
+    double depth_ = 0.0, depth_sigma_ = 0.0;  // -ln M(1) of most lenses, standard deviation of its logarithm; 0: unused
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
     bool open_ = false, is_loose_ = false, expects_equal_ = false;
     double sigma_ = 0.0, expected_sigma_ = 0.0, oddness_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;

@@ -1,5 +1,7 @@
 #include "fit/prior/prior.hpp"
 
+#include <cmath>
+
 #include <Eigen/LU>
 
 #include <lensprof/profile.h>
@@ -31,9 +33,22 @@ Prior make_prior(double weight, int vignettings, int settings, bool by_covarianc
     prior.precision = Eigen::MatrixXd::Zero(size, size);
     prior.falloff.resize(static_cast<size_t>(settings));
     for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = weight / (kEmorSigma[l] * kEmorSigma[l]);
-    const LensKnowledge any{expected_falloff(LENSPROF_UNKNOWN), weight, weight};
+    const LensKnowledge any{expected_falloff({}), weight, weight};
     for (int s = 0; s < settings; s++) set_lens(any, vignettings, s, prior);
     return prior;
+}
+
+LensFacts facts_of(const Problem &problem, int setting) {
+    const auto mean_of = [&](auto value) {  // of its logarithm
+        double sum = 0.0, count = 0.0;
+        for (uint32_t i = 0; i < problem.image_count; i++)
+            if (problem.setting_of[i] == setting && value(problem.images[i]) > 0.0)
+                sum += std::log2(value(problem.images[i])), count += 1.0;
+        return count > 0.0 ? sum / count : LENSPROF_UNKNOWN;
+    };
+    const double ratio = mean_of([](const lensprof_fit_image &image) { return image.f_number_ratio; });
+    const double crop = mean_of([](const lensprof_fit_image &image) { return image.crop_factor; });
+    return {ratio == LENSPROF_UNKNOWN ? ratio : 2.0 * ratio, crop == LENSPROF_UNKNOWN ? crop : std::exp2(crop)};
 }
 
 void set_lens(const LensKnowledge &lens, int vignettings, int setting, Prior &prior) {

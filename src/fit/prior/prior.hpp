@@ -45,6 +45,9 @@ struct Prior {
 // Response, falloff and centre of measured cameras and lenses, times `weight`; `by_covariance` as above.
 Prior make_prior(double weight, int vignettings, int settings, bool by_covariance = false);
 
+// What the images of a setting know of their lens: the mean of those that know it.
+LensFacts facts_of(const Problem &problem, int setting);
+
 // The knowledge of the lens at one setting, with weights relative to that of independent pairs (inflation.hpp).
 struct LensKnowledge {
     FalloffPrior falloff;
