@@ -205,7 +205,7 @@ Simulation simulate(const lensprof_response &response, uint64_t seed = 42) {
 
 void assert_from(const FitRun &run, uint32_t from, double sigma) {
     assert_int_equal(run.result.gamma_from, from);
-    assert_close(run.result.gamma_sigma, sigma, 0.0);
+    assert_close(run.result.gamma_sigma, sigma, 0.05 * sigma);  // the depth of the falloff adds to the prior
 }
 
 void test_what_closes_the_gauge(void **) {
@@ -332,6 +332,17 @@ void test_known_exposures_that_scatter(void **) {
     }
 }
 
+// One mode of the response cannot follow to the gamma that exposures ask for. The stated error covers the distance.
+void test_a_gamma_out_of_reach(void **) {
+    lensprof_fit_options options = default_fit();
+    options.modes = 1;
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        const Simulation s = bracket(srgb_response(), 6, seed);
+        const FitRun run = run_fit(s, options);
+        assert_true(std::abs(std::log(s.gamma(run.exposures))) < 2.0 * run.result.gamma_sigma);
+    }
+}
+
 void test_what_is_asked_for_settles_gamma(void **) {
     Simulation s = bracket(linear_response(), 6, 1);
     lensprof_fit_options options = twelve_modes();
@@ -358,8 +369,8 @@ void test_kinds_of_camera_differ(void **) {
         options.camera_kind = kind;
         FitRun run = run_fit(s, options);
         const double apart = GammaPrior(kind).position() - GammaPrior(LENSPROF_CAMERA_ANY).position();
-        assert_close(run.result.gamma_sigma, GammaPrior(kind).sigma(), 0.0);
-        assert_close(log_gamma_between(run, any), apart, 0.01);
+        assert_close(run.result.gamma_sigma, GammaPrior(kind).sigma(), 0.01 * GammaPrior(kind).sigma());
+        assert_close(log_gamma_between(run, any), apart, 0.02);  // the depth of the falloff pulls at `any`
         assert_string_equal(run.result.reason, "");
     }
 }
@@ -472,6 +483,7 @@ int main() {
         cmocka_unit_test(test_equal_known_exposures_pull_nothing),
         cmocka_unit_test(test_one_wrong_known_exposure),
         cmocka_unit_test(test_known_exposures_that_scatter),
+        cmocka_unit_test(test_a_gamma_out_of_reach),
         cmocka_unit_test(test_what_is_asked_for_settles_gamma),
         cmocka_unit_test(test_kinds_of_camera_differ),
         cmocka_unit_test(test_an_unusual_response_is_said),

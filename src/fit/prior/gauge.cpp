@@ -196,7 +196,8 @@ double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     from_ = precision > expected_precision ? LENSPROF_GAMMA_EXPOSURES : expected_from;
     oddness_ = prior_.oddness(estimate.curve.table.data());
     sigma_ = 1.0 / std::sqrt(precision + expected_precision);
-    return (expected_precision * offset + precision * std::log(slope_)) / (precision + expected_precision);
+    missed_ = (expected_precision * offset + precision * std::log(slope_)) / (precision + expected_precision);
+    return missed_;
 }
 
 void Gauge::apply_gamma(const Problem &problem, Estimate &estimate) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "fit/prior/gamma_prior.hpp"
@@ -46,7 +47,8 @@ public:
     void renew(const Problem &problem, const Estimate &estimate, Prior &prior);
 
     lensprof_gamma_from from() const { return from_; }
-    double sigma() const { return sigma_; }                // standard error of ln gamma; 0 if known
+    // Standard error of ln gamma; 0 if known. It includes the distance that the estimate's modes could not follow.
+    double sigma() const { return std::hypot(sigma_, missed_); }
     double slope() const { return slope_; }                // of the estimate's exposures against the known ones
     bool knows() const { return !known_weight_.empty(); }  // whether there are known exposures that can be compared
     bool leaves_out(uint32_t image) const { return known_left_out_.count(image) > 0; }
@@ -80,6 +82,7 @@ private:
     double depth_ = 0.0, depth_sigma_ = 0.0;  // -ln M(1) of most lenses, standard deviation of its logarithm; 0: unused
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
     bool open_ = false, is_loose_ = false, expects_equal_ = false;
+    double missed_ = 0.0;  // distance of the last estimate from its target
     double sigma_ = 0.0, expected_sigma_ = 0.0, oddness_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
     double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; at least 1
     std::vector<double> known_weight_;   // trust in each known exposure, 0..1
