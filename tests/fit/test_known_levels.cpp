@@ -41,8 +41,13 @@ void test_one_manual_exposure_keeps_a_strip_level(void **) {
         const FitRun known = run_fit(s);
         for (auto &image : s.fit_images) image.known_ev_sigma = 0.0;
         const FitRun unknown = run_fit(s);
+        lensprof_fit_options options = default_fit();
+        options.prior_weight = 0.0;
+        const FitRun paper = run_fit(s, options);
         assert_true(spread(s, known.exposures, 0, kImages) <= 0.05);
-        assert_true(spread(s, unknown.exposures, 0, kImages) > 0.1);
+        assert_true(spread(s, unknown.exposures, 0, kImages) <= 0.05);  // since they are taken as equal
+        assert_int_equal(unknown.result.equal_exposures, 1);
+        assert_true(spread(s, paper.exposures, 0, kImages) > 0.1);
     }
 }
 
