@@ -163,6 +163,8 @@ std::shared_ptr<const lensprof_profile> without_falloff(const lensprof_profile &
 Correction make_job(const ApplyOptions &o, const ApplySource &source, const NamedPicture &picture) {
     Correction job;
     job.source = picture.file;
+    const PictureSize size = read_size(picture.file);
+    job.pixels = uint64_t(size.width) * size.height;
     std::filesystem::path named =
         std::filesystem::path(picture.subfolder) / std::filesystem::path(picture.file).filename();
     lensprof_exposure_init(&job.exposure);
@@ -310,14 +312,14 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
         inputs.push_back(picture.file);
         note_instead(picture, streams);
         if (source.project && picture.in_folder && !source.images->find(picture.file)) {
-            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project(), false});
+            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project()});
             continue;
         }
         if (source.project && is_left_out(source, picture.file, o.project_option())) {
             const std::string reason =
                 picture.file + ": not corrected: the project has no exposure for it; use the original";
             warn(streams, reason);
-            work.unjoined.push_back({picture.file, reason, false});
+            work.unjoined.push_back({picture.file, reason});
             continue;
         }
         try {
@@ -329,6 +331,9 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
                 refused.push_back(failure);
         }
     }
+        } catch (const Failure &failure) {
+            if (failure.code != ExitCode::unreadable || o.merge || pictures.size() == 1) throw;
+            work.left_out.push_back({picture.file, failure.what(), false, failure.code});
     if (!refused.empty()) fail_refused(refused, pictures.size(), streams);
     if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
     check_targets(work.jobs, inputs, o.sheet);
