@@ -466,6 +466,39 @@ void test_known_kinds(void **) {
     assert_false(contains(run_words({"calibrate", work("a.heic"), "-o", work("out")}).err, "video"));
 }
 
+// Files in a folder that hold pictures which no command reads: one line per kind, by content. Others stay silent.
+void test_known_kinds_in_folders(void **) {
+    const std::string db = database(), in = work("in"), kinds_only = work("kinds");
+    fs::create_directories(in + "/sub");
+    fs::create_directories(kinds_only);
+    const Bytes clip = number(24, 4) + bytes_of("ftypisom") + number(0, 4) + bytes_of("isommp41");
+    for (const char *name : {"/a.mp4", "/sub/b.MP4", "/sub/c.bin"}) save(in + name, clip);
+    save(kinds_only + "/d.mp4", clip);
+    save(in + "/.hidden.mp4", clip);
+    save(in + "/star.fits", bytes_of("SIMPLE  =                    T"));
+    save_text(in + "/notes.txt", "P");
+    save_text(in + "/one.xmp", "<x:xmpmeta>"), save_text(in + "/pano.pto", "p f2\n"), save_text(in + "/thumbs.db", "");
+    save(in + "/song.m4a", number(24, 4) + bytes_of("ftypM4A ") + number(0, 4));
+    save(in + "/rest.zip", bytes_of("PK\x03\x04") + Bytes(20, 0));
+    for (const char *name : {"/one.jpg", "/two.jpg"}) save(in + name, jpeg(name[1] == 'o' ? 80 : 90, 60));
+    for (const Words &words :
+         std::vector<Words>{{"apply", "--profile", "1", "--db", db, "--response", "srgb", "-o", work("out"), in},
+                            {"build", "--no-store", in},
+                            {"calibrate", "--no-store", in, "-o", work("calibrated")}}) {
+        const std::string said = run_words(words).err;
+        for (const std::string line : {"/a.mp4 and 2 more: left out: a video (MP4), which lensprof does not read; make "
+                                       "frames of it first, for example with `ffmpeg -i ",
+                                       "/star.fits: left out: a FITS file, which lensprof does not read; convert it"})
+            if (!contains(said, "warning: " + in + line)) fail_msg("%s: %s", words[0].c_str(), said.c_str());
+        for (const char *silent : {"hidden", "notes", "xmp", "pto", "thumbs", "song", "zip"})
+            if (contains(said, silent)) fail_msg("%s: %s", words[0].c_str(), said.c_str());
+        assert_refused(usage,
+                       Words(words.begin(), words.end() - (words[0] == "calibrate" ? 3 : 1)) + Words{kinds_only}
+                           + (words[0] == "calibrate" ? Words{"-o", work("calibrated2")} : Words{}),
+                       {"kinds: is a folder without pictures", "d.mp4: left out: a video (MP4)"});
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -480,6 +513,7 @@ int main() {
         CLI_TEST(test_pages),
         CLI_TEST(test_commands),
         CLI_TEST(test_known_kinds),
+        CLI_TEST(test_known_kinds_in_folders),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

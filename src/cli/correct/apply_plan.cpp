@@ -292,6 +292,7 @@ ApplySource open_source(const ApplyOptions &o) {
 
 ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &streams) {
     std::vector<NamedPicture> pictures;
+    std::vector<std::string> other_kinds;
     if (o.files.empty() && source.project)
         for (uint32_t i = 0; i < source.project->files.size(); i++) {
             const std::string &file = source.project->files[i];
@@ -299,7 +300,8 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
             if (!is_again) pictures.push_back({file, "", false});
         }
     else
-        pictures = named_pictures(o.files, o.output), extract_outputs(pictures, streams);
+        pictures = named_pictures(o.files, o.output, other_kinds), extract_outputs(pictures, streams);
+    for (const std::string &text : other_kinds) warn(streams, text);
     if (o.merge) refuse_crops(*source.project, "--merge");
     take_shard(shard_of(o.shard), pictures);
     if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; give pictures or folders");
@@ -329,11 +331,11 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
                 work.left_out.push_back({picture.file, failure.what(), failure.corrected_already});
             else
                 refused.push_back(failure);
-        }
-    }
         } catch (const Failure &failure) {
             if (failure.code != ExitCode::unreadable || o.merge || pictures.size() == 1) throw;
             work.left_out.push_back({picture.file, failure.what(), false, failure.code});
+        }
+    }
     if (!refused.empty()) fail_refused(refused, pictures.size(), streams);
     if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
     check_targets(work.jobs, inputs, o.sheet);
