@@ -235,6 +235,22 @@ void test_damaged_indices(void **) {
     assert_true(contains(left_out().at(0), "damaged"));
 }
 
+// An index without another picture, alone or with entries that the camera left empty, is not damaged: what follows the
+// picture is named by what it is, as without an index.
+void test_empty_indices(void **) {
+    const Bytes video = number(24, 4) + bytes_of("ftypmp42") + Bytes(500, 7);
+    for (const int entries : {0, 1, 3}) {
+        const Bytes file = multi_picture(std::vector<Entry>(size_t(entries), Entry{preview, {}}), true);
+        for (const auto &[after, left] : std::vector<std::pair<Bytes, std::string>>{
+                 {{}, ""}, {Bytes(4000, 0), ""}, {video, "a video"}, {jpeg(20, 10), "another picture"}}) {
+            assert_false(holds(copy_of(file + after, "out.jpg"), "MPF"));
+            const Words names = left_out();
+            if (names.size() != !left.empty() || (!left.empty() && !contains(names[0], left)))
+                fail_msg("%d entries: %s instead of %s", entries, names.empty() ? "" : names[0].c_str(), left.c_str());
+        }
+    }
+}
+
 // Changed and cut files never crash, and what is written can be read.
 void test_hostile_files(void **) {
     const Bytes good =
@@ -326,6 +342,7 @@ void test_pages(void **) {
         {{page, page}, "has 2 pages"},
         {std::vector<Page>(40, small), "has 40 pages"},
         {std::vector<Page>(300, {10, 8}), "has 300 pages"},
+        {std::vector<Page>(5000, {4, 3}), "has more than 4096 pages"},
         {{page, {700, 500, FILETYPE_PAGE}, {700, 500, FILETYPE_PAGE}}, "has 3 pages"},
         {{page, small}, ""},
         {{page, {400, 300}}, "has 2 pages"},
@@ -503,17 +520,10 @@ void test_known_kinds_in_folders(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_gain_maps_are_kept),
-        CLI_TEST(test_tags_of_gain_maps),
-        CLI_TEST(test_data_after_the_picture),
-        CLI_TEST(test_damaged_indices),
-        CLI_TEST(test_hostile_files),
-        CLI_TEST(test_apple_maker_note),
-        CLI_TEST(test_gain_map_of_jxl),
-        CLI_TEST(test_pages),
-        CLI_TEST(test_commands),
-        CLI_TEST(test_known_kinds),
-        CLI_TEST(test_known_kinds_in_folders),
+        CLI_TEST(test_gain_maps_are_kept), CLI_TEST(test_tags_of_gain_maps), CLI_TEST(test_data_after_the_picture),
+        CLI_TEST(test_damaged_indices),    CLI_TEST(test_empty_indices),     CLI_TEST(test_hostile_files),
+        CLI_TEST(test_apple_maker_note),   CLI_TEST(test_gain_map_of_jxl),   CLI_TEST(test_pages),
+        CLI_TEST(test_commands),           CLI_TEST(test_known_kinds),       CLI_TEST(test_known_kinds_in_folders),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
