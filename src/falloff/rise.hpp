@@ -1,4 +1,5 @@
-// Falloffs that rise away from the middle, as of no lens.
+// Falloffs that no lens has: they rise away from the middle, or leave almost no light. Only this header of the layer
+// may be used by the command line program: it needs nothing but the public model.
 #pragma once
 
 #include <lensprof/model.h>
@@ -9,43 +10,35 @@ constexpr double kLargestRise = 1.05;  // M that a camera which corrects its len
 constexpr double kSmallestM = 0.05;    // M of the darkest corner in Lensfun's data
 constexpr double kSmallRise = 0.02;    // of M outward: 99 % of the falloffs in Lensfun's data rise less
 
-// Where a falloff is brightest.
-struct Highest {
+// A value of M, or a change of M, and where it is.
+struct MAt {
     double m, r2;
 };
 
-// M of the falloff about its own centre; 1 at the centre where it rises nowhere.
-inline Highest highest_of(const lensprof_vignetting &v) {
-    constexpr int kSteps = 20;  // of r^2
-    Highest highest{1.0, 0.0};
-    for (int i = 1; i <= kSteps; i++) {
-        const double r2 = double(i) / kSteps, m = lensprof_vignetting_eval(&v, r2, nullptr);
-        if (m > highest.m) highest = {m, r2};
-    }
-    return highest;
-}
+// How M changes from the centre of a falloff outward.
+struct Course {
+    MAt highest{1.0, 0.0}, lowest{1.0, 0.0};
+    MAt rise{0.0, 0.0};  // the largest rise from a place to one farther from the centre, and this place
+};
 
-// The smallest M of the falloff about its own centre, at most 1.
-inline double lowest_of(const lensprof_vignetting &v) {
-    constexpr int kSteps = 20;  // of r^2
-    double lowest = 1.0;
-    for (int i = 1; i <= kSteps; i++) {
-        const double m = lensprof_vignetting_eval(&v, double(i) / kSteps, nullptr);
-        lowest = m < lowest ? m : lowest;
-    }
-    return lowest;
-}
-
-// The largest rise of M from a place to one farther from its centre.
-inline double outward_rise(const lensprof_vignetting &v) {
+// Follows m_of(r2) up to farthest_r2. Rises for which counts(r2, rise) is false are ignored.
+template <class MOf, class Counts>
+Course course_of(double farthest_r2, const MOf &m_of, const Counts &counts) {
     constexpr int kSteps = 40;  // of r^2
-    double lowest = 1.0, rise = 0.0;
+    Course course;
     for (int i = 1; i <= kSteps; i++) {
-        const double m = lensprof_vignetting_eval(&v, double(i) / kSteps, nullptr);
-        lowest = m < lowest ? m : lowest;
-        rise = m - lowest > rise ? m - lowest : rise;
+        const double r2 = farthest_r2 * i / kSteps, m = m_of(r2), rise = m - course.lowest.m;
+        if (m > course.highest.m) course.highest = {m, r2};
+        if (rise > course.rise.m && counts(r2, rise)) course.rise = {rise, r2};
+        if (m < course.lowest.m) course.lowest = {m, r2};
     }
-    return rise;
+    return course;
+}
+
+// The same of a falloff about its own centre, to r = 1.
+inline Course course_of(const lensprof_vignetting &v) {
+    return course_of(
+        1.0, [&](double r2) { return lensprof_vignetting_eval(&v, r2, nullptr); }, [](double, double) { return true; });
 }
 
 }  // namespace lensprof

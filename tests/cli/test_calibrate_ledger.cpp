@@ -1,6 +1,7 @@
 // Which files `calibrate` recognises as its own: records, locks, and existing files that block outputs.
 #include "calibrate_runs.hpp"
 #include "cli/calibrate/ledger.hpp"
+#include "cli/calibrate/summary.hpp"
 
 #include <sys/file.h>
 
@@ -240,6 +241,29 @@ void test_database_inside(void **) {
     assert_refused(store_failed, {"calibrate", work("row"), "-o", work("new"), "--db", work("none/p.db")}, {"p.db"});
 }
 
+// Long reasons end with what to do: the summary shows them whole, in lines that fit a terminal.
+void test_reasons_are_whole(void **) {
+    std::string reason = "img0.png: ";
+    for (int i = 0; i < 60; i++) reason += "because" + std::to_string(i) + (i == 50 ? "; " : " ");
+    reason += "use this";
+    CalibrateOptions o;
+    o.output = "out";
+    Inputs inputs;
+    inputs.left_out.push_back({"img0.png", reason});
+    Panoramas panoramas;
+    panoramas.list.emplace_back();
+    panoramas.list[0].name = "img0";
+    panoramas.list[0].summary = {{"result", nullptr}, {"not_stored", reason}};
+    std::ostringstream out;
+    print_summary(o, inputs, panoramas, {}, out);
+    std::istringstream lines(out.str());
+    std::string whole;
+    for (std::string line; std::getline(lines, line); whole += line.substr(line.find_first_not_of(' ')) + " ")
+        if (line.size() > 100) fail_msg("%zu characters: %s", line.size(), line.c_str());
+    assert_true(contains(whole, "img0 (0 pictures): not fitted: " + reason));
+    assert_true(contains(whole, "left out  1 picture " + reason));
+}
+
 }  // namespace
 
 int main() {
@@ -256,6 +280,7 @@ int main() {
         CLI_TEST(test_edited_records),
         CLI_TEST(test_left_over),
         CLI_TEST(test_database_inside),
+        CLI_TEST(test_reasons_are_whole),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

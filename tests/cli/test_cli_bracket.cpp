@@ -241,6 +241,18 @@ void test_pictures_that_show_no_response(void **) {
     assert_shows_nothing(files, {"--ev", "2,0,-2"});
 }
 
+// Hand-held plain pictures of one view: what `build` advises works.
+void test_one_view(void **) {
+    must_exit(done, {"simulate", "-o", work("plain"), "--images", "2", "--overlap", "0.99", "--jitter", "0", "--noise",
+                     "1", "--size", "320x240", "--ev", "1.5", "--seed", "1"});
+    const Outcome built = run_words({"build", work("plain/pano.pto"), "--no-store"});
+    assert_int_equal(built.code, not_usable);
+    assert_true(contains(built.err, "use bracket or align for plain exposures (no HDR) from a tripod"));
+    const Words two = {"--pairs", "4000", work("plain/img000.png"), work("plain/img001.png")};
+    must_exit(done, Words{"bracket", "--no-store"} + two);
+    must_exit(done, Words{"align", "-o", work("plain/out")} + two);
+}
+
 }  // namespace
 
 int main() {
@@ -258,6 +270,7 @@ int main() {
         CLI_TEST(test_refused_options),
         CLI_TEST(test_refused_pictures),
         CLI_TEST(test_pictures_that_show_no_response),
+        CLI_TEST(test_one_view),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

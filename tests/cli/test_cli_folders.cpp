@@ -166,12 +166,36 @@ void test_named_pictures_are_all_or_none(void **) {
     assert_false(fs::exists(work("none")) || fs::exists(work("sheet.png")));
 }
 
-// An unreadable picture is not treated as one without a profile.
-void test_unreadable_ends_it(void **) {
+// An unreadable picture, found at its start or in its pixels, is listed; the others are corrected. Its exit code is
+// not that of a picture without a profile, whose turn comes first here. All of a folder, several names, or one.
+void test_unreadable_is_left_out(void **) {
     lens_database();
-    make_picture("in/a.jpg", "Good 35mm");
+    make_picture("in/a.jpg", "Other 24mm");
+    make_picture("in/c.jpg", "Good 35mm"), make_picture("in/e.png", "Good 35mm");
     save_text(work("in/b.jpg"), "no picture");
-    assert_refused(unreadable, by_exif("out") + Words{"--skip", work("in")}, {work("in/b.jpg")});
+    const std::string cut = make_picture("in/d.jpg", "Good 35mm");
+    fs::resize_file(cut, fs::file_size(cut) - 40);
+    const Outcome outcome = run_words(by_exif("out") + Words{"--contact-sheet", work("sheet.png"), work("in")});
+    assert_int_equal(outcome.code, unreadable);
+    assert_true(contains(outcome.err, "lensprof: 3 of 5 pictures left out:\n"));
+    for (const char *reason :
+         {"in/a.jpg: no profile for", "in/b.jpg: cannot read: is not a PNG", "in/d.jpg: cannot read: "})
+        if (!contains(outcome.err, "lensprof:   " + work(reason))) fail_msg("%s: %s", reason, outcome.err.c_str());
+    assert_files(work("out"), {"c.jpg", "e.png"});
+    assert_true(read_picture(work("sheet.png")).width > 0);
+    const Json json = json_of(by_exif("json") + Words{"--json", work("in")}, unreadable);
+    assert_int_equal(json["pictures"].size(), 2);
+    assert_int_equal(json["left_out"].size(), 3);
+    const Words named = {work("in/b.jpg"), work("in/c.jpg"), cut, work("in/missing.jpg")};
+    assert_int_equal(run_words(by_exif("named") + named).code, unreadable);
+    assert_files(work("named"), {"c.jpg"});
+    for (const std::string &file : {work("in/b.jpg"), cut}) {
+        const Outcome alone = run_words(by_exif("alone") + Words{file});
+        assert_int_equal(alone.code, unreadable);
+        assert_true(contains(alone.err, "lensprof: " + file + ": cannot read: "));
+        assert_false(contains(alone.err, "left out"));
+    }
+    assert_files(work("alone"), {});
 }
 
 // Marks.
@@ -246,7 +270,7 @@ int main() {
         CLI_TEST(test_folder_goes_on),
         CLI_TEST(test_nearest_names),
         CLI_TEST(test_named_pictures_are_all_or_none),
-        CLI_TEST(test_unreadable_ends_it),
+        CLI_TEST(test_unreadable_is_left_out),
         CLI_TEST(test_help_tells_of_refused_pictures),
         CLI_TEST(test_missing_setting_is_named),
         CLI_TEST(test_output_by_default),

@@ -143,6 +143,13 @@ void test_lenses_are_not_compared_without_apertures(void **) {
     for (auto &metadata : m) metadata.is_manual = false, std::strcpy(metadata.key.lens, "With contacts");
     for (size_t i : {1, 3, 4}) m[i].f_number.reset(), *m[i].key.lens = '\0';
     assert_sigmas(known_of(m).sigmas, {0.0, 0.1, 0.0, 0.1, 0.1});
+    const std::string apart = "; not comparable with these, because a lens states no aperture: img0.jpg, img2.jpg";
+    assert_true(known_of(m).note.find("3 of 5 pictures, by time and ISO: it states no aperture" + apart)
+                != std::string::npos);
+    assert_true(known_of(m).note.find("unknown") == std::string::npos);
+    m[2].exposure_time_s.reset();
+    assert_true(known_of(m).note.find("no aperture: img0.jpg; unknown: img2.jpg") != std::string::npos);
+    m[2].exposure_time_s = 0.01;
     m[4].key.focal_mm = 50.0;  // a third lens
     assert_sigmas(known_of(m).sigmas, {0.1, 0.0, 0.1, 0.0, 0.0});
 }

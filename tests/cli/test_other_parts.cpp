@@ -235,6 +235,22 @@ void test_damaged_indices(void **) {
     assert_true(contains(left_out().at(0), "damaged"));
 }
 
+// An index without another picture, alone or with entries that the camera left empty, is not damaged: what follows the
+// picture is named by what it is, as without an index.
+void test_empty_indices(void **) {
+    const Bytes video = number(24, 4) + bytes_of("ftypmp42") + Bytes(500, 7);
+    for (const int entries : {0, 1, 3}) {
+        const Bytes file = multi_picture(std::vector<Entry>(size_t(entries), Entry{preview, {}}), true);
+        for (const auto &[after, left] : std::vector<std::pair<Bytes, std::string>>{
+                 {{}, ""}, {Bytes(4000, 0), ""}, {video, "a video"}, {jpeg(20, 10), "another picture"}}) {
+            assert_false(holds(copy_of(file + after, "out.jpg"), "MPF"));
+            const Words names = left_out();
+            if (names.size() != !left.empty() || (!left.empty() && !contains(names[0], left)))
+                fail_msg("%d entries: %s instead of %s", entries, names.empty() ? "" : names[0].c_str(), left.c_str());
+        }
+    }
+}
+
 // Changed and cut files never crash, and what is written can be read.
 void test_hostile_files(void **) {
     const Bytes good =
@@ -326,6 +342,7 @@ void test_pages(void **) {
         {{page, page}, "has 2 pages"},
         {std::vector<Page>(40, small), "has 40 pages"},
         {std::vector<Page>(300, {10, 8}), "has 300 pages"},
+        {std::vector<Page>(5000, {4, 3}), "has more than 4096 pages"},
         {{page, {700, 500, FILETYPE_PAGE}, {700, 500, FILETYPE_PAGE}}, "has 3 pages"},
         {{page, small}, ""},
         {{page, {400, 300}}, "has 2 pages"},
@@ -466,20 +483,47 @@ void test_known_kinds(void **) {
     assert_false(contains(run_words({"calibrate", work("a.heic"), "-o", work("out")}).err, "video"));
 }
 
+// Files in a folder that hold pictures which no command reads: one line per kind, by content. Others stay silent.
+void test_known_kinds_in_folders(void **) {
+    const std::string db = database(), in = work("in"), kinds_only = work("kinds");
+    fs::create_directories(in + "/sub");
+    fs::create_directories(kinds_only);
+    const Bytes clip = number(24, 4) + bytes_of("ftypisom") + number(0, 4) + bytes_of("isommp41");
+    for (const char *name : {"/a.mp4", "/sub/b.MP4", "/sub/c.bin"}) save(in + name, clip);
+    save(kinds_only + "/d.mp4", clip);
+    save(in + "/.hidden.mp4", clip);
+    save(in + "/star.fits", bytes_of("SIMPLE  =                    T"));
+    save_text(in + "/notes.txt", "P");
+    save_text(in + "/one.xmp", "<x:xmpmeta>"), save_text(in + "/pano.pto", "p f2\n"), save_text(in + "/thumbs.db", "");
+    save(in + "/song.m4a", number(24, 4) + bytes_of("ftypM4A ") + number(0, 4));
+    save(in + "/rest.zip", bytes_of("PK\x03\x04") + Bytes(20, 0));
+    for (const char *name : {"/one.jpg", "/two.jpg"}) save(in + name, jpeg(name[1] == 'o' ? 80 : 90, 60));
+    for (const Words &words :
+         std::vector<Words>{{"apply", "--profile", "1", "--db", db, "--response", "srgb", "-o", work("out"), in},
+                            {"build", "--no-store", in},
+                            {"calibrate", "--no-store", in, "-o", work("calibrated")}}) {
+        const std::string said = run_words(words).err;
+        for (const std::string line : {"/a.mp4 and 2 more: left out: a video (MP4), which lensprof does not read; make "
+                                       "frames of it first, for example with `ffmpeg -i ",
+                                       "/star.fits: left out: a FITS file, which lensprof does not read; convert it"})
+            if (!contains(said, "warning: " + in + line)) fail_msg("%s: %s", words[0].c_str(), said.c_str());
+        for (const char *silent : {"hidden", "notes", "xmp", "pto", "thumbs", "song", "zip"})
+            if (contains(said, silent)) fail_msg("%s: %s", words[0].c_str(), said.c_str());
+        assert_refused(usage,
+                       Words(words.begin(), words.end() - (words[0] == "calibrate" ? 3 : 1)) + Words{kinds_only}
+                           + (words[0] == "calibrate" ? Words{"-o", work("calibrated2")} : Words{}),
+                       {"kinds: is a folder without pictures", "d.mp4: left out: a video (MP4)"});
+    }
+}
+
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_gain_maps_are_kept),
-        CLI_TEST(test_tags_of_gain_maps),
-        CLI_TEST(test_data_after_the_picture),
-        CLI_TEST(test_damaged_indices),
-        CLI_TEST(test_hostile_files),
-        CLI_TEST(test_apple_maker_note),
-        CLI_TEST(test_gain_map_of_jxl),
-        CLI_TEST(test_pages),
-        CLI_TEST(test_commands),
-        CLI_TEST(test_known_kinds),
+        CLI_TEST(test_gain_maps_are_kept), CLI_TEST(test_tags_of_gain_maps), CLI_TEST(test_data_after_the_picture),
+        CLI_TEST(test_damaged_indices),    CLI_TEST(test_empty_indices),     CLI_TEST(test_hostile_files),
+        CLI_TEST(test_apple_maker_note),   CLI_TEST(test_gain_map_of_jxl),   CLI_TEST(test_pages),
+        CLI_TEST(test_commands),           CLI_TEST(test_known_kinds),       CLI_TEST(test_known_kinds_in_folders),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

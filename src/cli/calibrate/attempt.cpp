@@ -5,9 +5,7 @@
 namespace lensprof {
 
 bool is_of_pictures(const Failure &failure) {
-    if (dynamic_cast<const ForeignFile *>(&failure)) return false;
-    return failure.code == ExitCode::usage || failure.code == ExitCode::unreadable
-           || failure.code == ExitCode::not_usable || failure.code == ExitCode::not_found;
+    return is_of_input(failure) && !dynamic_cast<const ForeignFile *>(&failure);
 }
 
 std::string failure_of(const std::function<void()> &step) {

@@ -141,28 +141,13 @@ void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, L
     ledger.save();
     CorrectionKind kind;
     kind.threads = o.threads;
+    const Corrected corrected = write_corrected(jobs, kind, nullptr, progress);
     std::map<std::string, std::string> damaged;
-    while (!jobs.empty()) {
-        std::string failure_text;
-        try {
-            write_corrected(jobs, kind, nullptr, progress);
-        } catch (const Failure &failure) {
-            if (!is_of_pictures(failure)) throw;
-            failure_text = failure.what();
-        }
-        // Pictures are processed in this order, so the count of written ones gives the index of the one that cannot be
-        // read.
-        const auto next = std::find_if(jobs.begin(), jobs.end(),
-                                       [&](const Correction &job) { return !ledger.is_written(job.target); });
-        pictures.written += static_cast<uint32_t>(next - jobs.begin());
-        std::for_each(jobs.begin(), next, [&](const Correction &job) { ledger.finish(job.target); });
-        if (next != jobs.end()) {
-            damaged[next->source] = failure_text;
-            ledger.abandon(next->target);
-        }
-        jobs.erase(jobs.begin(), next == jobs.end() ? next : next + 1);
-        ledger.save();
-    }
+    for (const FailedPicture &picture : corrected.failed) damaged[picture.file] = picture.failure.what();
+    for (const Correction &job : jobs)
+        damaged.count(job.source) ? ledger.abandon(job.target) : ledger.finish(job.target);
+    pictures.written += static_cast<uint32_t>(jobs.size() - damaged.size());
+    ledger.save();
     const auto is_damaged = [&](const CorrectedPicture &entry) { return damaged.count(entry.picture->file) != 0; };
     pictures.list.erase(std::remove_if(pictures.list.begin(), pictures.list.end(), is_damaged), pictures.list.end());
     for (const auto &[file, failure_text] : damaged) pictures.left_out.push_back({file, failure_text});

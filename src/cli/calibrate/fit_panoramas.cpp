@@ -196,6 +196,7 @@ void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledg
             fit_one(o, panorama, ledger, progress);
             panoramas.fitted++;
         }
+        for (const Json &warning : panorama.summary["warnings"]) progress.warn(warning.get<std::string>());
         if (!panorama.evens()) continue;
         const std::string failure = failure_of([&] { draw_preview(panorama, ledger, progress); });
         panorama.summary["preview"] = failure.empty() ? Json(panorama.preview) : Json();

@@ -168,7 +168,9 @@ std::string sheet_name(size_t page) {
 Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Progress &progress) {
     check_output(words, output);
     std::vector<UnlistedFolder> unlisted;
-    std::vector<NamedPicture> named = named_pictures(words, output, &unlisted);
+    std::vector<std::string> other_kinds;
+    std::vector<NamedPicture> named = named_pictures(words, output, other_kinds, &unlisted);
+    for (const std::string &text : other_kinds) progress.warn(text);
     extract_below(named, has_ledger);
     const Photographs list = list_photographs(words, named);
     Inputs inputs;

@@ -5,7 +5,9 @@
 
 #include "cli/calibrate/sheet.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/help_text.hpp"
 #include "cli/program/utf8.hpp"
+#include "cli/report/falloff.hpp"
 
 namespace lensprof {
 namespace {
@@ -15,7 +17,7 @@ constexpr size_t max_panoramas = 3, max_names = 3;
 double corner_of(const Json &result) {
     double corner = 1.0;
     const Json &curves = result["vignetting"]["k"];
-    for (const Json &k : curves[curves.size() > 1 ? 1 : 0]) corner += k.get<double>();
+    for (const Json &k : curves[green_curve(curves.size())]) corner += k.get<double>();
     return corner;
 }
 
@@ -32,9 +34,11 @@ std::string stored_text(const Json &result) {
     return count ? (count > 1 ? "profiles " : "profile ") + ids + " stored" : "";
 }
 
-std::string shortened(const std::string &line) {
-    constexpr size_t max_bytes = 200;
-    return line.size() <= max_bytes ? line : line.substr(0, utf8_cut(line, max_bytes)) + "...";
+// An entry of a list: the whole text, wrapped, its further lines indented below the first.
+std::string entry(const std::string &text) {
+    std::string lines;
+    for (const char c : wrapped(one_line(text), help_columns - 4)) c == '\n' ? lines += "\n    " : lines += c;
+    return "  " + lines + "\n";
 }
 
 std::vector<LeftOutPicture> all_left_out(const Inputs &inputs, const CorrectedPictures &pictures) {
@@ -51,7 +55,7 @@ void print_panoramas(const Panoramas &panoramas, std::ostream &out) {
     if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << corrected << " corrected";
     out << "\n";
     const size_t count = panoramas.list.size(), listed = count <= max_panoramas ? count : max_panoramas - 1;
-    for (size_t n = 0; n < listed; n++) out << shortened(one_line("  " + panorama_line(panoramas.list[n]))) << "\n";
+    for (size_t n = 0; n < listed; n++) out << entry(panorama_line(panoramas.list[n]));
     if (listed < count) out << "  and " << count - listed << " more\n";
 }
 
@@ -116,7 +120,7 @@ void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panora
     if (!left_out.empty()) {
         const size_t shown = left_out.size() <= max_names ? left_out.size() : max_names - 1;
         out << "left out  " << counted(left_out.size(), "picture") << "\n";
-        for (size_t i = 0; i < shown; i++) out << shortened(one_line("  " + left_out[i].reason)) << "\n";
+        for (size_t i = 0; i < shown; i++) out << entry(left_out[i].reason);
         if (shown < left_out.size()) out << "  and " << left_out.size() - shown << " more\n";
     }
     out << one_line("written   to " + o.output + ": " + summary_name + " (with all reasons)"

@@ -193,7 +193,9 @@ Corrected write_all(const Options &o, const std::vector<Correction> &jobs,
                     const std::vector<lensprof_exposure> &exposures, Progress &progress) {
     if (o.merge.empty()) {
         make_folder(o.folder());
-        return write_corrected(jobs, o.kind, nullptr, progress);
+        Corrected corrected = write_corrected(jobs, o.kind, nullptr, progress);
+        if (!corrected.failed.empty()) throw Failure(corrected.failed[0].failure);
+        return corrected;
     }
     write_merged(jobs, frame_like(exposures, jobs[0].target_exposure), o.merge, progress);
     Corrected corrected;

@@ -25,11 +25,22 @@
 namespace lensprof {
 namespace {
 
-void list_left_out(const ApplyWork &work, Streams &streams) {
+void list_left_out(const ApplyWork &work, size_t corrected, Streams &streams) {
     if (work.left_out.empty()) return;
     print_message(streams, std::to_string(work.left_out.size()) + " of "
-                               + counted(work.jobs.size() + work.left_out.size(), "picture") + " left out:");
+                               + counted(corrected + work.left_out.size(), "picture") + " left out:");
     for (const LeftOut &picture : work.left_out) print_message(streams, "  " + picture.reason);
+}
+
+// The code of the first picture that failed; a picture without a profile counts only if none did.
+ExitCode code_of(const std::vector<LeftOut> &left_out) {
+    ExitCode code = ExitCode::done;
+    for (const LeftOut &picture : left_out) {
+        if (picture.corrected_already) continue;
+        if (picture.code != ExitCode::not_found) return picture.code;
+        code = picture.code;
+    }
+    return code;
 }
 
 Json left_out_json(const ApplyWork &work) {
@@ -162,6 +173,10 @@ int run(ApplyOptions &o, Streams &streams) {
     const ApplySource source = open_source(o);
     ApplyWork work = plan_work(o, source, streams);
     const Corrected written = correct(o, source, work, streams);
+    if (work.jobs.size() == 1 && work.left_out.empty() && !written.failed.empty())
+        throw Failure(written.failed[0].failure);
+    for (const auto &[file, failure] : written.failed)
+        work.left_out.push_back({file, failure.what(), false, failure.code});
     if (o.json) {
         Json json = {{"schema", 1}, {"pictures", written.pictures}, {"left_out", left_out_json(work)}};
         add_speed(written, json);
@@ -170,11 +185,9 @@ int run(ApplyOptions &o, Streams &streams) {
         for (const auto &entry : written.pictures) streams.out << entry["output"].get<std::string>() << "\n";
         if (!o.sheet.empty() && !work.jobs.empty()) streams.out << o.sheet << "\n";
     }
-    list_left_out(work, streams);
-    const bool all_done = std::all_of(work.left_out.begin(), work.left_out.end(),
-                                      [](const LeftOut &left_out) { return left_out.corrected_already; });
+    list_left_out(work, written.pictures.size(), streams);
     if (work.jobs.empty() && work.left_out.empty()) return static_cast<int>(ExitCode::not_usable);
-    return static_cast<int>(all_done ? ExitCode::done : ExitCode::not_found);
+    return static_cast<int>(code_of(work.left_out));
 }
 
 }  // namespace

@@ -66,12 +66,12 @@ void declare_options(Command &command, ApplyOptions &o) {
     command.footer(
         "Outputs keep format, depth, metadata and colour profile of the picture; a mark in their XMP states\n"
         "the correction by lensprof. Several pictures are corrected in parallel, in strips of rows; only\n"
-        "interlaced PNG and progressive JPEG are held in memory completely. All pictures are opened first:\n"
-        "if one cannot be opened, nothing is written. If one turns out to be damaged later, only those\n"
-        "before it are written. Exit code 5: pictures were refused, because they have no profile. If one\n"
-        "of them, or an already corrected one, was named, nothing is written; those of folders, and with\n"
-        "--skip all of them, are left out. An existing output is replaced if it was made from the same\n"
-        "picture; a file not written by lensprof is replaced only in a folder given with -o.");
+        "interlaced PNG and progressive JPEG are held in memory completely. Of several pictures, those that\n"
+        "cannot be read are listed with their reasons, and the others are corrected; the exit code is 3.\n"
+        "Exit code 5: pictures were refused, because they have no profile. If one of them, or an already\n"
+        "corrected one, was named, nothing is written; those of folders, and with --skip all of them, are\n"
+        "left out. An existing output is replaced if it was made from the same picture; a file not written\n"
+        "by lensprof is replaced only in a folder given with -o.");
 }
 
 void check_merge(const ApplyOptions &o) {

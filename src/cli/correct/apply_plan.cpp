@@ -163,6 +163,8 @@ std::shared_ptr<const lensprof_profile> without_falloff(const lensprof_profile &
 Correction make_job(const ApplyOptions &o, const ApplySource &source, const NamedPicture &picture) {
     Correction job;
     job.source = picture.file;
+    const PictureSize size = read_size(picture.file);
+    job.pixels = uint64_t(size.width) * size.height;
     std::filesystem::path named =
         std::filesystem::path(picture.subfolder) / std::filesystem::path(picture.file).filename();
     lensprof_exposure_init(&job.exposure);
@@ -290,6 +292,7 @@ ApplySource open_source(const ApplyOptions &o) {
 
 ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &streams) {
     std::vector<NamedPicture> pictures;
+    std::vector<std::string> other_kinds;
     if (o.files.empty() && source.project)
         for (uint32_t i = 0; i < source.project->files.size(); i++) {
             const std::string &file = source.project->files[i];
@@ -297,7 +300,8 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
             if (!is_again) pictures.push_back({file, "", false});
         }
     else
-        pictures = named_pictures(o.files, o.output), extract_outputs(pictures, streams);
+        pictures = named_pictures(o.files, o.output, other_kinds), extract_outputs(pictures, streams);
+    for (const std::string &text : other_kinds) warn(streams, text);
     if (o.merge) refuse_crops(*source.project, "--merge");
     take_shard(shard_of(o.shard), pictures);
     if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; give pictures or folders");
@@ -310,14 +314,14 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
         inputs.push_back(picture.file);
         note_instead(picture, streams);
         if (source.project && picture.in_folder && !source.images->find(picture.file)) {
-            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project(), false});
+            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project()});
             continue;
         }
         if (source.project && is_left_out(source, picture.file, o.project_option())) {
             const std::string reason =
                 picture.file + ": not corrected: the project has no exposure for it; use the original";
             warn(streams, reason);
-            work.unjoined.push_back({picture.file, reason, false});
+            work.unjoined.push_back({picture.file, reason});
             continue;
         }
         try {
@@ -327,6 +331,9 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
                 work.left_out.push_back({picture.file, failure.what(), failure.corrected_already});
             else
                 refused.push_back(failure);
+        } catch (const Failure &failure) {
+            if (failure.code != ExitCode::unreadable || o.merge || pictures.size() == 1) throw;
+            work.left_out.push_back({picture.file, failure.what(), false, failure.code});
         }
     }
     if (!refused.empty()) fail_refused(refused, pictures.size(), streams);

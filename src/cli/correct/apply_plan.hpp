@@ -24,7 +24,8 @@ struct ApplySource {
 
 struct LeftOut {
     std::string file, reason;
-    bool corrected_already;
+    bool corrected_already = false;
+    ExitCode code = ExitCode::not_found;
 };
 
 struct ApplyWork {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <optional>
 
 #include "cli/correct/clipping.hpp"
 #include "cli/correct/correction.hpp"
@@ -35,6 +36,7 @@ struct Strip {
 struct Finished {
     std::unique_ptr<PictureWriter> writer;
     std::unique_ptr<OutputFile> copy;  // instead of it, for a DNG
+    std::optional<Failure> failure;    // instead of both
     bool with_metadata = false;
     double more_clipped = 0.0;  // share of the pixels that the correction clips, minus that clipped before
 };
@@ -124,7 +126,7 @@ Finished PictureCorrection::run(bool split, Throughput &done) {
     make_and_take<Strip>(
         split, [&](Strip &strip) { return make(strip); }, [&](const Strip &strip) { done.add_pixels(take(strip)); });
     bool with_metadata = writer_->finish();
-    return {std::move(writer_), nullptr, with_metadata, clipped_after_.share() - clipped_before_.share()};
+    return {std::move(writer_), nullptr, std::nullopt, with_metadata, clipped_after_.share() - clipped_before_.share()};
 }
 
 // Adds the falloff as an opcode; everything else of the DNG stays unchanged.
@@ -132,7 +134,7 @@ Finished copy_dng(const Correction &job) {
     auto output = std::make_unique<OutputFile>(job.target);
     write_opcodes(job.source, output->temporary(), *job.model);
     output->sync();
-    return {nullptr, std::move(output), true, 0.0};
+    return {nullptr, std::move(output), std::nullopt, true, 0.0};
 }
 
 // The orientation of a picture that was read, for its thumbnails; 1 if its metadata are damaged.
@@ -154,7 +156,8 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     for (const Correction &job : jobs) pixels += job.pixels;
     Throughput throughput(progress, "correcting", count, pixels);
     std::vector<Finished> finished(count);
-    auto work = [&](uint32_t i) {
+    const auto name_of = [&](uint32_t i) { return std::filesystem::path(jobs[i].source).filename().string(); };
+    const auto correct_one = [&](uint32_t i) {
         make_folder(std::filesystem::path(absolute_path(jobs[i].target)).parent_path().string());
         if (jobs[i].copies_dng) {
             finished[i] = copy_dng(jobs[i]);
@@ -164,18 +167,31 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         finished[i] = picture.run(threads / 2 >= count, throughput);
         if (!sheet) return;
         const uint16_t orientation = orientation_of(jobs[i].source);
-        sheet->put(i, {picture.before.upright(orientation), picture.after.upright(orientation),
-                       std::filesystem::path(jobs[i].source).filename().string(), correction_note(jobs[i])});
+        sheet->put(i, {picture.before.upright(orientation), picture.after.upright(orientation), name_of(i),
+                       correction_note(jobs[i])});
+    };
+    auto work = [&](uint32_t i) {
+        try {
+            correct_one(i);
+        } catch (const Failure &failure) {
+            if (!is_of_input(failure)) throw;
+            finished[i] = {nullptr, nullptr, failure, false, 0.0};
+            if (sheet) sheet->put(i, {Picture(), Picture(), name_of(i), "not corrected"});
+        }
     };
     Corrected corrected;
     LeftOutParts parts;
     CopyLosses losses;
     auto finish = [&](uint32_t i) {
+        throughput.add_picture();
+        if (finished[i].failure) {
+            corrected.failed.push_back({jobs[i].source, *finished[i].failure});
+            return;
+        }
         finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
         parts.add(jobs[i].source, jobs[i].target);
         if (!kind.simulate) losses.add(jobs[i], finished[i].more_clipped);
-        finished[i] = {nullptr, nullptr, finished[i].with_metadata, 0.0};
-        throughput.add_picture();
+        finished[i] = {nullptr, nullptr, std::nullopt, finished[i].with_metadata, 0.0};
         warn_of_written(jobs[i], finished[i].with_metadata, progress);
         Json entry = {{"file", jobs[i].source}, {"output", jobs[i].target}};
         if (jobs[i].profile_id) entry["profile"] = jobs[i].profile_id;

@@ -20,8 +20,10 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
     for (const std::string &file : inputs) read.insert(canonical_path(file));
     for (const Correction &job : jobs) read.insert(canonical_path(job.source));
     for (Correction &job : jobs) {
-        PictureSize size = read_size(job.source);  // unreadable pictures fail before anything is written
-        job.pixels = uint64_t(size.width) * size.height;
+        if (!job.pixels) {  // unreadable pictures fail before anything is written
+            const PictureSize size = read_size(job.source);
+            job.pixels = uint64_t(size.width) * size.height;
+        }
         const std::string target = canonical_path(job.target);
         if (target == canonical_path(job.source) || is_same_file(job.source, job.target))
             throw Failure(ExitCode::usage,

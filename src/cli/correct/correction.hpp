@@ -57,9 +57,16 @@ struct CorrectionKind {
 
 constexpr size_t strip_bytes = size_t(1) << 20;
 
+// A picture that could not be corrected, and why.
+struct FailedPicture {
+    std::string file;
+    Failure failure;
+};
+
 // What was written, and how fast.
 struct Corrected {
-    Json pictures = Json::array();  // file, output and, if used, profile or lookup
+    Json pictures = Json::array();      // file, output and, if used, profile or lookup
+    std::vector<FailedPicture> failed;  // of these nothing was written
     double seconds = 0, megapixels = 0;
 };
 
@@ -77,7 +84,7 @@ void declare_writing(Command &command, CorrectionKind &kind);
 
 // Checks before anything is written: Failure (unreadable) for a picture that cannot be read, and Failure (usage) for an
 // output or contact sheet (path or empty) that would overwrite a picture being corrected, another of the `inputs` or
-// another output. Sets the pixel counts of the jobs.
+// another output. Sets the missing pixel counts of the jobs.
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet);
 
 // Failure (usage) for an existing output that was made from another picture according to its mark. An output without a
@@ -86,9 +93,10 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
 
 // Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are
 // processed in parallel, one per thread, each in strips of rows; with at least twice as many threads as pictures,
-// encoding of a picture gets its own thread. The number of threads does not affect the outputs or messages: the failure
-// of the first picture that fails is thrown; pictures before it are written, it and those after it are not. Outputs are
-// marked (CorrectionMark), and missing folders are created.
+// encoding of a picture gets its own thread. The number of threads does not affect the outputs or messages. A picture
+// that cannot be read or corrected does not stop the others (`failed`). Any other failure, such as a full disk, is
+// thrown: pictures before it are written, that picture and those after it are not. Outputs are marked (CorrectionMark),
+// and missing folders are created.
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
                           Progress &progress);
 

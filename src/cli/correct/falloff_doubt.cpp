@@ -4,14 +4,10 @@
 #include <cmath>
 
 #include "cli/program/format.hpp"
+#include "falloff/rise.hpp"
 
 namespace lensprof {
 namespace {
-
-constexpr double darkest = 0.05, brightest = 1.05;  // M that a lens, or a camera that corrects it, can have
-constexpr double largest_rise = 0.02;       // of M with growing r; 99 % of Lensfun's measured falloffs rise less
-constexpr double errors_of_evidence = 2.0;  // standard errors
-constexpr int steps = 64;                   // of r
 
 // Half diagonals from the centre of the falloff to the farthest corner, or place of the circle.
 double farthest_place(const lensprof_vignetting &falloff, uint32_t width, uint32_t height, bool is_circular) {
@@ -22,22 +18,25 @@ double farthest_place(const lensprof_vignetting &falloff, uint32_t width, uint32
 }
 
 std::string impossible_curve(const lensprof_profile &profile, uint32_t channel, double farthest) {
-    double lowest = 1.0, extreme = 1.0, extreme_r = 0.0, rise = 0.0, rise_r = 0.0;
-    for (int i = 1; i <= steps; i++) {
+    constexpr double errors_of_evidence = 2.0;  // standard errors
+    const auto m_of = [&](double r2, double *sigma = nullptr) {
+        return lensprof_profile_radial_falloff(&profile, channel, std::sqrt(r2), sigma);
+    };
+    const Course course = course_of(farthest * farthest, m_of, [&](double r2, double rise) {
         double sigma = LENSPROF_UNKNOWN;
-        const double r = farthest * i / steps, m = lensprof_profile_radial_falloff(&profile, channel, r, &sigma);
-        const double excess = std::max(darkest - m, m - brightest);
-        if (excess > 0.0 && excess > std::max(darkest - extreme, extreme - brightest)) extreme = m, extreme_r = r;
-        const bool is_evident = sigma != LENSPROF_UNKNOWN && sigma > 0.0 && m - lowest > errors_of_evidence * sigma;
-        if (!is_evident && m - lowest > std::max(rise, largest_rise)) rise = m - lowest, rise_r = r;
-        lowest = std::min(lowest, m);
-    }
-    if (extreme_r > 0.0)
+        m_of(r2, &sigma);
+        const bool is_evident = sigma != LENSPROF_UNKNOWN && sigma > 0.0 && rise > errors_of_evidence * sigma;
+        return rise > kSmallRise && !is_evident;
+    });
+    const double bright = course.highest.m - kLargestRise, dark = kSmallestM - course.lowest.m;
+    if (std::max(bright, dark) > 0.0) {
+        const MAt extreme = bright > dark ? course.highest : course.lowest;
         return format("its falloff %s to %.2f times the centre, %.2f half diagonals from it",
-                      extreme > 1.0 ? "rises" : "falls", extreme, extreme_r);
-    return rise > 0.0
-               ? format("its falloff rises outward by %.2f, up to %.2f half diagonals from the centre", rise, rise_r)
-               : "";
+                      extreme.m > 1.0 ? "rises" : "falls", extreme.m, std::sqrt(extreme.r2));
+    }
+    return course.rise.m > 0.0 ? format("its falloff rises outward by %.2f, up to %.2f half diagonals from the centre",
+                                        course.rise.m, std::sqrt(course.rise.r2))
+                               : "";
 }
 
 }  // namespace

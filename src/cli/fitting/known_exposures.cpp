@@ -84,6 +84,7 @@ std::map<Comparable, std::vector<size_t>> comparable_pictures(const std::vector<
 ExifExposures exif_exposures(const std::vector<PictureMetadata> &metadata, const std::vector<uint32_t> &camera_of) {
     ExifExposures exposures;
     exposures.ev.assign(metadata.size(), NAN);
+    exposures.is_apart.assign(metadata.size(), false);
     const auto groups = comparable_pictures(metadata, camera_of, exposures);
     std::map<uint32_t, const std::vector<size_t> *> largest;  // per camera
     for (const auto &[key, pictures] : groups) {
@@ -93,7 +94,7 @@ ExifExposures exif_exposures(const std::vector<PictureMetadata> &metadata, const
     for (const auto &[key, pictures] : groups) {
         const bool is_used = largest[std::get<0>(key)] == &pictures;
         for (const size_t i : pictures) {
-            if (!is_used) exposures.ev[i] = NAN;
+            if (!is_used) exposures.ev[i] = NAN, exposures.is_apart[i] = true;
             exposures.cancels_iso |= is_used && !metadata[i].iso;
             exposures.cancels_aperture |= is_used && !metadata[i].f_number;
         }
@@ -110,18 +111,21 @@ static bool states_exposures(const std::vector<PictureMetadata> &metadata) {
 ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetadata> &metadata,
                  const std::vector<std::string> &names) {
     ExifUse use;
-    std::vector<uint32_t> unknown;
+    std::vector<uint32_t> unknown, apart;
     for (uint32_t i = 0; i < names.size(); i++)
-        if (std::isnan(exposures.ev[i])) unknown.push_back(i);
-    use.images = names.size() - unknown.size();
+        if (std::isnan(exposures.ev[i])) (exposures.is_apart[i] ? apart : unknown).push_back(i);
+    use.images = names.size() - unknown.size() - apart.size();
     use.cancels_iso = exposures.cancels_iso, use.cancels_aperture = exposures.cancels_aperture;
-    if (!states_exposures(metadata) || !(use.cancels_iso || use.cancels_aperture || !unknown.empty())) return use;
+    if (!states_exposures(metadata) || !(use.images < names.size() || use.cancels_iso || use.cancels_aperture))
+        return use;
     use.note = "EXIF gives the exposures of " + std::to_string(use.images) + " of " + counted(names.size(), "picture");
     if (use.cancels_iso && use.cancels_aperture)
         use.note += ", by the time alone: it states neither ISO nor aperture";
     else if (use.cancels_iso || use.cancels_aperture)
         use.note +=
             use.cancels_iso ? ", by time and aperture: it states no ISO" : ", by time and ISO: it states no aperture";
+    if (!apart.empty())
+        use.note += "; not comparable with these, because a lens states no aperture: " + listed(apart, names);
     if (!unknown.empty()) use.note += "; unknown: " + listed(unknown, names);
     return use;
 }

@@ -14,7 +14,8 @@ namespace lensprof {
 // unknown exposures, as have those without a time, which cameras vary. Pictures of two lenses without apertures are not
 // comparable: of such groups, the largest of a camera is known.
 struct ExifExposures {
-    std::vector<double> ev;  // per picture; NaN = unknown
+    std::vector<double> ev;      // per picture; NaN = unknown
+    std::vector<bool> is_apart;  // per picture: stated, but not comparable with the known ones
     bool cancels_iso = false, cancels_aperture = false;
 };
 ExifExposures exif_exposures(const std::vector<PictureMetadata> &metadata, const std::vector<uint32_t> &camera_of);

@@ -122,7 +122,9 @@ static bool is_corrected_copy(const NamedPicture &picture) {
 }
 
 Photographs find_photographs(const std::vector<std::string> &words, Streams &streams) {
-    std::vector<NamedPicture> named = named_pictures(words, std::string());
+    std::vector<std::string> other_kinds;
+    std::vector<NamedPicture> named = named_pictures(words, std::string(), other_kinds);
+    for (const std::string &text : other_kinds) warn(streams, text);
     const std::vector<NamedPicture> outputs = extract_outputs(named, streams);
     for (const NamedPicture &picture : named) note_instead(picture, streams);
     const auto first_corrected = std::stable_partition(

@@ -41,7 +41,7 @@ constexpr const char *linked_by_other_camera =
 // Why pictures of a stationary camera are not fitted, and what to use them for.
 constexpr const char *still_camera_advice =
     ": the camera did not move, so the pictures cannot show the falloff; use `lensprof bracket` for its response, "
-    "`lensprof align` to match or merge the pictures";
+    "`lensprof align` to match or merge the pictures. Both need plain exposures, without HDR";
 
 // Note for a project whose cameras do not fit.
 constexpr const char *poor_cameras_note =

@@ -262,8 +262,9 @@ void warn_of_few_images(const ProjectFitOptions &o, const Project &project, cons
     const bool has_falloff = fitted.result.model == LENSPROF_FIT_MODEL_FULL;
     if (!project.by_matches || !fitted.corrects() || !has_falloff || images >= min_images) return;
     warn(streams, project.path
-                      + format(": the falloff is from only %zu pictures of a moving camera; its error may be several "
-                               "times the stated one. Give %zu pictures or more%s",
+                      + format(": the falloff is from only %zu pictures of a moving camera, in which objects that look "
+                               "different from another side resemble falloff; it may be off by twice the stated error. "
+                               "Give %zu pictures or more%s",
                                images, min_images, o.store.no_store ? "" : ", or --no-store"));
 }
 

@@ -38,6 +38,13 @@ struct Head {
     uint64_t index_start = 0;  // of the byte order mark of the index
     std::optional<std::vector<MpPicture>> pictures;
     std::vector<uint8_t> gain_map_segment;
+
+    // Whether an index lists more than the first picture, as far as it can be read. Some cameras write an index with
+    // entries for previews that they then do not write.
+    bool lists_others() const {
+        if (!has_index || !pictures || pictures->empty()) return has_index;
+        return std::any_of(pictures->begin() + 1, pictures->end(), [](const MpPicture &other) { return other.bytes; });
+    }
 };
 
 void take_segment(uint8_t marker, uint64_t offset, const std::vector<uint8_t> &segment, Head &head) {
@@ -305,10 +312,10 @@ JpegParts jpeg_parts(const std::string &path) {
     Rest rest(file.get(), parts.end, size);
     if (rest.is_empty()) return parts;
     const std::vector<JpegPart> located =
-        head.pictures && !head.pictures->empty() ? locate(head, rest) : std::vector<JpegPart>();
+        head.lists_others() && head.pictures && !head.pictures->empty() ? locate(head, rest) : std::vector<JpegPart>();
     if (!located.empty())
         take_indexed(head, located, rest, parts);
-    else if (head.has_index && !rest.is_padding())
+    else if (head.lists_others() && !rest.is_padding())
         parts.left_out.push_back("what follows the picture, because its index (MPF) is damaged");
     else
         take_unlisted(head, rest, parts);

@@ -9,6 +9,8 @@
 #include "cli/pictures/picture.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/program/error.hpp"
+#include "cli/program/file_kind.hpp"
+#include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/paths.hpp"
 
@@ -55,6 +57,7 @@ public:
     }
 
     const std::vector<NamedPicture> &found() const { return found_; }
+    const std::vector<std::string> &other_files() const { return other_files_; }
 
 private:
     void enter(const std::string &subfolder) {
@@ -69,6 +72,8 @@ private:
                 (entry->is_symlink(ignored) ? links_ : folders_).push_back((fs::path(subfolder) / name).string());
             else if (is_picture_name(name))
                 found_.push_back({path, subfolder, true});
+            else
+                other_files_.push_back(path);
         }
         if (!error) return;
         const std::string message = folder + ": cannot list the folder: " + error.message();
@@ -81,13 +86,33 @@ private:
     std::deque<std::string> folders_, links_;  // subfolders to enter
     std::set<std::string> entered_;            // by file_identity
     std::vector<NamedPicture> found_;
+    std::vector<std::string> other_files_;
 };
+
+// One line per kind of pictures that lensprof does not read, with the first file's name.
+std::vector<std::string> lines_of(std::vector<std::string> files) {
+    struct Group {
+        std::string first, reason;
+        size_t count;
+    };
+    std::sort(files.begin(), files.end());
+    std::map<std::string, Group> groups;
+    for (const std::string &file : files)
+        if (const auto other = other_pictures(file))
+            groups.try_emplace(other->kind, Group{file, other->reason, 0}).first->second.count++;
+    std::vector<std::string> lines;
+    for (const auto &[kind, group] : groups)
+        lines.push_back(group.first + (group.count > 1 ? format(" and %zu more", group.count - 1) : "")
+                        + ": left out: " + group.reason);
+    return lines;
+}
 
 }  // namespace
 
 std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output,
-                                         std::vector<UnlistedFolder> *unlisted) {
+                                         std::vector<std::string> &left_out, std::vector<UnlistedFolder> *unlisted) {
     std::vector<NamedPicture> pictures;
+    std::vector<std::string> other_files;
     for (const std::string &name : names) {
         if (name.empty()) throw Failure(ExitCode::usage, "FILE: empty name; give a picture or a folder");
         if (!is_folder(name)) {
@@ -95,14 +120,17 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
             continue;
         }
         const FolderWalk walk(name, output, unlisted);
-        if (walk.found().empty())
+        if (walk.found().empty()) {
+            const std::vector<std::string> others = lines_of(walk.other_files());
             throw Failure(
                 ExitCode::usage,
-                name
-                    + ": is a folder without pictures (.jpg, .png, .tif, .heic, .avif, .webp, .jxl, camera raw); give "
-                      "another");
+                name + ": is a folder without pictures (.jpg, .png, .tif, .heic, .avif, .webp, .jxl, camera raw); "
+                    + (others.empty() ? "give another" : others[0]));
+        }
         pictures.insert(pictures.end(), walk.found().begin(), walk.found().end());
+        other_files.insert(other_files.end(), walk.other_files().begin(), walk.other_files().end());
     }
+    left_out = lines_of(std::move(other_files));
     return pictures;
 }
 

@@ -26,8 +26,11 @@ struct UnlistedFolder {
 // and `output`, if it is a subfolder, not at all. Failure (usage) for a folder without pictures. Of a camera raw file
 // and rendered files with the same base name (IMG_1.NEF, IMG_1.JPG) in a folder, the raw file is used if the program
 // can read it, because its values are linear and uncorrected; else the rendered ones. A subfolder that cannot be listed
-// is added to `unlisted`, unless that is NULL; then it is a Failure (unreadable).
+// is added to `unlisted`, unless that is NULL; then it is a Failure (unreadable). Files in a folder that hold pictures
+// of a kind that no command reads, such as videos, are left out: a line in `left_out` states each kind, their number
+// and what to do.
 std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output,
+                                         std::vector<std::string> &left_out,
                                          std::vector<UnlistedFolder> *unlisted = nullptr);
 
 // Name of the file in which calibrate keeps its records in the output folder.

@@ -75,9 +75,9 @@ uint32_t png_frames(const std::string &path) {
 }
 
 SeveralPictures several_of_tiff(const std::string &path) {
-    const uint32_t pages = codec::tiff_pages(path).pages;
-    if (pages < 2) return {};
-    return {format("has %u pages", pages),
+    const codec::TiffPages found = codec::tiff_pages(path);
+    if (found.pages < 2) return {};
+    return {format("has %s%u pages", found.has_more ? "more than " : "", found.pages),
             "split it first, for example with `tiffsplit " + shell_word(path) + " page_`, and give its pages"};
 }
 

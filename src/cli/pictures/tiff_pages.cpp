@@ -68,7 +68,8 @@ TiffPages tiff_pages(const std::string &path) {
     const uint32_t first_side =
         std::max(tiff.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0), tiff.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0));
     tiff.message = {};
-    const uint32_t directories = std::min<uint32_t>(TIFFNumberOfDirectories(tiff.handle), max_pages);
+    const uint32_t all = TIFFNumberOfDirectories(tiff.handle), directories = std::min(all, max_pages);
+    pages.has_more = all > max_pages;
     pages.is_damaged = tiff.failed();
     const bool may_be_exif = directories == 2;
     for (uint32_t i = 1; i < directories; ++i) {

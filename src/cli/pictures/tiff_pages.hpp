@@ -10,6 +10,7 @@ namespace codec {
 
 struct TiffPages {
     uint32_t pages = 0;     // pictures of their own, the first included; directories that cannot be read count as pages
+    bool has_more = false;  // further directories were not examined
     bool has_mask = false;  // a page is the mask of another one
     bool has_layers = false;  // layers of Photoshop, of which the first page is the composite
     bool is_damaged = false;  // further directories cannot be found

@@ -22,12 +22,12 @@ Json known(double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(std:
 std::string camera_of(const lensprof_profile_key &key) { return camera_name(key.camera_maker, key.camera_model); }
 
 bool shows_falloff(const lensprof_profile &profile) {
-    return has_falloff(profile.vignetting[profile.vignettings == 3 ? 1 : 0]);
+    return has_falloff(profile.vignetting[green_curve(profile.vignettings)]);
 }
 
 Json setting_json(const StoredProfile &stored) {
     const lensprof_profile &p = *stored.profile;
-    const lensprof_vignetting &green = p.vignetting[p.vignettings == 3 ? 1 : 0];
+    const lensprof_vignetting &green = p.vignetting[green_curve(p.vignettings)];
     std::string note = *p.key.unit ? std::string("unit ") + p.key.unit : std::string();
     if (*p.provenance.doubt) note += (note.empty() ? "" : ", ") + std::string("in doubt");
     return {{"id", stored.id},

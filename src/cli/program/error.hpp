@@ -30,4 +30,11 @@ struct Failure : std::runtime_error {
     uint32_t reason;  // lensprof_reason of a result that is not usable
 };
 
+// Whether the cause is one of the inputs, so that the others may still be processed. False if it is the disk, the
+// database or an interrupt.
+inline bool is_of_input(const Failure &failure) {
+    return failure.code == ExitCode::usage || failure.code == ExitCode::unreadable
+           || failure.code == ExitCode::not_usable || failure.code == ExitCode::not_found;
+}
+
 }  // namespace lensprof

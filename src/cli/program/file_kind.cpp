@@ -15,23 +15,30 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// What to do with the file; FILE is replaced by its name.
-constexpr const char *video = "make frames of it first, for example with `ffmpeg -i FILE -vf fps=2 frame_%04d.png`";
-constexpr const char *sound = "give pictures";
-constexpr const char *animation = "save its frames as PNG first, for example with `magick FILE frame_%04d.png`";
-constexpr const char *picture = "convert it to PNG or TIFF first, for example with `magick FILE picture.png`";
-constexpr const char *layers = "save it as a flat TIFF or PNG first";
-constexpr const char *science =
-    "convert it to TIFF of 16 bit or float first, in Siril or with the Python packages astropy and tifffile";
-constexpr const char *light =
-    "convert it to a TIFF of 32 bit float first, for example with `oiiotool FILE -o picture.tif`";
-constexpr const char *document = "extract its pictures first, for example with `pdfimages -all FILE picture`";
-constexpr const char *web_page = "download the file itself, not the page that shows it";
-constexpr const char *archive = "unpack it and give the files in it";
-constexpr const char *values = "write its values as a TIFF or PNG first";
+// What to do with the file, whose name replaces FILE, and whether it shows pictures, as a video does.
+struct NextStep {
+    const char *text;
+    bool has_pictures;
+};
+
+constexpr NextStep video = {"make frames of it first, for example with `ffmpeg -i FILE -vf fps=2 frame_%04d.png`",
+                            true};
+constexpr NextStep sound = {"give pictures", false};
+constexpr NextStep animation = {"save its frames as PNG first, for example with `magick FILE frame_%04d.png`", true};
+constexpr NextStep picture = {"convert it to PNG or TIFF first, for example with `magick FILE picture.png`", true};
+constexpr NextStep layers = {"save it as a flat TIFF or PNG first", true};
+constexpr NextStep science = {
+    "convert it to TIFF of 16 bit or float first, in Siril or with the Python packages astropy and tifffile", true};
+constexpr NextStep light = {
+    "convert it to a TIFF of 32 bit float first, for example with `oiiotool FILE -o picture.tif`", true};
+constexpr NextStep document = {"extract its pictures first, for example with `pdfimages -all FILE picture`", false};
+constexpr NextStep web_page = {"download the file itself, not the page that shows it", false};
+constexpr NextStep archive = {"unpack it and give the files in it", false};
+constexpr NextStep values = {"write its values as a TIFF or PNG first", false};
 
 struct Kind {
-    const char *name, *next_step;
+    const char *name;
+    NextStep next_step;
 };
 
 constexpr struct {
@@ -49,7 +56,7 @@ constexpr struct {
     {4, "RED1"sv, {"a video (REDCODE)", video}},
     {4, "RED2"sv, {"a video (REDCODE)", video}},
     {0, "YUV4MPEG2 "sv, {"a video (Y4M)", video}},
-    {0, "LUCAM-RECORDER"sv, {"a video (SER)", "save its frames as TIFF or PNG first, in Siril or SER Player"}},
+    {0, "LUCAM-RECORDER"sv, {"a video (SER)", {"save its frames as TIFF or PNG first, in Siril or SER Player", true}}},
     {0, "ID3"sv, {"sound (MP3)", sound}},
     {0, "fLaC"sv, {"sound (FLAC)", sound}},
     {0, "GIF87a"sv, {"a GIF picture", animation}},
@@ -71,12 +78,12 @@ constexpr struct {
     {0, "\x89HDF\r\n\x1a\n"sv, {"an HDF5 file", values}},
     {0, "\x93NUMPY"sv, {"a NumPy array", values}},
     {0, "MATLAB 5.0"sv, {"a MATLAB file", values}},
-    {0, "ZISRAWFILE"sv, {"a microscope's file (CZI)", "export its pictures as TIFF first"}},
+    {0, "ZISRAWFILE"sv, {"a microscope's file (CZI)", {"export its pictures as TIFF first", true}}},
     {0, "\x76\x2f\x31\x01"sv, {"an OpenEXR picture", light}},
     {0, "#?RADIANCE"sv, {"a Radiance picture (HDR)", light}},
     {0, "#?RGBE"sv, {"a Radiance picture (HDR)", light}},
     {0, "%PDF-"sv, {"a PDF document", document}},
-    {0, "%!PS"sv, {"a PostScript document", "convert it to PNG or TIFF first"}},
+    {0, "%!PS"sv, {"a PostScript document", {"convert it to PNG or TIFF first", false}}},
     {0, "<!DOCTYPE html"sv, {"a web page", web_page}},
     {0, "<!doctype html"sv, {"a web page", web_page}},
     {0, "<html"sv, {"a web page", web_page}},
@@ -183,22 +190,37 @@ const char *heif_brand(std::string_view start) {
     return name;
 }
 
-void refuse_other_kind(const std::string &path, std::string_view start) {
-    const auto kind = kind_of(start);
-    if (!kind) return;
-    std::string next_step = kind->next_step;
+// The kind of a file, and what to do.
+static std::string reason_of(const Kind &kind, const std::string &path) {
+    std::string next_step = kind.next_step.text;
     const size_t place = next_step.find("FILE");
     if (place != std::string::npos) next_step.replace(place, 4, shell_word(path));
-    throw Failure(ExitCode::unreadable,
-                  short_name(path) + ": is " + kind->name + ", which lensprof does not read; " + next_step);
+    return std::string(kind.name) + ", which lensprof does not read; " + next_step;
+}
+
+void refuse_other_kind(const std::string &path, std::string_view start) {
+    if (const auto kind = kind_of(start))
+        throw Failure(ExitCode::unreadable, short_name(path) + ": is " + reason_of(*kind, path));
+}
+
+static std::string start_of(const std::string &path) {
+    std::string bytes(kind_bytes, 0);
+    std::ifstream file(path, std::ios::binary);
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+    return bytes;
 }
 
 void refuse_other_kind(const std::string &path) {
-    if (!is_regular_file(path)) return;
-    std::ifstream file(path, std::ios::binary);
-    char bytes[kind_bytes] = {};
-    file.read(bytes, sizeof bytes);
-    refuse_other_kind(path, {bytes, static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0))});
+    if (is_regular_file(path)) refuse_other_kind(path, start_of(path));
+}
+
+std::optional<OtherPictures> other_pictures(const std::string &path) {
+    if (!is_regular_file(path)) return std::nullopt;
+    const std::string start = start_of(path);
+    const auto kind = kind_of(start);
+    if (!kind || !kind->next_step.has_pictures) return std::nullopt;
+    return OtherPictures{kind->name, reason_of(*kind, path)};
 }
 
 }  // namespace lensprof

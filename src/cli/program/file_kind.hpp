@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,5 +21,14 @@ void refuse_other_kind(const std::string &path, std::string_view start);
 
 // The same for the file itself; nothing for a path that is not a regular file or cannot be read.
 void refuse_other_kind(const std::string &path);
+
+// Pictures in a file of such a kind: not sound, documents or archives.
+struct OtherPictures {
+    std::string kind;    // "a video (MP4)"
+    std::string reason;  // the kind, and how to make pictures of it
+};
+
+// Empty for other files, also those that cannot be read.
+std::optional<OtherPictures> other_pictures(const std::string &path);
 
 }  // namespace lensprof

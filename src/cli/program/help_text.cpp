@@ -5,9 +5,7 @@
 #include <CLI/CLI.hpp>
 
 namespace lensprof {
-namespace {
 
-// The text with line breaks so that each line has at most `columns` characters, unless one word is longer.
 std::string wrapped(const std::string &text, size_t columns) {
     std::string lines;
     size_t column = 0;
@@ -26,7 +24,7 @@ std::string wrapped(const std::string &text, size_t columns) {
     return lines;
 }
 
-constexpr size_t help_columns = 100;
+namespace {
 
 // Wraps descriptions. A list of commands shows only the first line of each description.
 class HelpText : public CLI::Formatter {

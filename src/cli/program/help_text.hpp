@@ -1,7 +1,9 @@
 // The layout of help texts.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <string>
 
 namespace CLI {
 class FormatterBase;
@@ -9,7 +11,12 @@ class FormatterBase;
 
 namespace lensprof {
 
-// Wraps at 100 columns. Formats all commands of a program.
+constexpr size_t help_columns = 100;
+
+// The text with line breaks so that each line has at most `columns` characters, unless one word is longer.
+std::string wrapped(const std::string &text, size_t columns);
+
+// Wraps at help_columns. Formats all commands of a program.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
 }  // namespace lensprof

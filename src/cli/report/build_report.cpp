@@ -1,5 +1,6 @@
 // Parts of the report of `build` that its JSON object and its table share.
 #include "cli/program/library.hpp"
+#include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
 
 namespace lensprof {
@@ -22,7 +23,7 @@ lensprof_fit_result result_of(const BuildReport &report, const SettingReport &se
 }
 
 const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit) {
-    return fit.vignetting[fit.vignettings == 3 ? 1 : 0];
+    return fit.vignetting[green_curve(fit.vignettings)];
 }
 
 }  // namespace lensprof

@@ -9,6 +9,7 @@
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/report/chart.hpp"
+#include "cli/report/falloff.hpp"
 
 namespace lensprof {
 namespace {
@@ -72,7 +73,7 @@ void add_response_curves(const lensprof_profile &profile, const std::string &lab
 
 std::string corner_text(const lensprof_profile &profile) {
     double sigma = 0.0;
-    const double corner = lensprof_profile_corner_falloff(&profile, profile.vignettings == 3 ? 1 : 0, &sigma);
+    const double corner = lensprof_profile_corner_falloff(&profile, green_curve(profile.vignettings), &sigma);
     const double ev = std::log2(corner);
     if (!(sigma > 0.0)) return format("%.2f (%+.2f EV)", corner, ev);
     const int digits =

@@ -13,6 +13,9 @@ namespace lensprof {
 // False if M is 1 everywhere: a falloff fixed at zero, or not measured, as by `bracket`.
 inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || v.k[1] != 0.0 || v.k[2] != 0.0; }
 
+// Which of the falloff curves is that of green: of one per channel the second, else the only one.
+constexpr uint32_t green_curve(size_t curves) { return curves == 3 ? 1 : 0; }
+
 // The profile of a fit with its covariance; key and origin are still empty.
 inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit,
                                                     const lensprof_fit_options *options = nullptr, size_t images = 0) {

@@ -31,7 +31,7 @@ ShownFalloff shown_falloff(const Problem &problem, const FalloffPrior &prior, co
                            const Covariance &found, double inflation, int setting) {
     const int green = green_falloff(problem.vignettings, setting);
     Eigen::Matrix3d slope, covariance = found.shared.block<3, 3>(green, green);
-    const size_t curve = problem.vignettings == 3 ? 1 : 0;
+    const auto curve = static_cast<size_t>(green_curve(problem.vignettings));
     const Eigen::Vector3d u = log_falloff(estimate.vignetting[static_cast<size_t>(setting)][curve].k, &slope);
     covariance = slope * covariance * slope.transpose();
     const Eigen::Matrix3d all = covariance.inverse();

@@ -282,7 +282,7 @@ void OverlapFit::free_center() {
 void OverlapFit::hold_falling() {
     bool any_rises = false;
     for (const Falloffs &curves : found_.estimate.vignetting)
-        for (const lensprof_vignetting &v : curves) any_rises = any_rises || outward_rise(v) > kSmallRise;
+        for (const lensprof_vignetting &v : curves) any_rises = any_rises || course_of(v).rise.m > kSmallRise;
     if (!any_rises || (options_.free & kFalloffFlags) != kFalloffFlags) return;
     const Fitted rising = found_;
     const HeldoutLoss rising_loss = loss_of(*this);

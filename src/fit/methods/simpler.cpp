@@ -33,8 +33,10 @@ bool is_possible(const lensprof_fit_options &options, lensprof_fit_result &r) {
     if (!(options.free & kFalloffFlags)) return true;
     bool all = true;
     for_each_verdict(r, [&](const auto &found) {
-        for (const lensprof_vignetting &v : found.vignetting)
-            all = all && lowest_of(v) >= kSmallestM && highest_of(v).m <= kLargestRise;
+        for (const lensprof_vignetting &v : found.vignetting) {
+            const Course course = course_of(v);
+            all = all && course.lowest.m >= kSmallestM && course.highest.m <= kLargestRise;
+        }
     });
     return all;
 }

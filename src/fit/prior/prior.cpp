@@ -116,7 +116,7 @@ double prior_cost(const Prior &prior, const Problem &problem, const std::vector<
     double cost = 0.5 * d.dot(prior.precision * d);
     for (size_t s = 0; s < prior.falloff.size() && (problem.free & kFalloffFlags); s++) {
         const Eigen::Vector3d off =
-            log_falloff(estimate.vignetting[s][problem.vignettings == 3 ? 1 : 0].k, nullptr) - prior.falloff[s].mean;
+            log_falloff(estimate.vignetting[s][green_curve(problem.vignettings)].k, nullptr) - prior.falloff[s].mean;
         cost += 0.5 * off.dot(prior.falloff[s].precision * off);
     }
     if (prior.pin_precision > 0.0) {

@@ -64,9 +64,12 @@ Prior prior_of(const Prior &prior, int modes);
 // Ties the falloff curves of a setting's channels to that of green, if there are three: adds to their precision.
 void tie_channels(double weight, int vignettings, int setting, Prior &prior);
 
+// Which of a setting's falloff curves is that of green: of one per channel the second, else the only one.
+constexpr int green_curve(int vignettings) { return vignettings == 3 ? 1 : 0; }
+
 // First column of green's k1..k3 in the full shared vector.
 inline int green_falloff(int vignettings, int setting = 0) {
-    return falloff_column(setting) + (vignettings == 3 ? 3 : 0);
+    return falloff_column(setting) + 3 * green_curve(vignettings);
 }
 
 // Covariance of the full shared vector of one setting over all measured cameras and lenses, with independent modes and

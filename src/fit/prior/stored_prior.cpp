@@ -147,7 +147,7 @@ void StoredPrior::find_gamma_errors(const Problem &problem, const lensprof_profi
     const int green = green_falloff(vignettings_);
     for (int n = 0; n < 3; n++) {
         constexpr double h = 1e-5;
-        lensprof_vignetting up = profile.vignetting[vignettings_ == 3 ? 1 : 0], down = up;
+        lensprof_vignetting up = profile.vignetting[green_curve(vignettings_)], down = up;
         up.k[n] += h, down.k[n] -= h;
         by_falloff[green + n] = (falloff_ratio(up) - falloff_ratio(down)) / (2 * h);
     }
@@ -227,7 +227,8 @@ Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from, bool is_
 
 double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
     const int stored_row = green_falloff(vignettings_), size = static_cast<int>(alone.covariance_size);
-    const int fitted_row = static_cast<int>(lp_covariance_index(alone.response.modes, alone.vignettings == 3 ? 1 : 0));
+    const int fitted_row =
+        static_cast<int>(lp_covariance_index(alone.response.modes, green_curve(int(alone.vignettings))));
     if (covariance_(stored_row, stored_row) <= 0.0 || size < fitted_row + 3) return 0.0;
     double farthest = 0.0;
     for (double r2 : kRadii2) {

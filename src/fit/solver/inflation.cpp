@@ -17,6 +17,7 @@ constexpr size_t kSizes = 4;
 constexpr int kAcross[kSizes] = {8, 4, 2, 1};  // places per side of the frame: errors are common to places of any size
 constexpr size_t kMaxPairs = 50000;            // with more, only every so manieth link is used
 constexpr double kLargest = 1e4;               // of the inflation
+constexpr Eigen::Index kBlock = 32;            // directions whose influences are summed at a time, which bounds memory
 
 // Directions of the full shared vector whose errors are measured, and what they belong to.
 struct Directions {
@@ -197,19 +198,28 @@ Inflation error_inflation(const Problem &problem, const Prior &prior, Gauge &gau
     if (!model->reduce(0.0)) return result;
     const Eigen::LLT<Eigen::MatrixXd> factor(model->reduced_hessian());
     if (directions.columns.cols() > 0 && factor.info() != Eigen::Success) return result;
-    const Eigen::MatrixXd by_shared =
-        directions.columns.cols() ? Eigen::MatrixXd(factor.solve(directions.columns)) : directions.columns;
-    Influence influence(problem, estimate, loss, model->columns(), by_shared, model->images_by(by_shared));
-    const Sums sums = sums_of(problem, estimate, influence);
     const double unknowns =
         static_cast<double>(model->columns().size()) + double(problem.image_unknowns) / problem.channels;
-    for (size_t size = 0; size < kSizes; size++) {
-        const Eigen::VectorXd ratio = sums.ratio(size, unknowns);
+    const Eigen::Index count = directions.columns.cols();
+    Eigen::MatrixXd ratios(count + 1, kSizes);  // per direction, and last of the exposures
+    for (Eigen::Index first = 0; first == 0 || first < count; first += kBlock) {
+        const Eigen::Index width = std::min(kBlock, count - first);
+        const Eigen::MatrixXd block = directions.columns.middleCols(first, width);
+        const Eigen::MatrixXd by_shared = width ? Eigen::MatrixXd(factor.solve(block)) : block;
+        Influence influence(problem, estimate, loss, model->columns(), by_shared, model->images_by(by_shared));
+        const Sums sums = sums_of(problem, estimate, influence);
+        for (size_t size = 0; size < kSizes; size++) {
+            const Eigen::VectorXd ratio = sums.ratio(size, unknowns);
+            ratios.block(first, static_cast<Eigen::Index>(size), width, 1) = ratio.head(width);
+            ratios(count, static_cast<Eigen::Index>(size)) = ratio[width];
+        }
+    }
+    for (Eigen::Index size = 0; size < ratios.cols(); size++) {
         const auto take = [&](double &target, int group) {
-            double sum = 0.0, count = 0.0;
+            double sum = 0.0, members = 0.0;
             for (size_t k = 0; k < directions.group.size(); k++)
-                if (directions.group[k] == group) sum += ratio[static_cast<Eigen::Index>(k)], count += 1.0;
-            if (count > 0.0) target = std::clamp(sum / count, target, kLargest);
+                if (directions.group[k] == group) sum += ratios(static_cast<Eigen::Index>(k), size), members += 1.0;
+            if (members > 0.0) target = std::clamp(sum / members, target, kLargest);
         };
         take(result.response, 0);
         for (int s = 0; s < problem.settings; s++) {
@@ -217,7 +227,7 @@ Inflation error_inflation(const Problem &problem, const Prior &prior, Gauge &gau
             take(result.lens[static_cast<size_t>(s)], 1 + 2 * s);
             take(result.lens[static_cast<size_t>(s)], 2 + 2 * s);
         }
-        result.exposures = std::clamp(ratio[ratio.size() - 1], result.exposures, kLargest);
+        result.exposures = std::clamp(ratios(count, size), result.exposures, kLargest);
     }
     return result;
 }

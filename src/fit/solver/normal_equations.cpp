@@ -89,7 +89,7 @@ void NormalEquations::add_prior(const Prior &prior, const Estimate &estimate) {
 void NormalEquations::add_falloff_prior(const FalloffPrior &prior, int setting, const Estimate &estimate) {
     Eigen::Matrix3d slope;
     const Falloffs &curves = estimate.vignetting[static_cast<size_t>(setting)];
-    const Eigen::Vector3d off = log_falloff(curves[problem_.vignettings == 3 ? 1 : 0].k, &slope) - prior.mean;
+    const Eigen::Vector3d off = log_falloff(curves[green_curve(problem_.vignettings)].k, &slope) - prior.mean;
     const Eigen::Vector3d gradient = slope.transpose() * prior.precision * off;
     const Eigen::Matrix3d hessian = slope.transpose() * prior.precision * slope;
     const int green = green_falloff(problem_.vignettings, setting);

@@ -131,7 +131,7 @@ double radius_change(const Problem &problem) {
 double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
     double darkest = 1.0;
     for (int curve = 0; curve < problem.vignettings && frees_falloff(problem); curve++)
-        darkest = std::min(darkest, lowest_of(r.vignetting[curve]));
+        darkest = std::min(darkest, course_of(r.vignetting[curve]).lowest.m);
     return darkest;
 }
 
@@ -139,7 +139,7 @@ double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
 std::vector<double> rise_above(double limit, const Problem &problem, const lensprof_fit_result &r) {
     double highest = 1.0, sigma = 0.0;
     for (int curve = 0; curve < problem.vignettings && r.covariance_size && frees_falloff(problem); curve++) {
-        const Highest peak = highest_of(r.vignetting[curve]);
+        const MAt peak = course_of(r.vignetting[curve]).highest;
         if (peak.m <= highest) continue;
         double held[9];
         covariance_held(r, curve, held);

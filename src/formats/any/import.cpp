@@ -107,7 +107,8 @@ lensprof_status read_falloff(const Input &in, Part &part, lensprof_error *error)
 // An attenuation that rises is seldom one: a gain may have been taken for it.
 void doubt_rise(lensprof_profile &profile) {
     double highest = 1.0;
-    for (uint32_t c = 0; c < profile.vignettings; c++) highest = std::max(highest, highest_of(profile.vignetting[c]).m);
+    for (uint32_t c = 0; c < profile.vignettings; c++)
+        highest = std::max(highest, course_of(profile.vignetting[c]).highest.m);
     char text[sizeof profile.provenance.doubt];
     std::snprintf(text, sizeof text, "M rises to %.2f: is it a gain?", highest);
     if (highest > kLargestRise) put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, text);
