@@ -137,12 +137,12 @@ struct Weighed {
 
 // Distance to the gamma of cameras of the kind, and of lenses: M^gamma is deeper than that of most if gamma is large.
 double Gauge::expected_of_kind(const Estimate &estimate, double &sigma) const {
-    constexpr double kShallowest = 0.02;  // depth: a corrected falloff says nothing
+    constexpr double kShallowest = 0.02;  // depth: corrected falloffs, all alike
     const double *table = estimate.curve.table.data();
     const double of_kind = gamma_position(table) - prior_.position();
     sigma = prior_.sigma_of(table);
-    const double depth = -log_falloff(estimate.vignetting[0][0].k, nullptr)[2];
-    if (!(depth_sigma_ > 0.0) || depth < kShallowest) return of_kind;
+    if (!(depth_sigma_ > 0.0)) return of_kind;
+    const double depth = std::max(-log_falloff(estimate.vignetting[0][0].k, nullptr)[2], kShallowest);
     const double of_lenses = std::log(depth / depth_);
     return Weighed(of_kind - of_lenses, sigma, depth_sigma_).mean(of_kind, of_lenses, sigma);
 }
