@@ -374,8 +374,12 @@ void test_resized_picture(void **) {
     fs::remove(picture);
     write_picture(picture, make_smooth(200, 150, LENSPROF_LAYOUT_RGB));
     assert_refused(unreadable, build("model"), {shared().scene.file(3), "200 x 150", "400 x 300"});
-    assert_refused(unreadable, {"apply", "--model", work("exposures.json"), "-o", work("out")},
-                   {shared().scene.file(3), "200 x 150", "400 x 300"});
+    const Outcome applied = run_words({"apply", "--model", work("exposures.json"), "-o", work("resized")});
+    assert_int_equal(applied.code, unreadable);
+    for (const std::string &name : {shared().scene.file(3), std::string("200 x 150"), std::string("400 x 300")})
+        assert_true(contains(applied.err, name));
+    assert_true(fs::exists(work("resized/" + shared().scene.file(2))));  // the others are corrected
+    assert_false(fs::exists(work("resized/" + shared().scene.file(3))));
     fs::remove(picture);
     save(picture, own);
 }
