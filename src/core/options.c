@@ -120,11 +120,7 @@ static lensprof_status validate_curves(const lensprof_apply_options *o, lensprof
     if (status != LENSPROF_OK) return status;
     for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++)
         status = lensprof_vignetting_validate(&o->vignetting[c]);
-    if (status != LENSPROF_OK)
-        return lp_fail(
-            error, status,
-            "the falloff leaves less than 0.001 of the light in the frame, or is not a number, so it cannot be divided out; "
-            "correct k1 to k3 and the centre, or fit it again");
+    if (status != LENSPROF_OK) return lp_fail(error, status, "M below 0.001; fix k1 to k3");
     for (uint32_t c = 1; c < o->vignettings; c++)
         if (o->vignetting[c].center[0] != o->vignetting[0].center[0]
             || o->vignetting[c].center[1] != o->vignetting[0].center[1])

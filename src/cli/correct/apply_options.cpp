@@ -68,6 +68,7 @@ void declare_options(Command &command, ApplyOptions &o) {
         "the correction by lensprof. Several pictures are corrected in parallel, in strips of rows; only\n"
         "interlaced PNG and progressive JPEG are held in memory completely. Of several pictures, those that\n"
         "cannot be read are listed with their reasons, and the others are corrected; the exit code is 3.\n"
+        "Nothing is written if a named file does not exist.\n"
         "Exit code 5: pictures were refused, because they have no profile. If one of them, or an already\n"
         "corrected one, was named, nothing is written; those of folders, and with --skip all of them, are\n"
         "left out. An existing output is replaced if it was made from the same picture; a file not written\n"

@@ -332,7 +332,9 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
             else
                 refused.push_back(failure);
         } catch (const Failure &failure) {
-            if (failure.code != ExitCode::unreadable || o.merge || pictures.size() == 1) throw;
+            // A name without a file is a mistake in the call.
+            const bool is_mistaken = !picture.in_folder && !std::filesystem::exists(picture.file);
+            if (failure.code != ExitCode::unreadable || is_mistaken || o.merge || pictures.size() == 1) throw;
             work.left_out.push_back({picture.file, failure.what(), false, failure.code});
         }
     }
