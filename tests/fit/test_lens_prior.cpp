@@ -61,7 +61,7 @@ void test_pictures_choose_among_lenses(void **) {
     assert_true(far.precision.determinant() < 0.1 * any.precision.determinant());
 }
 
-// The same pictures with a deeper falloff and a larger exponent: lenses say which is likelier.
+// The same pictures with a deeper falloff and a larger exponent: lenses tell which is likelier.
 void test_the_depth_of_a_falloff_informs_gamma(void **) {
     Simulation s;
     s.response = srgb_response();

@@ -234,7 +234,7 @@ void OverlapFit::weigh_lens_knowledge() {
 }
 
 // Exposures that drift along a row look much like a centre that is off the middle. Many cameras hold their exposure
-// along a row, and others hardly ever give equal exposures by accident: they are taken as equal unless a likelihood
+// along a row, and others almost never give equal exposures by accident: they are taken as equal unless a likelihood
 // ratio test (Wilks 1938) rejects it.
 void OverlapFit::hold_equal_exposures() {
     constexpr int kFewest = 2;  // unknown exposures: a single one may be equal by accident
