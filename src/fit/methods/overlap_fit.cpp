@@ -233,9 +233,20 @@ void OverlapFit::weigh_lens_knowledge() {
     hold_falling();
 }
 
+// Between the exposures of the reference's component and that of the reference.
+static double largest_difference_ev(const Problem &problem, const Estimate &estimate) {
+    const auto c = static_cast<size_t>(problem.measured_channel());
+    double largest = 0.0;
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        if (problem.component[i] == problem.component[problem.reference])
+            largest = std::max(
+                largest, std::abs(estimate.log_exposure[i][c] - estimate.log_exposure[problem.reference][c]) / kLn2);
+    return largest;
+}
+
 // Exposures that drift along a row look much like a centre that is off the middle. Many cameras hold their exposure
 // along a row, and others almost never give equal exposures by accident: they are taken as equal unless a likelihood
-// ratio test (Wilks 1938) rejects it.
+// ratio test (Wilks 1938) rejects it, or they come out different though held.
 void OverlapFit::hold_equal_exposures() {
     constexpr int kFewest = 2;  // unknown exposures: a single one may be equal by accident
     int unknown = 0;
@@ -250,7 +261,8 @@ void OverlapFit::hold_equal_exposures() {
     gauge_.expect_equal_exposures();
     solve_again();
     const double ratio = objective->value_at(found_.estimate) - objective->value_at(different.estimate);
-    if (2.0 * ratio / inflation_.exposures < chi_squared_limit(unknown)) return;
+    const bool is_likely = 2.0 * ratio / inflation_.exposures < chi_squared_limit(unknown);
+    if (is_likely && largest_difference_ev(all_, found_.estimate) < kEqualSigmaEv) return;
     gauge_ = open, found_ = different;
 }
 

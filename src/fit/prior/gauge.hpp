@@ -18,6 +18,9 @@ namespace lensprof {
 // Known exposures are never taken as more accurate than this, EV, because shutters and apertures are not.
 constexpr double kKnownSigma = 0.02;
 
+// Exposures that are taken as equal: standard error, EV, for the differences that the test of equality misses.
+constexpr double kEqualSigmaEv = 0.05;
+
 inline double known_sigma(const lensprof_fit_image &image) { return std::max(image.known_ev_sigma, kKnownSigma); }
 
 class Gauge {

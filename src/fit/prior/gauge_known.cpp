@@ -20,9 +20,6 @@ constexpr size_t kMinKnownForLevels = 6;  // known exposures: with fewer, it is 
 // along a row of pictures like a drift, and the hold scales accordingly.
 constexpr double kRepeatable = 0.05, kLinkPairs = 40.0;
 
-// Exposures that are taken as equal: standard error, EV, for the differences that the test of equality misses.
-constexpr double kEqualSigma = 0.05;
-
 bool is_known(const Problem &problem, uint32_t i) {
     return problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference];
 }
@@ -176,7 +173,7 @@ void Gauge::put_equal(const Problem &problem, const Estimate &estimate, Prior &p
     prior.known.resize(problem.image_count);
     for (uint32_t i = 0; i < problem.image_count; i++)
         if (problem.component[i] == problem.component[problem.reference])
-            prior.known[i] = {expected, precision, precision * std::pow(kLn2 * kEqualSigma, 2)};
+            prior.known[i] = {expected, precision, precision * std::pow(kLn2 * kEqualSigmaEv, 2)};
 }
 
 }  // namespace lensprof
