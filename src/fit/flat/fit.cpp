@@ -38,7 +38,7 @@ void collect_cells(FlatFit &fit) {
     fit.problem.cells.clear();
     for (size_t s = 0; s < fit.shots.size(); s++)
         for (size_t cell = 0; cell < fit.shots[s].light.size(); cell++) {
-            const Light &light = fit.shots[s].light[cell];
+            const CellLight &light = fit.shots[s].light[cell];
             if (light.state == CellState::used && fit.shots[s].card[cell] && !fit.left_out[s][cell])
                 fit.problem.cells.push_back(
                     {static_cast<int>(s), static_cast<int>(cell), light.x, light.y, light.value, light.variance});

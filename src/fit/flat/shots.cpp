@@ -41,7 +41,7 @@ Sample sample_of(const lensprof_flat_image &image, const CellPicture &picture, c
 
 // Sets the state of cells that are beyond the limits in every exposure: white in the lowest, or black in the highest.
 void set_beyond(const lensprof_flat_image *images, const std::vector<CellPicture> &pictures, size_t cell, int channels,
-                const Responses &responses, const Shot &shot, Light &light) {
+                const Responses &responses, const Shot &shot, CellLight &light) {
     uint32_t least = shot.images.front(), greatest = shot.images.back();
     bool white = pictures[least].cells[cell].state == CellState::white;
     bool black = pictures[greatest].cells[cell].state == CellState::black;
@@ -53,7 +53,7 @@ void set_beyond(const lensprof_flat_image *images, const std::vector<CellPicture
             responses.invert(c, white ? image.white : image.black, nullptr) / std::exp2(image.ev);
 }
 
-double brightness(const Light &light, int channels) {
+double brightness(const CellLight &light, int channels) {
     double sum = 0.0;
     for (int c = 0; c < channels; c++) sum += std::log(std::max(light.value[static_cast<size_t>(c)], 1e-9));
     return sum / channels;
@@ -107,7 +107,7 @@ void merge_exposures(const lensprof_flat_options &options, const lensprof_flat_i
     const int channels = static_cast<int>(options.channels);
     shot.light.assign(pictures[shot.images.front()].cells.size(), {});
     for (size_t cell = 0; cell < shot.light.size(); cell++) {
-        Light &light = shot.light[cell];
+        CellLight &light = shot.light[cell];
         bool complete = true;
         double x = 0.0, y = 0.0, all = 0.0;
         for (int c = 0; c < channels; c++) {

@@ -9,7 +9,7 @@
 namespace lensprof {
 
 // The light received by one cell, on the scale of exposure 0 EV.
-struct Light {
+struct CellLight {
     CellState state = CellState::masked;  // white or black: in every exposure
     float low_share = 0.0f;               // share of pixels far darker than the rest
     double x = 0.0, y = 0.0;              // centre of these pixels, px of the frame
@@ -21,7 +21,7 @@ struct Shot {
     uint32_t number = 0;           // the caller's number
     double turn = 0.0;             // radians
     std::vector<uint32_t> images;  // in order of exposure, the lowest first
-    std::vector<Light> light;      // per cell
+    std::vector<CellLight> light;  // per cell
     std::vector<bool> card;        // cells on the card
 };
 

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/Dense>
-
+#include "falloff/dense.hpp"
 #include "fit/base/constants.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/quantile.hpp"
@@ -216,7 +215,7 @@ double Join::step(Eigen::MatrixXd &normal) {
             normal(b, b) = 1.0, right[b] = 0.0;
         }
     }
-    const Eigen::VectorXd change = normal.ldlt().solve(right);
+    const Eigen::VectorXd change = solve_symmetric(normal, right);
     const double length = change.cwiseAbs().maxCoeff();
     if (!std::isfinite(length)) return 0.0;
     estimate_ += change;
@@ -232,7 +231,7 @@ void Join::solve() {
         find_scatter();
         if (step(normal) < kConverged) break;
     }
-    cov_ = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+    cov_ = inverse_of_symmetric(normal);
 }
 
 // The covariance of the estimate if not pairs but links of images, each as a whole, are independent.
