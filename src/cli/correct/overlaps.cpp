@@ -27,8 +27,8 @@ constexpr double almost_white = 0.95;
 constexpr uint32_t block_px = 16;
 constexpr double same_block = 0.04, enough_agree = 0.5;
 
-constexpr int sight_steps = 24;                // of the positions used to detect overlaps
-constexpr uint32_t strip_rows = 4 * block_px;  // processed by a thread at a time
+constexpr int sight_steps = 24;                     // of the positions used to detect overlaps
+constexpr uint32_t rows_per_thread = 4 * block_px;  // processed by a thread at a time
 
 // Irradiance of a picture, from itself and from others.
 class Merge {
@@ -112,10 +112,10 @@ private:
 
     template <class Work>
     void in_strips(const Work &work) {
-        const uint32_t strips = (picture_.height() + strip_rows - 1) / strip_rows;
+        const uint32_t strips = (picture_.height() + rows_per_thread - 1) / rows_per_thread;
         const auto strip = [&](uint32_t n) {
-            const uint32_t end = std::min(picture_.height(), (n + 1) * strip_rows);
-            for (uint32_t y = n * strip_rows; y < end; y++)
+            const uint32_t end = std::min(picture_.height(), (n + 1) * rows_per_thread);
+            for (uint32_t y = n * rows_per_thread; y < end; y++)
                 for (uint32_t x = 0; x < picture_.width(); x++) work(x, y);
         };
         for_each_in_order(strips, thread_count(kind_.threads), strip, [](uint32_t) {});

@@ -22,7 +22,7 @@
 namespace lensprof {
 namespace {
 
-struct Options {
+struct BracketOptions {
     FitOptions fit;
     StoreOptions store;
     std::vector<std::string> files;
@@ -33,7 +33,7 @@ struct Options {
     uint32_t seed = 1, pairs = 0, max_side = 1600;
 };
 
-void declare(Command &command, Options &o) {
+void declare(Command &command, BracketOptions &o) {
     command.files("FILE", o.files, "pictures of one scene from a stationary camera");
     command.require("FILE");
     command.numbers("--ev", o.ev, {-64.0, 64.0},
@@ -64,7 +64,7 @@ void declare(Command &command, Options &o) {
 }
 
 // The exposures of the command line, EV; empty if not given.
-std::vector<double> given_exposures(const Options &o) {
+std::vector<double> given_exposures(const BracketOptions &o) {
     if (!o.ev.empty()) require_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty() || o.times_s.empty()) return o.ev;
     require_count(o.times_s.size(), "--times", o.files.size(), "picture");
@@ -73,8 +73,8 @@ std::vector<double> given_exposures(const Options &o) {
     return ev;
 }
 
-std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
-                                     uint32_t &channels) {
+std::vector<lensprof_pair> get_pairs(const BracketOptions &o, const Project &project, Progress &progress,
+                                     BuildReport &report, uint32_t &channels) {
     auto clock = std::chrono::steady_clock::now();
     auto pictures = read_pictures(project, o.max_side, progress);
     channels = channel_count(pictures);
@@ -171,10 +171,10 @@ Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uin
     return verdict;
 }
 
-bool is_debevec(const Options &o) { return o.fit.method == LENSPROF_METHOD_DEBEVEC; }
+bool is_debevec(const BracketOptions &o) { return o.fit.method == LENSPROF_METHOD_DEBEVEC; }
 
 // Failure (usage) for options without meaning for the method debevec.
-void check_debevec_options(const Options &o) {
+void check_debevec_options(const BracketOptions &o) {
     const std::pair<bool, const char *> without[] = {{o.fit.modes != LENSPROF_MODES_AUTO, "--modes"},
                                                      {o.modes_only, "--modes-only"},
                                                      {o.fit.loss != LENSPROF_LOSS_ROBUST, "--loss"},
@@ -187,14 +187,14 @@ void check_debevec_options(const Options &o) {
 }
 
 // Failure (usage) if the exposure of a picture is unknown but needed.
-void check_exposures_known(const Options &o, const std::vector<lensprof_fit_image> &images) {
+void check_exposures_known(const BracketOptions &o, const std::vector<lensprof_fit_image> &images) {
     for (size_t i = 0; i < images.size() && is_debevec(o); i++)
         if (!(images[i].known_ev_sigma > 0.0))
             throw Failure(ExitCode::usage, o.files[i] + ": EXIF does not state the exposure, which --method debevec "
                                                         "needs; give --ev or --times, or use --method transfer");
 }
 
-FitInput fit_input(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+FitInput fit_input(const BracketOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                    const std::vector<double> &ev, ExifUse &exif, Streams &streams) {
     FitInput input;
     input.options = fit_options(o.fit);
@@ -211,7 +211,7 @@ FitInput fit_input(const Options &o, const Project &project, const std::vector<P
     return input;
 }
 
-BuildReport fit_bracket(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
+BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
                         const std::vector<double> &ev, const CameraKind &kind, Json &page, Streams &streams) {
     Progress progress(streams, o.progress);
     BuildReport report;
@@ -249,7 +249,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     return report;
 }
 
-int bracket_and_store(const Options &o, Streams &streams) {
+int bracket_and_store(const BracketOptions &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
     Project project = static_project(o.files, o.free_balance);
     check_pictures(project, o.max_side);
@@ -272,7 +272,7 @@ int bracket_and_store(const Options &o, Streams &streams) {
         streams);
 }
 
-int run(const Options &o, Streams &streams) {
+int run(const BracketOptions &o, Streams &streams) {
     check_max_side(o.max_side);
     check_fit_options(o.fit);
     check_debevec_options(o);
@@ -297,7 +297,7 @@ int run(const Options &o, Streams &streams) {
 void declare_bracket(Command &program) {
     Command command = program.add("bracket", "fit the camera's response to an exposure bracket of one scene",
                                   "Estimates the camera's response and the exposures from pictures of one scene.");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<BracketOptions>();
     declare(command, *o);
     command.example("lensprof bracket dark.jpg middle.jpg bright.jpg --times 1/60,1/15,1/4");
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -29,7 +29,7 @@
 namespace lensprof {
 namespace {
 
-struct Options : ProjectFitOptions {
+struct BuildOptions : ProjectFitOptions {
     std::vector<std::string> inputs;
     std::string images, image_list, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview, report,
         compare;
@@ -41,7 +41,7 @@ struct Options : ProjectFitOptions {
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
 constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | balance_flags;
 
-void declare_points(Command &command, Options &o) {
+void declare_points(Command &command, BuildOptions &o) {
     command.files(
         "FILE", o.inputs,
         "overlapping pictures and folders of them; or one Hugin project, whose v lines choose what is estimated; or "
@@ -75,7 +75,7 @@ void declare_points(Command &command, Options &o) {
     command.file("--pto-out", o.pto_out, "write the project with the result, for Hugin, nona and `apply --pto`");
 }
 
-void declare(Command &command, Options &o) {
+void declare(Command &command, BuildOptions &o) {
     declare_points(command, o);
     FitChoices choices;
     choices.stored_prior = true;
@@ -138,7 +138,7 @@ void reject_other_file(const std::string &output) {
 }
 
 // No output may overwrite an input, the database or another output.
-void check_outputs(const Options &o, std::vector<std::string> reserved) {
+void check_outputs(const BuildOptions &o, std::vector<std::string> reserved) {
     reserved.insert(reserved.end(), {o.points, o.image_list, o.compare});
     if (!o.store.no_store) reserved.push_back(store_path(o.store.db));
     for (const std::string &output :
@@ -159,7 +159,7 @@ CameraKind default_kind(const lensprof_profile_key &key) {
     return {is_phone ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_CAMERA, KindFrom::reconstruction};
 }
 
-BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
+BuildReport build(const BuildOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
                   const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Json &page,
                   Streams &streams) {
     Progress progress(streams, o.progress);
@@ -188,7 +188,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
 }
 
 // Checks that need no overlaps, which take time to find.
-void check_photographs(const Options &o, const Photographs &list) {
+void check_photographs(const BuildOptions &o, const Photographs &list) {
     std::vector<std::string> inputs = list.files;
     for (const auto &[file, reason] : list.left_out) inputs.push_back(file);
     check_outputs(o, inputs);
@@ -211,7 +211,7 @@ void check_photographs(const Options &o, const Photographs &list) {
 }
 
 // Refuses options that need a project with cameras.
-Project open_reconstruction(const Options &o, Streams &streams) {
+Project open_reconstruction(const BuildOptions &o, Streams &streams) {
     for (const auto &[option, value] : {std::pair("--points", o.points), std::pair("--preview", o.preview),
                                         std::pair("--project-out", o.project_out)})
         if (!value.empty())
@@ -222,7 +222,7 @@ Project open_reconstruction(const Options &o, Streams &streams) {
 }
 
 // The project, or the pictures instead.
-Project open_project(const Options &o, Streams &streams) {
+Project open_project(const BuildOptions &o, Streams &streams) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
     for (const auto &[option, is_given] :
          {std::pair("--images", !o.images.empty()), std::pair("--image-list", !o.image_list.empty()),
@@ -259,7 +259,7 @@ Project open_project(const Options &o, Streams &streams) {
 
 // The free parameters: by --free, else by the v lines; all if these have nothing photometric, as in a project that was
 // only aligned.
-void choose_unknowns(const Options &o, Project &project, Streams &streams) {
+void choose_unknowns(const BuildOptions &o, Project &project, Streams &streams) {
     uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), free_in_project = 0;
     for (const auto &image : project.images) free_in_project |= image.free;
     if (!free && !free_in_project) {
@@ -272,7 +272,7 @@ void choose_unknowns(const Options &o, Project &project, Streams &streams) {
 }
 
 // Runs the command after option parsing; `names` receives the images as soon as they are known.
-int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
+int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Streams &streams) {
     Project project = open_project(o, streams);
     names = project.names;
     if (project.images.size() < 2)
@@ -313,7 +313,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     return code;
 }
 
-int run(const Options &o, Streams &streams) {
+int run(const BuildOptions &o, Streams &streams) {
     check_max_side(o.max_side);
     check_fit_options(o.fit);
     if (!o.preview.empty()) check_preview(o.preview);
@@ -342,7 +342,7 @@ void declare_build(Command &program) {
     Command command = program.add("build", "fit a lens profile to overlapping pictures or a Hugin project",
                                   "Estimates response, falloff, exposures and white balances from overlapping "
                                   "pictures.");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<BuildOptions>();
     declare(command, *o);
     command.example("lensprof build photos --report report.html");
     command.run([o](Streams &streams) { return run(*o, streams); });

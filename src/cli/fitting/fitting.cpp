@@ -18,14 +18,10 @@
 #include "cli/report/falloff.hpp"
 
 namespace lensprof {
-namespace {
-
-int on_progress(double done, void *progress) {
+int on_fit_progress(double done, void *progress) {
     static_cast<Progress *>(progress)->update("fitting", done);
     return interrupted();
 }
-
-}  // namespace
 
 const char *method_name(uint32_t method) {
     static const char *const names[] = {"transfer", "radiance", "transfer-function", "debevec"};
@@ -235,7 +231,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
         fitted.result.image_quality = quality->data();
     }
     allocate_results(input.images, fitted);
-    input.options.progress = on_progress;
+    input.options.progress = on_fit_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
     const auto *images = input.images.data();

@@ -48,6 +48,9 @@ const char *method_name(uint32_t method);
 // Failure (usage) for conflicting options.
 void check_fit_options(const FitOptions &o);
 
+// The library's callback: shows the progress of a fit, and ends it if the user interrupts.
+int on_fit_progress(double done, void *progress);
+
 // The library's options, with all shared parameters free and any kind of camera unless one is given.
 lensprof_fit_options fit_options(const FitOptions &o);
 

@@ -82,11 +82,6 @@ void declare(Command &command, FlatCommand &o) {
     declare_progress(command, o.progress);
 }
 
-int on_progress(double done, void *progress) {
-    static_cast<Progress *>(progress)->update("fitting", done);
-    return interrupted();
-}
-
 // JPEG rounds colours over blocks of 16 pixels, which averaging does not remove: no falloff per channel from JPEG.
 void handle_lossy_pictures(const FlatCommand &o, FlatInput &input, Streams &streams) {
     for (size_t i = 0; i < input.pictures.size(); i++) {
@@ -136,7 +131,7 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
     FlatReport report = begin_report(input);
     report.load_s = lap(clock);
     report.fit.image_quality = report.quality.data();
-    input.options.progress = on_progress;
+    input.options.progress = on_fit_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
     lensprof_status status = lensprof_fit_flat(&input.options, input.images.data(),

@@ -13,9 +13,9 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t gap = 12, line = 22, header = line + 2 * gap, label = 2 * line;  // px
-constexpr uint32_t sheet_width = 1920, narrowest_cell = 160, largest_side = 960;    // px
-constexpr double text_size = 16;                                                    // px
+constexpr uint32_t gap = 12, line = 22, sheet_header = line + 2 * gap, label = 2 * line;  // px
+constexpr uint32_t sheet_width = 1920, narrowest_cell = 160, largest_side = 960;          // px
+constexpr double text_size = 16;                                                          // px
 constexpr uint8_t background = 40;
 constexpr const char *legend = "above: as taken; below: corrected";
 
@@ -124,13 +124,13 @@ void ContactSheet::write(const std::string &path) const {
     for (uint32_t i = 0; i < count; i++)
         high[i / columns] = std::max({high[i / columns], cells_[i].before.height, cells_[i].after.height});
     Picture whole;  // without pixels
-    whole.width = whole.frame_width = width, whole.height = header;
+    whole.width = whole.frame_width = width, whole.height = sheet_header;
     for (const uint32_t tallest : high) whole.height += band_height(tallest);
     whole.frame_height = whole.height;
     whole.row_bytes = size_t(3) * width;
     PictureWriter writer(path, whole);
-    Picture top = empty_band(width, header);
-    draw_texts(top, header, [&](cairo_t *cr) { draw_text(cr, gap, gap + text_size, width - 2.0 * gap, legend); });
+    Picture top = empty_band(width, sheet_header);
+    draw_texts(top, sheet_header, [&](cairo_t *cr) { draw_text(cr, gap, gap + text_size, width - 2.0 * gap, legend); });
     writer.write(top.view());
     for (uint32_t first = 0; first < count; first += columns) {
         const uint32_t tallest = high[first / columns];

@@ -10,15 +10,11 @@ namespace lensprof {
 
 namespace codec {
 
-namespace {
-
-uint64_t big_endian(const uint8_t *bytes, int count) {
+uint64_t big_endian(const uint8_t *bytes, size_t count) {
     uint64_t value = 0;
-    for (int i = 0; i < count; ++i) value = value << 8 | bytes[i];
+    for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
     return value;
 }
-
-}  // namespace
 
 void each_box(std::FILE *file,
               const std::function<bool(const std::string &type, uint64_t start, uint64_t size)> &visit) {

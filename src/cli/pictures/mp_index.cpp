@@ -11,7 +11,7 @@ namespace codec {
 namespace {
 
 constexpr uint16_t tag_version = 0xb000, tag_count = 0xb001, tag_entries = 0xb002;
-constexpr size_t entry_bytes = 16, header_bytes = 8, directory_bytes = 2 + 3 * 12 + 4;
+constexpr size_t mp_entry_bytes = 16, directory_bytes = 2 + 3 * 12 + 4;
 constexpr uint32_t max_pictures = 1000;
 
 }  // namespace
@@ -24,12 +24,12 @@ std::optional<std::vector<MpPicture>> read_mp_index(const std::vector<uint8_t> &
         });
         const TiffDirectory directory = reader.first();
         const TiffEntry *entry = directory.find(tag_entries);
-        if (!entry || entry->bytes() % entry_bytes != 0 || entry->bytes() > max_pictures * entry_bytes)
+        if (!entry || entry->bytes() % mp_entry_bytes != 0 || entry->bytes() > max_pictures * mp_entry_bytes)
             return std::nullopt;
         const std::vector<uint8_t> entries = reader.bytes(*entry);
-        if (reader.number(directory, tag_count, 0) != entries.size() / entry_bytes) return std::nullopt;
+        if (reader.number(directory, tag_count, 0) != entries.size() / mp_entry_bytes) return std::nullopt;
         std::vector<MpPicture> pictures;
-        for (size_t i = 0; i < entries.size(); i += entry_bytes) {
+        for (size_t i = 0; i < entries.size(); i += mp_entry_bytes) {
             const auto number = [&](size_t place, size_t size) {
                 return reader.order().get(&entries[i + place], size);
             };
@@ -45,7 +45,7 @@ std::optional<std::vector<MpPicture>> read_mp_index(const std::vector<uint8_t> &
 }
 
 size_t mp_segment_bytes(size_t pictures) {
-    return mp_index_start + header_bytes + directory_bytes + entry_bytes * pictures;
+    return mp_index_start + tiff_header_bytes + directory_bytes + mp_entry_bytes * pictures;
 }
 
 std::vector<uint8_t> mp_segment(const std::vector<MpPicture> &pictures) {
@@ -58,10 +58,10 @@ std::vector<uint8_t> mp_segment(const std::vector<MpPicture> &pictures) {
     };
     put(0xffe2, 2), put(mp_segment_bytes(pictures.size()) - 2, 2);
     bytes.insert(bytes.end(), {'M', 'P', 'F', 0, 'M', 'M', 0, 42});
-    put(header_bytes, 4), put(3, 2);
+    put(tiff_header_bytes, 4), put(3, 2);
     put_entry(tag_version, tiff_undefined, 4, 0x30313030);  // "0100"
     put_entry(tag_count, tiff_long, 1, pictures.size());
-    put_entry(tag_entries, tiff_undefined, entry_bytes * pictures.size(), header_bytes + directory_bytes);
+    put_entry(tag_entries, tiff_undefined, mp_entry_bytes * pictures.size(), tiff_header_bytes + directory_bytes);
     put(0, 4);
     for (const MpPicture &picture : pictures) {
         put(picture.attribute, 4), put(picture.bytes, 4), put(picture.offset, 4);

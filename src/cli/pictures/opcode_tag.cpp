@@ -16,9 +16,8 @@ namespace lensprof {
 
 namespace {
 
-constexpr uint16_t tag_subfile_type = 254, tag_width = 256, tag_height = 257, tag_photometric = 262, tag_samples = 277,
-                   tag_cfa_repeat = 33421, tag_cfa_pattern = 33422, tag_active_area = 50829;
-constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892;
+constexpr uint16_t tag_subfile_type = 254, tag_width = 256, tag_height = 257, tag_samples = 277, tag_cfa_repeat = 33421,
+                   tag_cfa_pattern = 33422, tag_active_area = 50829;
 constexpr uint32_t max_opcode_bytes = 64u << 20;
 
 const char *text_of(TiffDefect defect) {

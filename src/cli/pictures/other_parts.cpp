@@ -58,17 +58,13 @@ bool has_gain_map_of_jxl(const std::string &path) {
     return is_found;
 }
 
-uint32_t big_endian(const uint8_t *bytes) {
-    return uint32_t(bytes[0]) << 24 | uint32_t(bytes[1]) << 16 | uint32_t(bytes[2]) << 8 | bytes[3];
-}
-
 // Frames of an animation (PNG 3, 11.3.6.1: acTL, before the pixels); 0 for a still picture.
 uint32_t png_frames(const std::string &path) {
     const codec::File file = codec::open_for_reading(path);
     std::vector<uint8_t> head;
     for (uint64_t offset = 8; codec::read_at(file.get(), offset, 12, head);
-         offset += 12 + uint64_t(big_endian(&head[0]))) {
-        if (std::memcmp(&head[4], "acTL", 4) == 0) return big_endian(&head[8]);
+         offset += 12 + codec::big_endian(&head[0], 4)) {
+        if (std::memcmp(&head[4], "acTL", 4) == 0) return static_cast<uint32_t>(codec::big_endian(&head[8], 4));
         if (std::memcmp(&head[4], "IDAT", 4) == 0) return 0;
     }
     return 0;

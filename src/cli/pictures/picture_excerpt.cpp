@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "cli/pictures/file_boxes.hpp"
 #include "cli/program/interrupt.hpp"
 
 namespace lensprof {
@@ -16,12 +17,6 @@ namespace {
 constexpr uint64_t start_max_bytes = uint64_t(64) << 20;
 
 constexpr size_t copy_bytes = size_t(1) << 20;
-
-uint32_t big_endian(const uint8_t *p, int count) {
-    uint32_t value = 0;
-    for (int i = 0; i < count; ++i) value = value << 8 | p[i];
-    return value;
-}
 
 // JPEG and PNG: metadata come first, and the rest is copied unchanged.
 class PixelsLast final : public PictureExcerpt {
@@ -55,7 +50,7 @@ std::unique_ptr<PictureExcerpt> excerpt_of_jpeg(const std::string &path) {
     const File file = open_for_reading(path);
     std::vector<uint8_t> head;
     for (uint64_t offset = 2; offset < start_max_bytes && read_at(file.get(), offset, 4, head) && head[0] == 0xff;) {
-        const uint32_t marker = head[1], length = big_endian(&head[2], 2);
+        const uint32_t marker = head[1], length = static_cast<uint32_t>(big_endian(&head[2], 2));
         if (marker < 0xc0 || (marker >= 0xd0 && marker <= 0xd9) || marker == 0xff || length < 2) return nullptr;
         if (marker != 0xda) {
             offset += 2 + length;
@@ -74,8 +69,7 @@ std::unique_ptr<PictureExcerpt> excerpt_of_png(const std::string &path) {
     const File file = open_for_reading(path);
     std::vector<uint8_t> head;
     uint64_t pixels = 0;
-    for (uint64_t offset = 8; read_at(file.get(), offset, 8, head);
-         offset += 12 + uint64_t(big_endian(head.data(), 4))) {
+    for (uint64_t offset = 8; read_at(file.get(), offset, 8, head); offset += 12 + big_endian(head.data(), 4)) {
         const bool data = std::memcmp(&head[4], "IDAT", 4) == 0, last = std::memcmp(&head[4], "IEND", 4) == 0;
         if (last && pixels > 0) {
             const std::vector<uint8_t> end = {0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xae, 0x42, 0x60, 0x82};

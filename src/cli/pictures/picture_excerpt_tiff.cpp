@@ -18,8 +18,6 @@ constexpr uint64_t directory_max_bytes = uint64_t(64) << 20;
 // A strip in the excerpt: even, as Exiv2 aligns strips to words.
 constexpr uint32_t short_strip = 2;
 
-constexpr uint32_t header_bytes = 8;
-
 // Bytes of a TIFF, changed in place. `origin`: position of the first one in the file.
 struct TiffBytes {
     std::vector<uint8_t> &bytes;
@@ -100,7 +98,7 @@ private:
     bool is_of_strips_first(const TiffReader &reader, const StripTiff &tiff) const;
     void replace_directory(std::vector<uint8_t> edited, const StripTiff &tiff) const;
     bool replace_all(std::vector<uint8_t> edited, const StripTiff &tiff) const;
-    uint32_t short_end() const { return header_bytes + short_strip * static_cast<uint32_t>(strips_.size()); }
+    uint32_t short_end() const { return tiff_header_bytes + short_strip * static_cast<uint32_t>(strips_.size()); }
 
     TiffByteOrder order_;
     uint32_t directory_ = 0;  // of the file
@@ -110,7 +108,7 @@ private:
 // As libtiff writes them: all strips before the directory, all values after it.
 bool TiffExcerpt::is_of_strips_first(const TiffReader &reader, const StripTiff &tiff) const {
     for (size_t i = 0; i < tiff.starts.values.size(); ++i)
-        if (tiff.starts.values[i] < header_bytes
+        if (tiff.starts.values[i] < tiff_header_bytes
             || uint64_t(tiff.starts.values[i]) + tiff.counts.values[i] > directory_)
             return false;
     for (const TiffEntry &entry : tiff.directory.entries)
@@ -130,15 +128,16 @@ bool TiffExcerpt::make() {
     StripTiff tiff;
     if (!is_strip_tiff(reader, tiff)) return false;
     directory_ = static_cast<uint32_t>(tiff.directory.offset);
-    if (directory_ < header_bytes || directory_ % 2 != 0 || size - directory_ > directory_max_bytes
+    if (directory_ < tiff_header_bytes || directory_ % 2 != 0 || size - directory_ > directory_max_bytes
         || !is_of_strips_first(reader, tiff)
         || !read_at(file.get(), directory_, static_cast<size_t>(size - directory_), directory)
-        || !read_at(file.get(), 0, header_bytes, bytes_))
+        || !read_at(file.get(), 0, tiff_header_bytes, bytes_))
         return false;
     for (size_t i = 0; i < tiff.starts.values.size(); ++i)
         strips_.push_back({tiff.starts.values[i], tiff.counts.values[i]});
     TiffBytes moved{directory, order_, directory_};
-    for (uint32_t i = 0; i < strips_.size(); ++i) tiff.put_strip(moved, i, header_bytes + short_strip * i, short_strip);
+    for (uint32_t i = 0; i < strips_.size(); ++i)
+        tiff.put_strip(moved, i, tiff_header_bytes + short_strip * i, short_strip);
     moved.move_values(tiff.directory, directory_, short_end());
     TiffBytes{bytes_, order_, 0}.put(4, 4, short_end());
     bytes_.resize(short_end());
@@ -147,7 +146,7 @@ bool TiffExcerpt::make() {
 }
 
 bool TiffExcerpt::replace(const uint8_t *edited, size_t size) const {
-    if (size < header_bytes || !std::equal(edited, edited + 4, bytes_.begin())) return false;
+    if (size < tiff_header_bytes || !std::equal(edited, edited + 4, bytes_.begin())) return false;
     StripTiff tiff;
     try {
         TiffReader reader(
@@ -160,7 +159,7 @@ bool TiffExcerpt::replace(const uint8_t *edited, size_t size) const {
     for (uint32_t i = 0; i < strips_.size(); ++i)
         if (tiff.starts.values[i] != pixels + short_strip * i || tiff.counts.values[i] != short_strip) return false;
     std::vector<uint8_t> copy(edited, edited + size);
-    if (size != bytes_.size() || pixels != header_bytes)
+    if (size != bytes_.size() || pixels != tiff_header_bytes)
         return uint64_t(pixels) + short_strip * strips_.size() == size && replace_all(std::move(copy), tiff);
     if (tiff.directory.offset != short_end()) return false;
     replace_directory(std::move(copy), tiff);

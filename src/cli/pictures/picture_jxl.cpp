@@ -7,6 +7,7 @@
 #include <jxl/decode.h>
 
 #include "cli/pictures/coded_file.hpp"
+#include "cli/pictures/file_boxes.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/program/interrupt.hpp"
 
@@ -21,12 +22,6 @@ constexpr uint64_t working_max_bytes = uint64_t(2) << 30;  // libjxl decodes to 
 constexpr size_t box_max_bytes = size_t(64) << 20;         // of EXIF or XMP, which may be compressed
 constexpr int max_boxes = 1000;                            // searched for a JPEG
 constexpr size_t box_first_bytes = size_t(64) << 10;
-
-uint64_t big_endian(const uint8_t *bytes, size_t count) {
-    uint64_t value = 0;
-    for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
-    return value;
-}
 
 // Whether a container has the data to restore a JPEG file (ISO/IEC 18181-2, box jbrd), which may follow the picture's
 // header.

@@ -14,11 +14,11 @@ namespace codec {
 
 namespace {
 
-constexpr uint16_t tag_width = 256, tag_height = 257, tag_compression = 259, tag_photometric = 262,
-                   tag_strip_offsets = 273, tag_samples = 277, tag_rows_per_strip = 278, tag_strip_bytes = 279,
-                   tag_tile_width = 322, tag_tile_height = 323, tag_tile_offsets = 324, tag_tile_bytes = 325;
-constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892, compression_jpeg = 7;
-constexpr uint8_t start_of_image = 0xd8, lossless_frame = 0xc3, huffman_table = 0xc4, start_of_scan = 0xda;
+constexpr uint16_t tag_width = 256, tag_height = 257, tag_compression = 259, tag_strip_offsets = 273, tag_samples = 277,
+                   tag_rows_per_strip = 278, tag_strip_bytes = 279, tag_tile_width = 322, tag_tile_height = 323,
+                   tag_tile_offsets = 324, tag_tile_bytes = 325;
+constexpr uint32_t compression_jpeg = 7;
+constexpr uint8_t start_of_jpeg = 0xd8, lossless_frame = 0xc3, huffman_table = 0xc4, start_of_jpeg_scan = 0xda;
 constexpr int max_segments = 64;
 
 struct JpegFrame {
@@ -110,7 +110,7 @@ private:
     std::optional<JpegFrame> frame_at(uint64_t offset, uint64_t size) {
         uint8_t head[4];
         const uint64_t end = offset + size;
-        if (size < 4 || !read(offset, head, 2) || head[0] != 0xff || head[1] != start_of_image) return std::nullopt;
+        if (size < 4 || !read(offset, head, 2) || head[0] != 0xff || head[1] != start_of_jpeg) return std::nullopt;
         JpegFrame frame;
         bool has_table = false;
         uint64_t segment = offset + 2;
@@ -122,7 +122,7 @@ private:
                 frame = {uint32_t(f[3]) << 8 | f[4], uint32_t(f[1]) << 8 | f[2], f[5]};
             }
             has_table |= head[1] == huffman_table;
-            if (head[1] == start_of_scan)
+            if (head[1] == start_of_jpeg_scan)
                 return has_table && frame.components > 0 ? std::optional<JpegFrame>(frame) : std::nullopt;
             segment += 2 + length;
         }

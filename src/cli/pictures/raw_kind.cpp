@@ -15,8 +15,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr uint16_t tag_photometric = 262, tag_make = 271, tag_dng_version = 50706;
-constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892;
+constexpr uint16_t tag_make = 271, tag_dng_version = 50706;
 
 // Files that are not a TIFF, by their first bytes.
 constexpr struct {
@@ -36,13 +35,14 @@ constexpr struct {
 // Extensions of raw files, and the kind if the TIFF structure alone does not determine it.
 constexpr struct {
     const char *extension, *kind;
-} names[] = {{"3fr", "Hasselblad 3FR"}, {"arw", "Sony ARW"},      {"cr2", "Canon CR2"},   {"cr3", "Canon CR3"},
-             {"crw", "Canon CRW"},      {"dcr", "Kodak DCR"},     {"dng", "DNG"},         {"erf", "Epson ERF"},
-             {"fff", "Hasselblad FFF"}, {"iiq", "Phase One IIQ"}, {"k25", "Kodak K25"},   {"kdc", "Kodak KDC"},
-             {"mef", "Mamiya MEF"},     {"mos", "Leaf MOS"},      {"mrw", "Minolta MRW"}, {"nef", "Nikon NEF"},
-             {"nrw", "Nikon NRW"},      {"orf", "Olympus ORF"},   {"pef", "Pentax PEF"},  {"raf", "Fujifilm RAF"},
-             {"raw", "camera RAW"},     {"rw2", "Panasonic RW2"}, {"rwl", "Leica RWL"},   {"sr2", "Sony SR2"},
-             {"srf", "Sony SRF"},       {"srw", "Samsung SRW"},   {"x3f", "Sigma X3F"}};
+} raw_extensions[] = {
+    {"3fr", "Hasselblad 3FR"}, {"arw", "Sony ARW"},      {"cr2", "Canon CR2"},   {"cr3", "Canon CR3"},
+    {"crw", "Canon CRW"},      {"dcr", "Kodak DCR"},     {"dng", "DNG"},         {"erf", "Epson ERF"},
+    {"fff", "Hasselblad FFF"}, {"iiq", "Phase One IIQ"}, {"k25", "Kodak K25"},   {"kdc", "Kodak KDC"},
+    {"mef", "Mamiya MEF"},     {"mos", "Leaf MOS"},      {"mrw", "Minolta MRW"}, {"nef", "Nikon NEF"},
+    {"nrw", "Nikon NRW"},      {"orf", "Olympus ORF"},   {"pef", "Pentax PEF"},  {"raf", "Fujifilm RAF"},
+    {"raw", "camera RAW"},     {"rw2", "Panasonic RW2"}, {"rwl", "Leica RWL"},   {"sr2", "Sony SR2"},
+    {"srf", "Sony SRF"},       {"srw", "Samsung SRW"},   {"x3f", "Sigma X3F"}};
 
 // TIFF-based raw files, by their maker.
 constexpr struct {
@@ -63,7 +63,7 @@ std::string extension_of(const std::string &path) {
 
 const char *kind_of_name(const std::string &path) {
     const std::string extension = extension_of(path);
-    for (const auto &name : names)
+    for (const auto &name : raw_extensions)
         if (extension == name.extension) return name.kind;
     return nullptr;
 }

@@ -10,7 +10,7 @@ namespace {
 constexpr uint16_t tag_strip_offsets = 273, tag_strip_bytes = 279, tag_tile_offsets = 324, tag_tile_bytes = 325,
                    tag_sub_ifds = 330;
 constexpr uint32_t max_directories = 256;  // a longer chain is circular
-constexpr size_t header_bytes = 8, entry_bytes = 12;
+constexpr size_t entry_bytes = 12;
 
 }  // namespace
 
@@ -36,8 +36,8 @@ const TiffEntry *TiffDirectory::find(uint16_t tag) const {
 }
 
 TiffReader::TiffReader(uint64_t size, Read read) : size_(size), read_(std::move(read)) {
-    if (size_ < header_bytes) throw UnusableTiff(TiffDefect::not_tiff);
-    const std::vector<uint8_t> head = this->read(0, header_bytes);
+    if (size_ < tiff_header_bytes) throw UnusableTiff(TiffDefect::not_tiff);
+    const std::vector<uint8_t> head = this->read(0, tiff_header_bytes);
     order_.big = head[0] == 'M';
     const uint32_t version = order_.get(&head[2], 2);
     if (head[0] != head[1] || (head[0] != 'I' && head[0] != 'M') || (version != 42 && version != 43))

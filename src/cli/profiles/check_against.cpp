@@ -44,7 +44,7 @@ void split_words(const AgainstOptions &o, std::vector<int64_t> &ids, std::vector
     if (ids.empty()) throw Failure(ExitCode::usage, "--against: needs profile ids; see `lensprof profile list`");
 }
 
-std::vector<StoredProfile> read_profiles(const std::string &db, const std::vector<int64_t> &ids) {
+std::vector<StoredProfile> read_by_ids(const std::string &db, const std::vector<int64_t> &ids) {
     const Store store = open_store(db, LENSPROF_STORE_READ);
     std::vector<StoredProfile> profiles;
     for (const int64_t id : ids) {
@@ -214,7 +214,7 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     std::vector<int64_t> ids;
     std::vector<std::string> pictures;
     split_words(o, ids, pictures);
-    const std::vector<StoredProfile> profiles = read_profiles(db, ids);
+    const std::vector<StoredProfile> profiles = read_by_ids(db, ids);
     Progress progress(streams, o.progress);
     const Project project = open_pictures(pictures, o.images, progress, streams);
     if (project.images.size() < 2)

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double infinity_m = 1000.0;  // JSON has no infinity
 
-Json known(double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(std::isinf(value) ? infinity_m : value); }
+Json finite(double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(std::isinf(value) ? infinity_m : value); }
 
 std::string camera_of(const lensprof_profile_key &key) { return camera_name(key.camera_maker, key.camera_model); }
 
@@ -31,10 +31,10 @@ Json setting_json(const StoredProfile &stored) {
     std::string note = *p.key.unit ? std::string("unit ") + p.key.unit : std::string();
     if (*p.provenance.doubt) note += (note.empty() ? "" : ", ") + std::string("in doubt");
     return {{"id", stored.id},
-            {"focal_mm", known(p.key.focal_mm)},
-            {"aperture", known(p.key.aperture)},
-            {"distance_m", known(p.key.distance_m)},
-            {"crop", known(p.key.crop_factor)},
+            {"focal_mm", finite(p.key.focal_mm)},
+            {"aperture", finite(p.key.aperture)},
+            {"distance_m", finite(p.key.distance_m)},
+            {"crop", finite(p.key.crop_factor)},
             {"processing", processing_name(p.key.processing)},
             {"k", std::vector<double>(green.k, green.k + 3)},
             {"note", note}};

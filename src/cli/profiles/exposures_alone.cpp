@@ -12,7 +12,6 @@ constexpr double kFirstLimit = 40.0;  // in scales: nearly all differences count
 constexpr double kLastLimit = 3.0;    // larger differences get little weight
 constexpr double kLimitFactor = 0.7;  // per iteration
 constexpr int kRoundsAtLastLimit = 6;
-constexpr double kMedianToSigma = 1.4826;
 constexpr double kTolerance = 1e-20;  // of the squared residual
 
 // Weighted differences of all pairs of images as one least squares problem.

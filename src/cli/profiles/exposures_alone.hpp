@@ -7,6 +7,8 @@
 
 namespace lensprof {
 
+constexpr double kMedianToSigma = 1.4826;  // standard deviation of a normal distribution per median absolute value
+
 // A comparison of two images at one point in one channel.
 struct LightDifference {
     uint32_t image[2];

@@ -98,7 +98,7 @@ std::string bytes_of(const std::string &path, const lensprof_export_options &opt
     return written(path, write, names);
 }
 
-lensprof_export_options options_of(const ForeignRule &rule, const ForeignOptions &o) {
+lensprof_export_options export_options_of(const ForeignRule &rule, const ForeignOptions &o) {
     lensprof_export_options options;
     lensprof_export_options_init(&options);
     options.format = rule.format;
@@ -145,7 +145,7 @@ std::string foreign_bytes(const ForeignRule &rule, const std::string &path, cons
                       path + ": " + rule.name + " is written into a picture; export one profile with -o FILE");
     if (!rule.is_many) require_single_profile(path, rule, profiles.size());
     if (format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC) require_frame(path, rule, o);
-    return bytes_of(path, options_of(rule, o), profiles, names);
+    return bytes_of(path, export_options_of(rule, o), profiles, names);
 }
 
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
@@ -155,7 +155,7 @@ void write_foreign(const ForeignRule &rule, const std::string &path, const Forei
         require_single_profile(path, rule, profiles.size());
         if (is_map) require_frame(path, rule, o);
         return is_map ? write_map(path, o, *profiles[0])
-                      : write_opcodes_as(path, path, options_of(rule, o), *profiles[0]);
+                      : write_opcodes_as(path, path, export_options_of(rule, o), *profiles[0]);
     }
     const std::string text = foreign_bytes(rule, path, o, profiles, names);
     write_file(path, text.data(), text.size());

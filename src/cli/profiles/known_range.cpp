@@ -11,7 +11,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kMaxNames = 8;  // maximum printed, then the number of the others
+constexpr size_t kMaxPrinted = 8;  // maximum printed, then the number of the others
 
 void extend(double value, KnownRange::Ends &ends) {
     if (value == LENSPROF_UNKNOWN) return;
@@ -23,7 +23,7 @@ std::string joined(const std::set<std::string> &names) {
     std::string text;
     size_t count = 0;
     for (const std::string &name : names) {
-        if (count == kMaxNames) return text + format(" and %zu more", names.size() - count);
+        if (count == kMaxPrinted) return text + format(" and %zu more", names.size() - count);
         text += (count++ ? ", " : "") + name;
     }
     return text.empty() ? "not named" : text;

@@ -22,7 +22,7 @@
 namespace lensprof {
 namespace {
 
-struct Options {
+struct ExportOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
     ForeignOptions foreign;
@@ -32,7 +32,7 @@ struct Options {
     bool covariance = false, all = false, json = false, split = false;
 };
 
-void declare(Command &command, Options &o) {
+void declare(Command &command, ExportOptions &o) {
     command.profile_ids("ID", o.ids, "ids of profiles; see `lensprof profile list`");
     command.file("-o,--output", o.output,
                  "output file; its name chooses the format; DNG opcodes are written into an existing file");
@@ -56,7 +56,7 @@ void declare(Command &command, Options &o) {
     command.footer(about_foreign(true));
 }
 
-void check_options(Options &o) {
+void check_options(ExportOptions &o) {
     if (!o.blob.empty() && !o.output.empty())
         throw Failure(
             ExitCode::usage,
@@ -85,7 +85,7 @@ void check_options(Options &o) {
 }
 
 // One profile; size and checksum of its blob identify it.
-void export_blob(const Options &o, const StoredProfile &stored, Streams &streams) {
+void export_blob(const ExportOptions &o, const StoredProfile &stored, Streams &streams) {
     const lensprof_profile &profile = *stored.profile;
     const BlobStamp stamp = write_blob(profile, o.covariance, o.output);
     if (o.json) {
@@ -102,7 +102,8 @@ void export_blob(const Options &o, const StoredProfile &stored, Streams &streams
 }
 
 // Reports what a format omits without being refused.
-void note_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen, Streams &streams) {
+void note_means(const ForeignRule &rule, const ExportOptions &o, const std::vector<StoredProfile> &chosen,
+                Streams &streams) {
     const bool is_mean = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP
                          || (rule.format == LENSPROF_FORMAT_MAP && format_of_name(o.output) == FileFormat::png);
     if (!is_mean) return;
@@ -113,7 +114,7 @@ void note_means(const ForeignRule &rule, const Options &o, const std::vector<Sto
 }
 
 // Formats that need a crop factor use that of the command line if the profile does not have one.
-void complete_crop_factors(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen) {
+void complete_crop_factors(const ExportOptions &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen) {
     const bool needs_crop = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP;
     for (const StoredProfile &stored : chosen) {
         double &crop = stored.profile->key.crop_factor;
@@ -124,7 +125,7 @@ void complete_crop_factors(const Options &o, const ForeignRule &rule, const std:
     }
 }
 
-void export_split(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
+void export_split(const ExportOptions &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
                   Streams &streams) {
     complete_crop_factors(o, rule, chosen);
     const std::vector<SplitFile> files = write_split(rule, o.output, o.foreign, chosen);
@@ -143,7 +144,7 @@ void export_split(const Options &o, const ForeignRule &rule, const std::vector<S
     print_json(Json{{"schema", 1}, {"format", rule.name}, {"folder", o.output}, {"files", list}}, streams.out);
 }
 
-void export_foreign(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
+void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
                     Streams &streams) {
     std::vector<const lensprof_profile *> profiles;
     std::vector<std::string> names;
@@ -162,7 +163,7 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
                               chosen.size() == 1 ? "" : "s", rule.name);
 }
 
-int run(Options &o, Streams &streams) {
+int run(ExportOptions &o, Streams &streams) {
     check_options(o);
     const ForeignRule &rule = format_to_write(o.output, o.format);
     if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
@@ -193,7 +194,7 @@ void declare_profile_export(Command &profile) {
     Command command = profile.add("export", "export profiles as files of other programs, or as blobs",
                                   "Writes profiles as files of other programs. If a profile cannot be exported, no "
                                   "file is written.");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ExportOptions>();
     declare(command, *o);
     command.example("lensprof profile export 1 -o vignette.png --frame 1280x1024");
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -23,7 +23,7 @@ namespace lensprof {
 namespace {
 
 // The options of the command.
-struct Options {
+struct ImportOptions {
     std::vector<std::string> files;
     KeyFilter key;  // for information that files do not contain
     ForeignOptions foreign;
@@ -108,7 +108,7 @@ void name_sensor(const std::string &file, lensprof_profile_key &key) {
 }
 
 // The profile of files with a response, a falloff, or both, whose key the command line gives.
-std::unique_ptr<lensprof_profile> read_profile_of(const Options &o, const std::vector<Input> &inputs,
+std::unique_ptr<lensprof_profile> read_profile_of(const ImportOptions &o, const std::vector<Input> &inputs,
                                                   PartProfiles &parts) {
     auto profile = new_profile();
     const bool has_response = std::any_of(
@@ -129,7 +129,7 @@ std::unique_ptr<lensprof_profile> read_profile_of(const Options &o, const std::v
 }
 
 // Tuning files of several sensors become a profile each.
-void read_tuning_files(const Options &o, const std::vector<Input> &inputs, PartProfiles &parts) {
+void read_tuning_files(const ImportOptions &o, const std::vector<Input> &inputs, PartProfiles &parts) {
     for (const Input &input : inputs) {
         try {
             parts.profiles.push_back(read_profile_of(o, {input}, parts));
@@ -142,7 +142,7 @@ void read_tuning_files(const Options &o, const std::vector<Input> &inputs, PartP
 }
 
 // Failure (usage) for two responses or two falloffs, which are of two profiles.
-void check_parts(const Options &o, const std::vector<Input> &inputs) {
+void check_parts(const ImportOptions &o, const std::vector<Input> &inputs) {
     std::string response, falloff;
     for (const Input &input : inputs) {
         std::string &source_file = input.rule->holds == LENSPROF_HOLDS_RESPONSE ? response : falloff;
@@ -155,7 +155,7 @@ void check_parts(const Options &o, const std::vector<Input> &inputs) {
     }
 }
 
-PartProfiles read_parts(const Options &o, const std::vector<Input> &inputs) {
+PartProfiles read_parts(const ImportOptions &o, const std::vector<Input> &inputs) {
     PartProfiles parts;
     std::vector<Input> of_parts;
     std::copy_if(inputs.begin(), inputs.end(), std::back_inserter(of_parts),
@@ -244,7 +244,7 @@ void print_import(const Import &import, const PartProfiles &parts, size_t files,
                     << "reason and used only with --doubtful; --json lists them\n";
 }
 
-int run(const Options &o, Streams &streams) {
+int run(const ImportOptions &o, Streams &streams) {
     o.key.check_names();
     std::vector<Input> inputs;
     std::set<std::string> seen;
@@ -289,7 +289,7 @@ void declare_profile_import(Command &profile) {
         profile.add("import", "import profiles from files of other programs",
                     "Stores the profiles of other programs' files. If one file cannot be imported, nothing is stored.\n"
                     "The format is identified from the content, else from the name.");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ImportOptions>();
     command.files("FILE", o->files,
                   "profile files; or, for one profile, a file with a response, a file with a falloff, or both; or "
                   "Raspberry Pi tuning files, for a profile per sensor, whose name is that of the file");

@@ -14,7 +14,7 @@
 namespace lensprof {
 namespace {
 
-struct Options {
+struct MergeOptions {
     std::string db;
     std::vector<std::string> files;
     bool json = false;
@@ -51,7 +51,7 @@ void merge_all(const std::string &db, std::vector<Other> &others) {
     check(lensprof_store_commit(store.get(), &error), store_path(db), &error);
 }
 
-int run(const Options &o, Streams &streams) {
+int run(const MergeOptions &o, Streams &streams) {
     std::vector<Other> others = open_others(o.db, o.files);
     const bool is_new = !path_exists(store_path(o.db));
     try {
@@ -78,7 +78,7 @@ void declare_profile_merge(Command &profile) {
         "merge", "add the profiles of other databases",
         "Adds the profiles of other lensprof databases that are not yet stored, with their provenance. If one "
         "file cannot be merged, nothing is added.");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<MergeOptions>();
     command.files("FILE", o->files, "databases to read; they are not changed");
     command.require("FILE");
     declare_db(command, o->db, ", created if missing");

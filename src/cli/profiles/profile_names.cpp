@@ -18,7 +18,7 @@ namespace {
 
 using Summaries = std::vector<lensprof_store_summary>;
 
-struct Options {
+struct NamesOptions {
     std::vector<std::string> part;
     std::vector<std::string> dbs;
     bool json = false;
@@ -75,7 +75,7 @@ void print_names(const Databases &databases, const std::vector<Summaries> &all, 
     out << (databases.size() > 1 ? ", listed per database\n" : "\n");
 }
 
-int run(const Options &o, bool of_lenses, Streams &streams) {
+int run(const NamesOptions &o, bool of_lenses, Streams &streams) {
     std::string part;
     for (const std::string &word : o.part) part += (part.empty() ? "" : " ") + word;
     const Databases databases(databases_of(o.dbs));
@@ -96,7 +96,7 @@ int run(const Options &o, bool of_lenses, Streams &streams) {
 
 void declare(Command &profile, const char *verb, const char *brief, bool of_lenses) {
     Command command = profile.add(verb, brief);
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<NamesOptions>();
     command.texts("PART", o->part,
                   "a name or words in it, such as 24-70 canon; case, blanks and punctuation are ignored; default all");
     declare_listed_databases(command, o->dbs);

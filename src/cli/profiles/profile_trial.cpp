@@ -13,7 +13,6 @@
 namespace lensprof {
 namespace {
 
-constexpr double kMedianToSigma = 1.4826;
 constexpr double kExplainedSigmas = 5.0;  // a pair that no model explains better shows two different objects
 constexpr double kMinExplained = 3.0;     // levels
 constexpr size_t kMinLinks = 5;           // with meaningful scatter

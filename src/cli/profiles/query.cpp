@@ -19,14 +19,14 @@
 namespace lensprof {
 namespace {
 
-struct Options {
+struct QueryOptions {
     std::vector<std::string> dbs;
     KeyFilter filter;
     LookupOptions lookup;
     bool json = false;
 };
 
-void declare(Command &command, Options &o) {
+void declare(Command &command, QueryOptions &o) {
     o.filter.add_options(command);
     o.lookup.add_options(command);
     declare_databases(command, o.dbs);
@@ -56,7 +56,7 @@ void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
     rows.erase(std::remove_if(rows.begin(), rows.end(), has_doubt), rows.end());
 }
 
-std::vector<lensprof_store_row> applicable_rows(const Options &o, std::vector<lensprof_store_row> rows) {
+std::vector<lensprof_store_row> applicable_rows(const QueryOptions &o, std::vector<lensprof_store_row> rows) {
     if (o.lookup.crop_factor != LENSPROF_UNKNOWN) keep_same_sensor(o.lookup.crop_factor, rows);
     if (!o.lookup.doubtful) leave_out_doubtful(rows);
     return rows;
@@ -68,7 +68,7 @@ struct Match {
     std::vector<lensprof_store_row> rows;
 };
 
-std::vector<Match> matches(const Options &o, const Databases &databases, const KeyFilter &filter, bool by_parts) {
+std::vector<Match> matches(const QueryOptions &o, const Databases &databases, const KeyFilter &filter, bool by_parts) {
     std::vector<Match> all;
     for (size_t i = 0; i < databases.size(); i++) {
         const auto &file = databases.file(i);
@@ -90,7 +90,7 @@ void read_profile(const Databases &databases, size_t index, int64_t id, lensprof
 }
 
 // The single matching profile.
-void answer_stored(const Options &o, const Databases &databases, size_t index, int64_t id, Streams &streams) {
+void answer_stored(const QueryOptions &o, const Databases &databases, size_t index, int64_t id, Streams &streams) {
     auto profile = new_profile();
     read_profile(databases, index, id, *profile);
     if (o.json) {
@@ -104,7 +104,7 @@ void answer_stored(const Options &o, const Databases &databases, size_t index, i
 }
 
 // The stored range of the lens or camera, if the setting is ambiguous.
-void answer_range(const Options &o, const Databases &databases, const std::string &reason, Streams &streams) {
+void answer_range(const QueryOptions &o, const Databases &databases, const std::string &reason, Streams &streams) {
     KnownRange known;
     const auto all = matches(o, databases, o.filter.without_setting(), true);
     if (!count(all)) throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names()) + "; " + reason);
@@ -142,7 +142,7 @@ bool is_ambiguous(const lensprof_lookup &lookup) {
 }
 
 // The profile for the setting, stored or predicted. False if the key is ambiguous.
-bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Refusal &refusal, Streams &streams) {
+bool answer_lookup(const QueryOptions &o, const Databases &databases, size_t rows, Refusal &refusal, Streams &streams) {
     lensprof_lookup_options options = o.lookup.options();
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
@@ -173,7 +173,7 @@ bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Re
     return true;
 }
 
-void answer(const Options &o, Refusal &refusal, Streams &streams) {
+void answer(const QueryOptions &o, Refusal &refusal, Streams &streams) {
     const Databases databases(databases_of(o.dbs));
     const auto all = matches(o, databases, o.filter, false);
     const size_t rows = count(all);
@@ -184,7 +184,7 @@ void answer(const Options &o, Refusal &refusal, Streams &streams) {
         answer_range(o, databases, refusal.lookup.reason, streams);
 }
 
-int run(const Options &o, Streams &streams) {
+int run(const QueryOptions &o, Streams &streams) {
     if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
     o.filter.check_names();
     Refusal refusal;
@@ -212,7 +212,7 @@ void declare_query(Command &program) {
         "query", "look up a profile by camera, lens, focal length and aperture",
         "Prints the profile for a camera, lens and setting, with its standard error: the newest stored one, or "
         "one predicted from other settings of the lens.");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<QueryOptions>();
     declare(command, *o);
     command.example("lensprof query --lens \"canon 50mm f1.8 STM EF\" --focal 50 --aperture 2.5");
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -20,14 +20,14 @@
 namespace lensprof {
 namespace {
 
-struct Options {
+struct PageOptions {
     std::vector<std::string> inputs, dbs;
     std::string output, images;
     int64_t id = 0;
     KeyFilter filter;
 };
 
-void declare(Command &command, Options &o) {
+void declare(Command &command, PageOptions &o) {
     command.files(
         "FILE", o.inputs,
         "pictures, folders of them, a Hugin project or a reconstruction, which are fitted as `build` does; or "
@@ -117,13 +117,13 @@ std::vector<StoredProfile> all_profiles(const Databases &databases, Streams &str
 }
 
 // The profiles that are asked for.
-std::vector<StoredProfile> profiles_of(const Options &o, const Databases &databases, Streams &streams) {
+std::vector<StoredProfile> profiles_of(const PageOptions &o, const Databases &databases, Streams &streams) {
     if (!o.id && o.filter.is_empty()) return all_profiles(databases, streams);
     return o.filter.profiles(databases, o.id ? std::vector<int64_t>{o.id} : std::vector<int64_t>{}, false);
 }
 
 // A fit's page is what `build` writes of it.
-int report_fit(const Options &o, Streams &streams) {
+int report_fit(const PageOptions &o, Streams &streams) {
     std::vector<std::string> words{"build", "--no-store", "--report", o.output};
     if (!o.images.empty()) words.insert(words.end(), {"--images", o.images});
     words.push_back("--");
@@ -138,7 +138,7 @@ int report_fit(const Options &o, Streams &streams) {
 }
 
 // Writes the page of profiles.
-int write_page(const Options &o, const std::vector<StoredProfile> &profiles, const std::string &name,
+int write_page(const PageOptions &o, const std::vector<StoredProfile> &profiles, const std::string &name,
                Streams &streams) {
     const std::string command = command_text(streams.words);
     const std::string page = profiles.size() == 1 ? profile_page(profiles[0], command)
@@ -149,7 +149,7 @@ int write_page(const Options &o, const std::vector<StoredProfile> &profiles, con
 }
 
 // Failure (usage) for inputs that do not go together with each other or the options.
-void check_inputs(const Options &o, const std::vector<Kind> &kinds, bool asks_profiles) {
+void check_inputs(const PageOptions &o, const std::vector<Kind> &kinds, bool asks_profiles) {
     if (kinds.size() == 1 && kinds[0] == Kind::part)
         throw Failure(ExitCode::usage, o.inputs[0] + ": holds a response or a falloff, but no profile; import it with "
                                                      "`lensprof profile import` and report the database");
@@ -165,7 +165,7 @@ void check_inputs(const Options &o, const std::vector<Kind> &kinds, bool asks_pr
                                 "of profiles without --profile and names");
 }
 
-int run_report(const Options &o, Streams &streams) {
+int run_report(const PageOptions &o, Streams &streams) {
     check_page_name(o.output);
     const bool asks_profiles = o.id || !o.filter.is_empty() || !o.dbs.empty();
     std::vector<Kind> kinds;
@@ -189,7 +189,7 @@ int run_report(const Options &o, Streams &streams) {
 void declare_report(Command &program) {
     Command command = program.add("report", "write a report on pictures, profiles or a database as a web page",
                                   "Writes a web page: verdict, pictures before and after, charts and numbers.");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<PageOptions>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run_report(*o, streams); });
 }

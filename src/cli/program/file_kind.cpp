@@ -34,7 +34,7 @@ constexpr NextStep light = {
 constexpr NextStep document = {"extract its pictures first, for example with `pdfimages -all FILE picture`", false};
 constexpr NextStep web_page = {"download the file itself, not the page that shows it", false};
 constexpr NextStep archive = {"unpack it and give the files in it", false};
-constexpr NextStep values = {"write its values as a TIFF or PNG first", false};
+constexpr NextStep values_file = {"write its values as a TIFF or PNG first", false};
 
 struct Kind {
     const char *name;
@@ -75,9 +75,9 @@ constexpr struct {
     {0, "SIMPLE  ="sv, {"a FITS file", science}},
     {0, "XISF0100"sv, {"an XISF file", science}},
     {128, "DICM"sv, {"a DICOM file", science}},
-    {0, "\x89HDF\r\n\x1a\n"sv, {"an HDF5 file", values}},
-    {0, "\x93NUMPY"sv, {"a NumPy array", values}},
-    {0, "MATLAB 5.0"sv, {"a MATLAB file", values}},
+    {0, "\x89HDF\r\n\x1a\n"sv, {"an HDF5 file", values_file}},
+    {0, "\x93NUMPY"sv, {"a NumPy array", values_file}},
+    {0, "MATLAB 5.0"sv, {"a MATLAB file", values_file}},
     {0, "ZISRAWFILE"sv, {"a microscope's file (CZI)", {"export its pictures as TIFF first", true}}},
     {0, "\x76\x2f\x31\x01"sv, {"an OpenEXR picture", light}},
     {0, "#?RADIANCE"sv, {"a Radiance picture (HDR)", light}},

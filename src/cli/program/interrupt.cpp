@@ -7,10 +7,10 @@
 namespace lensprof {
 namespace {
 
-volatile std::sig_atomic_t flag = 0;
+volatile std::sig_atomic_t interrupt_flag = 0;
 
 void on_signal(int number) {
-    flag = 1;
+    interrupt_flag = 1;
     std::signal(number, SIG_DFL);
 }
 
@@ -22,7 +22,7 @@ void catch_interrupts() {
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding `ulimit -f` is a write error, like a full disk
 }
 
-bool interrupted() { return flag != 0; }
+bool interrupted() { return interrupt_flag != 0; }
 
 void stop_if_interrupted() {
     if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted");

@@ -12,8 +12,8 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t kMaxBytes = uint64_t(8) << 30;
-constexpr const char *kHeader = "# Bundle file";
+constexpr uint64_t kMaxBundlerBytes = uint64_t(8) << 30;
+constexpr const char *kBundlerHeader = "# Bundle file";
 
 // list.txt next to it, or the name of the file with the extension of a list.
 std::string neighbouring_list(const std::string &path) {
@@ -55,7 +55,7 @@ std::string name_of(std::string line) {
 }
 
 std::vector<std::string> read_list(const std::string &path) {
-    FieldReader fields(path, '\0', kMaxBytes);
+    FieldReader fields(path, '\0', kMaxBundlerBytes);
     std::vector<std::string> names;
     while (fields.next_line_of_values()) names.push_back(name_of(fields.rest()));
     return names;
@@ -97,7 +97,7 @@ void read_point(FieldReader &fields, Reconstruction &found) {
 }  // namespace
 
 bool is_bundler(const std::string &path) {
-    return is_regular_file(path) && read_head(path, std::strlen(kHeader)) == kHeader;
+    return is_regular_file(path) && read_head(path, std::strlen(kBundlerHeader)) == kBundlerHeader;
 }
 
 Reconstruction read_bundler(const std::string &path) {
@@ -107,8 +107,8 @@ Reconstruction read_bundler(const std::string &path) {
     found.cameras.emplace_back();
     const std::string list = neighbouring_list(path);
     for (const std::string &name : read_list(list)) found.images.push_back({name, 0, false, {}});
-    FieldReader fields(path, '\0', kMaxBytes);
-    if (!fields.next_line() || fields.rest() != kHeader + std::string(" v0.3"))
+    FieldReader fields(path, '\0', kMaxBundlerBytes);
+    if (!fields.next_line() || fields.rest() != kBundlerHeader + std::string(" v0.3"))
         fields.fail("it is not version 0.3, which has the feature positions");
     if (!fields.next_line_of_values()) fields.fail("the number of cameras is missing");
     const auto cameras = fields.integer<uint32_t>(), points = fields.integer<uint32_t>();

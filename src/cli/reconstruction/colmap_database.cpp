@@ -108,7 +108,7 @@ Database open_database(const std::string &path) {
     return database;
 }
 
-[[noreturn]] void fail_damaged(const std::string &path, const std::string &problem) {
+[[noreturn]] void fail_database(const std::string &path, const std::string &problem) {
     throw Failure(ExitCode::unreadable, path + ": " + problem + "; give an intact COLMAP database");
 }
 
@@ -122,7 +122,7 @@ struct Content {
     uint32_t image_at(int64_t id) const {
         const auto entry = image_of.find(id);
         if (entry == image_of.end())
-            fail_damaged(path, format("refers to image %lld, which does not exist", (long long)id));
+            fail_database(path, format("refers to image %lld, which does not exist", (long long)id));
         return entry->second;
     }
     uint64_t feature_count(uint32_t image) const { return first_feature[image + 1] - first_feature[image]; }
@@ -134,19 +134,19 @@ void read_images(Content &content) {
     while (cameras.next()) {
         const int64_t width = cameras.integer(1), height = cameras.integer(2);
         if (width < 1 || height < 1 || width > max_image_side || height > max_image_side)
-            fail_damaged(content.path,
-                         "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+            fail_database(content.path,
+                          "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
         if (!camera_of.emplace(cameras.integer(0), static_cast<uint32_t>(content.found.cameras.size())).second)
-            fail_damaged(content.path, "has two cameras with the same id");
+            fail_database(content.path, "has two cameras with the same id");
         content.found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
     }
     Rows images(content.database.get(), content.path, "SELECT image_id, name, camera_id FROM images ORDER BY name");
     while (images.next()) {
         const auto camera = camera_of.find(images.integer(2));
-        if (camera == camera_of.end()) fail_damaged(content.path, "has an image without a camera");
-        if (content.found.images.size() == max_images) fail_damaged(content.path, "has too many images");
+        if (camera == camera_of.end()) fail_database(content.path, "has an image without a camera");
+        if (content.found.images.size() == max_images) fail_database(content.path, "has too many images");
         if (!content.image_of.emplace(images.integer(0), static_cast<uint32_t>(content.found.images.size())).second)
-            fail_damaged(content.path, "has two images with the same id");
+            fail_database(content.path, "has two images with the same id");
         ReconstructionImage image;
         image.name = images.text(1), image.camera = camera->second;
         content.found.images.push_back(image);
@@ -178,7 +178,7 @@ struct Keypoints {
 void check_table(const std::string &path, int64_t rows, int64_t columns, size_t bytes, const char *table) {
     if (rows < 0 || columns < 0 || rows > int64_t(kMaxFeatures) || columns > 64
         || uint64_t(rows) * uint64_t(columns) * 4 != bytes)
-        fail_damaged(path, std::string("has ") + table + " that are truncated");
+        fail_database(path, std::string("has ") + table + " that are truncated");
 }
 
 // Maximum content of the pages of a file; its log may add more.
@@ -192,16 +192,16 @@ void count_features(Content &content) {
     while (rows.next()) {
         check_table(content.path, rows.integer(1), rows.integer(2), static_cast<size_t>(rows.integer(3)), "keypoints");
         if (rows.integer(2) != 2 && rows.integer(2) != 4 && rows.integer(2) != 6 && rows.integer(1) > 0)
-            fail_damaged(content.path, "has keypoints with " + std::to_string(rows.integer(2)) + " columns");
+            fail_database(content.path, "has keypoints with " + std::to_string(rows.integer(2)) + " columns");
         const uint32_t image = content.image_at(rows.integer(0));
-        if (is_counted[image]) fail_damaged(content.path, "has the keypoints of an image twice");
+        if (is_counted[image]) fail_database(content.path, "has the keypoints of an image twice");
         const auto bytes = static_cast<uint64_t>(rows.integer(3));
-        if (bytes > left) fail_damaged(content.path, "is too short for its keypoints");
+        if (bytes > left) fail_database(content.path, "is too short for its keypoints");
         is_counted[image] = true, count[image] = static_cast<uint64_t>(rows.integer(1)), left -= bytes;
     }
     content.first_feature.assign(1, 0);
     for (const uint64_t features : count) content.first_feature.push_back(content.first_feature.back() + features);
-    if (content.first_feature.back() > kMaxFeatures) fail_damaged(content.path, "has too many keypoints");
+    if (content.first_feature.back() > kMaxFeatures) fail_database(content.path, "has too many keypoints");
 }
 
 // Sets of features.
@@ -216,15 +216,15 @@ JoinedSets join_matches(const Content &content) {
         size_t bytes = 0;
         const uint8_t *data = rows.bytes(3, bytes);
         check_table(content.path, rows.integer(1), rows.integer(2), bytes, "matches");
-        if (rows.integer(2) != 2) fail_damaged(content.path, "has matches that are not pairs");
+        if (rows.integer(2) != 2) fail_database(content.path, "has matches that are not pairs");
         for (size_t row = 0; row < bytes / 8; row++) {
             uint32_t feature[2];
             std::memcpy(feature, data + 8 * row, 8);
             for (const int side : {0, 1})
                 if (feature[side] >= content.feature_count(image[side]))
-                    fail_damaged(content.path, "matches keypoint " + std::to_string(feature[side]) + " of "
-                                                   + content.found.images[image[side]].name + ", which has "
-                                                   + std::to_string(content.feature_count(image[side])));
+                    fail_database(content.path, "matches keypoint " + std::to_string(feature[side]) + " of "
+                                                    + content.found.images[image[side]].name + ", which has "
+                                                    + std::to_string(content.feature_count(image[side])));
             joined.join(static_cast<uint32_t>(content.first_feature[image[0]] + feature[0]),
                         static_cast<uint32_t>(content.first_feature[image[1]] + feature[1]));
         }
@@ -255,7 +255,7 @@ void take_tracks(Content &content, JoinedSets joined) {
         for (uint64_t n = content.first_feature[image]; n < content.first_feature[image + 1]; n++) {
             if (!is_matched[n]) continue;
             if (content.found.observations.size() == max_observations)
-                fail_damaged(content.path, "has too many matched keypoints");
+                fail_database(content.path, "has too many matched keypoints");
             TrackObservation observation;
             observation.point = joined.of(static_cast<uint32_t>(n)), observation.image = image;
             observation.feature = static_cast<uint32_t>(n - content.first_feature[image]);

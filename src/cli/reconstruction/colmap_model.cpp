@@ -16,18 +16,18 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t kMaxBytes = uint64_t(4) << 30;
+constexpr uint64_t kMaxModelBytes = uint64_t(4) << 30;
 // Number of parameters of the camera models 0, 1, 2, ... (COLMAP, src/colmap/sensor/models.h).
 constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4, 6, 2};
 
-[[noreturn]] void fail_damaged(const std::string &file, const std::string &problem) {
+[[noreturn]] void fail_model(const std::string &file, const std::string &problem) {
     throw Failure(ExitCode::unreadable, file + ": " + problem + "; give an intact COLMAP model");
 }
 
 // Reads numbers of a little-endian binary file.
 class Bytes {
 public:
-    explicit Bytes(const std::string &file) : file_(file), content_(read_text(file, kMaxBytes)) {}
+    explicit Bytes(const std::string &file) : file_(file), content_(read_text(file, kMaxModelBytes)) {}
 
     template <class Number>
     Number next() {
@@ -37,7 +37,7 @@ public:
     }
     std::string next_text() {
         const size_t end = content_.find('\0', offset_);
-        if (end == std::string::npos) fail_damaged(file_, "is truncated");
+        if (end == std::string::npos) fail_model(file_, "is truncated");
         const std::string text = content_.substr(offset_, end - offset_);
         offset_ = end + 1;
         return text;
@@ -46,16 +46,16 @@ public:
     uint64_t next_count(uint64_t bytes_each) {
         const auto count = next<uint64_t>();
         if (count > (content_.size() - offset_) / bytes_each)
-            fail_damaged(file_, "declares " + std::to_string(count) + " items, but is too short for them");
+            fail_model(file_, "declares " + std::to_string(count) + " items, but is too short for them");
         return count;
     }
     const char *take(size_t bytes) {
-        if (bytes > content_.size() - offset_) fail_damaged(file_, "is truncated");
+        if (bytes > content_.size() - offset_) fail_model(file_, "is truncated");
         offset_ += bytes;
         return content_.data() + offset_ - bytes;
     }
     void demand_end() const {
-        if (offset_ != content_.size()) fail_damaged(file_, "has more data than its counts declare");
+        if (offset_ != content_.size()) fail_model(file_, "has more data than its counts declare");
     }
 
 private:
@@ -80,7 +80,7 @@ struct Sight {
 
 ReconstructionCamera camera_of(const std::string &file, uint64_t width, uint64_t height) {
     if (width < 1 || height < 1 || width > uint64_t(max_image_side) || height > uint64_t(max_image_side))
-        fail_damaged(file, "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+        fail_model(file, "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
@@ -101,12 +101,12 @@ void place(const std::array<double, 4> &q, const std::array<double, 3> &t, Recon
 
 void add_camera(const std::string &file, uint32_t id, const ReconstructionCamera &camera, Model &model) {
     if (!model.cameras.emplace(id, camera).second)
-        fail_damaged(file, "has two cameras with the id " + std::to_string(id));
+        fail_model(file, "has two cameras with the id " + std::to_string(id));
 }
 
 PosedImage &add_image(const std::string &file, uint32_t id, Model &model) {
     const auto [own, is_new] = model.images.emplace(id, PosedImage());
-    if (!is_new) fail_damaged(file, "has two images with the id " + std::to_string(id));
+    if (!is_new) fail_model(file, "has two images with the id " + std::to_string(id));
     return own->second;
 }
 
@@ -117,7 +117,7 @@ void read_binary_cameras(const std::string &file, Model &model) {
         const auto kind = bytes.next<int32_t>();
         const auto width = bytes.next<uint64_t>(), height = bytes.next<uint64_t>();
         if (kind < 0 || kind >= int32_t(std::size(kParameters)))
-            fail_damaged(file, "has the unknown camera model " + std::to_string(kind));
+            fail_model(file, "has the unknown camera model " + std::to_string(kind));
         bytes.take(sizeof(double) * static_cast<size_t>(kParameters[kind]));
         add_camera(file, id, camera_of(file, width, height), model);
     }
@@ -162,7 +162,7 @@ void read_binary_points(const std::string &file, const Add &add) {
 }
 
 void read_text_cameras(const std::string &file, Model &model) {
-    FieldReader fields(file, '\0', kMaxBytes);
+    FieldReader fields(file, '\0', kMaxModelBytes);
     while (fields.next_line_of_values()) {
         const auto id = fields.integer<uint32_t>();
         fields.text();  // the name of its model
@@ -172,7 +172,7 @@ void read_text_cameras(const std::string &file, Model &model) {
 }
 
 void read_text_images(const std::string &file, Model &model) {
-    FieldReader fields(file, '\0', kMaxBytes);
+    FieldReader fields(file, '\0', kMaxModelBytes);
     while (fields.next_line_of_values()) {
         const auto id = fields.integer<uint32_t>();
         std::array<double, 4> q;
@@ -194,7 +194,7 @@ void read_text_images(const std::string &file, Model &model) {
 
 template <class Add>
 void read_text_points(const std::string &file, const Add &add) {
-    FieldReader fields(file, '\0', kMaxBytes);
+    FieldReader fields(file, '\0', kMaxModelBytes);
     while (fields.next_line_of_values()) {
         fields.text();  // its number
         std::array<double, 3> position;
@@ -234,7 +234,7 @@ void take_images(const Model &model, const std::string &file, Reconstruction &fo
     for (const uint32_t id : order) {
         const PosedImage &image = model.images.at(id);
         if (!camera_of.count(image.camera_id))
-            fail_damaged(file, image.image.name + " refers to a camera that does not exist");
+            fail_model(file, image.image.name + " refers to a camera that does not exist");
         image_of[id] = static_cast<uint32_t>(found.images.size());
         found.images.push_back(image.image);
         found.images.back().camera = camera_of[image.camera_id];
@@ -263,9 +263,9 @@ Reconstruction read_colmap_model(const std::string &folder) {
         for (const Sight &sight : sights) {
             const auto image = model.images.find(sight.image);
             if (image == model.images.end() || sight.feature >= image->second.places.size())
-                fail_damaged(points, "refers to feature " + std::to_string(sight.feature) + " of image "
-                                         + std::to_string(sight.image) + ", which does not exist");
-            if (found.observations.size() == max_observations) fail_damaged(points, "has too many observations");
+                fail_model(points, "refers to feature " + std::to_string(sight.feature) + " of image "
+                                       + std::to_string(sight.image) + ", which does not exist");
+            if (found.observations.size() == max_observations) fail_model(points, "has too many observations");
             TrackObservation observation;
             observation.point = static_cast<uint32_t>(found.points.size());
             observation.image = image_of.at(sight.image), observation.feature = sight.feature;

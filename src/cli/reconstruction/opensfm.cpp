@@ -20,14 +20,15 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t kMaxBytes = uint64_t(64) << 30;  // of tracks.csv, which is read line by line
-constexpr const char *kHeader = "OPENSFM_TRACKS_VERSION_v";
+constexpr uint64_t kMaxTracksBytes = uint64_t(64) << 30;  // of tracks.csv, which is read line by line
+constexpr const char *kTracksHeader = "OPENSFM_TRACKS_VERSION_v";
 
 // Version 0 has no feature size, 1 has one, and 2 has segmentation and instance after the colour.
 int version_of(const std::string &path) {
     const std::string head = read_head(path, 4096);
-    if (head.compare(0, std::strlen(kHeader), kHeader) != 0) return 0;
-    const std::string number = head.substr(std::strlen(kHeader), head.find_first_of("\r\n") - std::strlen(kHeader));
+    if (head.compare(0, std::strlen(kTracksHeader), kTracksHeader) != 0) return 0;
+    const std::string number =
+        head.substr(std::strlen(kTracksHeader), head.find_first_of("\r\n") - std::strlen(kTracksHeader));
     if (number != "0" && number != "1" && number != "2")
         throw Failure(ExitCode::unreadable,
                       path + ": unknown version '" + short_name(number) + "' of tracks; write version 2");
@@ -55,9 +56,9 @@ std::array<uint8_t, 3> colour_of(FieldReader &fields) {
 
 void read_tracks(const std::string &path, Tracks &tracks) {
     const int version = version_of(path);
-    FieldReader fields(path, '\t', kMaxBytes);
+    FieldReader fields(path, '\t', kMaxTracksBytes);
     Reconstruction &found = tracks.found;
-    bool is_first = read_head(path, std::strlen(kHeader)) == kHeader;
+    bool is_first = read_head(path, std::strlen(kTracksHeader)) == kTracksHeader;
     while (fields.next_line()) {
         if (std::exchange(is_first, false) || !fields.has_more()) continue;
         TrackObservation observation;
@@ -141,7 +142,7 @@ void take_models(const std::string &path, Tracks &tracks) {
 bool is_opensfm_tracks(const std::string &path) {
     if (!is_regular_file(path)) return false;
     const std::string head = read_head(path, 4096);
-    if (head.compare(0, std::strlen(kHeader), kHeader) == 0) return true;
+    if (head.compare(0, std::strlen(kTracksHeader), kTracksHeader) == 0) return true;
     const std::string line = head.substr(0, head.find('\n'));  // version 0: shot, track, feature, x, y, r, g, b
     return path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0
            && std::count(line.begin(), line.end(), '\t') == 7;

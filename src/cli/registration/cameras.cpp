@@ -16,23 +16,23 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t max_matches = 40;    // matches used per link, spread over its overlap
-constexpr double widest_deg = 140.0;  // maximum angle of view of a rectilinear lens
-constexpr double last_scale = 0.001;  // of the loss, as a share of the longer side
-constexpr double fits = 0.0012;       // of the same: a panorama with larger residuals may be a plane
+constexpr size_t max_link_matches = 40;      // matches used per link, spread over its overlap
+constexpr double widest_deg = 140.0;         // maximum angle of view of a rectilinear lens
+constexpr double last_scale = 0.001;         // of the loss, as a share of the longer side
+constexpr double fitting_residual = 0.0012;  // of the same: a panorama with larger residuals may be a plane
 
 // Every cell of a grid over the first frame contributes its first match, until there are enough.
 Matches spread(const Matches &matches, const PictureOptics &first) {
     constexpr int cells = 8;
     Matches left = matches, chosen;
-    while (chosen.size() < max_matches && !left.empty()) {
+    while (chosen.size() < max_link_matches && !left.empty()) {
         bool taken[cells * cells] = {};
         Matches rest;
         for (const auto &m : left) {
             const int across = std::clamp(int(m.first.x / first.width * cells), 0, cells - 1);
             const int down = std::clamp(int(m.first.y / first.height * cells), 0, cells - 1);
             bool &is_taken = taken[down * cells + across];
-            (is_taken || chosen.size() == max_matches ? rest : chosen).push_back(m);
+            (is_taken || chosen.size() == max_link_matches ? rest : chosen).push_back(m);
             is_taken = true;
         }
         left = std::move(rest);
@@ -448,7 +448,7 @@ FoundCameras CameraFit::run() {
     fit(false);
     const std::vector<lensprof_camera> turned = cameras_;
     const std::vector<double> off = residuals();
-    if (median(off) > fits) {
+    if (median(off) > fitting_residual) {
         const double by_turns = fit(true);
         const std::vector<lensprof_camera> moved = cameras_;
         start(hfov_);

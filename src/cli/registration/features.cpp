@@ -13,8 +13,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double longer_side = 1200.0;  // px, approximate longer side after reduction
-constexpr double contrast = 0.01;       // of SIFT: smooth pictures have no stronger ones
+constexpr double reduced_side = 1200.0;  // px, approximate longer side after reduction
+constexpr double contrast = 0.01;        // of SIFT: smooth pictures have no stronger ones
 
 float sample_at(const uint8_t *samples, uint32_t type, size_t i) {
     switch (type) {
@@ -98,7 +98,7 @@ Features find_features(const std::string &file, uint32_t max_count) {
     Features found;
     found.width = header.width, found.height = header.height;
     const double longer = std::max(header.width, header.height);
-    const uint32_t reduction = std::max(1u, static_cast<uint32_t>(std::lround(longer / longer_side)));
+    const uint32_t reduction = std::max(1u, static_cast<uint32_t>(std::lround(longer / reduced_side)));
     if (header.width < reduction || header.height < reduction) return found;  // a line
     const cv::Mat grey = stretched(reduced_grey(reader, reduction),
                                    header.sample == LENSPROF_SAMPLE_F32 || header.traits.format == FileFormat::raw);

@@ -14,8 +14,6 @@
 namespace lensprof {
 namespace {
 
-constexpr const char *channel_names[3] = {"red", "green", "blue"};
-
 // Radii of the table, as sample indices.
 constexpr size_t table_samples[] = {0, 25, 50, 75, 100};
 

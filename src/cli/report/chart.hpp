@@ -12,6 +12,8 @@
 
 namespace lensprof {
 
+constexpr const char *channel_names[3] = {"red", "green", "blue"};
+
 constexpr size_t chart_samples = 101;  // of a curve, at r = i/100
 constexpr size_t chart_max_curves = 24;
 

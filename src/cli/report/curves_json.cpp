@@ -15,7 +15,6 @@ namespace lensprof {
 namespace {
 
 constexpr int response_steps = 64;
-constexpr const char *channel_names[3] = {"red", "green", "blue"};
 
 std::string label_of(const std::string &label, uint32_t channels, uint32_t channel) {
     if (channels != 3) return label;

@@ -9,7 +9,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double plot_width = 480, plot_height = 300, left = 64, top = 64, bottom = 56, right = 24, key_line = 20;
+constexpr double gains_width = 480, gains_height = 300, gains_left = 64, gains_top = 64, gains_bottom = 56,
+                 gains_right = 24, gains_line = 20;
 constexpr double max_levels = 30.0;
 constexpr int points = 301;
 
@@ -27,8 +28,8 @@ std::vector<double> shares_of(const GainCurve &curve) {
     return shares;
 }
 
-double x_of(double levels) { return left + plot_width * levels / max_levels; }
-double y_of(double share) { return top + plot_height * (1.0 - share); }
+double x_of(double levels) { return gains_left + gains_width * levels / max_levels; }
+double y_of(double share) { return gains_top + gains_height * (1.0 - share); }
 
 void draw_axes(cairo_t *cr) {
     cairo_set_line_width(cr, 1);
@@ -36,20 +37,20 @@ void draw_axes(cairo_t *cr) {
     for (int i = 0; i <= 6; i++) {
         const double x = x_of(max_levels * i / 6);
         set_grey(cr, 0.88);
-        stroke_line(cr, x, top, x, top + plot_height);
+        stroke_line(cr, x, gains_top, x, gains_top + gains_height);
         set_grey(cr, 0.2);
-        draw_text(cr, x, top + plot_height + 19, format("%g", max_levels * i / 6), 0.5);
+        draw_text(cr, x, gains_top + gains_height + 19, format("%g", max_levels * i / 6), 0.5);
     }
     for (int i = 0; i <= 4; i++) {
         const double y = y_of(0.25 * i);
         set_grey(cr, 0.88);
-        stroke_line(cr, left, y, left + plot_width, y);
+        stroke_line(cr, gains_left, y, gains_left + gains_width, y);
         set_grey(cr, 0.2);
-        draw_text(cr, left - 8, y + 4.5, format("%d %%", 25 * i), 1);
+        draw_text(cr, gains_left - 8, y + 4.5, format("%d %%", 25 * i), 1);
     }
-    draw_text(cr, left + 0.5 * plot_width, top + plot_height + 42,
+    draw_text(cr, gains_left + 0.5 * gains_width, gains_top + gains_height + 42,
               "difference of a point's colour between two pictures, levels of 255", 0.5);
-    cairo_rectangle(cr, left, top, plot_width, plot_height);
+    cairo_rectangle(cr, gains_left, gains_top, gains_width, gains_height);
     cairo_stroke(cr);
 }
 
@@ -60,7 +61,8 @@ void draw_curve(cairo_t *cr, size_t number, const GainCurve &curve) {
     cairo_new_path(cr);  // text leaves a current point
     for (int i = 0; i < points; i++) cairo_line_to(cr, x_of(max_levels * i / (points - 1)), y_of(shares[size_t(i)]));
     cairo_stroke(cr);
-    const double y = top + plot_height - 16 - key_line * double(2 - number), x = left + plot_width - 230;
+    const double y = gains_top + gains_height - 16 - gains_line * double(2 - number),
+                 x = gains_left + gains_width - 230;
     stroke_line(cr, x, y, x + 34, y);
     cairo_restore(cr);
     set_grey(cr, 0.1);
@@ -74,8 +76,8 @@ std::string gain_chart(const std::string &path, const std::string &title, const 
     check_chart_name(path);
     const auto measure = [&](cairo_t *cr) {
         set_font(cr, text_size);
-        return DrawingSize{std::ceil(std::max(left + plot_width + right, 40 + text_width(cr, title))),
-                           top + plot_height + bottom};
+        return DrawingSize{std::ceil(std::max(gains_left + gains_width + gains_right, 40 + text_width(cr, title))),
+                           gains_top + gains_height + gains_bottom};
     };
     return drawing_of(path, measure, [&](cairo_t *cr, const DrawingSize &) {
         set_grey(cr, 1);

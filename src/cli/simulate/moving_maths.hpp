@@ -5,6 +5,8 @@
 
 namespace lensprof {
 
+constexpr double kPi = 3.14159265358979323846;
+
 struct Vector3 {
     double x = 0.0, y = 0.0, z = 0.0;
 };

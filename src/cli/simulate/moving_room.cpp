@@ -11,7 +11,6 @@
 namespace lensprof {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr Vector3 kHalf = {6.0, 4.5, 1.8};  // of the room, m
 constexpr double kPath[2] = {4.1, 2.9};     // half axes of the camera's path, m
 constexpr uint32_t kSurfaces = 8;           // ids used by a box

@@ -8,23 +8,23 @@
 namespace lensprof {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr uint32_t kColumns = 16, kRows = 12;  // metering points of a picture
-constexpr double kMetered = 0.2;               // mean irradiance of all pictures, relative to white
-constexpr double kStrength = 0.75;             // share of a brightness difference that automatic exposure compensates
+constexpr uint32_t kMeteredColumns = 16, kMeteredRows = 12;  // metering points of a picture
+constexpr double kMetered = 0.2;                             // mean irradiance of all pictures, relative to white
+constexpr double kStrength = 0.75;  // share of a brightness difference that automatic exposure compensates
 
 // log2 of the mean luminance.
 double metered_ev(const Truth &truth, uint32_t i) {
     const auto &camera = truth.cameras[i];
     double sum = 0.0;
-    for (uint32_t v = 0; v < kRows; v++)
-        for (uint32_t u = 0; u < kColumns; u++) {
-            const double xy[2] = {(u + 0.5) / kColumns * camera.width - 0.5, (v + 0.5) / kRows * camera.height - 0.5};
+    for (uint32_t v = 0; v < kMeteredRows; v++)
+        for (uint32_t u = 0; u < kMeteredColumns; u++) {
+            const double xy[2] = {(u + 0.5) / kMeteredColumns * camera.width - 0.5,
+                                  (v + 0.5) / kMeteredRows * camera.height - 0.5};
             double rgb[3];
             moving_radiance(*truth.world, truth.pinhole, truth.poses[i], xy, rgb);
             sum += 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
         }
-    return std::log2(std::max(sum / (kColumns * kRows), 1e-6));
+    return std::log2(std::max(sum / (kMeteredColumns * kMeteredRows), 1e-6));
 }
 
 // Oscillates within +-1, starting at 0.

@@ -12,7 +12,6 @@
 namespace lensprof {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kAltitude = 62.0;           // of the drone above the middle of the ground, m
 constexpr double kTilt = 14.0;               // of its camera, forward from straight down, degrees
 constexpr double kAhead = 0.22;              // share of a picture's height between two pictures of a row

@@ -7,7 +7,6 @@
 namespace lensprof {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSamples = 4;
 // A rotated square about the centre of the pixel: no two samples share a row or column.
 constexpr double kOffsets[kSamples][2] = {{-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}};

@@ -7,14 +7,14 @@
 namespace lensprof {
 namespace {
 
-constexpr double kSigma = 1.5;  // of the Gaussian, px
+constexpr double kBlurSigma = 1.5;  // of the Gaussian, px
 constexpr int kReach = 5;
 
 // Gaussian along one direction of a channel, its weights summing to 1 at the borders too.
 void blur(const std::vector<float> &from, std::vector<float> &to, uint32_t count, uint32_t step, uint32_t lines,
           uint32_t line_step) {
     double weight[kReach + 1];
-    for (int j = 0; j <= kReach; j++) weight[j] = std::exp(-0.5 * j * j / (kSigma * kSigma));
+    for (int j = 0; j <= kReach; j++) weight[j] = std::exp(-0.5 * j * j / (kBlurSigma * kBlurSigma));
     for (size_t line = 0; line < lines; line++)
         for (int i = 0; i < static_cast<int>(count); i++) {
             double sum = 0.0, weights = 0.0;
