@@ -95,9 +95,10 @@ abi-headers: ## save the public headers as those of this release, whose programs
 abi: ## generate _abi.py and abi_dump.c of the Python package from the public headers (package python3-pycparser)
 	python3 bindings/python/tools/make_abi.py
 
-lint: test-deps build ## format, cppcheck, clang's warnings and clang-tidy over all sources: some ten minutes
+lint: test-deps ## format, cppcheck, clang's warnings and clang-tidy over all sources: some ten minutes
 	@cmake/install-packages.sh packages-lint.txt
-	tests/lint/lint.sh build
+	cmake --preset release -B build/lint -DLENSPROF_JOIN=OFF -DLENSPROF_TESTS=OFF >/dev/null
+	tests/lint/lint.sh build/lint
 
 format: ## format C and C++ with .clang-format (package clang-format)
 	git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | grep -vE '$(TABLES)' | xargs clang-format -i

@@ -59,6 +59,20 @@ function(lensprof_reuse_precompiled target from)
   endif()
 endfunction()
 
+# lensprof_join(target): the C++ sources of each folder of the target are compiled as one, because most of the compiler's time is
+# for the templates that they share. File-local names are therefore unique in a folder.
+function(lensprof_join target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    get_filename_component(folder ${source} DIRECTORY)
+    get_filename_component(folder ${folder} NAME)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${LENSPROF_JOIN} UNITY_BUILD_MODE GROUP)
+  # GCC takes the sources for headers, in which a type must not have a member of a file-local type.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
+
 # lensprof_layer(name [ONLY] SOURCES... LINK...): an object library lensprof_<name> with hidden symbols, of all sources in its
 # folder (with ONLY of none but those named) and the generated SOURCES. Includes name private headers from src on.
 function(lensprof_layer name)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # lint.sh BUILD_DIR: formatting, warnings of clang, cppcheck and clang-tidy over all sources (`make lint`). Continues
-# after a finding; exit 1 if there was any. BUILD_DIR has compile_commands.json. CLANG_TIDY_FILES=pattern: only these
-# for clang-tidy.
+# after a finding; exit 1 if there was any. BUILD_DIR has a compile_commands.json of single sources (-DLENSPROF_JOIN=OFF).
+# CLANG_TIDY_FILES=pattern: only these for clang-tidy.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 build=$1
