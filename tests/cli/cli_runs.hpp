@@ -242,6 +242,14 @@ inline std::string copy_of(const std::string &from, const std::string &to = "cop
     return work(to);
 }
 
+// `simulate` into work(name): what several tests of a program render is rendered once, and copied.
+inline void render(const std::string &name, const Words &words) {
+    static std::map<Words, std::string> rendered;
+    const auto [entry, is_new] = rendered.try_emplace(words, in_folder("rendered" + std::to_string(rendered.size())));
+    if (is_new) must_exit(done, Words{"simulate", "-o", entry->second} + words);
+    fs::copy(entry->second, work(name), fs::copy_options::recursive);
+}
+
 // Enough for tests that are not about accuracy.
 inline const Words quick = {"--pairs", "600", "--modes", "3"};
 

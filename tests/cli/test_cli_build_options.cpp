@@ -7,10 +7,9 @@ namespace {
 
 // A linear camera, which no prior expects, with one falloff for all channels.
 std::string linear_scene() {
-    const std::string path = work("linear");
-    must_exit(done, {"simulate", "-o", path, "--response", "linear", "--size", "320x240", "--images", "8", "--ev",
-                     "1.5", "--noise", "0.5", "--format", "tiff16", "--exif"});
-    return path;
+    render("linear", {"--response", "linear", "--size", "320x240", "--images", "8", "--ev", "1.5", "--noise", "0.5",
+                      "--format", "tiff16", "--exif"});
+    return work("linear");
 }
 
 Words build(const std::string &path, const Words &more) {

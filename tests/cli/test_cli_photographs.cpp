@@ -15,8 +15,7 @@ namespace {
 
 void simulate(const std::string &name, const Words &more) {
     const bool is_sized = std::find(more.begin(), more.end(), "--size") != more.end();
-    must_exit(done, Words{"simulate", "-o", work(name), "--noise", "1"}
-                        + (is_sized ? Words() : Words{"--size", "480x360"}) + more);
+    render(name, Words{"--noise", "1"} + (is_sized ? Words() : Words{"--size", "480x360"}) + more);
 }
 
 // If the program was built without OpenCV, only its message can be tested.

@@ -12,8 +12,8 @@ namespace {
 
 // Two overlapping pictures of the simulated camera; the seed determines the place.
 std::string pictures(const std::string &name, const char *seed, const char *falloff = "-0.4,0.1,-0.1") {
-    must_exit(done, {"simulate", "-o", work(name), "--images", "2", "--size", "480x320", "--overlap", "0.5",
-                     "--vignetting", falloff, "--ev", "1.5", "--exif", "--exif-rounding", "0.1", "--seed", seed});
+    render(name, {"--images", "2", "--size", "480x320", "--overlap", "0.5", "--vignetting", falloff, "--ev", "1.5",
+                  "--exif", "--exif-rounding", "0.1", "--seed", seed});
     return work(name + "/pano.pto");
 }
 

@@ -27,8 +27,8 @@ void state_aperture(const std::string &file, double f_number) {
 // Pictures of one scene, alternating between two apertures.
 std::string two_apertures(const char *overlap = "0.4") {
     const Words same = Words{"--images", "6", "--seed", "5", "--exif", "--overlap", overlap, "--noise", "1"};
-    must_exit(done, Words{"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12"} + same);
-    must_exit(done, Words{"simulate", "-o", work("stopped"), "--vignetting=-0.12,0.02,-0.03"} + same);
+    render("open", Words{"--vignetting=-0.55,0.15,-0.12"} + same);
+    render("stopped", Words{"--vignetting=-0.12,0.02,-0.03"} + same);
     for (size_t i = 1; i < 6; i += 2) {
         fs::copy_file(work("stopped/" + numbered(i)), work("open/" + numbered(i)),
                       fs::copy_options::overwrite_existing);

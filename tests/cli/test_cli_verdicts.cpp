@@ -6,7 +6,7 @@ using namespace cli_runs;
 namespace {
 
 void simulate(const std::string &name, const Words &more) {
-    must_exit(done, Words{"simulate", "-o", work(name), "--size", "400x300", "--images", "6"} + more);
+    render(name, Words{"--size", "400x300", "--images", "6"} + more);
 }
 
 std::string pto(const std::string &name) { return work(name + "/pano.pto"); }
