@@ -69,7 +69,7 @@ typedef enum lensprof_loss {
  * e^gamma) give the same pictures. */
 typedef enum lensprof_gamma_from {
     LENSPROF_GAMMA_AUTO = 0,      /* default: known exposures and the prior, weighted by their standard errors */
-    LENSPROF_GAMMA_PRIOR = 1,     /* only the prior on the response */
+    LENSPROF_GAMMA_PRIOR = 1,     /* only the priors on response and falloff */
     LENSPROF_GAMMA_EXPOSURES = 2, /* only known_ev of the images; the prior if these do not differ */
     LENSPROF_GAMMA_KNOWN = 3,     /* results only: fixed parameters, i.e. response, falloff or exposures */
     LENSPROF_GAMMA_NONE = 4, /* results only: nothing, as there is no prior (the paper's method): gamma is arbitrary */
@@ -308,8 +308,8 @@ typedef struct lensprof_fit_result {
     lensprof_fit_setting *settings; /* the caller's array of setting_count initialised elements, indexed by setting, set
                                        before the call; or NULL */
     uint32_t setting_count;
-    uint32_t equal_exposures;     /* 1: no exposure was known and the pictures show no difference, so that all are taken
-                                     as equal */
+    uint32_t equal_exposures;     /* 1: no exposure of the reference's camera was known and its pictures show no
+                                     difference, so that they are taken as equal */
     lensprof_fit_camera *cameras; /* the caller's array of camera_count initialised elements, indexed by camera, set
                                      before the call; or NULL */
     uint32_t camera_count;

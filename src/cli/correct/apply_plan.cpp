@@ -333,7 +333,7 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
                 refused.push_back(failure);
         } catch (const Failure &failure) {
             // A name without a file is a mistake in the call.
-            const bool is_mistaken = !picture.in_folder && !path_exists(picture.file);
+            const bool is_mistaken = !o.files.empty() && !picture.in_folder && !path_exists(picture.file);
             if (failure.code != ExitCode::unreadable || is_mistaken || o.merge || pictures.size() == 1) throw;
             work.left_out.push_back({picture.file, failure.what(), false, failure.code});
         }

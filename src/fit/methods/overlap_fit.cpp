@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "falloff/rise.hpp"
 #include "fit/base/constants.hpp"
@@ -174,7 +175,7 @@ bool OverlapFit::follows(const Loss &used, Estimate &estimate, Outcome &outcome)
 void OverlapFit::resolve_dark_end(Loss &used, Candidate &best, Estimate &estimate) {
     constexpr double kResolved = 1.0 / 255.0, kGain = 0.02;  // of the loss: 1 % of the residual
     if (best.estimate.curve.table[1] <= kResolved) return;
-    const double step = gauge_.is_open() && gauge_.from() == LENSPROF_GAMMA_PRIOR ? -gauge_.sigma() : 0.0;
+    const double step = gauge_.is_open() && gauge_.from() == LENSPROF_GAMMA_PRIOR ? -gauge_.target_sigma() : 0.0;
     Candidate resolved;
     resolved.estimate = with_exponent(train_, best.estimate, step);
     Loss of_train = used;
@@ -233,26 +234,37 @@ void OverlapFit::weigh_lens_knowledge() {
     hold_falling();
 }
 
-// Between the exposures of the reference's component and that of the reference.
-static double largest_difference_ev(const Problem &problem, const Estimate &estimate) {
+// How many unknown exposures the reference's component has; 0 if anything is known of them.
+static int undetermined_exposures(const Problem &problem) {
+    std::set<int> columns;
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        if (problem.images[i].known_ev_sigma > 0.0) return 0;
+        if (i == problem.reference || problem.component[i] != problem.component[problem.reference]) continue;
+        if (problem.ev_unknown[i] < 0) return 0;
+        columns.insert(problem.ev_unknown[i]);
+    }
+    return static_cast<int>(columns.size());
+}
+
+static double largest_step_ev(const Problem &problem, const Estimate &estimate) {
     const auto c = static_cast<size_t>(problem.measured_channel());
     double largest = 0.0;
-    for (uint32_t i = 0; i < problem.image_count; i++)
-        if (problem.component[i] == problem.component[problem.reference])
-            largest = std::max(
-                largest, std::abs(estimate.log_exposure[i][c] - estimate.log_exposure[problem.reference][c]) / kLn2);
+    for (const Edge &edge : problem.edges)
+        largest = std::max(
+            largest,
+            std::abs(estimate.log_exposure[edge.image[0]][c] - estimate.log_exposure[edge.image[1]][c]) / kLn2);
     return largest;
 }
 
 // Exposures that drift along a row look much like a centre that is off the middle. Many cameras hold their exposure
 // along a row, and others almost never give equal exposures by accident: they are taken as equal unless a likelihood
-// ratio test (Wilks 1938) rejects it, or they come out different though held.
+// ratio test (Wilks 1938) rejects it. A falloff that is not quite radial gives every link the same small step, which
+// is no exposure either.
 void OverlapFit::hold_equal_exposures() {
-    constexpr int kFewest = 2;  // unknown exposures: a single one may be equal by accident
-    int unknown = 0;
-    for (uint32_t i = 0; i < all_.image_count; i++)
-        unknown += all_.ev_unknown[i] >= 0 && all_.component[i] == all_.component[all_.reference];
-    if (gauge_.knows() || unknown < kFewest) return;
+    constexpr int kFewest = 2;        // a single one may be equal by accident
+    constexpr double kUnseen = 0.02;  // EV from image to image
+    const int unknown = undetermined_exposures(all_);
+    if (unknown < kFewest) return;
     const Fitted different = found_;
     Gauge open = gauge_;
     Prior prior = prior_of(prior_, different.estimate.modes);
@@ -261,8 +273,8 @@ void OverlapFit::hold_equal_exposures() {
     gauge_.expect_equal_exposures();
     solve_again();
     const double ratio = objective->value_at(found_.estimate) - objective->value_at(different.estimate);
-    const bool is_likely = 2.0 * ratio / inflation_.exposures < chi_squared_limit(unknown);
-    if (is_likely && largest_difference_ev(all_, found_.estimate) < kEqualSigmaEv) return;
+    if (2.0 * ratio / inflation_.exposures < chi_squared_limit(unknown)) return;
+    if (largest_step_ev(all_, different.estimate) < kUnseen) return;
     gauge_ = open, found_ = different;
 }
 

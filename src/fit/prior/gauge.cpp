@@ -136,13 +136,14 @@ struct Weighed {
 }  // namespace
 
 // Distance to the gamma of cameras of the kind, and of lenses: M^gamma is deeper than that of most if gamma is large.
-double Gauge::expected_of_kind(const Estimate &estimate, double &sigma) const {
+double Gauge::expected_of_kind(const Problem &problem, const Estimate &estimate, double &sigma) const {
     constexpr double kShallowest = 0.02;  // depth: corrected falloffs, all alike
     const double *table = estimate.curve.table.data();
     const double of_kind = gamma_position(table) - prior_.position();
     sigma = prior_.sigma_of(table);
     if (!(depth_sigma_ > 0.0)) return of_kind;
-    const double depth = std::max(-log_falloff(estimate.vignetting[0][0].k, nullptr)[2], kShallowest);
+    const double *k = estimate.vignetting[0][green_curve(problem.vignettings)].k;
+    const double depth = std::max(-log_falloff(k, nullptr)[2], kShallowest);
     const double of_lenses = std::log(depth / depth_);
     return Weighed(of_kind - of_lenses, sigma, depth_sigma_).mean(of_kind, of_lenses, sigma);
 }
@@ -150,9 +151,10 @@ double Gauge::expected_of_kind(const Estimate &estimate, double &sigma) const {
 // Distance to the gamma expected from cameras of the kind, or from the profile. A response's own gamma replaces that of
 // the kind, which it may include. A falloff alone is combined with that of the kind, unless its gamma may come from
 // there.
-double Gauge::expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const {
+double Gauge::expected(const Problem &problem, const Estimate &estimate, double &sigma,
+                       lensprof_gamma_from &from) const {
     from = LENSPROF_GAMMA_PRIOR;
-    if (!stored_) return expected_of_kind(estimate, sigma);
+    if (!stored_) return expected_of_kind(problem, estimate, sigma);
     const double *table = estimate.curve.table.data();
     const double of_kind = gamma_position(table) - prior_.position(), kind_sigma = prior_.sigma_of(table);
     bool by_falloff;
@@ -184,7 +186,7 @@ double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     compare_known(problem, estimate);
     if (!open_) return 0.0;
     lensprof_gamma_from expected_from;
-    const double offset = expected(estimate, expected_sigma_, expected_from);
+    const double offset = expected(problem, estimate, expected_sigma_, expected_from);
     bool is_informative = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
     double expected_precision = 1.0 / (expected_sigma_ * expected_sigma_);
     if (is_informative) {  // errors of the prior have heavy tails: if exposures contradict it, it has less weight

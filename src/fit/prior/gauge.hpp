@@ -18,9 +18,6 @@ namespace lensprof {
 // Known exposures are never taken as more accurate than this, EV, because shutters and apertures are not.
 constexpr double kKnownSigma = 0.02;
 
-// Exposures that are taken as equal: standard error, EV, for the differences that the test of equality misses.
-constexpr double kEqualSigmaEv = 0.05;
-
 inline double known_sigma(const lensprof_fit_image &image) { return std::max(image.known_ev_sigma, kKnownSigma); }
 
 class Gauge {
@@ -50,7 +47,9 @@ public:
     void renew(const Problem &problem, const Estimate &estimate, Prior &prior);
 
     lensprof_gamma_from from() const { return from_; }
-    // Standard error of ln gamma; 0 if known. It includes the distance that the estimate's modes could not follow.
+    // Standard error of ln gamma as it is known; 0 if fixed.
+    double target_sigma() const { return sigma_; }
+    // The same for the last estimate, with the distance that its modes could not follow.
     double sigma() const { return std::hypot(sigma_, missed_); }
     double slope() const { return slope_; }                // of the estimate's exposures against the known ones
     bool knows() const { return !known_weight_.empty(); }  // whether there are known exposures that can be compared
@@ -77,8 +76,8 @@ private:
     void put_known(const Problem &problem, Prior &prior) const;
     void put_equal(const Problem &problem, const Estimate &estimate, Prior &prior) const;
 
-    double expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const;
-    double expected_of_kind(const Estimate &estimate, double &sigma) const;
+    double expected(const Problem &problem, const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const;
+    double expected_of_kind(const Problem &problem, const Estimate &estimate, double &sigma) const;
 
     GammaPrior prior_;
     const StoredPrior *stored_;               // a profile that knows gamma; or NULL

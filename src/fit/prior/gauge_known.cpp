@@ -1,6 +1,7 @@
 // Information from known exposures about gamma and the fitted exposures.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "fit/base/constants.hpp"
 #include "fit/prior/gauge.hpp"
@@ -166,14 +167,15 @@ void Gauge::put_known(const Problem &problem, Prior &prior) const {
     }
 }
 
-// Held as firmly as known exposures that are equal.
+// All equal to the reference's.
 void Gauge::put_equal(const Problem &problem, const Estimate &estimate, Prior &prior) const {
-    const double precision = hold_of(problem) / std::pow(kLn2 * kKnownSigma, 2);
+    constexpr double kFirm = 1e-3, kSigma = 0.05;  // EV; kSigma: for differences that the test of equality misses
     const double expected = estimate.log_exposure[problem.reference][static_cast<size_t>(problem.measured_channel())];
+    std::set<int> done;  // images can share an unknown
     prior.known.resize(problem.image_count);
     for (uint32_t i = 0; i < problem.image_count; i++)
-        if (problem.component[i] == problem.component[problem.reference])
-            prior.known[i] = {expected, precision, precision * std::pow(kLn2 * kEqualSigmaEv, 2)};
+        if (problem.component[i] == problem.component[problem.reference] && done.insert(problem.ev_unknown[i]).second)
+            prior.known[i] = {expected, 1.0 / std::pow(kLn2 * kFirm, 2), std::pow(kSigma / kFirm, 2)};
 }
 
 }  // namespace lensprof
