@@ -388,6 +388,7 @@ std::string database() {
 void save_several() {
     write_pages(work("pages.tif"), "w", {{90, 80}, {90, 80}, {90, 80}});
     save(work("stereo.jpg"), multi_picture({{stereo, jpeg(80, 60)}}, true, {}, stereo | 0x20000000));
+    fs::copy_file(work("stereo.jpg"), work("two.mpo"));
     PngKind animated{40, 30};
     animated.extra = [](png_structp png, png_infop info) {
         png_unknown_chunk chunk = {};
@@ -409,6 +410,7 @@ void test_commands(void **) {
         const char *name, *what, *step;
     } files[] = {{"pages.tif", "has 3 pages", "tiffsplit"},
                  {"stereo.jpg", "has 2 pictures", "exiftool -b -MPImage2"},
+                 {"two.mpo", "has 2 pictures", "exiftool -b -MPImage2"},
                  {"moving.png", "is an animation of 5 frames", "ffmpeg"}};
     const Words apply = {"apply", "--profile", "1", "--db", db, "--response", "srgb", "-o", work("out")};
     for (const auto &file : files) {
