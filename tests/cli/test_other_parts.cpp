@@ -418,9 +418,12 @@ void test_commands(void **) {
         const std::string other = work(std::string("other") + fs::path(file.name).extension().string());
         fs::copy_file(work(file.name), other);
         assert_refused(unreadable, {"align", work(file.name), other, "-o", work("out")}, {file.what, file.step});
-        const Outcome outcome = run_words({"bracket", work(file.name), other, "--times", "1,2", "--no-store"});
-        if (!contains(outcome.err, file.what) || !contains(outcome.err, "only the first is used"))
-            fail_msg("%s: %s", file.name, outcome.err.c_str());
+        for (const Words &reading : {Words{"bracket", work(file.name), other, "--times", "1,2", "--no-store"},
+                                     Words{"build", work(file.name), other, "--no-store"}}) {
+            const std::string err = run_words(reading).err;
+            if (!contains(err, std::string(file.name) + ": " + file.what + "; only the first is used"))
+                fail_msg("%s: %s", file.name, err.c_str());
+        }
         fs::remove(other);
     }
     fs::create_directories(work("in"));
@@ -429,8 +432,10 @@ void test_commands(void **) {
     save(work("in/one.jpg"), multi_picture({{gain_map, map}}, true));
     const Outcome outcome = run_words(apply + Words{work("in")});
     assert_int_equal(outcome.code, not_found);
+    const std::string read = run_words({"build", work("in"), "--no-store"}).err;
     for (const auto &file : files) {
-        assert_true(contains(outcome.err, file.what));
+        assert_true(contains(outcome.err, std::string(file.name) + ": " + file.what));
+        assert_true(contains(read, std::string(file.name) + ": " + file.what + "; only the first is used"));
         assert_false(fs::exists(work("out/") + file.name));
     }
     assert_true(pictures_of(load(work("out/one.jpg"))) == std::vector<Bytes>{map});
