@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "falloff/refit.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -16,18 +18,21 @@ constexpr double kDarkShare = 0.01;   // of a map, below which dark values are s
 constexpr uint32_t kLeastSide = 48;   // of a map that shows an edge
 constexpr double kRoundShare = 0.95;  // of an outline within kOffCircle values of a circle
 constexpr double kOffCircle = 1.5;
+constexpr double kFarthestCenter = 0.5;  // of a circle, half diagonals: a straight outline is not one
+constexpr double kMiddle = 0.05;         // how far from the middle that of a rectangle may be, half diagonals
 
 using Mask = std::vector<uint8_t>;
 
-// Whether the channel that is brightest, relative to its largest value, is below `limit`.
-Mask below(const FalloffMap &map, double limit) {
+// Whether so many channels, relative to their largest values, are below `limit`.
+Mask below(const FalloffMap &map, double limit, uint32_t channels) {
     const size_t size = size_t(map.columns) * map.rows;
-    Mask dark(size, 1);
+    Mask dark(size, 0);
     for (uint32_t c = 0; c < map.channels; c++) {
         const double *values = map.attenuation.data() + size * c;
         const double least = limit * *std::max_element(values, values + size);
-        for (size_t i = 0; i < size; i++) dark[i] &= !(values[i] >= least);
+        for (size_t i = 0; i < size; i++) dark[i] += !(values[i] >= least);
     }
+    for (uint8_t &count : dark) count = count >= channels;
     return dark;
 }
 
@@ -42,6 +47,11 @@ Mask grown(const FalloffMap &map, const Mask &mask) {
                     result[size_t(y) * map.columns + x] = 1;
         }
     return result;
+}
+
+Mask grown(const FalloffMap &map, Mask mask, uint32_t steps) {
+    for (uint32_t i = 0; i < steps; i++) mask = grown(map, mask);
+    return mask;
 }
 
 bool is_noisy(const FalloffMap &map, const Mask &dark) {
@@ -123,7 +133,8 @@ std::optional<Circle> circle_through(const FalloffMap &map, const Points &points
     const double slack = kOffCircle * std::max(map.dx, map.dy) / half;
     const auto is_near = [&](const auto &point) { return std::fabs((place(point) - center).norm() - radius) <= slack; };
     const auto near = static_cast<double>(std::count_if(points.begin(), points.end(), is_near));
-    if (!(near >= kRoundShare * static_cast<double>(points.size()))) return std::nullopt;
+    if (!(near >= kRoundShare * static_cast<double>(points.size())) || !(center.norm() <= kFarthestCenter))
+        return std::nullopt;
     return Circle{{center[0], center[1]}, radius};
 }
 
@@ -144,25 +155,70 @@ double median_across(const FalloffMap &map, const Mask &blurred) {
     return *middle;
 }
 
+// Whether the dark is a part of the frame with an edge, not corners or specks.
+bool shows_edge(const FalloffMap &map, const Mask &dark, uint32_t edge) {
+    if (std::min(map.columns, map.rows) < kLeastSide) return false;
+    const auto count = static_cast<double>(std::count(dark.begin(), dark.end(), 1));
+    return count >= kDarkShare * static_cast<double>(dark.size())
+           && median_across(map, grown(map, dark, edge)) >= kBright * kDark;
+}
+
+Mask inside_circle(const FalloffMap &map, const Circle &circle, uint32_t edge) {
+    const double half = lensprof_half_diagonal(map.width, map.height);
+    const double radius = circle.radius * half - edge * std::max(map.dx, map.dy);
+    Mask inside;
+    for (uint32_t j = 0; j < map.rows; j++)
+        for (uint32_t i = 0; i < map.columns; i++) {
+            const double x = map.x0 + i * map.dx - (map.width - 1.0) / 2.0 - circle.center[0] * half;
+            const double y = map.y0 + j * map.dy - (map.height - 1.0) / 2.0 - circle.center[1] * half;
+            inside.push_back(std::hypot(x, y) <= radius);
+        }
+    return inside;
+}
+
+// The rectangle around the known values if it is in the middle of the frame, as a mask leaves it; else the frame.
+Mask inside_box(const FalloffMap &map, const Mask &unknown) {
+    uint32_t left = map.columns, right = 0, top = map.rows, bottom = 0;
+    for (uint32_t j = 0; j < map.rows; j++)
+        for (uint32_t i = 0; i < map.columns; i++) {
+            if (unknown[size_t(j) * map.columns + i]) continue;
+            left = std::min(left, i), right = std::max(right, i);
+            top = std::min(top, j), bottom = std::max(bottom, j);
+        }
+    const double x = (left + right + 1.0 - map.columns) / 2.0 * map.dx;
+    const double y = (top + bottom + 1.0 - map.rows) / 2.0 * map.dy;
+    if (std::hypot(x, y) > kMiddle * lensprof_half_diagonal(map.width, map.height)) return Mask(unknown.size(), 1);
+    Mask inside(unknown.size(), 0);
+    for (uint32_t j = top; j <= bottom && j < map.rows; j++)
+        for (uint32_t i = left; i <= right; i++) inside[size_t(j) * map.columns + i] = 1;
+    return inside;
+}
+
+// Of the places of `area`, those that are unknown.
+double share(const Mask &unknown, const Mask &area) {
+    size_t all = 0, part = 0;
+    for (size_t i = 0; i < area.size(); i++) all += area[i], part += area[i] & unknown[i];
+    return all ? static_cast<double>(part) / static_cast<double>(all) : 1.0;
+}
+
 }  // namespace
 
-std::optional<Circle> drop_surround(FalloffMap &map) {
-    if (std::min(map.columns, map.rows) < kLeastSide) return std::nullopt;
-    const Mask dark = below(map, kDark);
-    const auto count = static_cast<double>(std::count(dark.begin(), dark.end(), 1));
-    if (count < kDarkShare * static_cast<double>(dark.size())) return std::nullopt;
+KnownArea drop_surround(FalloffMap &map) {
+    const Mask dark = below(map, kDark, map.channels);
     // Noise in the dark shows a coded picture, whose blocks have ringing at the edge.
     const uint32_t edge = is_noisy(map, dark) ? std::max(kEdge, std::max(map.columns, map.rows) / 100) : kEdge;
-    Mask blurred = dark;
-    for (uint32_t i = 0; i < edge; i++) blurred = grown(map, blurred);
-    if (median_across(map, blurred) < kBright * kDark) return std::nullopt;
-    const Mask known = largest_part(map, blurred);
-    for (size_t i = 0; i < map.attenuation.size(); i++)
-        if (!known[i % known.size()]) map.attenuation[i] = 0.0;
-    Mask outside = known;
-    for (uint32_t i = 0; i < edge; i++) outside = grown(map, outside);
-    for (size_t i = 0; i < outside.size(); i++) outside[i] = dark[i] || !outside[i];
-    return circle_through(map, outline(map, outside));
+    Mask empty = below(map, kLowestFalloff, 1), unknown = below(map, kLowestFalloff, map.channels);
+    if (shows_edge(map, dark, edge)) {
+        const Mask known = largest_part(map, grown(map, dark, edge));
+        for (size_t i = 0; i < map.attenuation.size(); i++)
+            if (!known[i % known.size()]) map.attenuation[i] = 0.0;
+        unknown = grown(map, known, edge);
+        for (size_t i = 0; i < unknown.size(); i++) empty[i] |= dark[i], unknown[i] = dark[i] || !unknown[i];
+    }
+    const std::optional<Circle> circle = circle_through(map, outline(map, unknown));
+    for (size_t i = 0; i < unknown.size(); i++) unknown[i] |= empty[i];
+    const Mask inside = circle ? inside_circle(map, *circle, edge) : inside_box(map, unknown);
+    return {circle, share(empty, Mask(empty.size(), 1)), share(unknown, inside)};
 }
 
 }  // namespace lensprof

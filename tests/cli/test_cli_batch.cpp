@@ -2,6 +2,7 @@
 // remains after a failure.
 #include "batch_runs.hpp"
 
+#include "cli/correct/clipping.hpp"
 #include "cli/correct/correction.hpp"
 
 using namespace batch_runs;
@@ -303,6 +304,29 @@ void test_time_left(void **) {
     assert_string_equal(describe_time_left(7501.0).c_str(), ", 2 h 6 min left");
 }
 
+// The advice is a whole command if the user did not give one.
+void test_losses_name_a_command(void **) {
+    std::vector<Correction> jobs(3);
+    for (size_t i = 0; i < jobs.size(); i++) {
+        jobs[i].source = std::to_string(i) + ".jpg";
+        jobs[i].command = i == 1 ? "lensprof apply --pto 'the folder/panorama_a.pto'" : "";
+    }
+    jobs[1].target_exposure.ev = 3;
+    CopyLosses losses, own;
+    losses.add(jobs[0], 0.02), losses.add(jobs[1], 0.09), losses.add(jobs[2], 0.005);
+    own.add(jobs[0], 0.02);
+    const std::vector<std::string> lines = losses.warnings();
+    assert_int_equal(lines.size(), 2);
+    assert_string_equal(lines[0].c_str(),
+                        "1.jpg: lifted by 3.0 EV, which shows the noise; use `lensprof apply --pto 'the "
+                        "folder/panorama_a.pto' --output-exposure keep -o FOLDER`, or pictures of 16 bits");
+    assert_string_equal(lines[1].c_str(),
+                        "1.jpg and 1 more: the correction clips up to 9.0 % more of the pixels; use `lensprof apply "
+                        "--pto 'the folder/panorama_a.pto' --linear -o FOLDER`, which clips none");
+    assert_int_equal(own.warnings().size(), 1);
+    assert_true(contains(own.warnings()[0], "clips 2.0 % more of the pixels; use `lensprof apply --linear`, which"));
+}
+
 }  // namespace
 
 int main() {
@@ -315,6 +339,7 @@ int main() {
         CLI_TEST(test_speed_is_said),
         CLI_TEST(test_bad_thread_counts),
         CLI_TEST(test_time_left),
+        CLI_TEST(test_losses_name_a_command),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -74,6 +74,7 @@ void test_as_build_and_apply(void **) {
     assert_true(result["images"] == built["images"]);
     assert_true(result["response"] == built["response"]);
     must_exit(done, {"apply", "--pto", json["panoramas"][0]["project"], "-o", work("even")});
+    must_exit(done, {"apply", "--pto", json["panoramas"][0]["project"], "--linear", "-o", work("linear")});
     for (const char *name : {"img000.png", "img001.png", "img002.png", "img003.png", "img004.png"})
         assert_true(load(work(std::string("even/") + name)) == load(work(std::string("out/") + name)));
     assert_now(json_of(calibrated(work("row"), {"--threads", "1"})), false, 0, 0);

@@ -82,7 +82,7 @@ void test_a_folder_of_many_things(void **) {
     simulate("mixed", {"--images", "5", "--seed", "21"});
     simulate("other", {"--images", "3", "--seed", "22"});
     simulate("single", {"--images", "2", "--seed", "23"});
-    simulate("small", {"--images", "5", "--seed", "21", "--size", "400x300"});
+    simulate("small", {"--images", "4", "--seed", "21", "--size", "400x300"});
     for (int i = 0; i < 3; i++)
         fs::copy_file(work("other/img00" + std::to_string(i) + ".png"), work("mixed/x" + std::to_string(i) + ".png"));
     fs::copy_file(work("single/img000.png"), work("mixed/y.png"));
@@ -104,6 +104,10 @@ void test_a_folder_of_many_things(void **) {
     assert_true(contains(left_out["x1.png"], "another group") && contains(left_out["y.png"], "no overlap"));
     assert_true(contains(left_out["small.png"], "of its camera") && contains(left_out["damaged.png"], "damaged.png"));
     assert_true(json["seconds"]["register"].get<double>() > 0.0);
+    const Outcome table = run_words({"build", work("mixed"), "--no-store"});
+    assert_true(table.code == done && contains(table.out, "pictures  5 of 12 used\n"));
+    const Outcome all = run_words({"build", work("other"), "--no-store"});
+    assert_true(all.code == done && !contains(all.out, "pictures  "));
 }
 
 // `build` of a row of pictures, one of which has another size.

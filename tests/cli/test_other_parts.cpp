@@ -388,6 +388,7 @@ std::string database() {
 void save_several() {
     write_pages(work("pages.tif"), "w", {{90, 80}, {90, 80}, {90, 80}});
     save(work("stereo.jpg"), multi_picture({{stereo, jpeg(80, 60)}}, true, {}, stereo | 0x20000000));
+    fs::copy_file(work("stereo.jpg"), work("two.mpo"));
     PngKind animated{40, 30};
     animated.extra = [](png_structp png, png_infop info) {
         png_unknown_chunk chunk = {};
@@ -409,6 +410,7 @@ void test_commands(void **) {
         const char *name, *what, *step;
     } files[] = {{"pages.tif", "has 3 pages", "tiffsplit"},
                  {"stereo.jpg", "has 2 pictures", "exiftool -b -MPImage2"},
+                 {"two.mpo", "has 2 pictures", "exiftool -b -MPImage2"},
                  {"moving.png", "is an animation of 5 frames", "ffmpeg"}};
     const Words apply = {"apply", "--profile", "1", "--db", db, "--response", "srgb", "-o", work("out")};
     for (const auto &file : files) {
@@ -416,9 +418,12 @@ void test_commands(void **) {
         const std::string other = work(std::string("other") + fs::path(file.name).extension().string());
         fs::copy_file(work(file.name), other);
         assert_refused(unreadable, {"align", work(file.name), other, "-o", work("out")}, {file.what, file.step});
-        const Outcome outcome = run_words({"bracket", work(file.name), other, "--times", "1,2", "--no-store"});
-        if (!contains(outcome.err, file.what) || !contains(outcome.err, "only the first is used"))
-            fail_msg("%s: %s", file.name, outcome.err.c_str());
+        for (const Words &reading : {Words{"bracket", work(file.name), other, "--times", "1,2", "--no-store"},
+                                     Words{"build", work(file.name), other, "--no-store"}}) {
+            const std::string err = run_words(reading).err;
+            if (!contains(err, std::string(file.name) + ": " + file.what) || !contains(err, "only the first is used"))
+                fail_msg("%s: %s", file.name, err.c_str());
+        }
         fs::remove(other);
     }
     fs::create_directories(work("in"));
@@ -427,8 +432,12 @@ void test_commands(void **) {
     save(work("in/one.jpg"), multi_picture({{gain_map, map}}, true));
     const Outcome outcome = run_words(apply + Words{work("in")});
     assert_int_equal(outcome.code, not_found);
+    const std::string read = run_words({"build", work("in"), "--no-store"}).err;
+    assert_true(contains(read, "only the first is used"));
     for (const auto &file : files) {
-        assert_true(contains(outcome.err, file.what));
+        assert_true(contains(outcome.err, std::string(file.name) + ": " + file.what));
+        const bool is_copy = std::string(file.name) == "two.mpo";  // of stereo.jpg
+        assert_true(contains(read, std::string(file.name) + ": " + (is_copy ? "left out: a copy" : file.what)));
         assert_false(fs::exists(work("out/") + file.name));
     }
     assert_true(pictures_of(load(work("out/one.jpg"))) == std::vector<Bytes>{map});

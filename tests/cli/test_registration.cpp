@@ -224,7 +224,8 @@ void test_turned_copies(void **) {
     assert_int_equal(mirrored, 8);
 }
 
-// Upright frames of one size are copies only if the moment is the same; the largest is the original.
+// Upright frames of one size are copies only if the moment is the same; the largest is the original, then that in
+// colour.
 void test_upright_copies(void **) {
     const std::vector<Features> two{picture_of(1, 1), picture_of(1, 2)};
     assert_true(copies_among(two).empty());  // frames from a tripod
@@ -235,7 +236,19 @@ void test_upright_copies(void **) {
     assert_int_equal(resized.size(), 1);
     assert_true(resized[0].copy == 0 && resized[0].original == 1 && resized[0].how == ", resized");
     assert_true(copies_among({picture_of(1, 1, 600, 600), picture_of(1, 2)}, {"", "1"}).empty());  // another shape
-    CopyCandidate darker{&two[0], "", 0.01}, brighter{&two[1], "1", 0.02};                         // a bracket
+    Features small = picture_of(1, 3, kWidth / 2 + 1, kHeight / 2), grey = picture_of(1, 4);
+    grey.is_grey = true;
+    const std::vector<PictureCopy> smaller = copies_among({small, two[0]});
+    assert_true(smaller.size() == 1 && smaller[0].copy == 0 && smaller[0].how == ", resized");
+    assert_true(copies_among({small, two[0]}, {"10:00:00.10", "10:00:00.20"}).empty());
+    const std::vector<PictureCopy> in_grey = copies_among({grey, two[0]});
+    assert_true(in_grey.size() == 1 && in_grey[0].copy == 0 && in_grey[0].how.empty());
+    assert_true(copies_among({grey, two[0]}, {"10:00:00.10", "10:00:00.20"}).empty());
+    Features other_grey = picture_of(1, 5);
+    other_grey.is_grey = true;
+    assert_true(copies_among({grey, other_grey}).empty());  // frames from a tripod
+    assert_true(copies_among({picture_of(2, 3, 600, 450), two[0]}).empty());
+    CopyCandidate darker{&two[0], "", 0.01}, brighter{&two[1], "1", 0.02};  // a bracket
     assert_true(find_copies({darker, brighter}).empty());
 }
 

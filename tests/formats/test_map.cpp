@@ -227,6 +227,58 @@ void test_dark_corners_are_known(void **) {
     assert_true(at(4, 3) / at(319.5, 239.5) < .03);  // of 2^-6, and not what is left at an edge of .05
 }
 
+// Parts of a map without data are refused unless they are outside of a circle or the margin of a rectangle; dead pixels
+// are not.
+void test_holes(void **) {
+    struct Shape {
+        const char *name;
+        uint32_t width, height, channels;
+        bool (*is_hole)(double x, double y, uint32_t channel);  // x and y: 0 to 1
+        const char *share;                                      // refused with it; null: read
+    };
+    const Shape shapes[] = {
+        {"left third", 640, 480, 1, [](double x, double, uint32_t) { return x < 1 / 3.; }, "33.3 % of the frame"},
+        {"left third of a small one", 30, 20, 1, [](double x, double, uint32_t) { return x < 1 / 3.; }, "33.3 %"},
+        {"lower fifth", 120, 160, 3, [](double, double y, uint32_t) { return y > .8; }, "20.0 %"},
+        {"corner", 160, 120, 1, [](double x, double y, uint32_t) { return x > .8 && y > .8; }, "4.0 %"},
+        {"middle", 640, 480, 1, [](double x, double y, uint32_t) { return hypot(x - .5, y - .5) < .15; }, "7.1 %"},
+        {"middle of a small one", 40, 40, 1,
+         [](double x, double y, uint32_t) { return fmax(fabs(x - .5), fabs(y - .5)) < .1; }, "4.0 %"},
+        {"two halves", 160, 120, 1, [](double x, double, uint32_t) { return fabs(x - .5) < .02; }, "3.8 %"},
+        {"blue", 160, 120, 3, [](double x, double, uint32_t c) { return x > .75 && c == 2; }, "25.0 %"},
+        {"every tenth", 640, 480, 1, [](double x, double, uint32_t) { return int(x * 640) % 10 == 0; }, "10.0 %"},
+        {"circle with a hole", 600, 600, 1,
+         [](double x, double y, uint32_t) { return hypot(x - .5, y - .5) > .45 || hypot(x - .6, y - .4) < .1; },
+         "39.5 %"},
+        {"sector of a circle", 600, 600, 1,
+         [](double x, double y, uint32_t) { return hypot(x - .5, y - .5) > .45 || (x < .5 && y < .5); }, "52.3 %"},
+        {"small circle", 40, 40, 1, [](double x, double y, uint32_t) { return hypot(x - .5, y - .5) > .45; }, nullptr},
+        {"bands", 160, 120, 1, [](double, double y, uint32_t) { return fabs(y - .5) > .4; }, nullptr},
+        {"border", 640, 480, 1, [](double x, double, uint32_t) { return x < .03; }, nullptr},
+        {"dead pixels", 640, 480, 3,
+         [](double x, double y, uint32_t c) { return (int(x * 640) * 7 + int(y * 480) * 31) % 997 == int(c); },
+         nullptr},
+    };
+    for (const Shape &shape : shapes) {
+        std::vector<float> values;
+        for (uint32_t y = 0; y < shape.height; y++)
+            for (uint32_t x = 0; x < shape.width; x++)
+                for (uint32_t c = 0; c < shape.channels; c++) {
+                    const double r2 = 4 * (pow(x - (shape.width - 1) / 2., 2) + pow(y - (shape.height - 1) / 2., 2))
+                                      / (pow(shape.width, 2) + pow(shape.height, 2));
+                    const bool is_hole = shape.is_hole((x + .5) / shape.width, (y + .5) / shape.height, c);
+                    values.push_back(is_hole ? 0 : static_cast<float>(1 - .4 * r2));
+                }
+        const lensprof_map map = {shape.width, shape.height, shape.channels, 0, values.data()};
+        Profile found = new_profile();
+        lensprof_error error = {};
+        const lensprof_status status = lensprof_map_read(&map, shape.width, shape.height, found.get(), nullptr, &error);
+        if (status != (shape.share ? LENSPROF_ERROR_VIGNETTING : LENSPROF_OK)
+            || (shape.share && !strstr(error.text, shape.share)))
+            fail_msg("%s: status %d, \"%s\"", shape.name, int(status), error.text);
+    }
+}
+
 void test_refused(void **) {
     std::vector<float> values(64 * 48, 1.0f);
     lensprof_map map = {64, 48, 1, 0, values.data()};
@@ -277,6 +329,7 @@ int main(void) {
         cmocka_unit_test(test_mean),
         cmocka_unit_test(test_fisheye),
         cmocka_unit_test(test_dark_corners_are_known),
+        cmocka_unit_test(test_holes),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

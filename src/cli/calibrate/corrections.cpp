@@ -12,6 +12,7 @@
 #include "cli/program/input_file.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
+#include "cli/program/shell_word.hpp"
 
 namespace lensprof {
 namespace {
@@ -64,6 +65,7 @@ void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reaso
         corrected_picture.job.exposure = exposures[*image], corrected_picture.job.target_exposure = common,
         corrected_picture.job.encoding = encoding;
         corrected_picture.job.model_name = std::filesystem::path(panorama.project).filename().string();
+        corrected_picture.job.command = "lensprof apply --pto " + shell_word(panorama.project);
         corrected.emplace(picture->file, std::move(corrected_picture));
     }
 }
@@ -83,9 +85,12 @@ void plan_panorama(const Panorama &panorama, ByFile &corrected, Reasons &reasons
 }
 
 // Uses a profile of the databases; returns the reason on failure, else "".
-std::string plan_by_profile(const PictureModels &models, const InputPicture &picture, ByFile &corrected) {
+std::string plan_by_profile(const CalibrateOptions &o, const PictureModels &models, const InputPicture &picture,
+                            ByFile &corrected) {
     if (!models.are_used()) return "no profile database exists yet";
     CorrectedPicture corrected_picture{&picture, "", std::nullopt, "", job_of(picture)};
+    corrected_picture.job.command = "lensprof apply " + shell_word(picture.file);
+    for (const std::string &db : o.store.dbs) corrected_picture.job.command += " --db " + shell_word(db);
     try {
         models.choose(picture.metadata, corrected_picture.job);
     } catch (const NotThisOne &failure) {
@@ -119,7 +124,7 @@ CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inpu
             continue;
         }
         if (!corrected.count(picture.file)) {
-            const std::string failure = plan_by_profile(models, picture, corrected);
+            const std::string failure = plan_by_profile(o, models, picture, corrected);
             const auto reason = reasons.find(picture.file);
             if (!failure.empty())
                 pictures.left_out.push_back(

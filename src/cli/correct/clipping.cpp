@@ -37,6 +37,10 @@ std::string with_others(const std::string &file, size_t count) {
     return count > 1 ? file + format(" and %zu more", count - 1) : file;
 }
 
+std::string command_with(const Correction &job, const std::string &option) {
+    return job.command.empty() ? "`lensprof apply " + option + "`" : "`" + job.command + " " + option + " -o FOLDER`";
+}
+
 }  // namespace
 
 void ClippedPixels::add(const lensprof_image &rows, uint32_t first_row) {
@@ -48,29 +52,29 @@ void ClippedPixels::add(const lensprof_image &rows, uint32_t first_row) {
     }
 }
 
-void CopyLosses::Worst::add(const std::string &source, double of_source, double limit) {
-    if (!(of_source > limit)) return;
+void CopyLosses::Worst::add(const Correction &other, double of_other, double limit) {
+    if (!(of_other > limit)) return;
     count++;
-    if (of_source > value) file = source, value = of_source;
+    if (of_other > value) job = &other, value = of_other;
 }
 
 void CopyLosses::add(const Correction &job, double more_clipped) {
-    lifted_.add(job.source, lift_of(job), largest_lift_ev);
-    clipped_.add(job.source, more_clipped, largest_clipped);
+    lifted_.add(job, lift_of(job), largest_lift_ev);
+    clipped_.add(job, more_clipped, largest_clipped);
 }
 
 std::vector<std::string> CopyLosses::warnings() const {
     std::vector<std::string> lines;
     if (lifted_.count)
-        lines.push_back(with_others(lifted_.file, lifted_.count)
-                        + format(": lifted by %s%.1f EV, which shows the noise; use `lensprof apply --output-exposure "
-                                 "keep`, or pictures of 16 bits",
-                                 lifted_.count > 1 ? "up to " : "", lifted_.value));
+        lines.push_back(with_others(lifted_.job->source, lifted_.count)
+                        + format(": lifted by %s%.1f EV, which shows the noise; use ",
+                                 lifted_.count > 1 ? "up to " : "", lifted_.value)
+                        + command_with(*lifted_.job, "--output-exposure keep") + ", or pictures of 16 bits");
     if (clipped_.count)
-        lines.push_back(with_others(clipped_.file, clipped_.count)
-                        + format(": the correction clips %s%.1f %% more of the pixels; use `lensprof apply --linear`, "
-                                 "which clips none",
-                                 clipped_.count > 1 ? "up to " : "", 100.0 * clipped_.value));
+        lines.push_back(with_others(clipped_.job->source, clipped_.count)
+                        + format(": the correction clips %s%.1f %% more of the pixels; use ",
+                                 clipped_.count > 1 ? "up to " : "", 100.0 * clipped_.value)
+                        + command_with(*clipped_.job, "--linear") + ", which clips none");
     return lines;
 }
 

@@ -23,6 +23,7 @@ private:
 // The copies of one run that are lifted by more than 2 EV, or clip more than 1 % more of their pixels than before.
 class CopyLosses {
 public:
+    // `job` must live as long as this.
     void add(const Correction &job, double more_clipped);
 
     // At most two lines, each with the worst copy and the number of others.
@@ -30,10 +31,10 @@ public:
 
 private:
     struct Worst {
-        std::string file;
+        const Correction *job = nullptr;
         double value = 0.0;
         size_t count = 0;
-        void add(const std::string &source, double of_source, double limit);
+        void add(const Correction &other, double of_other, double limit);
     };
     Worst lifted_, clipped_;
 };

@@ -40,6 +40,7 @@ struct Correction {
     std::shared_ptr<const PictureMetadata> exif;        // EXIF of the exposure, replaces that of the source; NULL =
                                                         // keep
     std::string note;                                   // note to print; empty = none
+    std::string command;                                // `apply` with what corrects it; empty = that of the user
     std::vector<CropCorrection> crops;                  // what is corrected; the rest is only encoded. Empty = all
     bool copies_dng = false;  // the target is a copy of the source with the falloff as an opcode, pixels unchanged
 };

@@ -246,6 +246,7 @@ Project open_project(const BuildOptions &o, Streams &streams) {
         Project project = read_project(o.inputs[0]);
         for (const auto &[option, value] : {std::pair("--preview", o.preview), std::pair("--report", o.report)})
             if (!value.empty()) refuse_crops(project, option);
+        if (o.points.empty()) note_several(project.files, streams);
         return project;
     }
     if (!o.points.empty())
@@ -284,10 +285,7 @@ int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Stre
     check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);
-    if (o.points.empty() && !project.is_reconstruction) {
-        check_pictures(project, o.max_side);
-        note_several(project.files, streams);
-    }
+    if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.max_side);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;

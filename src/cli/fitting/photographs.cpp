@@ -140,9 +140,9 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
     for (const NamedPicture &picture : outputs)
         list.left_out.emplace_back(picture.file, "it is in an output folder of calibrate");
     require_one_kind(list.files);
+    note_several(list.files, streams);
     if (list.files.size() < 2) {
         for (const std::string &file : list.files) read_header(file);  // for its errors
-        note_several(list.files, streams);
         throw Failure(ExitCode::not_usable,
                       list.label + (list.files.empty() ? ": has only corrected pictures" : ": has only one picture")
                           + "; give at least two that overlap",

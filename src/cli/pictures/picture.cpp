@@ -161,7 +161,7 @@ static std::optional<FileFormat> known_format(const std::string &path) {
     for (char &c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (extension == "png") return FileFormat::png;
     if (extension == "tif" || extension == "tiff") return FileFormat::tiff;
-    if (extension == "jpg" || extension == "jpeg") return FileFormat::jpeg;
+    if (extension == "jpg" || extension == "jpeg" || extension == "mpo") return FileFormat::jpeg;
     if (extension == "exr") return FileFormat::exr;
     return std::nullopt;
 }

@@ -55,6 +55,10 @@ bool has_same_detail(const cv::Mat &a, const cv::Mat &b) {
     return with_detail >= min_blocks && alike >= share_of_blocks * with_detail;
 }
 
+bool is_resized(const Features &a, const Features &b) {
+    return std::minmax(a.width, a.height) != std::minmax(b.width, b.height);
+}
+
 // Whether metadata and sizes permit that two pictures are copies in this orientation.
 bool may_be_copies(const CopyCandidate &a, const CopyCandidate &b, int orientation) {
     if (a.is_raw != b.is_raw) return false;
@@ -65,7 +69,8 @@ bool may_be_copies(const CopyCandidate &a, const CopyCandidate &b, int orientati
     if (orientation & is_transposed) other = 1.0 / other;
     if (std::abs(aspect / other - 1.0) > max_aspect_change) return false;
     if (!a.captured.empty() && !b.captured.empty()) return a.captured == b.captured;
-    return orientation != 0 || a.captured != b.captured;
+    return orientation != 0 || a.captured != b.captured || is_resized(*a.picture, *b.picture)
+           || a.picture->is_grey != b.picture->is_grey;
 }
 
 // The orientation of `b` in which it shows `a`; upright first.
@@ -79,10 +84,6 @@ std::string describe(int orientation, bool is_resized) {
     const int reflections = (orientation & 1) + (orientation >> 1 & 1) + (orientation >> 2 & 1);
     std::string text = reflections % 2 ? ", mirrored" : orientation ? ", turned" : "";
     return is_resized ? text + ", resized" : text;
-}
-
-bool is_resized(const Features &a, const Features &b) {
-    return std::minmax(a.width, a.height) != std::minmax(b.width, b.height);
 }
 
 constexpr uint32_t none = UINT32_MAX;
@@ -113,7 +114,7 @@ std::vector<PictureCopy> find_copies(const std::vector<CopyCandidate> &pictures)
     std::vector<uint32_t> first = first_copies(pictures), best(first.size());
     const auto rank = [&](uint32_t i) {
         const Features &f = *pictures[i].picture;
-        return std::tuple(uint64_t(f.width) * f.height, !pictures[i].captured.empty());
+        return std::tuple(uint64_t(f.width) * f.height, !f.is_grey, !pictures[i].captured.empty());
     };
     for (uint32_t i = 0; i < first.size(); i++) {
         best[i] = i;

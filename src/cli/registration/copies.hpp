@@ -22,9 +22,10 @@ struct PictureCopy {
     std::string how;  // "", ", turned", ", mirrored, resized"
 };
 
-// The pictures that are copies of others, in ascending order. The original is the largest of its copies, then one that
-// states its moment, then the first. Compares the detail of reduced versions in all eight orientations. Frames from a
-// tripod show the same detail: upright copies need the same moment in both, or a moment in one only.
+// The pictures that are copies of others, in ascending order. The original is the largest of its copies, then one in
+// colour, then one that states its moment, then the first. Compares the detail of reduced versions in all eight
+// orientations. Frames from a tripod show the same detail: upright copies need the same moment in both, or a moment in
+// one only, or, without moments, another size or grey next to colour.
 std::vector<PictureCopy> find_copies(const std::vector<CopyCandidate> &pictures);
 
 }  // namespace lensprof

@@ -97,6 +97,7 @@ Features find_features(const std::string &file, uint32_t max_count) {
     const Picture &header = reader.header();
     Features found;
     found.width = header.width, found.height = header.height;
+    found.is_grey = lensprof_layout_channels(header.layout) == 1;
     const double longer = std::max(header.width, header.height);
     const uint32_t reduction = std::max(1u, static_cast<uint32_t>(std::lround(longer / reduced_side)));
     if (header.width < reduction || header.height < reduction) return found;  // a line

@@ -11,7 +11,8 @@
 namespace lensprof {
 
 struct Features {
-    uint32_t width = 0, height = 0;   // of the full frame, as stored
+    uint32_t width = 0, height = 0;  // of the full frame, as stored
+    bool is_grey = false;
     std::vector<cv::Point2d> places;  // px of the full frame; pixel (0, 0) has its centre at (0, 0)
     cv::Mat descriptors;              // one row per feature: square roots of a SIFT descriptor of sum 1, so of length 1
     cv::Mat detail;                   // the picture reduced to a square, without its smooth part, to recognise copies

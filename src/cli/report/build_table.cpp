@@ -35,6 +35,14 @@ void print_exposures(const BuildReport &report, std::ostream &out) {
     }
 }
 
+// Pictures used of those given, if these are a minority.
+void print_minority(const BuildReport &report, std::ostream &out) {
+    const size_t fitted = report.names.size(), all = fitted + report.left_out.size();
+    size_t used = 0;
+    for (size_t i = 0; i < fitted; i++) used += !is_left_out(report, i);
+    if (2 * used < all) out << format("pictures  %zu of %zu used\n", used, all);
+}
+
 void print_gamma(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     if (fit.gamma_from == LENSPROF_GAMMA_KNOWN) {
@@ -140,6 +148,7 @@ void print_responses(const BuildReport &report, std::ostream &out) {
 void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
+    print_minority(report, out);
     if (report.has_falloff) print_falloffs(report, out);
     print_responses(report, out);
     print_gamma(report, out);

@@ -17,6 +17,7 @@ namespace {
 
 constexpr uint32_t kMaxSide = 65536;
 constexpr uint32_t kKeptSide = 1024;  // larger maps are averaged down first: more resolution does not help a profile
+constexpr double kMostHoles = 0.01;   // of the circle or frame that a map shows: dead pixels, not a covered part
 
 [[noreturn]] void fail_at(uint32_t i, uint32_t j, const char *message, lensprof_status status) {
     throw FormatFailure{status, "value at column " + std::to_string(i) + ", row " + std::to_string(j) + " " + message};
@@ -61,6 +62,17 @@ void fill(const MapValues &form, const float *values, Block side, FalloffMap &ma
     }
 }
 
+// A picture shows nothing outside of a circle, so a falloff is not needed there; in a hole it would be guessed.
+void check_holes(const KnownArea &known) {
+    if (known.holes <= kMostHoles) return;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "%.1f %% of the frame has no data (0, or dark with an edge), not only outside of a circle; give a "
+                  "map that covers the frame, or the circle of a fisheye, without holes",
+                  100.0 * known.empty);
+    throw FormatFailure{LENSPROF_ERROR_VIGNETTING, text};
+}
+
 // Adds the part of the frame that the falloff is of to the source.
 void note_circle(const Circle &circle, lensprof_profile &profile) {
     char text[80];
@@ -97,9 +109,10 @@ double fit_values(const MapValues &form, const float *values, uint32_t width, ui
     map.x0 += map.dx * (side.columns - 1) / 2.0, map.y0 += map.dy * (side.rows - 1) / 2.0;
     map.dx *= side.columns, map.dy *= side.rows;
     fill(form, values, side, map);
-    const std::optional<Circle> circle = drop_surround(map);
+    const KnownArea known = drop_surround(map);
     const double worst = fit_map(map, profile);
-    if (circle) note_circle(*circle, profile);
+    check_holes(known);
+    if (known.circle) note_circle(*known.circle, profile);
     profile.covariance_size = 0;
     std::fill(std::begin(profile.covariance), std::end(profile.covariance), 0.0);
     return worst;
