@@ -186,9 +186,10 @@ void test_unreadable_is_left_out(void **) {
     const Json json = json_of(by_exif("json") + Words{"--json", work("in")}, unreadable);
     assert_int_equal(json["pictures"].size(), 2);
     assert_int_equal(json["left_out"].size(), 3);
-    const Words named = {work("in/b.jpg"), work("in/c.jpg"), cut, work("in/missing.jpg")};
+    const Words named = {work("in/b.jpg"), work("in/c.jpg"), cut};
     assert_int_equal(run_words(by_exif("named") + named).code, unreadable);
     assert_files(work("named"), {"c.jpg"});
+    assert_refused(unreadable, by_exif("mistaken") + named + Words{work("in/missing.jpg")}, {"missing.jpg"});
     for (const std::string &file : {work("in/b.jpg"), cut}) {
         const Outcome alone = run_words(by_exif("alone") + Words{file});
         assert_int_equal(alone.code, unreadable);

@@ -35,7 +35,7 @@ std::string range(const double *ends, const char *front, const char *end) {
     return ends[0] == ends[1] ? low : low + " to " + format("%s%g%s", front, ends[1], end);
 }
 
-Json range_json(const double *ends) {
+Json ends_json(const double *ends) {
     const auto number = [](double value) {
         return value == LENSPROF_UNKNOWN ? Json() : value > 1e300 ? Json("infinity") : Json(value);
     };
@@ -70,9 +70,9 @@ Json stats_json(const std::string &file, const lensprof_store_stats &s) {
             {"with_covariance", s.with_covariance},
             {"with_gain_grid", s.with_grid},
             {"with_doubt", s.with_doubt},
-            {"focal_mm", range_json(s.focal_mm)},
-            {"aperture", range_json(s.aperture)},
-            {"distance_m", range_json(s.distance_m)},
+            {"focal_mm", ends_json(s.focal_mm)},
+            {"aperture", ends_json(s.aperture)},
+            {"distance_m", ends_json(s.distance_m)},
             {"methods", groups_json(s.method)},
             {"different_methods", s.methods},
             {"sources", groups_json(s.source)},
