@@ -263,6 +263,7 @@ static double largest_step_ev(const Problem &problem, const Estimate &estimate) 
 void OverlapFit::hold_equal_exposures() {
     constexpr int kFewest = 2;        // a single one may be equal by accident
     constexpr double kUnseen = 0.02;  // EV from image to image
+    constexpr double kMargin = 2.0;   // of the limit: the inflation is an estimate
     const int unknown = undetermined_exposures(all_);
     if (unknown < kFewest) return;
     const Fitted different = found_;
@@ -273,7 +274,7 @@ void OverlapFit::hold_equal_exposures() {
     gauge_.expect_equal_exposures();
     solve_again();
     const double ratio = objective->value_at(found_.estimate) - objective->value_at(different.estimate);
-    if (2.0 * ratio / inflation_.exposures < chi_squared_limit(unknown)) return;
+    if (2.0 * ratio / inflation_.exposures < kMargin * chi_squared_limit(unknown)) return;
     if (largest_step_ev(all_, different.estimate) < kUnseen) return;
     gauge_ = open, found_ = different;
 }
