@@ -110,7 +110,10 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
     constexpr int kNoiseRounds = 4, kHeldRounds = 10;
     Prior renewed = prior_of(prior, estimate.modes);
     Outcome outcome;
-    for (int round = 0; round < control.rounds * (is_held(renewed) ? kHeldRounds : 1); round++) {
+    const auto rounds = [&] {
+        return control.rounds * (is_held(renewed) && !gauge.expects_equal_exposures() ? kHeldRounds : 1);
+    };
+    for (int round = 0; round < rounds(); round++) {
         Estimate before = estimate;
         if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
         gauge.renew(problem, estimate, renewed);
