@@ -258,8 +258,7 @@ static double largest_step_ev(const Problem &problem, const Estimate &estimate) 
 
 // Exposures that drift along a row look much like a centre that is off the middle. Many cameras hold their exposure
 // along a row, and others almost never give equal exposures by accident: they are taken as equal unless a likelihood
-// ratio test (Wilks 1938) rejects it. Small steps that all links share come from a
-// falloff that is not quite radial.
+// ratio test (Wilks 1938) rejects it. Small steps that all links share come from a falloff that is not quite radial.
 void OverlapFit::hold_equal_exposures() {
     constexpr int kFewest = 2;        // a single one may be equal by accident
     constexpr double kUnseen = 0.02;  // EV from image to image

@@ -43,6 +43,21 @@ bool nothing_fixes_gamma(const lensprof_fit_options &options, const Problem &pro
     return (options.free & LENSPROF_FREE_RESPONSE) && options.modes != 0 && !has_fixed_exposure(problem);
 }
 
+// Two values of ln gamma with their standard errors, of which those of falloffs have heavy tails: if the two contradict
+// each other, the falloff has less weight.
+struct Weighed {
+    double kind, falloff;  // precisions
+
+    Weighed(double off, double kind_sigma, double falloff_sigma) {
+        const double z = off / std::hypot(kind_sigma, falloff_sigma);
+        kind = 1.0 / (kind_sigma * kind_sigma), falloff = 1.0 / (falloff_sigma * falloff_sigma * (1.0 + z * z));
+    }
+    double mean(double of_kind, double of_falloff, double &sigma) const {
+        sigma = 1.0 / std::sqrt(kind + falloff);
+        return (kind * of_kind + falloff * of_falloff) / (kind + falloff);
+    }
+};
+
 }  // namespace
 
 void raise_falloff(uint32_t free, double gamma, lensprof_vignetting &v) {
@@ -115,25 +130,6 @@ Gauge Gauge::by_prior() const {
     other.known_weight_.clear();
     return other;
 }
-
-namespace {
-
-// Two values of ln gamma with their standard errors, of which those of falloffs have heavy tails: if the two contradict
-// each other, the falloff has less weight.
-struct Weighed {
-    double kind, falloff;  // precisions
-
-    Weighed(double off, double kind_sigma, double falloff_sigma) {
-        const double z = off / std::hypot(kind_sigma, falloff_sigma);
-        kind = 1.0 / (kind_sigma * kind_sigma), falloff = 1.0 / (falloff_sigma * falloff_sigma * (1.0 + z * z));
-    }
-    double mean(double of_kind, double of_falloff, double &sigma) const {
-        sigma = 1.0 / std::sqrt(kind + falloff);
-        return (kind * of_kind + falloff * of_falloff) / (kind + falloff);
-    }
-};
-
-}  // namespace
 
 // Distance to the gamma of cameras of the kind, and of lenses: M^gamma is deeper than that of most if gamma is large.
 double Gauge::expected_of_kind(const Problem &problem, const Estimate &estimate, double &sigma) const {

@@ -25,11 +25,6 @@ bool is_known(const Problem &problem, uint32_t i) {
     return problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference];
 }
 
-double hold_of(const Problem &problem) {
-    const double links = static_cast<double>(std::max<size_t>(problem.edges.size(), 1));
-    return std::max(1.0, static_cast<double>(problem.pairs.size()) / links / kLinkPairs);
-}
-
 // The known exposures of the reference's group and what was found, EV, by image.
 struct Known {
     std::vector<uint32_t> members;
@@ -154,16 +149,20 @@ void Gauge::leave_out(const Problem &problem, const std::vector<double> &off) {
 
 void Gauge::put_known(const Problem &problem, Prior &prior) const {
     prior.known.clear();
+    prior.renews_offset = false;
     if (known_weight_.empty()) return;
     prior.known.resize(problem.image_count);
+    const double pairs =
+        static_cast<double>(problem.pairs.size()) / static_cast<double>(std::max<size_t>(problem.edges.size(), 1));
     for (uint32_t i = 0; i < problem.image_count; i++) {
         const auto &image = problem.images[i];
         if (!is_known(problem, i)) continue;
         auto &known = prior.known[i];
         known.log_exposure = level_offset_[i] + slope_ * kLn2 * image.known_ev;
         known.precision = known_weight_[i] / std::pow(slope_ * kLn2 * scatter_ * known_sigma(image), 2);
-        if (scatter_ * known_sigma(image) < kRepeatable) known.hold = hold_of(problem);
+        if (scatter_ * known_sigma(image) < kRepeatable) known.hold = std::max(1.0, pairs / kLinkPairs);
         known.precision *= known.hold;
+        prior.renews_offset = prior.renews_offset || known.hold > 1.0;
     }
 }
 

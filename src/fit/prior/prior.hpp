@@ -40,6 +40,7 @@ struct Prior {
         double hold = 1.0;  // how much more firmly it is held than its standard error implies
     };
     std::vector<KnownExposure> known;
+    bool renews_offset = false;  // whether any is held firmly relative to an offset that is renewed between rounds
 };
 
 // Response, falloff and centre of measured cameras and lenses, times `weight`; `by_covariance` as above.

@@ -79,11 +79,6 @@ struct Stepper {
     }
 };
 
-// Exposures that are held firmly and their common offset, which is renewed between rounds, converge slowly together.
-bool is_held(const Prior &prior) {
-    return std::any_of(prior.known.begin(), prior.known.end(), [](const auto &known) { return known.hold > 1.0; });
-}
-
 }  // namespace
 
 double largest_change(const Estimate &a, const Estimate &b) {
@@ -110,10 +105,8 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
     constexpr int kNoiseRounds = 4, kHeldRounds = 10;
     Prior renewed = prior_of(prior, estimate.modes);
     Outcome outcome;
-    const auto rounds = [&] {
-        return control.rounds * (is_held(renewed) && !gauge.expects_equal_exposures() ? kHeldRounds : 1);
-    };
-    for (int round = 0; round < rounds(); round++) {
+    // Exposures that are held firmly and their common offset converge slowly together.
+    for (int round = 0; round < control.rounds * (renewed.renews_offset ? kHeldRounds : 1); round++) {
         Estimate before = estimate;
         if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
         gauge.renew(problem, estimate, renewed);
