@@ -52,9 +52,8 @@ std::string target_name(const ApplyOptions &o, const NamedPicture &picture, cons
 }
 
 // A picture with another aspect ratio is not one the project was made with; another size is accepted.
-void check_shape(const Project &project, uint32_t image, const std::string &file) {
+void check_shape(const Project &project, uint32_t image, const std::string &file, PictureSize size) {
     const auto &camera = project.images[image].camera;
-    PictureSize size = read_size(file);
     const double expected = static_cast<double>(camera.width) / camera.height,
                  shape = static_cast<double>(size.width) / size.height;
     const bool is_same = size.width == camera.width && size.height == camera.height;
@@ -170,7 +169,7 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
     lensprof_exposure_init(&job.exposure);
     if (source.project) {
         const uint32_t image = source.images->at(picture.file, o.project_option());
-        check_shape(*source.project, image, picture.file);
+        check_shape(*source.project, image, picture.file, size);
         job.exposure = source.exposures[image];
         job.crops = crops_of(source, image);
         if (source.has_model) job.model = model_of_project(*source.project, image);
@@ -215,7 +214,7 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
         const std::string &file = project.files[i];
         if (project.images[i].left_out) continue;
         try {
-            check_shape(project, i, file);
+            check_shape(project, i, file, read_size(file));
             check_mark(o, file, metadata_of(o, file));
             check_mergeable(file, layout);
         } catch (const Failure &failure) {
