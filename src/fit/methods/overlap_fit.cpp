@@ -256,6 +256,22 @@ static double largest_step_ev(const Problem &problem, const Estimate &estimate) 
     return largest;
 }
 
+// Whether one of the exposures differs from the reference's by far more than a test of `limit` (chi squared) accepts. A
+// test of all of them is larger still (Wald 1943), and a fit that holds them equal would converge slowly.
+bool OverlapFit::exposures_clearly_differ(double limit) {
+    constexpr double kClearly = 9.0;  // of the limit: residuals are not quadratic
+    const Covariance found = covariance(all_, prior_, gauge_, found_.used, found_.estimate, &inflation_);
+    if (!found.is_determined) return false;
+    const auto c = static_cast<size_t>(all_.measured_channel());
+    const double zero = found_.estimate.log_exposure[all_.reference][c];
+    for (uint32_t i = 0; i < all_.image_count; i++) {
+        if (all_.ev_unknown[i] < 0 || all_.component[i] != all_.component[all_.reference]) continue;
+        const double difference = found_.estimate.log_exposure[i][c] - zero;
+        if (difference * difference > kClearly * limit * found.images[all_.ev_unknown[i]]) return true;
+    }
+    return false;
+}
+
 // Exposures that drift along a row look much like a centre that is off the middle. Many cameras hold their exposure
 // along a row, and others almost never give equal exposures by accident: they are taken as equal unless a likelihood
 // ratio test (Wilks 1938) rejects it. Small steps that all links share come from a falloff that is not quite radial.
@@ -265,6 +281,9 @@ void OverlapFit::hold_equal_exposures() {
     constexpr double kMargin = 2.0;   // of the limit: the inflation is an estimate
     const int unknown = undetermined_exposures(all_);
     if (unknown < kFewest) return;
+    const double limit = kMargin * chi_squared_limit(unknown);
+    const bool any_seen = largest_step_ev(all_, found_.estimate) >= kUnseen;
+    if (any_seen && exposures_clearly_differ(limit)) return;
     const Fitted different = found_;
     Gauge open = gauge_;
     Prior prior = prior_of(prior_, different.estimate.modes);
@@ -273,8 +292,7 @@ void OverlapFit::hold_equal_exposures() {
     gauge_.expect_equal_exposures();
     solve_again();
     const double ratio = objective->value_at(found_.estimate) - objective->value_at(different.estimate);
-    if (2.0 * ratio / inflation_.exposures < kMargin * chi_squared_limit(unknown)) return;
-    if (largest_step_ev(all_, different.estimate) < kUnseen) return;
+    if (!any_seen || 2.0 * ratio / inflation_.exposures < limit) return;
     gauge_ = open, found_ = different;
 }
 

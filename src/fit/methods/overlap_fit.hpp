@@ -95,6 +95,7 @@ private:
     bool frees_lens() const { return options_.free & (kFalloffFlags | LENSPROF_FREE_CENTER); }
     void weigh_lens_knowledge();
     void solve_again();
+    bool exposures_clearly_differ(double limit);
     void hold_equal_exposures();
     void free_center();
     void hold_falling();
