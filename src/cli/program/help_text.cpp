@@ -1,24 +1,35 @@
 #include "cli/program/help_text.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
 
 namespace lensprof {
 
+// The end of the word that starts at `from`: the next space that is not within `...`, which stays on one line.
+static size_t word_end(const std::string &text, size_t from) {
+    for (size_t at = from; at < text.size(); at++) {
+        if (text[at] == ' ') return at;
+        if (text[at] == '`') at = std::min(text.find('`', at + 1), text.size());
+    }
+    return text.size();
+}
+
 std::string wrapped(const std::string &text, size_t columns) {
     std::string lines;
-    size_t column = 0;
     std::istringstream paragraphs(text);
     for (std::string paragraph; std::getline(paragraphs, paragraph);) {
-        if (!lines.empty()) lines += '\n', column = 0;
-        std::istringstream words(paragraph);
-        for (std::string word; words >> word; column += word.size()) {
+        if (!lines.empty()) lines += '\n';
+        size_t column = 0;
+        for (size_t at = 0, end; at < paragraph.size(); at = end + 1) {
+            end = word_end(paragraph, at);
+            const std::string word = paragraph.substr(at, end - at);
             if (column > 0 && column + 1 + word.size() > columns)
                 lines += '\n', column = 0;
-            else if (column > 0)
+            else if (at > 0 && column > 0)
                 lines += ' ', column++;
-            lines += word;
+            lines += word, column += word.size();
         }
     }
     return lines;
