@@ -14,9 +14,9 @@ namespace {
 
 constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr double kLargestTurn = 360.0;
-constexpr size_t kFirstOptions = LP_END_OF(lensprof_flat_options, progress_user);
-constexpr size_t kFirstImage = LP_END_OF(lensprof_flat_image, turn_deg);
-constexpr size_t kFirstResult = LP_END_OF(lensprof_flat_result, image_quality);
+constexpr size_t kFirstFlatOptions = LP_END_OF(lensprof_flat_options, progress_user);
+constexpr size_t kFirstFlatImage = LP_END_OF(lensprof_flat_image, turn_deg);
+constexpr size_t kFirstFlatResult = LP_END_OF(lensprof_flat_result, image_quality);
 constexpr size_t kFirstQuality = LP_END_OF(lensprof_flat_image_quality, reserved);
 
 // The first option that is out of range, with its range; NULL if all are valid.
@@ -90,15 +90,15 @@ struct Call {
 lensprof_status take_call(const lensprof_flat_options *options, const lensprof_flat_image *images, uint32_t count,
                           const lensprof_flat_result &result, Call &call, lensprof_error *error) {
     lensprof_status status =
-        check_result(result, kFirstResult, kFirstQuality, result.image_quality, "flat result", error);
+        check_result(result, kFirstFlatResult, kFirstQuality, result.image_quality, "flat result", error);
     if (status != LENSPROF_OK) return status;
     lensprof_flat_options_init(&call.options);
-    if (const char *wrong = lp_sized_take(&call.options, options, kFirstOptions))
+    if (const char *wrong = lp_sized_take(&call.options, options, kFirstFlatOptions))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat options: %s", wrong);
     status = check_options(call.options, count, error);
     auto init = [](lensprof_flat_image &image, uint32_t) { lensprof_flat_image_init(&image); };
     if (status == LENSPROF_OK)
-        status = take_all(images, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, call.images, error);
+        status = take_all(images, count, kFirstFlatImage, LENSPROF_ITEM_IMAGE, init, call.images, error);
     for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++)
         status = check_image(call.options, call.images.data(), i, error);
     lensprof_flat_result_init(&call.result);
@@ -126,14 +126,14 @@ lensprof_status run(Call &call, lensprof_error *error) {
 extern "C" {
 
 void lensprof_flat_image_init_sized(lensprof_flat_image *image, size_t size) {
-    if (!lp_sized_begin(image, size, kFirstImage)) return;
+    if (!lp_sized_begin(image, size, kFirstFlatImage)) return;
     image->reduction = 1;
     image->black = 2.0 / 255.0;
     image->white = 250.0 / 255.0;
 }
 
 void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t size) {
-    if (!lp_sized_begin(options, size, kFirstOptions)) return;
+    if (!lp_sized_begin(options, size, kFirstFlatOptions)) return;
     options->channels = 3;
     options->free = kLensFlags;
     options->responses = 1;
@@ -142,7 +142,7 @@ void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t siz
 }
 
 void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size, size_t image_quality_size) {
-    if (lp_sized_begin(result, size, kFirstResult))
+    if (lp_sized_begin(result, size, kFirstFlatResult))
         result->image_quality_size = static_cast<uint32_t>(image_quality_size);
 }
 
@@ -176,7 +176,8 @@ lensprof_status lensprof_profile_from_flat(lensprof_profile *profile, const lens
     lensprof_flat_options_init(&options);
     lensprof_flat_result flat;
     lensprof_flat_result_init(&flat);
-    const lensprof_status status = take_fitted(given, kFirstOptions, options, result, kFirstResult, flat, error);
+    const lensprof_status status =
+        take_fitted(given, kFirstFlatOptions, options, result, kFirstFlatResult, flat, error);
     if (status != LENSPROF_OK) return status;
     if (options.responses != 1 && options.responses != 3)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "options: responses is %u; give 1 or 3", options.responses);

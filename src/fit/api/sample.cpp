@@ -12,8 +12,8 @@ using namespace lensprof;
 namespace {
 
 constexpr uint32_t kLargestCount = 1u << 24;
-constexpr size_t kFirstOptions = LP_END_OF(lensprof_sample_options, progress_user);
-constexpr size_t kFirstImage = LP_END_OF(lensprof_sample_image, white);
+constexpr size_t kFirstSampleOptions = LP_END_OF(lensprof_sample_options, progress_user);
+constexpr size_t kFirstSampleImage = LP_END_OF(lensprof_sample_image, white);
 
 // `by_cameras`: otherwise only width and height of the camera are checked.
 lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, bool by_cameras, lensprof_error *error) {
@@ -48,7 +48,7 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
 lensprof_status take_options(const lensprof_sample_options *given, uint32_t count, lensprof_sample_options &options,
                              lensprof_error *error) {
     lensprof_sample_options_init(&options);
-    if (const char *wrong = lp_sized_take(&options, given, kFirstOptions))
+    if (const char *wrong = lp_sized_take(&options, given, kFirstSampleOptions))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "sample options: %s", wrong);
     return check_options(options, count, error);
 }
@@ -102,7 +102,7 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
     try {
         std::vector<lensprof_sample_image> images;
         auto init = [](lensprof_sample_image &image, uint32_t) { lensprof_sample_image_init(&image); };
-        lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, images, error);
+        lensprof_status status = take_all(given, count, kFirstSampleImage, LENSPROF_ITEM_IMAGE, init, images, error);
         for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++)
             status = check_image(images[i], i, !matches, error);
         if (matches && status == LENSPROF_OK) status = check_matches(*matches, images, error);
@@ -162,11 +162,11 @@ uint32_t wanted_pairs(const lensprof_sample_options &options, uint32_t image_cou
 extern "C" {
 
 void lensprof_sample_options_init_sized(lensprof_sample_options *options, size_t size) {
-    if (lp_sized_begin(options, size, kFirstOptions)) options->seed = 1;
+    if (lp_sized_begin(options, size, kFirstSampleOptions)) options->seed = 1;
 }
 
 void lensprof_sample_image_init_sized(lensprof_sample_image *image, size_t size) {
-    if (!lp_sized_begin(image, size, kFirstImage)) return;
+    if (!lp_sized_begin(image, size, kFirstSampleImage)) return;
     image->reduction = 1;
     image->black = 2.0 / 255.0;
     image->white = 250.0 / 255.0;

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kOuter = 0.1;      // of the range of grey values, over which a sample's weight falls to 0 at its limit
 constexpr double kCardEdge = 0.06;  // step of log E between two cells that ends the card,
-constexpr double kSteepest = 3.0;   // or this per half diagonal, which is steeper than a falloff
+constexpr double kSteepestEdge = 3.0;   // or this per half diagonal, which is steeper than a falloff
 constexpr double kSmallestCard = 0.01;  // of the frame's cells
 constexpr double kDarkCard = 0.5;       // of the brightest region's light: anything darker is not a white card
 
@@ -168,7 +168,7 @@ void mark_card(const CellGrid &grid, bool find, int channels, Shot &shot) {
     shot.card = seen;
     if (!find) return;
     double half_diagonal = lensprof_half_diagonal(grid.width, grid.height);
-    double edge = std::max(kCardEdge, kSteepest * std::max(grid.cell_width(), grid.cell_height()) / half_diagonal);
+    double edge = std::max(kCardEdge, kSteepestEdge * std::max(grid.cell_width(), grid.cell_height()) / half_diagonal);
     auto joins = [&](int a, int b) {
         return std::abs(bright[static_cast<size_t>(a)] - bright[static_cast<size_t>(b)]) < edge;
     };

@@ -9,9 +9,8 @@
 namespace lensprof {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSurroundings = 5;          // cells about a cell
-constexpr double kFar = 5.5;              // sigmas below the surroundings
+constexpr double kFarBelow = 5.5;         // sigmas below the surroundings
 constexpr double kSmallestDepth = 0.004;  // of the light: one level of 255
 constexpr double kLowShare = 0.02;        // of a cell's pixels far below the rest
 constexpr size_t kLargestSpot = 60;       // cells: anything larger is not dust
@@ -64,7 +63,7 @@ SpotMap spots_of_shot(const FlatFit &fit, int shot) {
     }
     const double sigma = std::max(kMadToSigma * median(size), 1.0);
     for (size_t i = 0; i < count; i++)
-        map.dark[i] = map.below[i] < -std::max(kFar * sigma * noise[i], kSmallestDepth)
+        map.dark[i] = map.below[i] < -std::max(kFarBelow * sigma * noise[i], kSmallestDepth)
                       || (!std::isnan(residual[i])
                           && static_cast<double>(fit.shots[static_cast<size_t>(shot)].light[i].low_share) > kLowShare);
     return map;

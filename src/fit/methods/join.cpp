@@ -16,7 +16,7 @@ constexpr double kSmallestScatter = 0.01;  // of light, natural logarithm: mispl
 constexpr double kCutoff = 3.0;            // standard deviations beyond which a pair loses its weight
 constexpr double kKnownSigma = 1e-6;       // of ln gamma if known
 constexpr double kLargestLogGamma = 1.2;   // in total
-constexpr int kRounds = 40;
+constexpr int kJoinRounds = 40;
 constexpr double kConverged = 1e-7;
 
 // A weighted residual, and its derivatives by gamma and offset of both cameras.
@@ -226,7 +226,7 @@ double Join::step(Eigen::MatrixXd &normal) {
 void Join::solve() {
     start_offsets();
     Eigen::MatrixXd normal;
-    for (int round = 0; round < kRounds; round++) {
+    for (int round = 0; round < kJoinRounds; round++) {
         if (cancelled_()) throw Cancelled();
         find_scatter();
         if (step(normal) < kConverged) break;

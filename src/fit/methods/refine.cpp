@@ -11,7 +11,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kUnknown = kCorrections;      // unknown k - 1: the correction at grey level k of 255; the last is 0
-constexpr int kRounds = 8;                  // Gauss-Newton,
+constexpr int kGaussNewtonRounds = 8;       // Gauss-Newton,
 constexpr double kWorthwhile = 1.0;         // as long as a round lowers the cost by more
 constexpr double kBend = 0.002;             // levels: expected second difference of the correction from level to level,
 constexpr double kEndBend = 1.0;            // and at the ends, where responses are steep,
@@ -218,7 +218,7 @@ void refine_response(const Problem &problem, const Loss &loss, Estimate &estimat
     const Estimate first = estimate;
     Refinement refinement{Correction(first.curve), Eigen::VectorXd::Zero(problem.image_unknowns)};
     double cost = cost_of(problem, loss, first);
-    for (int round = 0; round < kRounds; round++) {
+    for (int round = 0; round < kGaussNewtonRounds; round++) {
         Equations equations(problem, first);
         equations.add_pairs(loss, refinement.d, estimate);
         equations.add_smoothness();

@@ -19,7 +19,7 @@ namespace {
 
 // EV. At .06 EV the differences between shapes of responses, some 5 levels, move grey values by .2 to .4 levels, as
 // much as rounding and interpolation do.
-constexpr double kSmallestSpread = 0.06;
+constexpr double kSmallestLightSpread = 0.06;
 constexpr double kMinGreys = 2.0;  // tenths of the grey values: one determines nothing at all
 
 // The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
@@ -79,11 +79,10 @@ void state_typical(double gamma_sigma, uint32_t image_count, const lensprof_expo
 
 void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
                                  lensprof_exposure *exposures, lensprof_fit_result &r) {
-    constexpr uint32_t kFalloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     const bool is_narrow = r.reason_code == LENSPROF_REASON_FEW_GREYS;
-    const bool is_even = r.light_spread_ev < kSmallestSpread && r.reason_code != LENSPROF_REASON_EXPOSURES_ALIKE;
+    const bool is_even = r.light_spread_ev < kSmallestLightSpread && r.reason_code != LENSPROF_REASON_EXPOSURES_ALIKE;
     if (r.response_from != LENSPROF_FIT_RESPONSE_PICTURES || !(options.prior_weight > 0.0)) return;
-    if (is_narrow ? r.reason_value[0] < kMinGreys || !(options.free & kFalloff) : !is_even) return;
+    if (is_narrow ? r.reason_value[0] < kMinGreys || !(options.free & kFalloffFlags) : !is_even) return;
     if (options.profile && holds_response(*options.profile, r))
         r.response_from = LENSPROF_FIT_RESPONSE_PROFILE;
     else

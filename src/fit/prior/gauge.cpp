@@ -20,7 +20,6 @@ namespace {
 constexpr double kPinSigma = 1e-3, kSmallestPinSigma = 2e-4, kLargestPinSigma = 0.01, kPinPairs = 20000.0;
 constexpr double kLooseSigma = 0.07;  // of a response that is moved to its gamma exactly afterwards
 constexpr double kLargestStep = 1.2;  // of ln gamma in one move along the family
-constexpr double kDoubtful = 3.0;     // known exposures farther off, in standard errors, have less weight
 
 // Whether exposures or white balances of images are held at values other than the reference's.
 bool has_fixed_exposure(const Problem &problem) {

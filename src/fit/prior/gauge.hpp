@@ -18,6 +18,9 @@ namespace lensprof {
 // Known exposures are never taken as more accurate than this, EV, because shutters and apertures are not.
 constexpr double kKnownSigma = 0.02;
 
+// Known exposures farther off than this, in standard errors, have less weight.
+constexpr double kDoubtful = 3.0;
+
 inline double known_sigma(const lensprof_fit_image &image) { return std::max(image.known_ev_sigma, kKnownSigma); }
 
 class Gauge {

@@ -10,13 +10,12 @@
 namespace lensprof {
 namespace {
 
-constexpr double kDoubtful = 3.0;         // known exposures farther off, in standard errors, have less weight
 constexpr double kSmallestSlope = 0.1;    // and its inverse: beyond, known exposures belong to something else
 constexpr double kContradiction = 5.0;    // standard errors from the level of most images
 constexpr size_t kFew = 4;                // one in four at most is wrong: with more it is unclear which are
 constexpr size_t kMinKnownForLevels = 6;  // known exposures: with fewer, it is unclear which one is wrong
 
-// Known exposures are repeatable to less than kRepeatable, EV. The pairs between two pictures share errors that no
+// KnownGroup exposures are repeatable to less than kRepeatable, EV. The pairs between two pictures share errors that no
 // model describes (falloff that is not radial, bias by noise). With more than kLinkPairs pairs these errors add up
 // along a row of pictures like a drift, and the hold scales accordingly.
 constexpr double kRepeatable = 0.05, kLinkPairs = 40.0;
@@ -26,12 +25,12 @@ bool is_known(const Problem &problem, uint32_t i) {
 }
 
 // The known exposures of the reference's group and what was found, EV, by image.
-struct Known {
+struct KnownGroup {
     std::vector<uint32_t> members;
     std::vector<bool> is_member;
     std::vector<double> found, known, sigma;
 
-    Known(const Problem &problem, const Estimate &estimate)
+    KnownGroup(const Problem &problem, const Estimate &estimate)
         : is_member(problem.image_count),
           found(problem.image_count),
           known(problem.image_count),
@@ -59,7 +58,8 @@ struct Regression {
     size_t largest = 0;
     double trust = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // trust: yy if all exposures are equal
 
-    Regression(const Known &known, const std::vector<int> &level, const std::vector<double> &trusts, double scatter)
+    Regression(const KnownGroup &known, const std::vector<int> &level, const std::vector<double> &trusts,
+               double scatter)
         : levels(1 + static_cast<size_t>(*std::max_element(level.begin(), level.end()))) {
         auto weight = [&](uint32_t i) { return trusts[i] / std::pow(scatter * known.sigma[i], 2); };
         for (uint32_t i : known.members) {
@@ -80,7 +80,7 @@ struct Regression {
     }
 
     // Distance of an image from a level, EV.
-    double off(const Known &known, uint32_t i, size_t level, double per_known) const {
+    double off(const KnownGroup &known, uint32_t i, size_t level, double per_known) const {
         return per_known * (known.found[i] - levels[level].found) - (known.known[i] - levels[level].known);
     }
 };
@@ -90,13 +90,13 @@ struct Regression {
 // Regression of the known exposures on the estimate's, over the reference's component; the known ones carry the error.
 // Their variation beyond their own error determines gamma; equal exposures do not. If they scatter more than stated,
 // the scatter is used as their error. It is measured from neighbour to neighbour, because errors that add up along a
-// row of pictures belong to the estimate. Known exposures that agree are on one level (known_levels.hpp), which has its
-// own offset. An image alone on its level is left out; the others are known as accurately as before.
+// row of pictures belong to the estimate. KnownGroup exposures that agree are on one level (known_levels.hpp), which
+// has its own offset. An image alone on its level is left out; the others are known as accurately as before.
 void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0, scatter_ = 1.0;
     known_left_out_.clear();
     if (known_weight_.empty()) return;
-    const Known known(problem, estimate);
+    const KnownGroup known(problem, estimate);
     if (known.members.size() < 2) known_weight_.clear();  // only differences carry information
     if (known_weight_.empty()) return;
     const KnownNeighbours neighbours(problem, known.is_member);

@@ -9,62 +9,62 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kLanes = 4;
-typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
-typedef int LaneFlags __attribute__((vector_size(kLanes * sizeof(int))));
+constexpr size_t kBlockLanes = 4;
+typedef float BlockLanes __attribute__((vector_size(kBlockLanes * sizeof(float))));
+typedef int LaneFlags __attribute__((vector_size(kBlockLanes * sizeof(int))));
 
-constexpr size_t kCount = Footprint<4>::kCount;
+constexpr size_t kFootprintPixels = Footprint<4>::kCount;
 
-using Offsets = std::array<ptrdiff_t, kLanes>;
+using Offsets = std::array<ptrdiff_t, kBlockLanes>;
 
 class BlockSearch {
 public:
     BlockSearch(const Block<4> &block, const GreyLevels::Level &level, const Footprint<4> &footprint)
         : block_(block), level_(level) {
-        for (size_t k = 0; k < kCount; k++) index_[k] = footprint.index(k, level);
+        for (size_t k = 0; k < kFootprintPixels; k++) index_[k] = footprint.index(k, level);
     }
 
     // Correlations with the blocks whose pixels are `offset[n]` after those of the footprint.
-    std::array<double, kLanes> compare(const Offsets &offset) const {
-        Square<4, Lanes> blocks;
+    std::array<double, kBlockLanes> compare(const Offsets &offset) const {
+        Square<4, BlockLanes> blocks;
         LaneFlags lost{};
         const bool is_run = offset[3] == offset[0] + 3;  // the shifts are in the order of pixels
-        for (size_t k = 0; k < kCount; k++) {
+        for (size_t k = 0; k < kFootprintPixels; k++) {
             const float *first = level_.grey.data() + index_[k];
-            Lanes grey;
+            BlockLanes grey;
             if (is_run)
                 std::memcpy(&grey, first + offset[0], sizeof grey);
             else
-                grey = Lanes{first[offset[0]], first[offset[1]], first[offset[2]], first[offset[3]]};
+                grey = BlockLanes{first[offset[0]], first[offset[1]], first[offset[2]], first[offset[3]]};
             lost |= (grey < kBlackGrey) | (grey > kWhiteGrey);
             blocks.value[k] = grey;
         }
-        const Lanes sum = normalised_product(blocks);
-        std::array<double, kLanes> correlations;
-        for (size_t n = 0; n < kLanes; n++)
+        const BlockLanes sum = normalised_product(blocks);
+        std::array<double, kBlockLanes> correlations;
+        for (size_t n = 0; n < kBlockLanes; n++)
             correlations[n] = block_.lost || lost[n] ? correlation_of_rest(offset[n]) : sum[n];
         return correlations;
     }
 
 private:
-    Lanes normalised_product(Square<4, Lanes> &blocks) const {
+    BlockLanes normalised_product(Square<4, BlockLanes> &blocks) const {
         blocks.take_out_mean(), blocks.take_out_gradient();
-        const Lanes square = blocks.sum_of_squares();
-        Lanes length{}, sum{};
-        for (size_t n = 0; n < kLanes; n++) length[n] = square[n] > 0.0f ? std::sqrt(square[n]) : 1.0f;
-        for (size_t k = 0; k < kCount; k++) sum += blocks.value[k] / length * block_.value[k];
+        const BlockLanes square = blocks.sum_of_squares();
+        BlockLanes length{}, sum{};
+        for (size_t n = 0; n < kBlockLanes; n++) length[n] = square[n] > 0.0f ? std::sqrt(square[n]) : 1.0f;
+        for (size_t k = 0; k < kFootprintPixels; k++) sum += blocks.value[k] / length * block_.value[k];
         return sum;
     }
 
     double correlation_of_rest(ptrdiff_t offset) const {
-        std::array<float, kCount> grey;
-        for (size_t k = 0; k < kCount; k++) grey[k] = level_.grey[static_cast<size_t>(index_[k] + offset)];
+        std::array<float, kFootprintPixels> grey;
+        for (size_t k = 0; k < kFootprintPixels; k++) grey[k] = level_.grey[static_cast<size_t>(index_[k] + offset)];
         return block_.correlation_of_rest(grey);
     }
 
     const Block<4> &block_;
     const GreyLevels::Level &level_;
-    std::array<ptrdiff_t, kCount> index_;
+    std::array<ptrdiff_t, kFootprintPixels> index_;
 };
 
 }  // namespace
@@ -79,13 +79,13 @@ std::vector<double> correlations_around(const Block<4> &block, const GreyLevels:
         if (footprint.lies_in(level, shifts.at(k))) inside.push_back(k);
     BlockSearch search(block, level, footprint);
     Offsets offset;
-    for (size_t first = 0; first < inside.size(); first += kLanes) {
-        const size_t count = std::min(kLanes, inside.size() - first);
-        for (size_t n = 0; n < kLanes; n++) {  // surplus lanes repeat the last block
+    for (size_t first = 0; first < inside.size(); first += kBlockLanes) {
+        const size_t count = std::min(kBlockLanes, inside.size() - first);
+        for (size_t n = 0; n < kBlockLanes; n++) {  // surplus lanes repeat the last block
             const auto [du, dv] = shifts.at(inside[first + std::min(n, count - 1)]);
             offset[n] = static_cast<ptrdiff_t>(dv) * level.width + du;
         }
-        const std::array<double, kLanes> correlations = search.compare(offset);
+        const std::array<double, kBlockLanes> correlations = search.compare(offset);
         for (size_t n = 0; n < count; n++) found[inside[first + n]] = correlations[n];
     }
     return found;

@@ -10,8 +10,8 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kPiece = 32;    // matches that a thread processes as a unit
-constexpr size_t kPerWanted = 16;  // matches examined per wanted pair
+constexpr uint32_t kMatchesPerPiece = 32;  // matches that a thread processes as a unit
+constexpr size_t kMatchesPerWanted = 16;   // matches examined per wanted pair
 // Features lie on edges and corners, where a misplacement of one pixel is visible. Places at this distance, view
 // pixels, may be quieter; the map of the surroundings is valid at that distance for any scene.
 constexpr int kRings = 2;
@@ -102,14 +102,15 @@ std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, ui
     read_grey_levels();
     size_t links = 0;
     for (const auto &list : neighbours_) links += list.size();
-    const size_t max_per_link = std::max<size_t>(1, kPerWanted * wanted / std::max<size_t>(1, links / 2));
+    const size_t max_per_link = std::max<size_t>(1, kMatchesPerWanted * wanted / std::max<size_t>(1, links / 2));
     const auto link_of = [&](const lensprof_match &m) { return edge_of(m.image[0], m.image[1]); };
     const std::vector<uint32_t> kept = thinned(matches, count, max_per_link, link_of, edge_numbers_);
-    const auto pieces = static_cast<uint32_t>((kept.size() + kPiece - 1) / kPiece);
+    const auto pieces = static_cast<uint32_t>((kept.size() + kMatchesPerPiece - 1) / kMatchesPerPiece);
     std::vector<std::vector<MatchCandidate>> found(pieces);
     std::atomic<uint32_t> done{0};
     const auto work = [&](uint32_t piece) {
-        for (size_t n = size_t{piece} * kPiece; n < std::min(kept.size(), (size_t{piece} + 1) * kPiece); n++) {
+        for (size_t n = size_t{piece} * kMatchesPerPiece;
+             n < std::min(kept.size(), (size_t{piece} + 1) * kMatchesPerPiece); n++) {
             MatchCandidate candidate;
             candidate.match = kept[n];
             if (quiet_place(matches[kept[n]], candidate)) found[piece].push_back(candidate);

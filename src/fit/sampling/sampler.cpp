@@ -9,7 +9,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kPiece = 32;  // places of one image that a thread processes as a unit
+constexpr uint32_t kPlacesPerPiece = 32;  // places of one image that a thread processes as a unit
 constexpr uint32_t kPaperRound = 8192;
 constexpr double kWidestCone =
     1.5;  // radians: beyond it, the border of a frame may be farther from the axis than its samples
@@ -287,7 +287,8 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
     size_t sights = 0;  // ways from image to image: a round looks `chunk` times along each
     for (const auto &list : neighbours_) sights += list.size();
     auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
-    const uint32_t max_rounds = 102400 / chunk, max_empty_rounds = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
+    const uint32_t max_rounds = 102400 / chunk, max_empty_rounds = 2560 / chunk,
+                   pieces = (chunk + kPlacesPerPiece - 1) / kPlacesPerPiece;
     const double before = shown_;  // of the progress
     for (uint32_t round = 0; round < max_rounds && all.size() < wanted && refused_ < kMaxRefused * wanted
                              && !(round > max_empty_rounds && all.empty());
@@ -295,7 +296,8 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
         std::vector<std::vector<Candidate>> found(views_.size() * pieces);
         std::atomic<size_t> count{all.size()};
         auto work = [&](uint32_t n) {
-            const uint32_t i = n / pieces, first = n % pieces * kPiece, end = std::min(first + kPiece, chunk);
+            const uint32_t i = n / pieces, first = n % pieces * kPlacesPerPiece,
+                           end = std::min(first + kPlacesPerPiece, chunk);
             const auto &camera = views_[i].image().camera;
             for (uint32_t k = round * chunk + first; k < round * chunk + end; k++) {
                 // Roberts' R2 sequence: the plane's generalised golden ratio.
@@ -315,9 +317,10 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
 
 std::vector<lensprof_pair> Sampler::pairs_of(const std::vector<Candidate> &chosen) {
     std::vector<lensprof_pair> pairs(chosen.size());
-    const auto pieces = static_cast<uint32_t>((chosen.size() + kPiece - 1) / kPiece);
+    const auto pieces = static_cast<uint32_t>((chosen.size() + kPlacesPerPiece - 1) / kPlacesPerPiece);
     auto work = [&](uint32_t piece) {
-        for (size_t n = size_t{piece} * kPiece; n < std::min(chosen.size(), (size_t{piece} + 1) * kPiece); n++) {
+        for (size_t n = size_t{piece} * kPlacesPerPiece;
+             n < std::min(chosen.size(), (size_t{piece} + 1) * kPlacesPerPiece); n++) {
             const Candidate &c = chosen[n];
             lensprof_pair &pair = pairs[n];
             pair = {{c.image[0], c.image[1]}, {{c.x, c.y}, {0.0, 0.0}}, {}};
@@ -357,9 +360,10 @@ std::vector<lensprof_pair> Sampler::paper(uint32_t wanted) {
     for (size_t trials = 0; trials < max_trials && all.size() < enough; trials += kPaperRound) {
         std::vector<Look> looks(std::min<size_t>(kPaperRound, max_trials - trials));
         for (Look &l : looks) l = draw(random);
-        std::vector<std::vector<Candidate>> found((looks.size() + kPiece - 1) / kPiece);
+        std::vector<std::vector<Candidate>> found((looks.size() + kPlacesPerPiece - 1) / kPlacesPerPiece);
         auto work = [&](uint32_t n) {
-            for (size_t k = size_t{n} * kPiece; k < std::min(looks.size(), (size_t{n} + 1) * kPiece); k++) {
+            for (size_t k = size_t{n} * kPlacesPerPiece; k < std::min(looks.size(), (size_t{n} + 1) * kPlacesPerPiece);
+                 k++) {
                 const Look &l = looks[k];
                 look(l.image[0], l.x, l.y, &l.image[1], l.image[1] == l.image[0] ? 0 : 1, found[n]);
             }

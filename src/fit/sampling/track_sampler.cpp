@@ -5,18 +5,18 @@
 
 #include <Eigen/Geometry>
 
+#include "fit/base/constants.hpp"
 #include "fit/sampling/balance.hpp"
 #include "fit/sampling/sampler.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double kPi = 3.141592653589793;
-constexpr uint32_t kPiece = 64;           // points that a thread processes as a unit,
+constexpr uint32_t kPointsPerPiece = 64;  // points that a thread processes as a unit,
 constexpr uint32_t kRound = 4096;         // and all threads together, before counting whether there are enough
 constexpr uint32_t kMaxEmptyRounds = 64;  // rounds without any track
 constexpr uint32_t kMaxRounds = 4096;
-constexpr size_t kPerWanted = 8;                  // candidates per wanted point,
+constexpr size_t kCandidatesPerWanted = 8;        // candidates per wanted point,
 constexpr double kCells = 2.0;                    // and cells; each cell contributes its quietest candidates
 constexpr double kBinSlack = 1.5;                 // an even spread has priority over a balance of radius and grey level
 constexpr double kSteepest = 80.0 * kPi / 180.0;  // latitude at which a cylinder ends
@@ -90,9 +90,9 @@ std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, co
     const double before = shown_;  // of the progress
     for (uint32_t round = 0; round < kMaxRounds && all.size() < wanted && !(round > kMaxEmptyRounds && all.empty());
          round++) {
-        std::vector<std::vector<TrackCandidate>> found(kRound / kPiece);
+        std::vector<std::vector<TrackCandidate>> found(kRound / kPointsPerPiece);
         auto work = [&](uint32_t piece) {
-            for (uint32_t k = piece * kPiece; k < (piece + 1) * kPiece; k++) {
+            for (uint32_t k = piece * kPointsPerPiece; k < (piece + 1) * kPointsPerPiece; k++) {
                 TrackCandidate candidate;
                 if (find_track(aim(round * kRound + k), k, candidate)) found[piece].push_back(std::move(candidate));
             }
@@ -156,7 +156,7 @@ std::vector<lensprof_observation> Sampler::balanced_tracks(uint32_t wanted) {
         direction_of_vector(d.data(), result.direction);
         return result;
     };
-    std::vector<TrackCandidate> all = in_place(track_candidates(kPerWanted * wanted, aim));
+    std::vector<TrackCandidate> all = in_place(track_candidates(kCandidatesPerWanted * wanted, aim));
     std::sort(all.begin(), all.end(), [](const TrackCandidate &a, const TrackCandidate &b) {
         return a.cell != b.cell ? a.cell < b.cell : a.gradient < b.gradient;
     });

@@ -13,7 +13,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kReach = 2;  // patches are (2 kReach + 1) pixels square
-constexpr int kSide = 2 * kReach + 1, kCount = kSide * kSide;
+constexpr int kPatchSide = 2 * kReach + 1, kPatchPixels = kPatchSide * kPatchSide;
 constexpr double kAlmostWhite = 1.0 - 1e-9;       // 1 itself means a channel that is white in every pixel
 constexpr float kSmallestSpread = 1.0f / 255.0f;  // of a patch without noise
 
@@ -60,7 +60,7 @@ void gather(const lensprof_image &view, int u, int v, const int *offset, Lanes *
     const size_t samples = lensprof_layout_samples(view.layout);
     for (int dv = -kReach; dv <= kReach; dv++) {
         const auto *p = reinterpret_cast<const Sample *>(pixel(view, u - kReach, v + dv, 0));
-        for (int du = 0; du < kSide; du++, p += samples, out++)
+        for (int du = 0; du < kPatchSide; du++, p += samples, out++)
             *out = Lanes{grey_value(p[offset[0]]), grey_value(p[offset[1]]), grey_value(p[offset[2]]),
                          grey_value(p[offset[3]])};
     }
@@ -119,16 +119,16 @@ Lanes median(Lanes *values) {
 // Mean of the values within 2.5 standard deviations of the centre, which starts at the median: nearly as accurate as a
 // mean for plain noise, and barely biased if a third of the pixels are wrong, even all on one side.
 Lanes robust_mean(const Lanes *values) {
-    Lanes scratch[kCount];
-    std::copy(values, values + kCount, scratch);
-    Lanes center = median<kCount>(scratch);
-    for (int i = 0; i < kCount; i++) scratch[i] = absolute(values[i] - center);
-    Lanes spread = static_cast<float>(kMadToSigma) * median<kCount>(scratch);
+    Lanes scratch[kPatchPixels];
+    std::copy(values, values + kPatchPixels, scratch);
+    Lanes center = median<kPatchPixels>(scratch);
+    for (int i = 0; i < kPatchPixels; i++) scratch[i] = absolute(values[i] - center);
+    Lanes spread = static_cast<float>(kMadToSigma) * median<kPatchPixels>(scratch);
     const Lanes zero = {}, one = zero + 1.0f;
     for (int round = 0; round < 3; round++) {
         const Lanes limit = 2.5f * higher(spread, zero + kSmallestSpread);
         Lanes sum = zero, square = zero, kept = zero;
-        for (int i = 0; i < kCount; i++) {
+        for (int i = 0; i < kPatchPixels; i++) {
             const Lanes distance = values[i] - center, used = absolute(distance) > limit ? zero : distance;
             kept += absolute(distance) > limit ? zero : one;
             sum += used;
@@ -146,10 +146,10 @@ Lanes robust_mean(const Lanes *values) {
 
 // A quick check first: in some channel, the middle and its four neighbours are all black or saturated.
 bool is_out_of_range(const Lanes *values, float black, float white) {
-    constexpr int middle = kCount / 2;
+    constexpr int middle = kPatchPixels / 2;
     for (int c = 0; c < kLanes; c++) {
         int bad = 0;
-        for (int i : {middle, middle - 1, middle + 1, middle - kSide, middle + kSide})
+        for (int i : {middle, middle - 1, middle + 1, middle - kPatchSide, middle + kPatchSide})
             bad += !(values[i][c] >= black && values[i][c] <= white);
         if (bad == 5) return true;
     }
@@ -161,14 +161,14 @@ bool is_out_of_range(const Lanes *values, float black, float white) {
 bool is_saturated(const Lanes *values, float white) {
     for (int c = 0; c < kLanes; c++) {
         int above = 0;
-        for (int i = 0; i < kCount; i++) above += values[i][c] > white;
-        if (4 * above > kCount) return true;
+        for (int i = 0; i < kPatchPixels; i++) above += values[i][c] > white;
+        if (4 * above > kPatchPixels) return true;
     }
     return false;
 }
 
 bool all_in_range(const Lanes *values, float black, float white) {
-    for (int i = 0; i < kCount; i++)
+    for (int i = 0; i < kPatchPixels; i++)
         for (int c = 0; c < kLanes; c++)
             if (!(values[i][c] >= black && values[i][c] <= white)) return false;
     return true;
@@ -180,13 +180,13 @@ struct Slope {
 
 // Medians of the halves suppress single wrong pixels; the halves' centres are kReach + 1 pixels apart.
 Slope slope_of(const Lanes *values) {
-    constexpr int half = kReach * kSide;
+    constexpr int half = kReach * kPatchSide;
     Lanes left[half], right[half], above[half], below[half];
     std::copy(values, values + half, above);
-    std::copy(values + kCount - half, values + kCount, below);
-    for (int row = 0; row < kSide; row++) {
-        std::copy_n(values + row * kSide, kReach, left + row * kReach);
-        std::copy_n(values + row * kSide + kReach + 1, kReach, right + row * kReach);
+    std::copy(values + kPatchPixels - half, values + kPatchPixels, below);
+    for (int row = 0; row < kPatchSide; row++) {
+        std::copy_n(values + row * kPatchSide, kReach, left + row * kReach);
+        std::copy_n(values + row * kPatchSide + kReach + 1, kReach, right + row * kReach);
     }
     constexpr float distance = kReach + 1;
     return {(upper_median<half>(right) - upper_median<half>(left)) / distance,
@@ -309,9 +309,9 @@ bool View::patch(double x, double y, bool keep_white, Patch &out) const {
     double u, v;
     to_view(x, y, u, v);
     const int iu = static_cast<int>(std::lround(u)), iv = static_cast<int>(std::lround(v));
-    for (int i = 0; (image_.mask || alpha_) && i < kCount; i++)
-        if (!is_allowed(iu + i % kSide - kReach, iv + i / kSide - kReach)) return false;
-    Lanes all[kCount];
+    for (int i = 0; (image_.mask || alpha_) && i < kPatchPixels; i++)
+        if (!is_allowed(iu + i % kPatchSide - kReach, iv + i / kPatchSide - kReach)) return false;
+    Lanes all[kPatchPixels];
     const int colour[kLanes] = {reversed_ ? 2 : 0, 1, reversed_ ? 0 : 2, 1}, grey[kLanes] = {0, 0, 0, 0};
     const int *offset = channels_ == 3 ? colour : grey;
     if (image_.view.sample == LENSPROF_SAMPLE_U8)
@@ -323,7 +323,7 @@ bool View::patch(double x, double y, bool keep_white, Patch &out) const {
     const auto black = static_cast<float>(image_.black), white = static_cast<float>(image_.white);
     bool is_white[3] = {false, false, false};
     for (int c = 0; c < 3 && keep_white; c++)
-        is_white[c] = std::all_of(all, all + kCount, [=](const Lanes &pixel) { return pixel[c] > white; });
+        is_white[c] = std::all_of(all, all + kPatchPixels, [=](const Lanes &pixel) { return pixel[c] > white; });
     if (is_out_of_range(all, black, keep_white ? INFINITY : white)) return false;
     if (!keep_white && is_saturated(all, white)) return false;
     if (image_.every_pixel && !all_in_range(all, black, keep_white ? INFINITY : white)) return false;

@@ -12,9 +12,9 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kMinPairs = 30;      // of a link
-constexpr double kClearLevels = 1.5;  // of 255, and this many standard errors of a median
-constexpr double kClearly = 5.0;
+constexpr size_t kMinBalancePairs = 30;  // of a link
+constexpr double kClearLevels = 1.5;     // of 255, and this many standard errors of a median
+constexpr double kClearBalance = 5.0;
 constexpr double kMedianError = 1.2533;  // sqrt(pi / 2): standard error of a median relative to that of a mean
 
 bool is_held(const Problem &problem, uint32_t image, size_t channel) {
@@ -27,7 +27,7 @@ struct Sum {
 
     void add(double difference, double error) { levels += difference, variance += error * error, links += 1.0; }
     double mean() const { return links > 0.0 ? std::abs(levels) / links : 0.0; }
-    bool is_clear() const { return mean() > kClearLevels && std::abs(levels) > kClearly * std::sqrt(variance); }
+    bool is_clear() const { return mean() > kClearLevels && std::abs(levels) > kClearBalance * std::sqrt(variance); }
 };
 
 // For red (k = 0) or blue (1).
@@ -35,7 +35,7 @@ HeldBalance held_balance_of(const Problem &problem, size_t k,
                             const std::vector<std::array<double, 2>> &relative_to_green) {
     std::vector<Sum> sums(problem.image_count);
     for (const Edge &edge : problem.edges) {
-        if (edge.last - edge.first < kMinPairs) continue;
+        if (edge.last - edge.first < kMinBalancePairs) continue;
         std::vector<double> values, distances;
         for (size_t p = edge.first; p < edge.last; p++) values.push_back(relative_to_green[p][k]);
         const double middle = median(values);

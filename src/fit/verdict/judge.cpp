@@ -34,12 +34,12 @@ constexpr double kHarmfulStillPattern = 2.0;
 constexpr double kNotRadial = 0.3;           // share explained by one map over the frame
 constexpr double kLargestCornerSigma = 0.1;  // of M
 constexpr uint32_t kMinInliers = 3;          // of an image: fewer agree by chance,
-constexpr double kSmallestShare = 0.2;       // or a smaller share of its pairs
+constexpr double kSmallestImageShare = 0.2;  // or a smaller share of its pairs
 constexpr double kSmallestStillShare = 0.7;  // of all pairs, if equal places are compared,
 constexpr double kStillMedian = 1.5;         // and levels of 255 that half of them exceed
 constexpr double kFarCentre = 0.1;           // half diagonals: five standard errors of its prior
 constexpr double kOnLimit = 0.98;            // of the largest allowed offset of the centre
-constexpr double kClearly = 3.0;             // standard errors
+constexpr double kClearOfLimit = 3.0;        // standard errors
 constexpr double kOddImage = 5.0;            // levels of 255, and four times the noise
 
 // Counts informative pairs: different from each other, with both grey values of a channel between black and white.
@@ -145,7 +145,7 @@ std::vector<double> rise_above(double limit, const Problem &problem, const lensp
         covariance_held(r, curve, held);
         highest = peak.m, sigma = std::sqrt(std::max(0.0, lp_falloff_variance(held, 3, 0, peak.r2)));
     }
-    if (highest - kClearly * sigma > limit) return {highest, sigma};
+    if (highest - kClearOfLimit * sigma > limit) return {highest, sigma};
     return {};
 }
 
@@ -241,7 +241,7 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
 // The first image with almost no pair that agrees.
 bool disagrees(const Problem &problem, const lensprof_fit_result &r, uint32_t &image) {
     for (image = 0; image < problem.image_count && r.image_quality; image++)
-        if (r.image_quality[image].inliers < kSmallestShare * r.image_quality[image].pairs) return true;
+        if (r.image_quality[image].inliers < kSmallestImageShare * r.image_quality[image].pairs) return true;
     return false;
 }
 
