@@ -54,7 +54,7 @@ sanitize: test-deps ## build and run the C and C++ tests under address and undef
 soak: test-deps build ## the campaigns in full, and under sanitizers: nightly, an hour or more
 	ctest --preset soak -j $(JOBS)
 	cmake --preset sanitize
-	cmake --build --preset sanitize -j $(JOBS)
+	cmake --build --preset sanitize -j $(JOBS) --target all soak_tests
 	ctest --preset soak-sanitize -j $(JOBS)
 
 bench: test-deps build ## compare accuracy and speed with other programs

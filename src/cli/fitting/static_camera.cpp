@@ -47,7 +47,11 @@ lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free)
 }  // namespace
 
 Project static_project(const std::vector<std::string> &files, bool free_balance) {
-    for (const std::string &file : files) refuse_other_kind(file);
+    for (const std::string &file : files) {
+        if (is_folder(file))
+            throw Failure(ExitCode::usage, file + ": is a folder; give its pictures, for example with " + file + "/*");
+        refuse_other_kind(file);
+    }
     if (files.size() < 2)
         throw Failure(ExitCode::usage,
                       "one picture shows no difference in exposure; give at least two of the same scene");
