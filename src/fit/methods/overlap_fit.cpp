@@ -217,6 +217,11 @@ void OverlapFit::solve_again() {
     found_.outcome = solve(all_, prior_, gauge_, found_.used, true, control_, found_.estimate);
 }
 
+void OverlapFit::restore(const State &state) {
+    found_ = state.found, gauge_ = state.gauge, lenses_ = state.lenses, control_.falls = state.falls;
+    set_vignettings(all_.vignettings);
+}
+
 // Weighs the knowledge of lenses against what the pictures show, of which errors common to neighbouring pairs leave
 // less than their number suggests, and fits again.
 void OverlapFit::weigh_lens_knowledge() {
@@ -284,16 +289,15 @@ void OverlapFit::hold_equal_exposures() {
     const double limit = kMargin * chi_squared_limit(unknown);
     const bool any_seen = largest_step_ev(all_, found_.estimate) >= kUnseen;
     if (any_seen && exposures_clearly_differ(limit)) return;
-    const Fitted different = found_;
-    Gauge open = gauge_;
-    Prior prior = prior_of(prior_, different.estimate.modes);
-    open.renew(all_, different.estimate, prior);
-    const auto objective = make_objective(all_, prior, different.used, different.estimate);
+    State different = state();
+    const Estimate &found = different.found.estimate;
+    Prior prior = prior_of(prior_, found.modes);
+    different.gauge.renew(all_, found, prior);
+    const auto objective = make_objective(all_, prior, different.found.used, found);
     gauge_.expect_equal_exposures();
     solve_again();
-    const double ratio = objective->value_at(found_.estimate) - objective->value_at(different.estimate);
-    if (!any_seen || 2.0 * ratio / inflation_.exposures < limit) return;
-    gauge_ = open, found_ = different;
+    const double ratio = objective->value_at(found_.estimate) - objective->value_at(found);
+    if (any_seen && !(2.0 * ratio / inflation_.exposures < limit)) restore(different);
 }
 
 // A crop has its optical axis far from its middle, as no lens has. The pictures must predict held-out pairs
@@ -301,7 +305,7 @@ void OverlapFit::hold_equal_exposures() {
 void OverlapFit::free_center() {
     constexpr double kFar = 3.0, kFreedom = 2.0, kGain = 0.04;  // of the loss: 2 % of the residual
     bool is_far = false;
-    const std::vector<WeighedLens> lenses = lenses_;
+    const State held = state();
     for (WeighedLens &lens : lenses_) {
         const double distance2 = lens.center_distance * lens.center_distance;
         if (lens.center_distance < kFar) continue;
@@ -309,14 +313,11 @@ void OverlapFit::free_center() {
         is_far = true;
     }
     if (!is_far) return;
-    const Fitted held = found_;
     const HeldoutLoss before = loss_of(*this);
     solve_again();
     double error;
     const double gain = -loss_difference_by_place(tested(), loss_of(*this), before, error);
-    if (gain > 3.0 * error && gain > kGain * before.mean) return;
-    lenses_ = lenses, found_ = held;
-    set_vignettings(all_.vignettings);
+    if (!(gain > 3.0 * error && gain > kGain * before.mean)) restore(held);
 }
 
 // Falloffs that rise outward, as almost no lens does, must predict held-out pairs clearly better than the best ones
@@ -326,7 +327,7 @@ void OverlapFit::hold_falling() {
     for (const Falloffs &curves : found_.estimate.vignetting)
         for (const lensprof_vignetting &v : curves) any_rises = any_rises || course_of(v).rise.m > kSmallRise;
     if (!any_rises || (options_.free & kFalloffFlags) != kFalloffFlags) return;
-    const Fitted rising = found_;
+    const State rising = state();
     const HeldoutLoss rising_loss = loss_of(*this);
     for (Estimate *estimate : {&found_.estimate, &found_.best.estimate})
         for (Falloffs &curves : estimate->vignetting)
@@ -337,9 +338,7 @@ void OverlapFit::hold_falling() {
     control_.falls = true;
     solve_again();
     double error;
-    if (loss_difference_by_place(tested(), loss_of(*this), rising_loss, error) <= 3.0 * error) return;
-    control_.falls = false;
-    found_ = rising;
+    if (!(loss_difference_by_place(tested(), loss_of(*this), rising_loss, error) <= 3.0 * error)) restore(rising);
 }
 
 const Problem &OverlapFit::tested() const { return has_heldout_ ? heldout_ : all_; }

@@ -59,6 +59,19 @@ public:
     void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
 
 private:
+    struct Fitted {
+        Candidate best;     // of the training pairs
+        Estimate estimate;  // of all
+        Loss used;
+        Outcome outcome;
+    };
+    // What a fit under another assumption changes, restored if the pictures reject it.
+    struct State {
+        Fitted found;
+        Gauge gauge;
+        std::vector<WeighedLens> lenses;
+        bool falls;
+    };
     static std::unique_ptr<StoredPrior> stored_prior(const lensprof_fit_options &options,
                                                      const lensprof_profile *profile, const Problem &problem) {
         if (!profile) return nullptr;
@@ -95,6 +108,8 @@ private:
     bool frees_lens() const { return options_.free & (kFalloffFlags | LENSPROF_FREE_CENTER); }
     void weigh_lens_knowledge();
     void solve_again();
+    State state() const { return {found_, gauge_, lenses_, control_.falls}; }
+    void restore(const State &state);
     bool exposures_clearly_differ(double limit);
     void hold_equal_exposures();
     void free_center();
@@ -112,12 +127,7 @@ private:
     const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
     std::unique_ptr<StoredPrior> stored_;
     Gauge gauge_;
-    struct Fitted {
-        Candidate best;     // of the training pairs
-        Estimate estimate;  // of all
-        Loss used;
-        Outcome outcome;
-    } found_;
+    Fitted found_;
     Control control_;
     Inflation inflation_{1};
     std::vector<WeighedLens> lenses_;  // per setting, once weighed
