@@ -150,7 +150,7 @@ void test_refusals(void **) {
     };
     refuse(usage, out, "no frames");
     refuse(usage, Words{frames[0]} + out, "one picture");
-    refuse(usage, Words{work("in")} + out, "is a folder; give its pictures");
+    refuse(unreadable, Words{work("in")} + out, "is a folder; give its pictures");
     refuse(unreadable, Words{frames[0], work("in/small.png")} + out, "80 x 60");
     refuse(not_usable, Words{frames[0], work("in/noise.png")} + out, "");
     refuse(unreadable, Words{frames[0], work("in/text.png")} + out, "text.png");

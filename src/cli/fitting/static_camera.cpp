@@ -49,7 +49,7 @@ lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free)
 Project static_project(const std::vector<std::string> &files, bool free_balance) {
     for (const std::string &file : files) {
         if (is_folder(file))
-            throw Failure(ExitCode::usage, file + ": is a folder; give its pictures, for example with " + file + "/*");
+            throw Failure(ExitCode::unreadable, file + ": cannot read: it is a folder; give its pictures");
         refuse_other_kind(file);
     }
     if (files.size() < 2)
