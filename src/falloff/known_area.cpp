@@ -18,7 +18,7 @@ constexpr double kDarkShare = 0.01;   // of a map, below which dark values are s
 constexpr uint32_t kLeastSide = 48;   // of a map that shows an edge
 constexpr double kRoundShare = 0.95;  // of an outline within kOffCircle values of a circle
 constexpr double kOffCircle = 1.5;
-constexpr double kFarthestCenter = 0.5;  // of a circle, half diagonals: a straight outline is not one
+constexpr double kFarthestCircle = 0.5;  // of a circle, half diagonals: a straight outline is not one
 constexpr double kMiddle = 0.05;         // how far from the middle that of a rectangle may be, half diagonals
 
 using Mask = std::vector<uint8_t>;
@@ -133,7 +133,7 @@ std::optional<Circle> circle_through(const FalloffMap &map, const Points &points
     const double slack = kOffCircle * std::max(map.dx, map.dy) / half;
     const auto is_near = [&](const auto &point) { return std::fabs((place(point) - center).norm() - radius) <= slack; };
     const auto near = static_cast<double>(std::count_if(points.begin(), points.end(), is_near));
-    if (!(near >= kRoundShare * static_cast<double>(points.size())) || !(center.norm() <= kFarthestCenter))
+    if (!(near >= kRoundShare * static_cast<double>(points.size())) || !(center.norm() <= kFarthestCircle))
         return std::nullopt;
     return Circle{{center[0], center[1]}, radius};
 }

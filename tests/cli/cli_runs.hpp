@@ -23,6 +23,9 @@
 
 #include "picture_files.hpp"
 
+// Compiled once, in cli_runs.cpp.
+extern template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace cli_runs {
 
 using namespace picture_files;
@@ -39,166 +42,49 @@ struct Outcome {
     std::string out, err;
 };
 
-inline Words operator+(Words words, const Words &more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-}
+Words operator+(Words words, const Words &more);
 
-inline std::string joined(const Words &words) {
-    std::string text;
-    for (const std::string &word : words) text += word + " ";
-    return text;
-}
+std::string joined(const Words &words);
 
 inline bool contains(const std::string &text, const std::string &part) { return text.find(part) != std::string::npos; }
 
-inline Outcome run_words(const Words &words) {
-    std::ostringstream out, err;
-    Streams streams{out, err};
-    const int code = run(words, streams);
-    return {code, out.str(), err.str()};
-}
+Outcome run_words(const Words &words);
 
 // Runs and returns what was printed; the exit code must be `code`.
-inline std::string must_exit(int code, const Words &words) {
-    const Outcome outcome = run_words(words);
-    if (outcome.code != code)
-        fail_msg("%s: exit code %d, not %d: %s", joined(words).c_str(), outcome.code, code, outcome.err.c_str());
-    return outcome.out;
-}
+std::string must_exit(int code, const Words &words);
 
-inline Json json_of(const Words &words, int code = done) {
-    const std::string text = must_exit(code, words);
-    assert_int_equal(std::count(text.begin(), text.end(), '\n'), 1);
-    const Json json = Json::parse(text, nullptr, false);
-    assert_false(json.is_discarded());
-    assert_int_equal(json.value("schema", 0), 1);
-    return json;
-}
+Json parsed(const std::string &text);
+
+Json json_of(const Words &words, int code = done);
 
 // Runs in a child process that `prepare` has changed: another user, another limit. Both outputs come back through a
 // pipe, so that a full disk does not hide them.
-inline Outcome run_child(
-    const Words &words, const std::function<void()> &prepare = [] {}) {
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    const pid_t child = fork();
-    if (child == 0) {
-        prepare();
-        const Outcome outcome = run_words(words);
-        const std::string both = outcome.out + '\0' + outcome.err;
-        for (size_t at = 0; at < both.size();) {
-            const ssize_t written = write(ends[1], both.data() + at, both.size() - at);
-            if (written <= 0) _exit(255);
-            at += size_t(written);
-        }
-        _exit(outcome.code);
-    }
-    close(ends[1]);
-    std::string both;
-    char buffer[4096];
-    for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;) both.append(buffer, size_t(got));
-    close(ends[0]);
-    int status = 0;
-    assert_int_equal(waitpid(child, &status, 0), child);
-    const size_t middle = std::min(both.find('\0'), both.size());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), both.substr(0, middle),
-            both.substr(std::min(middle + 1, both.size()))};
-}
+Outcome run_child(
+    const Words &words, const std::function<void()> &prepare = [] {});
 
 // Every file and folder below the tests' folder, with its bytes.
 using Disk = std::map<std::string, Bytes>;
 
-inline Disk disk() {
-    Disk all;
-    for (const fs::directory_entry &entry : fs::recursive_directory_iterator(folder)) {
-        const std::string name = entry.path().lexically_relative(folder).string();
-        if (entry.is_directory())
-            all[name + "/"] = Bytes();
-        else
-            all[name] = load(entry.path().string());
-    }
-    return all;
-}
+Disk disk();
 
-inline std::string difference(const Disk &before, const Disk &after) {
-    std::string text;
-    for (const auto &file : before) {
-        const auto same = after.find(file.first);
-        if (same == after.end())
-            text += " lost " + file.first;
-        else if (same->second != file.second)
-            text += " changed " + file.first;
-    }
-    for (const auto &file : after)
-        if (!before.count(file.first)) text += " left " + file.first;
-    return text;
-}
+std::string difference(const Disk &before, const Disk &after);
 
 // Checks that the failure is reported on standard error with these names, and that the disk is unchanged.
-inline void assert_refusal(const Words &words, const Outcome &outcome, int code, const Words &named,
-                           const Disk &before) {
-    const std::string what = joined(words);
-    if (outcome.code != code)
-        fail_msg("%s: exit code %d, not %d: %s", what.c_str(), outcome.code, code, outcome.err.c_str());
-    if (outcome.err.rfind("lensprof: ", 0) != 0 || outcome.err.back() != '\n')
-        fail_msg("%s: not an error line of lensprof: %s", what.c_str(), outcome.err.c_str());
-    for (const std::string &name : named)
-        if (!contains(outcome.err, name))
-            fail_msg("%s: '%s' does not name %s", what.c_str(), outcome.err.c_str(), name.c_str());
-    const std::string changes = difference(before, disk());
-    if (!changes.empty()) fail_msg("%s: on the disk:%s", what.c_str(), changes.c_str());
-}
+void assert_refusal(const Words &words, const Outcome &outcome, int code, const Words &named, const Disk &before);
 
-inline void assert_refused(int code, const Words &words, const Words &named) {
-    const Disk before = disk();
-    const Outcome outcome = run_words(words);
-    assert_refusal(words, outcome, code, named, before);
-    if (code != not_usable && !outcome.out.empty())
-        fail_msg("%s: printed %s", joined(words).c_str(), outcome.out.c_str());
-}
+void assert_refused(int code, const Words &words, const Words &named);
 
 // Range of the first match of an extended regular expression in `text` from `at` on, and the ranges of its groups;
 // empty without a match. `.` does not match a line break.
-inline std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pattern, const std::string &text,
-                                                           size_t at = 0) {
-    regex_t compiled;
-    regmatch_t found[4];
-    if (regcomp(&compiled, pattern.c_str(), REG_EXTENDED | REG_NEWLINE) != 0)
-        fail_msg("%s is not a regular expression", pattern.c_str());
-    std::vector<std::pair<size_t, size_t>> groups;
-    if (regexec(&compiled, text.c_str() + at, 4, found, 0) == 0)
-        for (const regmatch_t &group : found)
-            groups.push_back({at + size_t(std::max(group.rm_so, 0)), size_t(group.rm_eo - group.rm_so)});
-    regfree(&compiled);
-    return groups;
-}
+std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pattern, const std::string &text, size_t at = 0);
 
 // Replaces every match; $1 is the first group.
-inline std::string replaced(const std::string &text, const std::string &pattern, const std::string &replacement) {
-    std::string result;
-    size_t at = 0;
-    for (auto match = find_pattern(pattern, text); !match.empty(); match = find_pattern(pattern, text, at)) {
-        std::string instead = replacement;
-        const size_t group = instead.find("$1");
-        if (group != std::string::npos) instead.replace(group, 2, text, match[1].first, match[1].second);
-        result.append(text, at, match[0].first - at).append(instead);
-        at = match[0].first + match[0].second;
-    }
-    return result + text.substr(at);
-}
+std::string replaced(const std::string &text, const std::string &pattern, const std::string &replacement);
 
-inline std::string text_of(const std::string &path) {
-    const Bytes bytes = load(path);
-    return std::string(bytes.begin(), bytes.end());
-}
+std::string text_of(const std::string &path);
 
 // A text file changed by a regular expression, which must match.
-inline void edit(const std::string &path, const std::string &pattern, const std::string &replacement) {
-    const std::string text = text_of(path), changed = replaced(text, pattern, replacement);
-    if (changed == text) fail_msg("%s: nothing matches %s", path.c_str(), pattern.c_str());
-    save(path, Bytes(changed.begin(), changed.end()));
-}
+void edit(const std::string &path, const std::string &pattern, const std::string &replacement);
 
 inline void save_text(const std::string &path, const std::string &text) { save(path, Bytes(text.begin(), text.end())); }
 
@@ -206,70 +92,31 @@ inline void save_text(const std::string &path, const std::string &text) { save(p
 struct LensfunEntry {
     double focal_mm, aperture, k1, k2 = 0.0, distance_m = 1000.0;
 };
-inline std::string lensfun_text(const std::string &lens, const std::vector<LensfunEntry> &entries) {
-    std::ostringstream text;
-    text << "<lensdatabase version=\"1\"><lens><maker>Example</maker><model>Example " << lens
-         << "</model><mount>Generic</mount><cropfactor>1.5</cropfactor><calibration>\n";
-    for (const LensfunEntry &e : entries)
-        text << "<vignetting model=\"pa\" focal=\"" << e.focal_mm << "\" aperture=\"" << e.aperture << "\" distance=\""
-             << e.distance_m << "\" k1=\"" << e.k1 << "\" k2=\"" << e.k2 << "\" k3=\"0\"/>\n";
-    text << "</calibration></lens></lensdatabase>\n";
-    return text.str();
-}
+std::string lensfun_text(const std::string &lens, const std::vector<LensfunEntry> &entries);
 
 // `scene` holds four PNG files and `mixed` one picture of every kind, rendered once; `work` is empty before every test.
 constexpr const char *mixed_names[] = {"img000.png", "img001.png", "img002.tif",
                                        "img003.tif", "img004.tif", "img005.jpg"};
 
 // Largest difference between a falloff in JSON (k1..k3) and the true one, from the centre to the corner.
-inline double falloff_error(const Json &k, const std::vector<double> &truth) {
-    double worst = 0.0;
-    for (double r = 0.0; r <= 1.0; r += 0.05) {
-        double difference = 0.0;
-        for (int n = 0; n < 3; n++) difference += (k[n].get<double>() - truth[n]) * std::pow(r * r, n + 1);
-        worst = std::max(worst, std::abs(difference));
-    }
-    return worst;
-}
+double falloff_error(const Json &k, const std::vector<double> &truth);
 
 inline std::string scene(const std::string &name) { return in_folder("scene/" + name); }
 inline std::string mixed(const std::string &name) { return in_folder("mixed/" + name); }
 inline std::string work(const std::string &name) { return in_folder("work/" + name); }
 
 // A copy of a rendered folder that a test may change.
-inline std::string copy_of(const std::string &from, const std::string &to = "copy") {
-    fs::copy(in_folder(from), work(to), fs::copy_options::recursive);
-    return work(to);
-}
+std::string copy_of(const std::string &from, const std::string &to = "copy");
 
 // `simulate` into work(name): what several tests of a program render is rendered once, and copied.
-inline void render(const std::string &name, const Words &words) {
-    static std::map<Words, std::string> rendered;
-    const auto [entry, is_new] = rendered.try_emplace(words, in_folder("rendered" + std::to_string(rendered.size())));
-    if (is_new) must_exit(done, Words{"simulate", "-o", entry->second} + words);
-    fs::copy(entry->second, work(name), fs::copy_options::recursive);
-}
+void render(const std::string &name, const Words &words);
 
 // Enough for tests that are not about accuracy.
 inline const Words quick = {"--pairs", "600", "--modes", "3"};
 
-inline int make_scene(void **state) {
-    umask(022);
-    if (make_folder(state) != 0) return -1;
-    setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
-    setenv("XDG_DATA_DIRS", in_folder("work/share").c_str(), 1);
-    must_exit(done,
-              {"simulate", "-o", in_folder("scene"), "--images", "4", "--size", "320x240", "--test-points", "1500"});
-    must_exit(done, {"simulate", "-o", in_folder("mixed"), "--images", "6", "--size", "200x150", "--exif", "--format",
-                     "png,png16,tiff,tiff16,tiff32,jpeg"});
-    return 0;
-}
+int make_scene(void **state);
 
-inline int empty_work(void **) {
-    fs::remove_all(work(""));
-    fs::create_directories(work(""));
-    return 0;
-}
+int empty_work(void **);
 
 }  // namespace cli_runs
 

@@ -67,7 +67,7 @@ public:
         must_exit(done, Words{"simulate", "-o", work(name), "--moving", kind_name, "--size", "400x300", "--images",
                               std::to_string(images), "--gloss", "0", "--noise", "1", "--format", "png"}
                             + more);
-        truth = Json::parse(text_of(work(name + "/truth.json")));
+        truth = parsed(text_of(work(name + "/truth.json")));
         const auto world = make_moving_world(kind, {1, images, width_, height_, 50, 1, 0});
         for (size_t i = 0; i < images; i++) poses_.push_back(pose_of(truth, i));
         for (size_t i = 0; i < images; i++)

@@ -92,7 +92,7 @@ void test_damaged_records(void **) {
         ledger.finish(file);
         ledger.save();
     }
-    const Json whole = Json::parse(text_of(work(record)));
+    const Json whole = parsed(text_of(work(record)));
     assert_true(Ledger(work("")).notes == whole["notes"] && has_ledger(work("")));
     const auto with = [&](const std::string &pointer, const Json &value) {
         Json changed = whole;
@@ -204,7 +204,7 @@ void test_edited_records(void **) {
     if (is_missing()) return;
     simulate("row", {"--images", "4", "--seed", "21"});
     json_of(calibrated(work("row")));
-    const Json whole = Json::parse(text_of(work(std::string("out/") + record)));
+    const Json whole = parsed(text_of(work(std::string("out/") + record)));
     for (const char *pointer :
          {"/notes/registration/groups/0/files", "/notes/registration/groups", "/notes/registration", "/notes/results",
           "/notes/results/img000/summary/result/vignetting", "/notes/results/img000/project", "/files", "/notes"}) {

@@ -148,7 +148,7 @@ void test_unlisted_folder(void **) {
     });
     fs::permissions(work("row/closed"), fs::perms::owner_all);
     if (outcome.code != done) fail_msg("exit code %d: %s", outcome.code, outcome.err.c_str());
-    assert_left_out(Json::parse(outcome.out), "closed", "cannot list the folder");
+    assert_left_out(parsed(outcome.out), "closed", "cannot list the folder");
 }
 
 // A foreign file named calibrate.json does not hide a folder.

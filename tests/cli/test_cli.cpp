@@ -86,7 +86,7 @@ void test_build_keeps_its_contract(void **) {
 // The result equals the rendered truth up to the exponent g that pictures alone leave open: with another response, EV
 // times g, and falloff and white balance to the power g explain the same pictures (Grossberg & Nayar 2003).
 void test_build_finds_the_truth(void **) {
-    const Json truth = Json::parse(text_of(scene("truth.json"))),
+    const Json truth = parsed(text_of(scene("truth.json"))),
                json = json_of({"build", scene("pano.pto"), "--no-store", "--json"});
     assert_int_equal(json["pairs"].get<int>(), 2000);
     double ev[4], true_ev[4], cross = 0, square = 0;
@@ -234,7 +234,7 @@ void test_what_is_free(void **) {
     const Outcome poor = run_words(build_scene({"--free", "ev"}));
     assert_int_equal(poor.code, not_usable);
     assert_true(contains(poor.err, "pano.pto: not usable: the pairs deviate by"));
-    const Json ev = Json::parse(poor.out);
+    const Json ev = parsed(poor.out);
     assert_true(ev["usable"] == false);
     for (const Json &k : ev["vignetting"]["k"][0]) assert_close(k.get<double>(), 0, 0);
     assert_close(ev["images"][1]["white_balance"][0].get<double>(), 1, 0);
@@ -369,7 +369,7 @@ void test_key_from_the_command_line(void **) {
     const Json key = json_of({"profile", "show", "1", "--json", "--db", work("p.db")})["key"];
     assert_true(
         key
-        == Json::parse(
+        == parsed(
             R"({"camera_maker":"Maker","camera_model":"Cämera","lens":"Lens","unit":"","crop_factor":null,"focal_mm":24.0,"aperture":1.4,)"
             R"("distance_m":2.5,"color_temperature_k":null,"processing":"raw","style":"Velvia"})"));
 }
@@ -427,7 +427,7 @@ void test_simulate_is_repeatable(void **) {
 // The pictures follow B = f(L M e w): the ratio of two pictures at a common point equals that of the truth, computed
 // here with the sRGB formula.
 void test_simulated_pairs_follow_the_model(void **) {
-    const Json truth = Json::parse(text_of(scene("truth.json")));
+    const Json truth = parsed(text_of(scene("truth.json")));
     const auto linear = [](double b) { return b <= 0.04045 ? b / 12.92 : std::pow((b + 0.055) / 1.055, 2.4); };
     const Json &k = truth["vignetting"]["k"][0], &centre = truth["vignetting"]["center"];
     std::istringstream lines(text_of(scene("test_points.txt")));

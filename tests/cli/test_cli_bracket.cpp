@@ -56,7 +56,7 @@ void test_an_overexposed_picture_is_left_out(void **) {
         const Outcome outcome = run_words(bracket(files, no_store + known));
         assert_int_equal(outcome.code, done);
         assert_true(contains(outcome.err, files[3]) && contains(outcome.err, "left out"));
-        const Json json = Json::parse(outcome.out);
+        const Json json = parsed(outcome.out);
         assert_recovered(json, three, 1.5);
         assert_int_equal(json["images"].size(), 4);
         assert_int_equal(json["images"][3]["pairs"].get<int>(), 0);

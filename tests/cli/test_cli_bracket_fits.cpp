@@ -181,7 +181,7 @@ void test_black_that_is_not_0(void **) {
     const Outcome outcome = run_words(bracket(files, no_store + Words{"--black", "24", "--ev", list_of(evs)}));
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, files[5]) && contains(outcome.err, "left out"));
-    const Json json = Json::parse(outcome.out);
+    const Json json = parsed(outcome.out);
     double worst;
     assert_close(slope(json, five, worst), 1.0, 0.05);
     assert_true(worst < 0.05);

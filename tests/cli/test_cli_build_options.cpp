@@ -18,7 +18,7 @@ Words build(const std::string &path, const Words &more) {
 
 // Slope of recovered against true exposures: gamma.
 double slope(const Json &json, const std::string &path) {
-    const Json truth = Json::parse(text_of(path + "/truth.json"));
+    const Json truth = parsed(text_of(path + "/truth.json"));
     const size_t count = json["images"].size();
     double mean = 0, true_mean = 0, cross = 0, square = 0;
     for (size_t i = 0; i < count; ++i) {

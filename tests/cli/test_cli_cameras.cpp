@@ -95,23 +95,23 @@ void test_project(void **) {
 void test_one_lens_takes_all_as_one(void **) {
     const Json each = json_of(Words{"build", project()} + quietly);
     const Outcome one = run_words(Words{"build", project(), "--one-lens"} + quietly);
-    const Json json = Json::parse(one.out);
+    const Json json = parsed(one.out);
     assert_true(json["cameras"].empty() && !json["images"][0].contains("camera"));
     assert_true(json["residual"]["heldout_median"].get<double>()
                 > 2.0 * each["residual"]["heldout_median"].get<double>());
     // Linear pictures have one response, and a falloff per setting of each camera.
-    const Json linear = Json::parse(run_words(Words{"build", project(), "--camera-kind", "linear"} + quietly).out);
+    const Json linear = parsed(run_words(Words{"build", project(), "--camera-kind", "linear"} + quietly).out);
     assert_true(linear["cameras"].empty());
     assert_int_equal(linear["settings"].size(), 2);
     // Values on the command line hold for all pictures.
-    assert_true(Json::parse(run_words(Words{"build", project(), "--camera", "One"} + quietly).out)["cameras"].empty());
+    assert_true(parsed(run_words(Words{"build", project(), "--camera", "One"} + quietly).out)["cameras"].empty());
     // Also if the project does not link them.
     std::string text = text_of(project());
     for (size_t at = text.find("Ra=0"); at != std::string::npos; at = text.find("Ra=0", at)) text.replace(at, 4, "Ra0");
     const std::string unlinked = two_cameras() + "/unlinked.pto";
     save_text(unlinked, text);
-    assert_true(Json::parse(run_words(Words{"build", unlinked, "--camera", "One"} + quietly).out)["cameras"].empty());
-    assert_int_equal(Json::parse(run_words(Words{"build", unlinked} + quietly).out)["cameras"].size(), 2);
+    assert_true(parsed(run_words(Words{"build", unlinked, "--camera", "One"} + quietly).out)["cameras"].empty());
+    assert_int_equal(parsed(run_words(Words{"build", unlinked} + quietly).out)["cameras"].size(), 2);
 }
 
 // Without a project: the overlaps join both cameras, and the written project assigns each picture to its camera.
@@ -121,7 +121,7 @@ void test_folder(void **) {
     const Outcome outcome = run_words(Words{"build", folder, "--project-out", found} + quietly);
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, "from 2 cameras, sizes or processings"));
-    const Json json = Json::parse(outcome.out);
+    const Json json = parsed(outcome.out);
     assert_both_found(json, 0.02);
     assert_true(json["left_out"].empty());
     // The project keeps the cameras apart even without EXIF.
@@ -152,7 +152,7 @@ double seams(const std::string &folder) {
     fs::copy_file(project(), copy + "/pano.pto");
     for (size_t i = 0; i < kImages; i++) fs::copy_file(folder + "/" + numbered(i), copy + "/" + numbered(i));
     words[1] = copy + "/pano.pto";
-    return Json::parse(run_words(words).out)["residual"]["before_rms"].get<double>();
+    return parsed(run_words(words).out)["residual"]["before_rms"].get<double>();
 }
 
 // One response encodes all pictures, and the seams disappear; if pictures keep their exposure, each uses its own.
@@ -192,7 +192,7 @@ void test_calibrate(void **) {
     assert_true(contains(text, "profiles 1, 2 stored"));
     const double after = seams(out);
     assert_true(after < 0.15 * seams(two_cameras()));
-    const Json json = Json::parse(text_of(out + "/calibrate.json"));
+    const Json json = parsed(text_of(out + "/calibrate.json"));
     assert_int_equal(json["panoramas"].size(), 1);
     assert_int_equal(json["panoramas"][0]["result"]["cameras"].size(), 2);
     assert_true(contains(must_exit(done, {"calibrate", folder, "-o", out, "--db", db}), "all in earlier runs"));
@@ -214,7 +214,7 @@ void test_single_picture(void **) {
     const Outcome outcome = run_words(Words{"build", folder + "/pano.pto"} + quietly);
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, "Third 1: left out"));
-    const Json json = Json::parse(outcome.out);
+    const Json json = parsed(outcome.out);
     assert_int_equal(json["cameras"].size(), 3);
     assert_true(json["images"][5]["joined"] == false && json["images"][5]["ev"].is_null());
     assert_true(json["cameras"][2]["response"].is_null());
@@ -246,7 +246,7 @@ void test_camera_without_a_name(void **) {
     const Outcome outcome = run_words({"build", folder + "/pano.pto", "--db", db, "--json"});
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, "not stored: "));
-    const Json json = Json::parse(outcome.out);
+    const Json json = parsed(outcome.out);
     assert_int_equal(json["cameras"].size(), 2);
     assert_int_equal(json["settings"][0]["profile"], 1);
     assert_true(json["settings"][1]["profile"].is_null());
@@ -267,7 +267,7 @@ void test_cameras_that_share_nothing(void **) {
         state_camera(folder + "/" + numbered(i), "Other", "Other X100");
     }
     const Outcome outcome = run_words({"build", folder + "/pano.pto", "--db", db, "--json"});
-    const Json json = Json::parse(outcome.out);
+    const Json json = parsed(outcome.out);
     assert_true(json["cameras"][1]["joined"] == false);
     assert_true(contains(outcome.err, "Other X100: left out"));
     for (size_t i = 1; i < kImages; i += 2) assert_true(json["images"][i]["ev"].is_null());

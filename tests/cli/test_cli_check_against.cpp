@@ -34,7 +34,7 @@ constexpr const char *kFalloff = "-0.4,0.1,-0.1";
 void store_changed(int id, const std::string &name, const std::function<void(Json &)> &change) {
     const std::string file = in_folder(name + ".json");
     must_exit(done, {"profile", "export", std::to_string(id), "-o", file, "--db", db()});
-    Json json = Json::parse(text_of(file));
+    Json json = parsed(text_of(file));
     json["covariance"] = nullptr;
     json["key"]["lens"] = name;
     change(json);
@@ -192,7 +192,7 @@ void test_other_settings(void **) {
     const Outcome outcome = run_words(against("1 2", mixed_db + "/pano.pto", {"--json"}));
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, "2 pictures of another camera, size or lens setting left out"));
-    assert_int_equal(Json::parse(outcome.out)["images"], 3);
+    assert_int_equal(parsed(outcome.out)["images"], 3);
 }
 
 void test_refused(void **) {

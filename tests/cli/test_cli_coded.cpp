@@ -157,7 +157,7 @@ void test_bracket(void **) {
     const auto response = [](const Words &frames) {
         const Outcome outcome = run_words(Words{"bracket", "--times", "4,2,1", "--no-store", "--json"} + frames);
         assert_true(outcome.code == done || outcome.code == not_usable);
-        return Json::parse(outcome.out).at("response").dump();
+        return parsed(outcome.out).at("response").dump();
     };
     const std::vector<Coding> all = codings();
     assert_string_equal(response(make_frames(all[0].end, &all[0])).c_str(),

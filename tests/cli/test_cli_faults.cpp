@@ -211,7 +211,7 @@ void test_reason_in_json(void **) {
     save_text(work("one.pto"), "i w320 h240 f0 v50 n\"one.png\"\nv Ra0\n");
     const Outcome outcome = run_words({"build", work("one.pto"), "--no-store", "--json"});
     assert_int_equal(outcome.code, not_usable);
-    const Json json = Json::parse(outcome.out);
+    const Json json = parsed(outcome.out);
     assert_true(json["usable"] == false);
     assert_true(contains(json["reason"].get<std::string>(), "at least two"));
     assert_int_equal(json["response"]["values"][0].size(), 1024);

@@ -37,8 +37,8 @@ void test_lenses_and_cameras(void **) {
     const Json lenses = json_of(Words{"profile", "lenses", "24-70", "--json"} + db_words())["lenses"];
     assert_int_equal(lenses.size(), 2);
     assert_true(lenses[0]
-                == Json::parse(R"({"lens":"EF24-70mm f/2.8L USM","profiles":2,"cameras":1,"raw":2,"jpeg":0,)"
-                               R"("corrected":0,"focal_mm":[24,70],"aperture":[2.8,8],"distance_m":null})"));
+                == parsed(R"({"lens":"EF24-70mm f/2.8L USM","profiles":2,"cameras":1,"raw":2,"jpeg":0,)"
+                          R"("corrected":0,"focal_mm":[24,70],"aperture":[2.8,8],"distance_m":null})"));
     const std::string text = must_exit(done, Words{"profile", "lenses", "FE", "24-70"} + db_words());
     assert_true(contains(text, "Sony FE 24-70mm f/2.8 GM") && contains(text, "1 lens\n"));
     const std::string cameras = must_exit(done, Words{"profile", "cameras"} + db_words());

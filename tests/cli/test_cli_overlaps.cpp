@@ -166,7 +166,7 @@ void test_masks_are_respected(void **) {
 void test_threads_and_json(void **) {
     make_project();
     const Words words = merging + Words{work("in/pano.pto"), "--json"};
-    const Json json = Json::parse(must_exit(done, words + Words{"-o", work("one"), "--threads", "1", file_of(1)}));
+    const Json json = parsed(must_exit(done, words + Words{"-o", work("one"), "--threads", "1", file_of(1)}));
     assert_int_equal(json["pictures"].size(), 1);
     assert_int_equal(json["pictures"][0]["overlapping"].get<int>(), 2);
     assert_true(!fs::exists(work("one/p0.tif")));
@@ -303,7 +303,7 @@ void test_changed_pictures_are_named(void **) {
     const Outcome run = run_words(merging + Words{work("in/pano.pto"), "--json", "-o", work("out")});
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "p0.tif: agrees with the overlapping pictures"));
-    const Json pictures = Json::parse(run.out)["pictures"];
+    const Json pictures = parsed(run.out)["pictures"];
     assert_true(pictures[0]["agreement"] < 0.5);
 }
 
@@ -332,7 +332,7 @@ void test_corrected_pictures_give_no_light(void **) {
     const Outcome other = run_words(merging + Words{work("in/pano.pto"), "-o", work("out"), "--json", file_of(0)});
     assert_int_equal(other.code, done);
     assert_true(contains(other.err, "it is not merged"));
-    assert_int_equal(Json::parse(other.out)["pictures"][0]["overlapping"].get<int>(), 1);
+    assert_int_equal(parsed(other.out)["pictures"][0]["overlapping"].get<int>(), 1);
 }
 
 void test_bad_merges(void **) {
@@ -357,7 +357,7 @@ void test_bad_merges(void **) {
         const Outcome run = run_words(merging + Words{project, "--json", "-o", work("others"), file_of(0)});
         assert_int_equal(run.code, done);
         assert_true(contains(run.err, "p1.tif: ") && contains(run.err, "it is not merged"));
-        assert_int_equal(Json::parse(run.out)["pictures"][0]["overlapping"].get<int>(), 1);
+        assert_int_equal(parsed(run.out)["pictures"][0]["overlapping"].get<int>(), 1);
     };
     write_picture(file_of(1), make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGBA));
     only_others(usage);

@@ -52,7 +52,7 @@ void test_a_folder_is_as_good_as_its_project(void **) {
     const Outcome run = run_words(Words{"build", work("row"), "--project-out", found} + quietly);
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "6 pictures overlap"));
-    const Json own = Json::parse(run.out);
+    const Json own = parsed(run.out);
     assert_true(own["images"][0]["file"] == "img000.png");
     assert_alike(given, own);
     assert_alike(own, json_of(Words{"build", found} + quietly));
@@ -91,7 +91,7 @@ void test_a_folder_of_many_things(void **) {
     save_text(work("mixed/damaged.png"), text_of(work("mixed/img002.png")).substr(0, 5000));
     const Outcome run = run_words(Words{"build", work("mixed")} + quietly);
     assert_int_equal(run.code, done);
-    const Json json = Json::parse(run.out);
+    const Json json = parsed(run.out);
     assert_int_equal(json["images"].size(), 5);
     assert_true(contains(run.err, "x0.png, x1.png, x2.png: left out: part of another group"));
     assert_true(contains(run.err, "y.png: left out: no overlap"));
@@ -124,7 +124,7 @@ void test_another_camera_in_a_chain(void **) {
     if (is_missing()) return;
     const Outcome run = build_with_one_smaller("chain", {"--images", "6", "--seed", "61"}, "img002.png");
     assert_int_equal(run.code, done);
-    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_int_equal(parsed(run.out)["images"].size(), 3);
     assert_true(contains(run.err,
                          "img000.png, img001.png: left out: part of another group: only pictures of another "
                          "camera"));
@@ -160,7 +160,7 @@ void test_a_bracket(void **) {
         fs::copy_file(work("still/s" + std::to_string(i) + ".png"), work("row/s" + std::to_string(i) + ".png"));
     const Outcome run = run_words(Words{"build", work("row")} + quietly);
     assert_int_equal(run.code, done);
-    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_int_equal(parsed(run.out)["images"].size(), 3);
     assert_true(contains(run.err, "s3.png: left out: part of another group, whose camera did not move"));
 }
 
@@ -208,7 +208,7 @@ void test_own_pictures_are_left_out(void **) {
     must_exit(done, {"apply", "--pto", work("own/result.pto"), "-o", work("own/even")});
     const Outcome run = run_words(Words{"build", work("own")} + quietly);
     assert_int_equal(run.code, done);
-    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_int_equal(parsed(run.out)["images"].size(), 3);
     assert_true(contains(run.err, "even/img001.png: left out: lensprof made it"));
     must_exit(not_usable, Words{"build", work("own/even")} + quietly);
 }
@@ -250,7 +250,7 @@ void test_corrected_copies_are_not_read(void **) {
     must_exit(done, {"calibrate", work("copies"), "-o", work("copies/even"), "--no-store"});
     const Outcome run = run_words(Words{"build", work("copies")} + quietly);
     assert_int_equal(run.code, done);
-    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_int_equal(parsed(run.out)["images"].size(), 3);
     assert_true(contains(run.err, "copies/even: left out: it is an output folder of calibrate"));
 }
 
@@ -408,8 +408,8 @@ void test_a_camera_that_moved(void **) {
     if (run.code != done) print_error("%s\n", run.err.c_str());
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "compared only at matched points"));
-    is_right(Json::parse(run.out));
-    assert_true(Json::parse(run.out)["images"] == json_of(Words{"build", work("moved")} + quietly)["images"]);
+    is_right(parsed(run.out));
+    assert_true(parsed(run.out)["images"] == json_of(Words{"build", work("moved")} + quietly)["images"]);
     is_right(json_of(Words{"build", work("moved"), "--method", "radiance"} + quietly));
 
     const Words calibrate{"calibrate", work("moved"), "-o", work("moved_out"), "--no-store"};
@@ -421,11 +421,11 @@ void test_a_camera_that_moved(void **) {
     warned(run);
     warned(run_words(calibrate));
     warned(run_words(calibrate));  // from the records
-    const Json first = Json::parse(text_of(work("moved_out/calibrate.json")));
+    const Json first = parsed(text_of(work("moved_out/calibrate.json")));
     is_right(first["panoramas"][0]["result"]);
     fs::remove(work("moved_out/panorama_moved0.pto"));  // fitted again, with the registration from the records
     must_exit(done, calibrate);
-    const Json second = Json::parse(text_of(work("moved_out/calibrate.json")));
+    const Json second = parsed(text_of(work("moved_out/calibrate.json")));
     assert_true(second["panoramas"][0]["result"]["images"] == first["panoramas"][0]["result"]["images"]);
 }
 
@@ -452,7 +452,7 @@ void test_refused(void **) {
     fs::create_directory(work("empty"));
     refuse({"build", work("empty"), "--no-store"}, usage, "is a folder without pictures");
     assert_false(fs::exists(work("q.pto")));
-    const Json json = Json::parse(run_words({"build", a, b, "--no-store", "--json"}).out);
+    const Json json = parsed(run_words({"build", a, b, "--no-store", "--json"}).out);
     assert_true(json["usable"] == false);
 }
 

@@ -242,7 +242,7 @@ void test_file_of_exposures(void **) {
     const std::string first = text_of(work("exposures.json"));
     must_exit(done, build("model", {"--exposures-out", work("exposures.json")}));  // replaces its own file
     assert_string_equal(text_of(work("exposures.json")).c_str(), first.c_str());
-    const Json all = Json::parse(first);
+    const Json all = parsed(first);
     assert_int_equal(all["schema"].get<int>(), 1);
     assert_int_equal(all["images"].size(), images);
     double mean = 0;
@@ -319,7 +319,7 @@ void test_seeded_exif(void **) {
     write_exposures();
     must_exit(done, {"apply", "--model", work("exposures.json"), "--seed-exif", "--output-exposure", "keep", "-o",
                      work("seeded")});
-    const Json all = Json::parse(text_of(work("exposures.json")));
+    const Json all = parsed(text_of(work("exposures.json")));
     double offset = 0;
     for (size_t i = 0; i < images; i++) {
         const PictureMetadata metadata = read_metadata(work("seeded/" + shared().scene.file(i)));

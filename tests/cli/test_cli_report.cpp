@@ -12,7 +12,7 @@ Json data_of(const std::string &path) {
     const std::string text = text_of(path), start = "id=\"data\">", end = "</script>";
     const size_t from = text.find(start) + start.size();
     assert_true(from > start.size());
-    return Json::parse(text.substr(from, text.find(end, from) - from));
+    return parsed(text.substr(from, text.find(end, from) - from));
 }
 
 // Width and height of a JPEG in a data URL: the frame header follows the quantisation tables (ITU-T T.81).
@@ -260,7 +260,7 @@ void test_folder(void **) {
     assert_true(page["looked_up"][0]["name"] == "other.png");
     assert_true(contains(page["looked_up"][0]["correction"], "profile"));
     assert_true(contains(page["left_out"][0]["reason"], "bad.png"));
-    assert_true(page["result"] == Json::parse(text_of(work("out/calibrate.json"))));
+    assert_true(page["result"] == parsed(text_of(work("out/calibrate.json"))));
 
     // What somebody puts instead of a mosaic or a copy is never more than a picture that is not shown.
     const std::string mosaic = page["result"]["panoramas"][0]["preview"].get<std::string>();

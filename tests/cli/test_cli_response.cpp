@@ -69,7 +69,7 @@ void test_cameras(void **) {
     for (int i = 0; i < runs; i++) {
         const Shot shot = any_shot(i);
         const Outcome outcome = run_words(respond(save_shot("shot.dng", take(shot), shot.jpeg)));
-        const Json json = Json::parse(outcome.out);
+        const Json json = parsed(outcome.out);
         if (json["files"].empty()) continue;
         const double error = error_of(json, shot), sigma = json["gamma"]["sigma"];
         fitted++, within += std::fabs(error) <= sigma, within_two += std::fabs(error) <= 2 * sigma;

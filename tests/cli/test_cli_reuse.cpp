@@ -106,7 +106,7 @@ void test_wrong_profile_is_overruled(void **) {
     const Outcome outcome = run_words(build(pictures("b", "2")));
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, "contradicts the pictures"));
-    const Json json = Json::parse(outcome.out);
+    const Json json = parsed(outcome.out);
     assert_true(json["prior"]["used"].get<bool>());
     assert_true(json["prior"]["overruled"] == Json::array({"falloff"}));
     assert_true(contains(json["prior"]["reason"].get<std::string>(), "contradicts the pictures"));

@@ -66,7 +66,7 @@ void test_one_lens(void **) {
     const std::string pto = two_apertures();
     const Json each = json_of(Words{"build", pto} + quietly);
     const Outcome one = run_words(Words{"build", pto, "--one-lens"} + quietly);
-    const Json json = Json::parse(one.out);
+    const Json json = parsed(one.out);
     assert_true(json["settings"].empty() && !json["images"][0].contains("setting"));
     assert_true(contains(one.err, "img001.png: lens, focal length, aperture or focus differ from"));
     assert_true(json["residual"]["heldout_median"].get<double>()
@@ -76,7 +76,7 @@ void test_one_lens(void **) {
     // A method that fits one falloff only.
     const Outcome other = run_words(Words{"build", pto, "--method", "transfer-function"} + quietly);
     assert_true(contains(other.err, "2 lens settings"));
-    assert_true(Json::parse(other.out)["settings"].empty());
+    assert_true(parsed(other.out)["settings"].empty());
 }
 
 // A profile for each, under its own aperture, so that lookups find it.
@@ -260,7 +260,7 @@ void test_frames_turned_either_way(void **) {
     const std::string pto = work("open/pano.pto");
     for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, false);
     const Outcome run = run_words(Words{"build", pto} + quietly);
-    const Json json = Json::parse(run.out);
+    const Json json = parsed(run.out);
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "which way the portrait pictures were turned"));
     assert_true(json["settings"].empty());
@@ -289,7 +289,7 @@ void test_a_setting_that_is_not_shown(void **) {
     }
     save_text(pto, text);
     const Outcome run = run_words({"build", pto, "--db", db, "--json"});
-    const Json json = Json::parse(run.out);
+    const Json json = parsed(run.out);
     assert_int_equal(run.code, done);
     assert_true(json["settings"][0]["usable"] == true && json["settings"][0]["profile"] == 1);
     assert_true(json["settings"][1]["usable"] == false);

@@ -16,7 +16,7 @@ Words simulate(const std::string &name, const Words &more) {
     return words + more;
 }
 
-Json truth_of(const std::string &name) { return Json::parse(text_of(work(name + "/truth.json"))); }
+Json truth_of(const std::string &name) { return parsed(text_of(work(name + "/truth.json"))); }
 
 std::string picture_of(const std::string &name, int i) { return work(name + "/img00" + std::to_string(i) + ".tif"); }
 

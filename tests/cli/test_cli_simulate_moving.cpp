@@ -22,7 +22,7 @@ Words simulate(const std::string &kind, const Words &more) {
     return words + more;
 }
 
-Json truth_of(const std::string &name) { return Json::parse(text_of(work(name + "/truth.json"))); }
+Json truth_of(const std::string &name) { return parsed(text_of(work(name + "/truth.json"))); }
 
 // Grey values of a picture, and its entry in truth.json.
 struct View {

@@ -21,7 +21,7 @@ Words simulate(const std::string &name, const Words &more) {
     return words + more;
 }
 
-Json truth_of(const std::string &name) { return Json::parse(text_of(work(name + "/truth.json"))); }
+Json truth_of(const std::string &name) { return parsed(text_of(work(name + "/truth.json"))); }
 
 std::vector<float> samples_of(const std::string &name, int i) {
     const Picture picture = read_picture(work(name + "/img00" + std::to_string(i) + ".tif"));

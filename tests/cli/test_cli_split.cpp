@@ -33,10 +33,7 @@ Words split(const std::string &format, const Words &more = {}) {
     return Words{"profile", "export", "--split", "--format", format, "-o", work("out"), "--db", work("p.db")} + more;
 }
 
-Json parsed(const std::string &name) {
-    const Bytes bytes = load(work(name));
-    return Json::parse(bytes.begin(), bytes.end());
-}
+Json json_in(const std::string &name) { return parsed(text_of(work(name))); }
 
 std::vector<std::string> names_in(const std::string &folder) {
     std::vector<std::string> names;
@@ -95,12 +92,12 @@ void test_json_has_samples_of_tables_alone(void **) {
     make_db({{"A", 1, 2}});
     must_exit(done, {"profile", "export", "1", "-o", work("one.json"), "--db", work("p.db")});
     assert_true(fs::file_size(work("one.json")) < 1000);
-    Json table = parsed("one.json");
+    Json table = json_in("one.json");
     table["response"] = {{"kind", "table"}, {"values", {{0, 0.7, 1}}}};
     save_text(work("table.json"), table.dump());
     must_exit(done, {"profile", "import", work("table.json"), "--db", work("p.db")});
     must_exit(done, {"profile", "export", "2", "-o", work("two.json"), "--db", work("p.db")});
-    assert_int_equal(parsed("two.json")["response"]["values"][0].size(), 1024);
+    assert_int_equal(json_in("two.json")["response"]["values"][0].size(), 1024);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ void test_one_bad_picture_of_six(void **) {
     const Outcome found = run_words({"build", pto("bad"), "--db", db, "--json", "--pto-out", result});
     assert_int_equal(found.code, done);
     assert_true(contains(found.err, "img005.png: left out: it disagrees with the others"));
-    const Json json = Json::parse(found.out);
+    const Json json = parsed(found.out);
     assert_true(json["usable"] == true && json["evens"] == true);
     for (size_t i = 0; i < 6; i++) {
         const Json &image = json["images"][i];
@@ -57,7 +57,7 @@ void test_one_picture_apart(void **) {
     const Outcome found = run_words({"build", pto("apart"), "--no-store", "--json"});
     assert_int_equal(found.code, done);
     assert_true(contains(found.err, "img005.png: left out: no pair connects it to the others"));
-    const Json json = Json::parse(found.out);
+    const Json json = parsed(found.out);
     assert_true(json["images"][4]["joined"] == true && json["images"][5]["joined"] == false);
     assert_true(json["reason_code"] == "images_unconnected");
 }
@@ -68,7 +68,7 @@ void test_the_reference_can_be_the_bad_one(void **) {
     const Outcome found =
         run_words({"build", pto("first"), "--no-store", "--stored", "none", "--json", "--reference", "img005.png"});
     assert_int_equal(found.code, done);
-    const Json json = Json::parse(found.out);
+    const Json json = parsed(found.out);
     const auto reference = json["reference"].get<size_t>();
     assert_true(reference != 5);
     assert_close(json["images"][reference]["ev"].get<double>(), 0.0, 0.0);
@@ -95,7 +95,7 @@ void test_noise_is_neither(void **) {
     simulate("noise", {"--noise", "100"});
     const Outcome found = run_words({"build", pto("noise"), "--no-store", "--json"});
     assert_int_equal(found.code, not_usable);
-    const Json json = Json::parse(found.out);
+    const Json json = parsed(found.out);
     assert_true(json["usable"] == false && json["evens"] == false);
 }
 
@@ -169,7 +169,7 @@ void test_a_second_look_joins(void **) {
                      "5", "--overlap", "0.35", "--noise", "1", "--seed", "3"});
     const Json json = json_of({"build", pto("far"), "--no-store", "--stored", "none", "--free", "all", "--json"});
     assert_int_equal(json["looks"], 2);
-    const Json truth = Json::parse(text_of(work("far/truth.json")))["images"];
+    const Json truth = parsed(text_of(work("far/truth.json")))["images"];
     const auto true_ev = [&](size_t i) { return truth[i]["ev"].get<double>() - truth[0]["ev"].get<double>(); };
     const double exponent = json["images"][1]["ev"].get<double>() / true_ev(1);
     for (size_t i = 1; i < 4; i++) {

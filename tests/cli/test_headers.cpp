@@ -1,1 +1,0 @@
-// Source of the target of the precompiled headers of these tests.
