@@ -1,20 +1,26 @@
 #!/bin/bash
-# The demonstrations give the same bytes on the boards as on this machine, and stay within their stack.
-# usage: test_boards.sh SOURCE_DIR WORK_DIR C_COMPILER BOARD
+# The demonstrations give the same bytes on the boards as on this machine, and stay within their stack; the memory of the
+# apply path, from the linker's map, stays within its ceilings.
+# usage: test_boards.sh SOURCE_DIR WORK_DIR C_COMPILER
 set -euo pipefail
-source_dir=$1 work=$2 board=$4
+source_dir=$1 work=$2 cc=$3
 . "$source_dir/tests/firmware/need.sh"
-need arm-none-eabi-gcc qemu-system-arm make python3
-mkdir -p "$work"
-build=(make -s -C "$source_dir/examples/firmware" "OUT=$work" "CC=$3" "BOARD=$board")
-"${build[@]}" pc > "$work/pc.log" 2>&1 || { head -20 "$work/pc.log"; exit 1; }
-"${build[@]}" all > "$work/$board.log" 2>&1 || { head -20 "$work/$board.log"; exit 1; }
-! grep -i -A3 warning "$work/$board.log" "$work/pc.log" | cut -c1-200 || exit 1
+need arm-none-eabi-gcc arm-none-eabi-size qemu-system-arm make python3
 
-# same PROGRAM ROW PC_PROGRAM MOST: compares rows of one name; at most MOST bytes may differ, by one level.
+# build OPT TARGET BOARD: below $work/OPT; the boards share what runs on this machine
+build() {
+    local out=$work/$1
+    mkdir -p "$out"
+    make -s -C "$source_dir/examples/firmware" "OUT=$out" "CC=$cc" "OPT=$1" "BOARD=$3" "$2" > "$out/$3-$2.log" 2>&1 ||
+        { head -20 "$out/$3-$2.log"; exit 1; }
+    ! grep -i -A3 warning "$out/$3-$2.log" | cut -c1-200 || exit 1
+}
+
+# same BOARD PROGRAM ROW PC_PROGRAM MOST: compares rows of one name; at most MOST bytes may differ, by one level.
 same() {
-    semihosted "$board" "$work/$board/$1.elf" > "$work/$board/$1.txt" || { grep -v ': [0-9a-f]*$' "$work/$board/$1.txt"; exit 1; }
-    python3 - "$work/$board/$1.txt" "$work/$3.txt" "$2" "$4" << 'END'
+    local on_board=$work/-Os/$1/$2.txt
+    semihosted "$1" "${on_board%.txt}.elf" > "$on_board" || { grep -v ': [0-9a-f]*$' "$on_board"; exit 1; }
+    python3 - "$on_board" "$work/-Os/$4.txt" "$3" "$5" << 'END'
 import sys
 board, pc = ([bytes.fromhex(line.split()[1]) for line in open(name) if line.startswith(sys.argv[3] + ":")]
              for name in sys.argv[1:3])
@@ -25,24 +31,41 @@ rows = len(board) == len(pc) == 16 and len(set(b"".join(pc))) > 60  # a picture,
 sys.exit(not rows or len(both) != 16 * 160 * 3 or differ > int(sys.argv[4]) or worst > 1)
 END
 }
-case $board in
-microbit)
-    same correct_fixed fixed correct_fixed 0
-    same correct_fixed_here fixed correct_fixed 20 # the board's own logarithms may differ in the last bits
-    programs="correct_fixed correct_fixed_here" most=512 tick_ns=16 ;;
-*)
-    same correct_float table correct_float 0
-    same correct_float gamma correct_float 20 # pow() from another C library
-    programs=correct_float most=2560 tick_ns=40 ;;
-esac
-for program in $programs; do
+
+# stack_and_time BOARD PROGRAM MOST TICK_NS: MOST is the limit that the header states for apply
+stack_and_time() {
+    local text=$work/-Os/$1/$2.txt
     while read -r what _ bytes; do
-        echo "$program, $board: $what stack $bytes bytes"
-        [ "$what" = apply: ] && limit=$((most + 256)) || limit=2048 # 256: the demonstration's own stack
+        echo "$2, $1: $what stack $bytes bytes"
+        [ "$what" = apply: ] && limit=$(($3 + 256)) || limit=2048 # 256: the demonstration's own stack
         [ "$bytes" -gt 64 ] && [ "$bytes" -le $limit ] || { echo "more than $limit"; exit 1; }
-    done < <(grep -a "stack" "$work/$board/$program.txt")
-    for ticks in $(sed -n 's/^apply: ticks //p' "$work/$board/$program.txt"); do
-        echo "$program, $board: $((ticks * tick_ns / (160 * 16))) instructions per pixel (RGB, 8 bit)"
+    done < <(grep -a "stack" "$text")
+    for ticks in $(sed -n 's/^apply: ticks //p' "$text"); do
+        echo "$2, $1: $((ticks * $4 / (160 * 16))) instructions per pixel (RGB, 8 bit)"
         [ "$ticks" -gt 1000 ]
     done
+}
+
+# size BOARD OPT PROGRAM CODE_CEILING RAM_CEILING: bytes of flash, plan and stack
+size() {
+    local program=$work/$2/$1/$3
+    arm-none-eabi-size "$program.elf"
+    semihosted "$1" "$program.elf" > "$program.txt"
+    python3 "$source_dir/tests/firmware/map_sizes.py" "$program.map" "$program.txt" "$4" "$5" "$1 $2 $3"
+}
+
+build -Os pc microbit
+for board in mps2-an386 mps2-an500 microbit; do build -Os all $board; done
+for board in mps2-an386 mps2-an500; do
+    same $board correct_float table correct_float 0
+    same $board correct_float gamma correct_float 20 # pow() from another C library
+    stack_and_time $board correct_float 2560 40
+    size $board -Os correct_float 24576 8192
 done
+same microbit correct_fixed fixed correct_fixed 0
+same microbit correct_fixed_here fixed correct_fixed 20 # the board's own logarithms may differ in the last bits
+for program in correct_fixed correct_fixed_here; do stack_and_time microbit $program 512 16; done
+size microbit -Os correct_fixed 8192 1024
+size microbit -Os correct_fixed_here 28672 4096 # with software floating point, to prepare the plan
+build -O2 all mps2-an386
+size mps2-an386 -O2 correct_float 28672 8192 # optimised for speed

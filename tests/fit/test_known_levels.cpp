@@ -1,6 +1,7 @@
 // Long strips of pictures at one manual exposure: known exposures keep the strip level, even if some are wrong.
 #include "simulated.hpp"
 
+#include "campaign.h"
 #include "fit/prior/known_levels.hpp"
 
 using namespace lensprof;
@@ -36,7 +37,7 @@ double spread(const Simulation &s, const std::vector<lensprof_exposure> &found, 
 }
 
 void test_one_manual_exposure_keeps_a_strip_level(void **) {
-    for (uint64_t seed = 1; seed <= 3; seed++) {
+    for (uint64_t seed = 1; seed <= uint64_t(campaign_runs(3)); seed++) {
         Simulation s = strip(0.0, seed);
         const FitRun known = run_fit(s);
         for (auto &image : s.fit_images) image.known_ev_sigma = 0.0;
@@ -53,7 +54,7 @@ void test_one_manual_exposure_keeps_a_strip_level(void **) {
 
 // Shutter and aperture scatter as stated; the pictures show by how much.
 void test_the_scatter_is_found(void **) {
-    for (uint64_t seed = 1; seed <= 3; seed++) {
+    for (uint64_t seed = 1; seed <= uint64_t(campaign_runs(3)); seed++) {
         Simulation s = strip(0.03, seed);
         const FitRun run = run_fit(s);
         assert_true(spread(s, run.exposures, 0, kImages) <= 0.05);
@@ -64,7 +65,7 @@ void test_the_scatter_is_found(void **) {
 
 // Three of 28 are wrong by half a stop: the others come out as without these three.
 void test_a_few_that_are_wrong_are_left_out(void **) {
-    for (uint64_t seed = 1; seed <= 3; seed++) {
+    for (uint64_t seed = 1; seed <= uint64_t(campaign_runs(3)); seed++) {
         Simulation s = strip(0.0, seed);
         for (uint32_t wrong : {4u, 13u, 14u}) s.fit_images[wrong].known_ev_sigma = 0.0;
         const FitRun without = run_fit(s);
@@ -82,7 +83,7 @@ void test_a_few_that_are_wrong_are_left_out(void **) {
 
 // The aperture ring was moved at the 11th picture, which EXIF does not record: both parts stay level.
 void test_a_step_parts_the_strip(void **) {
-    for (uint64_t seed = 1; seed <= 3; seed++) {
+    for (uint64_t seed = 1; seed <= uint64_t(campaign_runs(3)); seed++) {
         Simulation s = strip(0.0, seed);
         for (uint32_t i = 10; i < kImages; i++) s.fit_images[i].known_ev += 0.5;
         const FitRun run = run_fit(s);

@@ -33,6 +33,7 @@ void test_round_trip(void **) {
     for (const uint32_t channels : {1u, 3u})
         for (const uint32_t sense : {0u, 1u})
             for (const uint32_t columns : {32u, 640u, 2560u}) {
+                if (columns == 2560u && channels != 1 + 2 * sense) continue;  // takes seconds under sanitizers
                 const Profile truth = lens(channels);
                 const uint32_t rows = columns * 3 / 4;
                 const std::vector<float> values = write(*truth, columns, rows, channels, sense);

@@ -4,7 +4,7 @@
 
 #define MOST_ROWS 4000 /* left by the sessions of one fault */
 #ifndef STEP
-#define STEP 101 /* every 101st operation fails; in the slow variant every 47th */
+#define STEP 101 /* every 101st operation fails; slow every 47th, sanitized every 307th */
 #endif
 
 static int countdown = -1; /* the operation that makes it 0 fails; negative: none */
