@@ -28,7 +28,7 @@ PICTURES = [
     ("moving objects, 25 %", "--objects 0.25"),
     ("JPEG", "--format jpeg"),
     ("16-bit TIFF", "--format tiff16 --noise 0.5"),
-    ("float TIFF", "--format tiff32 --noise 0.5"),
+    ("float TIFF", "--response linear --format tiff32 --noise 0.5"),  # as files of this kind are
     ("fixed exposure", "--ev 0 --wb 0"),
     ("misaligned 3 px", "--misalign 3"),
     ("misaligned 10 px", "--misalign 10"),
