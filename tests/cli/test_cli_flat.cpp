@@ -137,6 +137,47 @@ void test_the_card_is_corrected(void **) {
     }
 }
 
+// The picture turned by 90 degrees, as another program saves it: higher than wide, without an orientation.
+std::string stand_up(const std::string &file, const std::string &name) {
+    Picture lying = read_picture(file), standing = make_noise(height, width, LENSPROF_SAMPLE_U16, lying.layout);
+    const auto *from = reinterpret_cast<const uint16_t *>(lying.pixels.data());
+    auto *to = reinterpret_cast<uint16_t *>(standing.pixels.data());
+    for (uint32_t y = 0; y < width; y++)
+        for (uint32_t x = 0; x < height; x++)
+            std::copy_n(from + 3 * ((height - 1 - x) * width + y), 3, to + 3 * (y * height + x));
+    write_picture(in_folder(name), standing, {});
+    return in_folder(name);
+}
+
+// A profile is stored in the frame of the sensor, which is wider than high: of a card that was turned either way, what
+// the turn does not change. Pictures of both shapes are then even but for what differs between opposite sides.
+void test_portrait_cards(void **) {
+    Card card;
+    card.slant = 0.0;
+    const std::string lying = shoot("lying.tif", card), standing = stand_up(lying, "standing.tif");
+    const Words db = {"--db", in_folder("standing.db")},
+                setting = {"--camera", "Box 1", "--lens", "Box lens", "--focal", "35", "--aperture", "2"};
+    const Outcome run = run_words(flat({standing, "--linear"}) + setting + db);
+    assert_int_equal(run.code, done);
+    assert_true(contains(run.err, "no orientation states which way this portrait picture was turned"));
+    const Json stored = json_of(Words{"profile", "show", "1", "--json"} + db)["vignetting"];
+    assert_true(stored["center"] == Json({0.0, 0.0}));
+    for (const std::string &file : {lying, standing}) {
+        must_exit(done, Words{"apply", "-o", in_folder("even"), file, "--processing", "raw"} + setting + db);
+        const Picture even = read_picture(in_folder("even/" + std::filesystem::path(file).filename().string()));
+        const auto mean = [&](uint32_t left, uint32_t top) {
+            double sum = 0.0;
+            for (uint32_t y = top; y < top + 16; y++)
+                for (uint32_t x = left; x < left + 16; x++)
+                    sum += reinterpret_cast<const uint16_t *>(even.pixels.data())[3 * (y * even.width + x) + 1];
+            return sum;
+        };
+        const uint32_t right = even.width - 16, bottom = even.height - 16;
+        const double corners = mean(0, 0) + mean(right, 0) + mean(0, bottom) + mean(right, bottom);
+        assert_close(corners / (4.0 * mean(right / 2, bottom / 2)), 1.0, 0.015);
+    }
+}
+
 void test_exposures_come_from_exif_or_the_command_line(void **) {
     Card card;
     card.gamma = 2.2, card.told = true;
@@ -281,6 +322,7 @@ int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_turned_shots_are_measured_and_stored),
         CLI_TEST(test_the_card_is_corrected),
+        CLI_TEST(test_portrait_cards),
         CLI_TEST(test_exposures_come_from_exif_or_the_command_line),
         CLI_TEST(test_a_card_at_several_places),
         CLI_TEST(test_the_response_of_a_profile),

@@ -153,7 +153,8 @@ int run(const CalibrateOptions &o, Streams &streams) {
     if (!pictures.list.empty() || is_stored) return static_cast<int>(ExitCode::done);
     print_message(streams, inputs.label + ": nothing could be corrected; see the reasons in "
                                + (std::filesystem::path(o.output) / summary_name).string()
-                               + ": give pictures that overlap by a third, or a database that contains the lens");
+                               + ", and where none is given, give pictures that overlap by a third, or a database "
+                                 "that contains the lens");
     return static_cast<int>(ExitCode::not_usable);
 }
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "cli/correct/falloff_doubt.hpp"
-#include "cli/correct/turned_profile.hpp"
+#include "cli/pictures/turned_profile.hpp"
 #include "cli/pictures/orientation.hpp"
 #include "cli/pictures/sensor.hpp"
 #include "cli/profiles/lookup_report.hpp"

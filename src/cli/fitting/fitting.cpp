@@ -11,6 +11,7 @@
 #include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/pictures/orientation.hpp"
+#include "cli/pictures/turned_profile.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
@@ -333,15 +334,16 @@ std::string not_usable_text(const std::string &source, const Verdict &verdict, c
 
 namespace {
 
-// `own` is the result of one setting. The prior is that of the reference's setting.
-int64_t store_setting(const lensprof_fit_result &result, size_t images, const lensprof_profile_key &key,
-                      bool is_reference, const StoreOptions &store, const Finish &finish) {
+// The result of one setting. The prior is that of the reference's setting.
+int64_t store_setting(const lensprof_fit_result &result, size_t images, const SettingReport &setting,
+                      const StoreOptions &store, const Finish &finish) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
     const EarlierProfile *prior = finish.prior;  // used by the response of all settings and by the falloff of one
-    if (prior && is_reference) options.profile = prior->profile.get();
+    if (prior && setting.is_reference) options.profile = prior->profile.get();
     auto profile = profile_of(result, &options, images);
-    profile->key = key;
+    profile->key = setting.key;
+    if (setting.is_turn_unknown) turn_profile_to_sensor(0, *profile);
     const int64_t prior_id = prior && holds_prior(result) && prior->is_own ? prior->id : 0;
     return store_profile(store, *profile, {finish.method, finish.source, result.usable != 0, prior_id});
 }
@@ -350,8 +352,11 @@ int64_t store_setting(const lensprof_fit_result &result, size_t images, const le
 void store_result(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store,
                   const Finish &finish) {
     const bool is_wanted = report.fit.usable || store.force;
-    if (report.settings.empty() && is_wanted)
-        report.profile_id = store_setting(report.fit, report.names.size(), key, true, store, finish);
+    if (report.settings.empty() && is_wanted) {
+        SettingReport single;
+        single.key = key, single.is_reference = true, single.is_turn_unknown = report.is_turn_unknown;
+        report.profile_id = store_setting(report.fit, report.names.size(), single, store, finish);
+    }
     std::vector<SettingReport *> order;  // the reference first
     for (SettingReport &setting : report.settings) order.push_back(&setting);
     std::stable_partition(order.begin(), order.end(), [](const SettingReport *s) { return s->is_reference; });
@@ -361,8 +366,7 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
         if (!setting.found.images || !(setting.found.usable || store.force) || !setting.no_key.empty()) continue;
         setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
         if (setting.has_same_key) continue;  // a lookup could not distinguish them
-        setting.profile_id = store_setting(result_of(report, setting), setting.found.images, setting.key,
-                                           setting.is_reference, store, finish);
+        setting.profile_id = store_setting(result_of(report, setting), setting.found.images, setting, store, finish);
         if (setting.is_reference) report.profile_id = setting.profile_id;
     }
 }

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
+#include "cli/pictures/orientation.hpp"
+#include "cli/pictures/turned_profile.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
@@ -146,10 +148,18 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
     return report;
 }
 
-int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &report) {
+int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &report, Streams &streams) {
     const auto &fit = report.fit;
     auto profile = profile_of(fit, input.response, input.images.size());
     profile->key = input.key;
+    const lensprof_flat_image &frame = input.images.front();
+    const uint16_t turn = sensor_orientation(frame.width, frame.height, input.pictures.front().traits.orientation);
+    if (!turn)
+        note(streams, o.files.front() + ": no orientation states which way this portrait picture was turned: the "
+                                        "profile is stored with its centre in the middle of the frame, and without "
+                                        "what differs between opposite sides; give the pictures as the camera wrote "
+                                        "them");
+    turn_profile_to_sensor(turn, *profile);
     return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable != 0});
 }
 
@@ -175,7 +185,7 @@ int run(const FlatCommand &o, Streams &streams) {
     OutputFiles outputs;
     if (!o.report.empty())
         outputs.add(o.report, flat_page(report, o.files.front(), command_text(streams.words), streams.warnings));
-    if (is_stored && !o.store.no_store) report.profile_id = store(o, input, report);
+    if (is_stored && !o.store.no_store) report.profile_id = store(o, input, report, streams);
     outputs.commit();
     if (o.json)
         print_json(flat_json(report), streams.out);

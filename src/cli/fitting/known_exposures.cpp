@@ -108,13 +108,22 @@ static bool states_exposures(const std::vector<PictureMetadata> &metadata) {
                        [](const PictureMetadata &m) { return m.exposure_time_s || m.iso; });
 }
 
+// The field without which EXIF does not give the exposure of a picture.
+static const char *missing_field(const PictureMetadata &m, bool cancels_iso) {
+    return !m.exposure_time_s ? "exposure time" : !m.iso && !cancels_iso ? "ISO" : "aperture";
+}
+
 ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetadata> &metadata,
                  const std::vector<std::string> &names) {
     ExifUse use;
-    std::vector<uint32_t> unknown, apart;
-    for (uint32_t i = 0; i < names.size(); i++)
-        if (std::isnan(exposures.ev[i])) (exposures.is_apart[i] ? apart : unknown).push_back(i);
-    use.images = names.size() - unknown.size() - apart.size();
+    std::map<std::string, std::vector<uint32_t>> missing;  // by field
+    std::vector<uint32_t> apart;
+    use.images = names.size();
+    for (uint32_t i = 0; i < names.size(); i++) {
+        if (!std::isnan(exposures.ev[i])) continue;
+        use.images--;
+        (exposures.is_apart[i] ? apart : missing[missing_field(metadata[i], exposures.cancels_iso)]).push_back(i);
+    }
     use.cancels_iso = exposures.cancels_iso, use.cancels_aperture = exposures.cancels_aperture;
     if (!states_exposures(metadata) || !(use.images < names.size() || use.cancels_iso || use.cancels_aperture))
         return use;
@@ -126,7 +135,7 @@ ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetada
             use.cancels_iso ? ", by time and aperture: it states no ISO" : ", by time and ISO: it states no aperture";
     if (!apart.empty())
         use.note += "; not comparable with these, because a lens states no aperture: " + listed(apart, names);
-    if (!unknown.empty()) use.note += "; unknown: " + listed(unknown, names);
+    for (const auto &[field, images] : missing) use.note += "; without " + field + ": " + listed(images, names);
     return use;
 }
 

@@ -124,6 +124,7 @@ void set_turns(const Project &project, const std::vector<PictureMetadata> &metad
         for (size_t i = 0; i < turns.size(); i++)
             if (settings.of_image[i] == setting) (turns[i] ? has_known : has_unknown) = true;
         settings.are_centres_unknown |= has_unknown && has_known;
+        settings.is_turn_unknown.push_back(has_unknown);
         for (size_t i = 0; i < turns.size(); i++)
             if (settings.of_image[i] == setting && has_unknown) turns[i] = 1;
     }

@@ -20,6 +20,7 @@ struct LensSettings {
     // (pictures/orientation.hpp). Centres are in that frame; unknown: some pictures may have been turned either way.
     std::vector<uint16_t> turn_of_image;
     bool are_centres_unknown = false;
+    std::vector<bool> is_turn_unknown;  // per setting: it has pictures that may have been turned either way
 
     bool has_turned_images() const;
     bool has_several_settings() const { return first.size() > 1; }

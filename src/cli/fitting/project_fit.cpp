@@ -294,6 +294,8 @@ void refuse_minority(const Project &project, ProjectFit &state) {
     lensprof_fit_result &result = state.best.result;
     result.usable = result.evens = 0;
     result.reason_code = LENSPROF_REASON_IMAGE_GROUPS;
+    result.reason_item = {};
+    result.reason_values = 0;
     std::snprintf(result.reason, sizeof result.reason,
                   "only %zu of %zu pictures take part in the result%s; give pictures that overlap by a third", joined,
                   all, is_verified ? "" : " and none of their overlaps shows the same content");
@@ -362,6 +364,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
                      ProjectFit &state) {
     BuildReport &report = state.report;
     const LensSettings &settings = state.settings;
+    report.is_turn_unknown = settings.is_turn_unknown[0];
     if (!settings.has_several_settings()) return;
     report.setting_of = settings.of_image;
     for (uint32_t s = 0; s < settings.first.size(); s++) {
@@ -383,6 +386,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
             if (other.label == setting.label) setting.label += ", from " + project.names[first];
         setting.is_reference = s == settings.of_image[state.best.result.reference];
         setting.found = state.best.settings[s];
+        setting.is_turn_unknown = settings.is_turn_unknown[s];
         setting.verdict = verdict_of(setting.found);
         name_image(project.names, setting.verdict);
         report.settings.push_back(setting);

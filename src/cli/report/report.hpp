@@ -37,9 +37,10 @@ struct SettingReport {
     bool is_reference = false;  // the setting of the reference, whose values are also in the fit
     lensprof_fit_setting found{};
     Verdict verdict;
-    int64_t profile_id = 0;     // 0 = not stored
-    bool has_same_key = false;  // the key of the stored setting
-    std::string no_key;         // why camera and lens are unknown; empty: they are known
+    int64_t profile_id = 0;        // 0 = not stored
+    bool has_same_key = false;     // the key of the stored setting
+    std::string no_key;            // why camera and lens are unknown; empty: they are known
+    bool is_turn_unknown = false;  // its frames are higher than wide, and may have been turned either way
 };
 
 // The result for one of several cameras.
@@ -79,6 +80,7 @@ struct BuildReport {
     std::vector<uint32_t> camera_of;      // per image; empty: one camera
     std::vector<lensprof_link> links;     // between the images, if they were determined
     uint32_t reference = 0;
+    bool is_turn_unknown = false;  // if all images have one lens setting: as in SettingReport
     bool has_falloff = true;       // else the falloff cancels in these pictures
     bool exposures_given = false;  // on the command line, not by EXIF
     ExifUse exif;

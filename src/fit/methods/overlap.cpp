@@ -74,7 +74,7 @@ private:
         alone_.run();
         alone_.describe(exposures, r);
         if (!options_.profile) return;
-        const Contradiction all = attempt(kParts[0], exposures, r, r);
+        const Contradiction all = attempt(kParts[0], exposures, r, r, informed_);
         if (!all.is_significant()) return;
         const bool has_both = part_of(*options_.profile, kParts[1]) && part_of(*options_.profile, kParts[2]);
         std::unique_ptr<Output> best;
@@ -82,10 +82,12 @@ private:
         for (const Part &part : {kParts[1], kParts[2]}) {
             if (!has_both) break;
             auto output = std::make_unique<Output>(r, exposures, image_count_);
-            const Contradiction contradiction = attempt(part, output->exposures.data(), r, *output->result);
+            std::unique_ptr<OverlapFit> informed;
+            const Contradiction contradiction = attempt(part, output->exposures.data(), r, *output->result, informed);
             if (contradiction.is_significant() || contradiction.in_all() >= least.in_all()) continue;
             least = contradiction;
             best = std::move(output);
+            informed_ = std::move(informed);
         }
         r.profile_prior = LENSPROF_PROFILE_PRIOR_OVERRULED;
         if (best) best->write(r, exposures);
@@ -94,19 +96,19 @@ private:
         });
     }
 
-    // Stores the fit in `r` if the pictures do not contradict this part of the profile.
+    // Stores the fit in `r` and `informed` if the pictures do not contradict this part of the profile.
     Contradiction attempt(const Part &part, lensprof_exposure *exposures, const lensprof_fit_result &alone,
-                          lensprof_fit_result &r) {
+                          lensprof_fit_result &r, std::unique_ptr<OverlapFit> &informed) {
         const auto profile = part_of(*options_.profile, part);
         if (!profile) return {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
-        auto informed = std::make_unique<OverlapFit>(options_, image_count_, make_, count_, profile.get(),
-                                                     part.verdict == kParts[0].verdict ? 0.5 : 1.0, 1.0);
-        informed->run();
-        const Contradiction found{informed->falloff_distance(alone), informed->response_distance(alone),
-                                  informed->worse_than(alone_), informed->gamma_distance()};
+        auto fit = std::make_unique<OverlapFit>(options_, image_count_, make_, count_, profile.get(),
+                                                part.verdict == kParts[0].verdict ? 0.5 : 1.0, 1.0);
+        fit->run();
+        const Contradiction found{fit->falloff_distance(alone), fit->response_distance(alone), fit->worse_than(alone_),
+                                  fit->gamma_distance()};
         if (found.is_significant()) return found;
-        informed->describe(exposures, r);
-        informed_ = std::move(informed);
+        fit->describe(exposures, r);
+        informed = std::move(fit);
         r.profile_prior = part.verdict;
         return found;
     }

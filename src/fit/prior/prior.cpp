@@ -39,16 +39,16 @@ Prior make_prior(double weight, int vignettings, int settings, bool by_covarianc
 }
 
 LensFacts facts_of(const Problem &problem, int setting) {
-    const auto mean_of = [&](auto value) {  // of its logarithm
+    const auto mean_of = [&](auto value) {  // geometric
         double sum = 0.0, count = 0.0;
         for (uint32_t i = 0; i < problem.image_count; i++)
             if (problem.setting_of[i] == setting && value(problem.images[i]) > 0.0)
                 sum += std::log2(value(problem.images[i])), count += 1.0;
-        return count > 0.0 ? sum / count : LENSPROF_UNKNOWN;
+        return count > 0.0 ? std::exp2(sum / count) : LENSPROF_UNKNOWN;
     };
     const double ratio = mean_of([](const lensprof_fit_image &image) { return image.f_number_ratio; });
     const double crop = mean_of([](const lensprof_fit_image &image) { return image.crop_factor; });
-    return {ratio == LENSPROF_UNKNOWN ? ratio : 2.0 * ratio, crop == LENSPROF_UNKNOWN ? crop : std::exp2(crop)};
+    return {ratio == LENSPROF_UNKNOWN ? ratio : 2.0 * std::log2(ratio), crop};
 }
 
 void set_lens(const LensKnowledge &lens, int vignettings, int setting, Prior &prior) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kSizes = 4;
 constexpr int kAcross[kSizes] = {8, 4, 2, 1};  // places per side of the frame: errors are common to places of any size
-constexpr size_t kMaxPairs = 50000;            // with more, only every so manieth link is used
+constexpr size_t kMaxPairs = 50000;            // with more, one of so many is used, of every link
 constexpr double kLargest = 1e4;               // of the inflation
 constexpr Eigen::Index kBlock = 32;            // directions whose influences are summed at a time, which bounds memory
 
@@ -122,14 +122,18 @@ struct Sums {
     Eigen::VectorXd apart;
     std::array<Eigen::VectorXd, kSizes> together;
     std::array<double, kSizes> places{};
+    size_t step =
+        1;  // one of so many pairs was used: the terms of two pairs are rarer by this factor than those of one
 
     // Ratio of both. The estimate follows the errors of its own pairs, which makes what is left smaller: places that
     // are few compared with the unknowns show less. The largest of several ratios is used: each is lowered by its own
     // standard error, which is that of a variance from so many places.
     Eigen::VectorXd ratio(size_t size, double unknowns) const {
         const double count = std::max(places[size], 1.0), left = std::max(count - unknowns, count / 3.0);
-        const Eigen::ArrayXd ratio = 1.0 + (together[size].array() / (apart.array() + 1e-300) - 1.0) * count / left;
-        return (ratio / (1.0 + std::sqrt(2.0 / count))).matrix();
+        const auto thinned = static_cast<double>(step);
+        const Eigen::ArrayXd ratio =
+            1.0 + (together[size].array() / (apart.array() + 1e-300) - 1.0) * thinned * count / left;
+        return (ratio / (1.0 + thinned * std::sqrt(2.0 / count))).matrix();
     }
 };
 
@@ -152,13 +156,13 @@ Sums sums_of(const Problem &problem, const Estimate &estimate, Influence &influe
     sums.apart = Eigen::VectorXd::Zero(rows);
     sums.together.fill(sums.apart);
     std::array<PlaceSums, kSizes> of_place;  // by image and place
-    const size_t step = 1 + problem.pairs.size() / kMaxPairs;
-    for (size_t e = 0; e < problem.edges.size(); e += step) {
-        const Edge &edge = problem.edges[e];
+    sums.step = 1 + problem.pairs.size() / kMaxPairs;
+    for (const Edge &edge : problem.edges) {
         const auto ratio = exposure_ratios(problem, estimate, edge);
         std::array<PlaceSums, kSizes> of_two;  // by the places of both ends
         PairTransfer transfer;
-        for (size_t p = edge.first; p < edge.last; p++) {
+        const size_t skipped = (sums.step - edge.first % sums.step) % sums.step;
+        for (size_t p = edge.first + skipped; p < edge.last; p += sums.step) {
             const lensprof_pair &pair = problem.pairs[p];
             evaluate_pair(problem, estimate, pair, ratio.data(), transfer);
             const Eigen::VectorXd value = influence.of(pair, transfer);

@@ -1,4 +1,4 @@
-#include "cli/correct/turned_profile.hpp"
+#include "cli/pictures/turned_profile.hpp"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint16_t kClockwise = 6, kAnticlockwise = 8;
+constexpr uint16_t kOneWay = 6, kOtherWay = 8;  // orientations
 
 float &node(lensprof_gain_grid &grid, uint32_t channel, uint32_t column, uint32_t row) {
     return grid.attenuation[(channel * grid.rows + row) * grid.columns + column];
@@ -41,11 +41,15 @@ void turn_profile(uint16_t turn, lensprof_profile &profile) {
         if (!turn) centre[0] = centre[1] = 0.0;
     }
     if (!profile.grid.columns || turn == 1) return;
-    const lensprof_gain_grid other = turned_grid(profile.grid, turn ? turn : kAnticlockwise);
-    profile.grid = turned_grid(profile.grid, turn ? turn : kClockwise);
+    const lensprof_gain_grid other = turned_grid(profile.grid, turn ? turn : kOtherWay);
+    profile.grid = turned_grid(profile.grid, turn ? turn : kOneWay);
     const uint32_t nodes = other.channels * other.rows * other.columns;
     for (uint32_t n = 0; n < nodes; n++)
         profile.grid.attenuation[n] = 0.5f * (profile.grid.attenuation[n] + other.attenuation[n]);
+}
+
+void turn_profile_to_sensor(uint16_t turn, lensprof_profile &profile) {
+    turn_profile(inverse_orientation(turn), profile);
 }
 
 }  // namespace lensprof
