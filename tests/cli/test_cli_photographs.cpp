@@ -1,4 +1,6 @@
 // `build` of pictures and folders without a project.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -244,6 +246,23 @@ void test_outputs_are_checked_first(void **) {
     assert_true(!fs::exists(work("first.db")));
 }
 
+// A mirrored picture overlaps no other, even if its name comes first.
+void test_the_mirrored_picture_is_the_copy(void **) {
+    if (is_missing()) return;
+    simulate("mirrored", {"--images", "3", "--seed", "72"});
+    Picture picture = read_picture(work("mirrored/img001.png"));
+    for (uint32_t y = 0; y < picture.height; y++) {
+        auto *row = reinterpret_cast<std::array<uint8_t, 3> *>(picture.pixels.data() + y * picture.row_bytes);
+        std::reverse(row, row + picture.width);
+    }
+    write_picture(work("mirrored/a.png"), picture);
+    const Outcome run = run_words(Words{"build", work("mirrored")} + quietly);
+    assert_int_equal(run.code, done);
+    assert_int_equal(parsed(run.out)["images"].size(), 3);
+    assert_true(contains(run.err, "a.png: left out: a copy of"));
+    assert_true(contains(run.err, "img001.png, mirrored"));
+}
+
 void test_corrected_copies_are_not_read(void **) {
     if (is_missing()) return;
     simulate("copies", {"--images", "3", "--seed", "71"});
@@ -470,6 +489,7 @@ int main() {
         CLI_TEST(test_behind_a_dashboard),
         CLI_TEST(test_stacks),
         CLI_TEST(test_own_pictures_are_left_out),
+        CLI_TEST(test_the_mirrored_picture_is_the_copy),
         CLI_TEST(test_corrected_copies_are_not_read),
         CLI_TEST(test_what_is_fixed_to_the_frame),
         CLI_TEST(test_the_preview_is_even),

@@ -1,9 +1,9 @@
 // Pictures at several lens settings: a falloff and a profile for each.
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
-#include "cli/pictures/turned_profile.hpp"
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
+#include "cli/pictures/turned_profile.hpp"
 #include "cli_runs.hpp"
 
 namespace {

@@ -248,6 +248,17 @@ void test_upright_copies(void **) {
     other_grey.is_grey = true;
     assert_true(copies_among({grey, other_grey}).empty());  // frames from a tripod
     assert_true(copies_among({picture_of(2, 3, 600, 450), two[0]}).empty());
+    const Features mirrored = [&] {
+        Features f = picture_of(1, 6);
+        cv::flip(f.detail, f.detail, 1);
+        return f;
+    }();
+    for (const bool first_overlaps : {true, false}) {  // other pictures
+        CopyCandidate first{&mirrored, "", std::nullopt}, second{&two[0], "", std::nullopt};
+        first.overlaps = first_overlaps, second.overlaps = !first_overlaps;
+        const std::vector<PictureCopy> found = find_copies({first, second});
+        assert_true(found.size() == 1 && found[0].copy == first_overlaps && found[0].is_mirrored);
+    }
     CopyCandidate darker{&two[0], "", 0.01}, brighter{&two[1], "1", 0.02};  // a bracket
     assert_true(find_copies({darker, brighter}).empty());
 }

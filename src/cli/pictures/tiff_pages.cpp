@@ -12,7 +12,7 @@ namespace codec {
 
 namespace {
 
-constexpr uint32_t max_pages = 4096;  // examined
+constexpr uint32_t max_pages = 4096, max_children = 256;  // examined
 constexpr uint32_t thumbnail_max_side = 320;
 
 // TIFF 6.0, tag 254, and Exif 2.32, 4.5.5: the second of two directories is a thumbnail, without a mark of its own.
@@ -49,11 +49,16 @@ bool has_layers(const Tiff &tiff) {
     return false;
 }
 
+// The directories within the first one, each once: more than max_children are damage.
 std::vector<uint64_t> children_of(const Tiff &tiff) {
     uint16_t children = 0;
     const uint64_t *offsets = nullptr;
     if (!TIFFGetField(tiff.handle, TIFFTAG_SUBIFD, &children, &offsets) || !offsets) return {};
-    return {offsets, offsets + children};
+    std::vector<uint64_t> distinct(offsets, offsets + children);
+    std::sort(distinct.begin(), distinct.end());
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    if (distinct.size() > max_children) distinct.resize(max_children);
+    return distinct;
 }
 
 }  // namespace

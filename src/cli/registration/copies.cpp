@@ -18,6 +18,7 @@ constexpr double texture = 1.0;          // minimum standard deviation of a bloc
 constexpr double block_like = 0.8;       // minimum correlation of blocks with detail,
 constexpr double share_of_blocks = 0.9;  // in this share of them
 constexpr int min_blocks = 4;            // with detail
+constexpr double max_rounding = 0.01;    // of 255, in the detail of equal pixels; noise of two frames differs by more
 constexpr double max_aspect_change = 0.02, max_time_change = 0.01;
 constexpr int orientations = 8;
 constexpr int is_flipped_x = 1, is_flipped_y = 2, is_transposed = 4;  // bits of an orientation
@@ -70,7 +71,8 @@ bool may_be_copies(const CopyCandidate &a, const CopyCandidate &b, int orientati
     if (std::abs(aspect / other - 1.0) > max_aspect_change) return false;
     if (!a.captured.empty() && !b.captured.empty()) return a.captured == b.captured;
     return orientation != 0 || a.captured != b.captured || is_resized(*a.picture, *b.picture)
-           || a.picture->is_grey != b.picture->is_grey;
+           || a.picture->is_grey != b.picture->is_grey
+           || cv::norm(a.picture->detail, b.picture->detail, cv::NORM_INF) < max_rounding;
 }
 
 // The orientation of `b` in which it shows `a`; upright first.
@@ -80,9 +82,10 @@ std::optional<int> orientation_between(const CopyCandidate &a, const CopyCandida
     return std::nullopt;
 }
 
+bool is_mirrored(int orientation) { return ((orientation & 1) + (orientation >> 1 & 1) + (orientation >> 2 & 1)) % 2; }
+
 std::string describe(int orientation, bool is_resized) {
-    const int reflections = (orientation & 1) + (orientation >> 1 & 1) + (orientation >> 2 & 1);
-    std::string text = reflections % 2 ? ", mirrored" : orientation ? ", turned" : "";
+    std::string text = is_mirrored(orientation) ? ", mirrored" : orientation ? ", turned" : "";
     return is_resized ? text + ", resized" : text;
 }
 
@@ -114,7 +117,8 @@ std::vector<PictureCopy> find_copies(const std::vector<CopyCandidate> &pictures)
     std::vector<uint32_t> first = first_copies(pictures), best(first.size());
     const auto rank = [&](uint32_t i) {
         const Features &f = *pictures[i].picture;
-        return std::tuple(uint64_t(f.width) * f.height, !f.is_grey, !pictures[i].captured.empty());
+        return std::tuple(pictures[i].overlaps, uint64_t(f.width) * f.height, !f.is_grey,
+                          !pictures[i].captured.empty());
     };
     for (uint32_t i = 0; i < first.size(); i++) {
         best[i] = i;
@@ -127,8 +131,9 @@ std::vector<PictureCopy> find_copies(const std::vector<CopyCandidate> &pictures)
         const uint32_t original = best[first[i]];
         if (original == i) continue;
         if (const auto found = orientation_between(pictures[original], pictures[i]))
-            copies.push_back(
-                {i, original, describe(*found, is_resized(*pictures[original].picture, *pictures[i].picture))});
+            copies.push_back({i, original,
+                              describe(*found, is_resized(*pictures[original].picture, *pictures[i].picture)),
+                              is_mirrored(*found)});
     }
     return copies;
 }

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <new>
+#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -217,24 +218,62 @@ void part_raw(const std::vector<std::string> &files, std::vector<PictureLink> &l
     links.erase(std::remove_if(links.begin(), links.end(), parts), links.end());
 }
 
-// Copies of other pictures, which then have no features and overlap nothing.
-std::vector<CopiedPicture> set_copies_apart(const std::vector<std::string> &files,
-                                            std::vector<RegisteredPicture> &pictures) {
-    std::vector<CopyCandidate> candidates;
-    for (size_t i = 0; i < pictures.size(); i++) {
-        const PictureMetadata &metadata = pictures[i].metadata;
-        candidates.push_back(
-            {&pictures[i].features, metadata.captured, metadata.exposure_time_s, raw_kind(files[i]).has_value()});
+// Finds overlaps between pictures that are not copies of each other.
+class Overlaps {
+public:
+    Overlaps(const std::vector<std::string> &files, std::vector<RegisteredPicture> &pictures) : pictures_(pictures) {
+        for (size_t i = 0; i < pictures.size(); i++) {
+            const PictureMetadata &metadata = pictures[i].metadata;
+            candidates_.push_back(
+                {&pictures[i].features, metadata.captured, metadata.exposure_time_s, raw_kind(files[i]).has_value()});
+        }
     }
-    std::vector<CopiedPicture> copies;
-    for (const PictureCopy &found : find_copies(candidates)) copies.push_back({found.copy, found.original, found.how});
-    for (const CopiedPicture &found : copies) {
-        pictures[found.copy].is_copy = true;
-        pictures[found.copy].features.places.clear();
-        pictures[found.copy].features.descriptors = cv::Mat();
+
+    // Copies overlap nothing. Which one of two mirrored pictures is the copy shows in what they overlap: a mirrored
+    // picture overlaps mirrored ones only.
+    std::vector<PictureLink> find(Progress &progress, std::vector<CopiedPicture> &copies) {
+        std::vector<PictureCopy> found = find_copies(candidates_);
+        bool has_mirrored = false;
+        for (const PictureCopy &copy : found) {
+            has_mirrored |= copy.is_mirrored;
+            if (!copy.is_mirrored) remove_features(pictures_[copy.copy].features);
+        }
+        std::vector<Features> features;
+        for (const RegisteredPicture &picture : pictures_) features.push_back(picture.features);  // shares descriptors
+        std::vector<PictureLink> links = find_links(features, progress);
+        if (has_mirrored) {
+            mark_overlaps(found, links);
+            found = find_copies(candidates_);
+        }
+        for (const PictureCopy &copy : found) {
+            pictures_[copy.copy].is_copy = true;
+            copies.push_back({copy.copy, copy.original, copy.how});
+        }
+        const auto has_copy = [&](const PictureLink &link) {
+            return pictures_[link.picture[0]].is_copy || pictures_[link.picture[1]].is_copy;
+        };
+        links.erase(std::remove_if(links.begin(), links.end(), has_copy), links.end());
+        return links;
     }
-    return copies;
-}
+
+private:
+    static void remove_features(Features &features) {
+        features.places.clear();
+        features.descriptors = cv::Mat();
+    }
+
+    void mark_overlaps(const std::vector<PictureCopy> &copies, const std::vector<PictureLink> &links) {
+        std::vector<uint32_t> original(pictures_.size());
+        std::iota(original.begin(), original.end(), 0u);
+        for (const PictureCopy &copy : copies) original[copy.copy] = copy.original;
+        for (const PictureLink &link : links)
+            if (original[link.picture[0]] != original[link.picture[1]])
+                candidates_[link.picture[0]].overlaps = candidates_[link.picture[1]].overlaps = true;
+    }
+
+    std::vector<RegisteredPicture> &pictures_;
+    std::vector<CopyCandidate> candidates_;
+};
 
 // Pictures in no project, by what they overlap.
 void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, const std::vector<bool> &is_linked,
@@ -251,13 +290,9 @@ void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, 
 Registration registered(const std::vector<std::string> &files, bool as_one, Progress &progress) {
     std::vector<RegisteredPicture> pictures = read_all(files, progress);
     Registration result;
-    result.copies = set_copies_apart(files, pictures);
-    std::vector<Features> features;
-    for (uint32_t i = 0; i < pictures.size(); i++) {
-        features.push_back(pictures[i].features);  // shares the descriptors
+    for (uint32_t i = 0; i < pictures.size(); i++)
         if (!pictures[i].failure.empty()) result.unreadable.emplace_back(i, pictures[i].failure);
-    }
-    std::vector<PictureLink> links = find_links(features, progress);
+    std::vector<PictureLink> links = Overlaps(files, pictures).find(progress, result.copies);
     const std::vector<uint32_t> bodies = bodies_of(files, pictures, as_one);
     const std::vector<uint32_t> components = groups_of(pictures.size(), links);
     const std::vector<bool> is_linked = find_linked(pictures.size(), links);

@@ -15,7 +15,7 @@ constexpr double kContradiction = 5.0;    // standard errors from the level of m
 constexpr size_t kFew = 4;                // one in four at most is wrong: with more it is unclear which are
 constexpr size_t kMinKnownForLevels = 6;  // known exposures: with fewer, it is unclear which one is wrong
 
-// KnownGroup exposures are repeatable to less than kRepeatable, EV. The pairs between two pictures share errors that no
+// Known exposures are repeatable to less than kRepeatable, EV. The pairs between two pictures share errors that no
 // model describes (falloff that is not radial, bias by noise). With more than kLinkPairs pairs these errors add up
 // along a row of pictures like a drift, and the hold scales accordingly.
 constexpr double kRepeatable = 0.05, kLinkPairs = 40.0;
@@ -90,7 +90,7 @@ struct Regression {
 // Regression of the known exposures on the estimate's, over the reference's component; the known ones carry the error.
 // Their variation beyond their own error determines gamma; equal exposures do not. If they scatter more than stated,
 // the scatter is used as their error. It is measured from neighbour to neighbour, because errors that add up along a
-// row of pictures belong to the estimate. KnownGroup exposures that agree are on one level (known_levels.hpp), which
+// row of pictures belong to the estimate. Known exposures that agree are on one level (known_levels.hpp), which
 // has its own offset. An image alone on its level is left out; the others are known as accurately as before.
 void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0, scatter_ = 1.0;
