@@ -8,7 +8,7 @@ namespace lensprof {
 
 constexpr double kLargestRise = 1.05;  // M that a camera which corrects its lens may leave
 constexpr double kSmallestM = 0.05;    // M of the darkest corner in Lensfun's data
-constexpr double kSmallRise = 0.02;    // of M outward: 99 % of the falloffs in Lensfun's data rise less
+constexpr double kSmallRise = 0.02;    // of M outward: 98 % of the falloffs in Lensfun's data rise less
 
 // A value of M, or a change of M, and where it is.
 struct MAt {

@@ -9,6 +9,7 @@ namespace {
 
 struct Case {
     const char *maker, *model, *kind, *from;
+    const char *software = "1.00";
 };
 
 std::string jpeg_files() {
@@ -24,6 +25,7 @@ void set_camera(const std::string &folder, const Case &camera) {
         image->readMetadata();
         image->exifData()["Exif.Image.Make"] = camera.maker;
         image->exifData()["Exif.Image.Model"] = camera.model;
+        image->exifData()["Exif.Image.Software"] = camera.software;
         image->writeMetadata();
     }
 }
@@ -39,7 +41,11 @@ void test_jpeg_files(void **) {
                           {"Sony", "XQ-CT72", "phone", "pictures"},
                           {"samsung", "SM-A528B", "phone", "pictures"},
                           {"Apple", "iPhone 12", "phone", "pictures"},
-                          {"Nikon", "COOLSCAN V ED", "any", "none"}};
+                          {"Nikon", "COOLSCAN V ED", "any", "none"},
+                          // raw converters copy the camera's name, but have curves of their own
+                          {"SONY", "ILCE-7M3", "any", "none", "darktable 4.2.1"},
+                          {"SONY", "ILCE-7M3", "any", "none", "Adobe Photoshop Lightroom Classic 12.0 (Windows)"},
+                          {"samsung", "SM-A528B", "any", "none", "lensprof"}};
     const std::string path = jpeg_files();
     std::map<std::string, double> sigma;
     for (const Case &one : cases) {

@@ -128,6 +128,33 @@ void test_missing_setting_is_named(void **) {
                    {"give the lens name used in the database with --lens"});
 }
 
+// Nothing is missing in EXIF, but the lens does not have such a setting; or the picture names no lens.
+void test_settings_that_no_lens_has(void **) {
+    lens_database();
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("lens.db").c_str(), LENSPROF_STORE_WRITE, &store, nullptr));
+    for (const double focal : {24.0, 70.0})
+        for (const double aperture : {2.8, 8.0}) {
+            auto profile = make_profile_of_lens();
+            profile->key.processing = LENSPROF_PROCESSING_JPEG;
+            std::strcpy(profile->key.camera_model, "Camera");
+            std::strcpy(profile->key.lens, "Zoom 24-70mm");
+            profile->key.focal_mm = focal, profile->key.aperture = aperture, profile->key.distance_m = INFINITY;
+            profile->key.crop_factor = 1.0;
+            assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
+        }
+    lensprof_store_close(store);
+    const std::string zoom = make_picture("in/a.jpg", "Zoom 24-70mm"), none = make_picture("in/b.jpg", "");
+    const auto at = [&](const char *focal, const char *aperture) {
+        return by_exif("out") + Words{"--focal", focal, "--aperture", aperture, "--distance", "inf"};
+    };
+    assert_refused(not_found, at("300", "4") + Words{zoom}, {"the setting is missing", "check the lens and the focal"});
+    assert_refused(not_found, at("50", "32") + Words{zoom}, {"the setting is missing", "check the lens and the aper"});
+    assert_refused(not_found, by_exif("out") + Words{"--camera", "Other", none},
+                   {"(EXIF does not name the lens); make one", "the lens with --lens"});
+    must_exit(done, at("50", "4") + Words{"--crop-factor", "1", "--doubtful", zoom});
+}
+
 // Without -o, outputs go to a folder in the current directory, where only files written by lensprof are replaced.
 void test_output_by_default(void **) {
     lens_database();
@@ -274,6 +301,7 @@ int main() {
         CLI_TEST(test_unreadable_is_left_out),
         CLI_TEST(test_help_tells_of_refused_pictures),
         CLI_TEST(test_missing_setting_is_named),
+        CLI_TEST(test_settings_that_no_lens_has),
         CLI_TEST(test_output_by_default),
         CLI_TEST(test_corrected_once),
         CLI_TEST(test_simulated_may_be_corrected),

@@ -346,7 +346,9 @@ void test_one_lens_keeps_the_geometry(void **) {
                         cut.pixels.data() + y * cut.row_bytes);
         write_picture(file, cut);
     }
-    const Json json = json_of(Words{"build", work("crops"), "--one-lens"} + quietly);
+    const Words words = Words{"build", work("crops"), "--one-lens"} + quietly;
+    assert_true(contains(run_words(words).err, "img001.png (600 x 600 pixels): not of the shape of "));
+    const Json json = json_of(words);
     for (const Json &image : json["images"]) assert_true(image["joined"] == true);
     assert_int_equal(json["images"].size(), 4);
     assert_true(json["residual"]["heldout_median"].get<double>() < 3.0);

@@ -251,6 +251,46 @@ void test_empty_indices(void **) {
     }
 }
 
+// Previews are left out, but not what follows them, which the index does not list.
+void test_data_after_previews(void **) {
+    const Bytes video = number(24, 4) + bytes_of("ftypmp42") + Bytes(500, 7),
+                samsung = Bytes(100, 3) + bytes_of("SEFT");
+    const std::string motion = "xmlns:GCamera=\"http://ns.google.com/photos/1.0/camera/\" GCamera:MotionPhoto=\"1\"";
+    const Bytes plain = multi_picture({{preview, jpeg(8, 8)}, {preview, jpeg(4, 4)}}, true),
+                listing = multi_picture({{preview, jpeg(8, 8)}}, true, xmp_segment(motion));
+    assert_false(holds(copy_of(plain + video, "out.jpg"), "ftypmp42"));
+    assert_int_equal(left_out().size(), 3);
+    assert_true(contains(left_out()[2], "a video"));
+    copy_of(plain + Bytes(4000, 0), "out.jpg");
+    assert_int_equal(left_out().size(), 2);
+    for (const auto &[file, after] : std::vector<std::pair<Bytes, Bytes>>{{listing, video}, {plain, samsung}}) {
+        const Bytes copy = copy_of(file + after, "out.jpg");
+        assert_true(Bytes(copy.end() - long(after.size()), copy.end()) == after);
+        assert_false(holds(copy, "MPF"));
+        for (const std::string &name : left_out()) assert_true(contains(name, "preview"));
+    }
+}
+
+// Entries that share bytes are damaged. With the previews left out, a part of the other picture would be missing.
+void test_overlapping_entries(void **) {
+    const Bytes map = map_of_hdr();
+    const auto both = [&](int64_t error) {
+        return multi_picture({{preview, jpeg(8, 8)}, {gain_map, map}, {preview, map, error}}, true);
+    };
+    assert_pictures(copy_of(both(0), "out.jpg"), {map});
+    const Bytes twice = both(-int64_t(map.size()));
+    copy_of(Bytes(twice.begin(), twice.end() - long(map.size())), "out.jpg");
+    assert_int_equal(left_out().size(), 1);
+    assert_true(contains(left_out()[0], "index (MPF) is damaged"));
+}
+
+// Any number of bytes 0xff may precede a marker.
+void test_padded_markers(void **) {
+    const Bytes map = map_of_hdr(), padded = multi_picture({{gain_map, map}}, true, Bytes(300000, 0xff));
+    assert_pictures(copy_of(padded, "out.jpg"), {map});
+    assert_true(left_out().empty());
+}
+
 // Changed and cut files never crash, and what is written can be read.
 void test_hostile_files(void **) {
     const Bytes good =
@@ -431,7 +471,7 @@ void test_commands(void **) {
     const Bytes map = map_of_hdr();
     save(work("in/one.jpg"), multi_picture({{gain_map, map}}, true));
     const Outcome outcome = run_words(apply + Words{work("in")});
-    assert_int_equal(outcome.code, not_found);
+    assert_int_equal(outcome.code, unreadable);
     const std::string read = run_words({"build", work("in"), "--no-store"}).err;
     assert_true(contains(read, "only the first is used"));
     for (const auto &file : files) {
@@ -529,10 +569,21 @@ void test_known_kinds_in_folders(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_gain_maps_are_kept), CLI_TEST(test_tags_of_gain_maps), CLI_TEST(test_data_after_the_picture),
-        CLI_TEST(test_damaged_indices),    CLI_TEST(test_empty_indices),     CLI_TEST(test_hostile_files),
-        CLI_TEST(test_apple_maker_note),   CLI_TEST(test_gain_map_of_jxl),   CLI_TEST(test_pages),
-        CLI_TEST(test_commands),           CLI_TEST(test_known_kinds),       CLI_TEST(test_known_kinds_in_folders),
+        CLI_TEST(test_gain_maps_are_kept),
+        CLI_TEST(test_tags_of_gain_maps),
+        CLI_TEST(test_data_after_the_picture),
+        CLI_TEST(test_damaged_indices),
+        CLI_TEST(test_empty_indices),
+        CLI_TEST(test_hostile_files),
+        CLI_TEST(test_apple_maker_note),
+        CLI_TEST(test_gain_map_of_jxl),
+        CLI_TEST(test_pages),
+        CLI_TEST(test_data_after_previews),
+        CLI_TEST(test_overlapping_entries),
+        CLI_TEST(test_padded_markers),
+        CLI_TEST(test_commands),
+        CLI_TEST(test_known_kinds),
+        CLI_TEST(test_known_kinds_in_folders),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -327,7 +327,7 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
             work.jobs.push_back(make_job(o, source, picture));
         } catch (const NotThisOne &failure) {
             if (o.skip || picture.in_folder)
-                work.left_out.push_back({picture.file, failure.what(), failure.corrected_already});
+                work.left_out.push_back({picture.file, failure.what(), failure.corrected_already, failure.code});
             else
                 refused.push_back(failure);
         } catch (const Failure &failure) {

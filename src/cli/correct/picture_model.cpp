@@ -112,17 +112,24 @@ static std::string missing_part(const lensprof_profile_key &key, const PictureMe
     }
 }
 
-// Suggests the options for data missing from the picture; if none is missing, the lens may be stored under another
-// name.
-static std::string missing_options(const lensprof_profile_key &key) {
+// Suggests the options for data missing from the picture. If none is missing, the lens may be stored under another
+// name, or EXIF states a setting that the lens does not have.
+static std::string missing_options(const lensprof_profile_key &key, const lensprof_lookup &lookup) {
     std::string options;
     const auto add = [&](bool is_missing, const char *option) {
-        if (is_missing) options += (options.empty() ? "" : ", ") + std::string(option);
+        if (is_missing) options += (options.empty() ? "give " : ", ") + std::string(option);
     };
     add(!*key.lens, "the lens with --lens");
     add(key.focal_mm == LENSPROF_UNKNOWN, "the focal length with --focal");
     add(key.aperture == LENSPROF_UNKNOWN, "the aperture with --aperture");
-    return options.empty() ? "the lens name used in the database with --lens" : options;
+    if (!options.empty()) return options;
+    switch (lookup.reason_code[0]) {
+    case LENSPROF_REASON_LOOKUP_FOCAL_BEYOND:
+        return "check the lens and the focal length, which --lens and --focal replace";
+    case LENSPROF_REASON_LOOKUP_APERTURE_BEYOND:
+        return "check the lens and the aperture, which --lens and --aperture replace";
+    default: return "give the lens name used in the database with --lens";
+    }
 }
 
 void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
@@ -133,13 +140,14 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     const lensprof_status status = databases_.look_up(key, options, profile, lookup);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_corrected(key, metadata)) fail_corrected(job.source, metadata);
     const std::string missing = missing_part(key, metadata, lookup);
+    const bool is_all = !*key.lens && lookup.reason_code[0] == LENSPROF_REASON_LOOKUP_NO_CAMERA;  // no lens, no profile
     if (status == LENSPROF_ERROR_NOT_FOUND)
-        throw NotThisOne(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "
-                                                  + databases_.names() + " (" + missing + (missing.empty() ? "" : "; ")
-                                                  + lookup.reason
-                                                  + describe_nearest(nearest_names(databases_, key, lookup))
-                                                  + "); make one with `lensprof build`, give " + missing_options(key)
-                                                  + ", or give a profile with --profile");
+        throw NotThisOne(ExitCode::not_found,
+                         job.source + ": no profile for " + describe_key(key) + " in " + databases_.names() + " ("
+                             + missing + (missing.empty() || is_all ? "" : "; ") + (is_all ? "" : lookup.reason)
+                             + describe_nearest(nearest_names(databases_, key, lookup))
+                             + "); make one with `lensprof build`, " + missing_options(key, lookup)
+                             + ", or give a profile with --profile");
     if (lookup.exact && lookup.falloff_store == 0)
         job.profile_id = lookup.id[0];
     else
@@ -160,13 +168,15 @@ static std::string crop_note(const PictureSize &size) {
 }
 
 // A prediction that is worse than no correction for many lenses is used only if asked for.
-static void check_error(const lensprof_lookup &lookup, const std::string &file) {
+static void check_error(const lensprof_lookup &lookup, const lensprof_profile_key &key, const std::string &file) {
     constexpr double largest_sigma = 0.1;  // of M in the corner
     if (lookup.sigma == LENSPROF_UNKNOWN || lookup.sigma <= largest_sigma) return;
+    std::string step = "make a profile of this setting with `lensprof build`, or use `lensprof apply --doubtful`";
+    if (std::hypot(lookup.falloff_sigma, lookup.distance_sigma) <= largest_sigma && lookup.sensor_sigma > largest_sigma)
+        step = std::string(*key.camera_model ? "the size of the camera's sensor is unknown" : "EXIF names no camera")
+               + "; give --crop-factor, or the camera with --maker and --camera";
     throw NotThisOne(ExitCode::not_found, file + ": the falloff is too uncertain, " + describe_error(lookup)
-                                              + format(", above %.1f; make a profile of this setting with `lensprof "
-                                                       "build`, or use `lensprof apply --doubtful`",
-                                                       largest_sigma));
+                                              + format(", above %.1f; ", largest_sigma) + step);
 }
 
 // A falloff that no lens has is applied only if asked for by the number of the profile or by --doubtful.
@@ -184,7 +194,7 @@ void PictureModels::check_possible(const PictureMetadata &metadata, Correction &
 void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     options_.profile ? take_profile(metadata, job, *profile) : look_up(metadata, job, *profile);
-    if (job.lookup && !options_.lookup.doubtful) check_error(job.lookup->lookup, job.source);
+    if (job.lookup && !options_.lookup.doubtful) check_error(job.lookup->lookup, key_of(metadata), job.source);
     check_possible(metadata, job, *profile);
     turn_profile(sensor_orientation(metadata.size.width, metadata.size.height, metadata.orientation), *profile);
     if (job.note.empty() && !options_.profile && options_.lookup.crop_factor == LENSPROF_UNKNOWN)

@@ -423,6 +423,27 @@ std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const 
     return metadata;
 }
 
+// A cropped picture shows the falloff of the lens about another centre, which one falloff for all does not model.
+static void warn_of_other_shapes(const Project &project, const std::vector<PictureMetadata> &metadata,
+                                 Streams &streams) {
+    constexpr double kLargestDifference = 0.01;  // of the ratio of the sides: resized pictures are rounded
+    const auto ratio = [&](uint32_t i) {
+        const auto [shorter, longer] = std::minmax(metadata[i].size.width, metadata[i].size.height);
+        return shorter > 0 ? double(longer) / shorter : 0.0;
+    };
+    const auto named = [&](uint32_t i) {
+        return project.files[i] + format(" (%u x %u pixels)", metadata[i].size.width, metadata[i].size.height);
+    };
+    const double wanted = ratio(project.reference);
+    for (uint32_t i = 0; i < metadata.size(); i++) {
+        if (!(wanted > 0.0) || !(ratio(i) > 0.0) || std::fabs(ratio(i) / wanted - 1.0) <= kLargestDifference) continue;
+        warn(streams, named(i) + ": not of the shape of " + named(project.reference)
+                          + "; estimating one centre of the falloff for all; a cropped picture has another one: leave "
+                            "it out");
+        return;
+    }
+}
+
 lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
                                  const std::vector<PictureMetadata> &metadata, Streams &streams) {
     const std::string &file = project.files[project.reference];
@@ -430,6 +451,7 @@ lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &proj
     const PictureMetadata &reference = metadata[project.reference];
     lensprof_profile_key key = override_key(reference.key, reference.size, o.store, file);
     if (!o.one_lens) return key;
+    warn_of_other_shapes(project, metadata, streams);
     const LensSettings settings = lens_settings(project, metadata, o.store, false);
     for (uint32_t first : settings.first)
         if (settings.of_image[first] != settings.of_image[project.reference]) {

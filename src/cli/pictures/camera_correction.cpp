@@ -84,20 +84,6 @@ bool is_rendered(const Exiv2::Image &image) {
     return std::any_of(std::begin(types), std::end(types), [&](const char *type) { return mime_type == type; });
 }
 
-// Programs that develop raw files regardless of the camera's switches but copy its notes. Those of the makers follow
-// the switches.
-bool is_of_converter(const Exiv2::Image &image) {
-    static const char *const names[] = {"darktable",  "rawtherapee", "ufraw", "dcraw", "libraw",  "lightroom",
-                                        "camera raw", "capture one", "dxo",   "on1 ",  "luminar", "rawstudio"};
-    if (image.xmpData().findKey(Exiv2::XmpKey("Xmp.crs.RawFileName")) != image.xmpData().end()) return true;
-    const auto datum = image.exifData().findKey(Exiv2::ExifKey("Exif.Image.Software"));
-    if (datum == image.exifData().end()) return false;
-    std::string software = datum->toString();
-    for (char &c : software) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return std::any_of(std::begin(names), std::end(names),
-                       [&](const char *name) { return software.find(name) != std::string::npos; });
-}
-
 // Adobe's raw converters write their settings, and whether they were applied to the pixels.
 bool has_adobe_profile(const Exiv2::XmpData &xmp) {
     const auto is = [&](const char *key, const char *value) {
@@ -129,6 +115,19 @@ bool has_falloff_opcodes(const Exiv2::ExifData &exif) {
 }
 
 }  // namespace
+
+bool is_of_converter(const Exiv2::Image &image) {
+    static const char *const names[] = {"darktable", "rawtherapee", "ufraw",       "dcraw", "libraw",
+                                        "lightroom", "camera raw",  "capture one", "dxo",   "on1 ",
+                                        "luminar",   "rawstudio",   "lensprof"};
+    if (image.xmpData().findKey(Exiv2::XmpKey("Xmp.crs.RawFileName")) != image.xmpData().end()) return true;
+    const auto datum = image.exifData().findKey(Exiv2::ExifKey("Exif.Image.Software"));
+    if (datum == image.exifData().end()) return false;
+    std::string software = datum->toString();
+    for (char &c : software) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::any_of(std::begin(names), std::end(names),
+                       [&](const char *name) { return software.find(name) != std::string::npos; });
+}
 
 std::string falloff_corrected_by(const Exiv2::Image &image, const lensprof_profile_key &key) {
     const Exiv2::ExifData &exif = image.exifData();

@@ -11,6 +11,10 @@ class Image;
 
 namespace lensprof {
 
+// Whether a program developed the picture with its own response, regardless of the camera's switches, and only copied
+// the camera's notes: raw converters, and this program's simulation. Programs of the makers follow the switches.
+bool is_of_converter(const Exiv2::Image &image);
+
 // Who corrected it and the evidence, "in camera (Sony: vignetting correction)"; empty if nothing states it. Maker notes
 // describe only the camera's own JPEG, not other files or JPEGs whose Software is a raw converter, which copies the
 // notes from the raw file.

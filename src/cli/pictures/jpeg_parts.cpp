@@ -31,6 +31,65 @@ std::string_view text_of(const std::vector<uint8_t> &bytes) {
 bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
+// Reads a file byte by byte, in blocks.
+class Scanner {
+public:
+    Scanner(std::FILE *file, uint64_t start) : file_(file), origin_(start) {
+        if (fseeko(file, static_cast<off_t>(start), SEEK_SET) != 0) is_at_end_ = true;
+    }
+
+    uint64_t position() const { return origin_ + next_; }
+
+    int get() { return next_ < block_.size() || fill() ? block_[next_++] : -1; }
+
+    // Skips to the next 0xff and over it; false at the end.
+    bool find_marker() {
+        while (next_ < block_.size() || fill()) {
+            const void *found = std::memchr(&block_[next_], 0xff, block_.size() - next_);
+            next_ =
+                found ? static_cast<size_t>(static_cast<const uint8_t *>(found) - block_.data()) + 1 : block_.size();
+            if (found) return true;
+        }
+        return false;
+    }
+
+    // Appends `count` bytes; false if the file ends before.
+    bool read(size_t count, std::vector<uint8_t> &bytes) {
+        while (count > 0 && (next_ < block_.size() || fill())) {
+            const size_t step = std::min(count, block_.size() - next_);
+            const auto from = block_.begin() + static_cast<std::ptrdiff_t>(next_);
+            bytes.insert(bytes.end(), from, from + static_cast<std::ptrdiff_t>(step));
+            next_ += step, count -= step;
+        }
+        return count == 0;
+    }
+
+    void skip(size_t count) {
+        while (count > 0 && (next_ < block_.size() || fill())) {
+            const size_t step = std::min(count, block_.size() - next_);
+            next_ += step, count -= step;
+        }
+    }
+
+private:
+    bool fill() {
+        if (is_at_end_) return false;
+        stop_if_interrupted();
+        origin_ += block_.size();
+        block_.resize(block_bytes);
+        block_.resize(std::fread(block_.data(), 1, block_.size(), file_));
+        next_ = 0;
+        is_at_end_ = block_.empty();
+        return !is_at_end_;
+    }
+
+    std::FILE *file_;
+    uint64_t origin_;  // position of the block in the file
+    std::vector<uint8_t> block_;
+    size_t next_ = 0;
+    bool is_at_end_ = false;
+};
+
 // What the segments before the pixels state.
 struct Head {
     uint64_t scan = 0;  // where the pixels start; 0 = nowhere
@@ -61,77 +120,32 @@ void take_segment(uint8_t marker, uint64_t offset, const std::vector<uint8_t> &s
     head.pictures = read_mp_index({segment.begin() + mp_index_start, segment.end()});
 }
 
-// The segments before the first scan (ITU-T T.81, annex B).
+// The segments before the first scan (ITU-T T.81, annex B). Any number of 0xff may precede a marker.
 Head read_head(std::FILE *file) {
     Head head;
-    std::vector<uint8_t> start, segment;
-    if (!read_at(file, 0, 2, start) || text_of(start) != "\xff\xd8"sv) return head;
-    for (uint64_t offset = 2; offset < head_max_bytes && read_at(file, offset, 4, start) && start[0] == 0xff;) {
-        const uint8_t marker = start[1];
-        const size_t length = size_t(start[2]) << 8 | start[3];
-        if (marker == 0xff) {  // padding
-            ++offset;
-            continue;
-        }
+    Scanner scanner(file, 0);
+    if (scanner.get() != 0xff || scanner.get() != 0xd8) return head;
+    while (scanner.position() < head_max_bytes && scanner.get() == 0xff) {
+        int marker = scanner.get();
+        while (marker == 0xff) marker = scanner.get();
+        const uint64_t offset = scanner.position() - 2;
+        const int high = scanner.get(), length = high << 8 | scanner.get();
         if (marker < 0xc0 || (marker >= 0xd0 && marker <= end_of_image) || length < 2) break;
         if (marker == start_of_scan) {
             head.scan = offset;
             break;
         }
-        if ((marker == app1 || marker == app2) && read_at(file, offset, 2 + length, segment))
-            take_segment(marker, offset, segment, head);
-        offset += 2 + length;
+        const size_t bytes = static_cast<size_t>(length) - 2;
+        if (marker != app1 && marker != app2) {
+            scanner.skip(bytes);
+            continue;
+        }
+        std::vector<uint8_t> segment = {0xff, static_cast<uint8_t>(marker), static_cast<uint8_t>(high),
+                                        static_cast<uint8_t>(length)};
+        if (scanner.read(bytes, segment)) take_segment(static_cast<uint8_t>(marker), offset, segment, head);
     }
     return head;
 }
-
-// Reads a file byte by byte, in blocks.
-class Scanner {
-public:
-    Scanner(std::FILE *file, uint64_t start) : file_(file), origin_(start) {
-        if (fseeko(file, static_cast<off_t>(start), SEEK_SET) != 0) is_at_end_ = true;
-    }
-
-    uint64_t position() const { return origin_ + next_; }
-
-    int get() { return next_ < block_.size() || fill() ? block_[next_++] : -1; }
-
-    // Skips to the next 0xff and over it; false at the end.
-    bool find_marker() {
-        while (next_ < block_.size() || fill()) {
-            const void *found = std::memchr(&block_[next_], 0xff, block_.size() - next_);
-            next_ =
-                found ? static_cast<size_t>(static_cast<const uint8_t *>(found) - block_.data()) + 1 : block_.size();
-            if (found) return true;
-        }
-        return false;
-    }
-
-    void skip(size_t count) {
-        while (count > 0 && (next_ < block_.size() || fill())) {
-            const size_t step = std::min(count, block_.size() - next_);
-            next_ += step, count -= step;
-        }
-    }
-
-private:
-    bool fill() {
-        if (is_at_end_) return false;
-        stop_if_interrupted();
-        origin_ += block_.size();
-        block_.resize(block_bytes);
-        block_.resize(std::fread(block_.data(), 1, block_.size(), file_));
-        next_ = 0;
-        is_at_end_ = block_.empty();
-        return !is_at_end_;
-    }
-
-    std::FILE *file_;
-    uint64_t origin_;  // position of the block in the file
-    std::vector<uint8_t> block_;
-    size_t next_ = 0;
-    bool is_at_end_ = false;
-};
 
 // Where the picture ends whose first scan is at `scan`; 0 if nowhere. Within coded pixels 0xff is followed by 0 or the
 // number of a restart; what else follows it is a marker.
@@ -165,6 +179,8 @@ public:
         return text_of(bytes_);
     }
 
+    Rest part(const ByteRange &range) const { return {file_, range.start, range.end}; }
+
     bool is_padding() {
         const std::string_view bytes = read(start_, block_bytes);
         return end_ - start_ <= block_bytes
@@ -182,6 +198,13 @@ private:
     std::vector<uint8_t> bytes_;
 };
 
+bool overlap(std::vector<JpegPart> parts) {
+    std::sort(parts.begin(), parts.end(), [](const JpegPart &a, const JpegPart &b) { return a.start < b.start; });
+    return std::adjacent_find(parts.begin(), parts.end(),
+                              [](const JpegPart &a, const JpegPart &b) { return a.start + a.picture.bytes > b.start; })
+           != parts.end();
+}
+
 // The pictures after the first one, at the offsets of the index, or, if a program changed the file without updating
 // them, one after the other from the end of the first picture. Empty if the index fits neither.
 std::vector<JpegPart> locate(const Head &head, Rest &rest) {
@@ -195,7 +218,8 @@ std::vector<JpegPart> locate(const Head &head, Rest &rest) {
         next += picture.bytes;
     }
     for (const auto &parts : {stated, following})
-        if (std::all_of(parts.begin(), parts.end(), [&](const JpegPart &part) { return rest.is_jpeg(part); }))
+        if (!overlap(parts)
+            && std::all_of(parts.begin(), parts.end(), [&](const JpegPart &part) { return rest.is_jpeg(part); }))
             return parts;
     return {};
 }
@@ -224,37 +248,34 @@ std::vector<ByteRange> without_previews(const Rest &rest, const std::vector<Jpeg
     return kept;
 }
 
-void take_indexed(const Head &head, const std::vector<JpegPart> &located, Rest &rest, JpegParts &parts) {
-    parts.index.push_back({head.pictures->front(), 0});
-    for (const JpegPart &part : located) {
-        const std::string name = name_of(part, rest);
-        (part.picture.is_preview() ? parts.left_out : parts.kept_names).push_back(name);
-        if (!part.picture.is_preview()) parts.index.push_back(part);
-    }
-    const bool is_whole = parts.index.size() == located.size() + 1;
-    if (parts.index.size() == 1 && !head.lists_parts)
-        parts.index.clear();
-    else
-        parts.kept = without_previews(rest, located);
-    if (parts.index.size() == 1) parts.index.clear();
-    for (JpegPart &part : parts.index)
-        if (!is_whole) part.picture.dependent[0] = part.picture.dependent[1] = 0;  // numbers of the old index
-}
-
-// Without an index: what the metadata of phones refer to is kept.
-void take_unlisted(const Head &head, Rest &rest, JpegParts &parts) {
+// What no index lists: what the metadata of phones refer to is kept.
+void take_unlisted(const Head &head, Rest rest, JpegParts &parts) {
     const bool is_video = rest.read(rest.start() + 4, 4) == "ftyp"sv,
                is_jpeg = rest.read(rest.start(), 3) == "\xff\xd8\xff"sv;
     const std::string name = is_video  ? "a video after the picture"
                              : is_jpeg ? "another picture after the first one"
                                        : std::to_string(rest.end() - rest.start()) + " bytes after the picture";
     const bool is_samsung = rest.read(rest.end() - std::min<uint64_t>(4, rest.end()), 4) == "SEFT"sv;
-    if (head.lists_parts || is_samsung) {
-        parts.kept.push_back({rest.start(), rest.end()});
-        parts.kept_names.push_back(name);
-    } else if (!rest.is_padding()) {
-        parts.left_out.push_back(name);
+    const bool is_kept = head.lists_parts || is_samsung;
+    if (is_kept) parts.kept.push_back({rest.start(), rest.end()});
+    if (!rest.is_padding()) (is_kept ? parts.kept_names : parts.left_out).push_back(name);
+}
+
+void take_indexed(const Head &head, const std::vector<JpegPart> &located, Rest &rest, JpegParts &parts) {
+    for (const JpegPart &part : located) {
+        const std::string name = name_of(part, rest);
+        (part.picture.is_preview() ? parts.left_out : parts.kept_names).push_back(name);
+        if (!part.picture.is_preview()) parts.index.push_back(part);
     }
+    const std::vector<ByteRange> others = without_previews(rest, located);
+    if (parts.index.empty()) {
+        for (const ByteRange &range : others) take_unlisted(head, rest.part(range), parts);
+        return;
+    }
+    parts.kept = others;
+    parts.index.insert(parts.index.begin(), {head.pictures->front(), 0});
+    if (parts.index.size() == located.size() + 1) return;
+    for (JpegPart &part : parts.index) part.picture.remove_dependence();  // numbers of the old index
 }
 
 // Where the kept byte at `position` of the old file is in the new one, from the end of its picture.

@@ -338,6 +338,7 @@ PictureMetadata read_metadata(const std::string &path) {
     try {
         store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker, "--maker", metadata);
         store_text(read_text(exif, "Exif.Image.Model"), metadata.key.camera_model, "--camera", metadata);
+        metadata.software = read_text(exif, "Exif.Image.Software");
         const LensName lens = read_lens(exif, image->xmpData());
         store_text(lens.name, metadata.key.lens, "--lens", metadata);
         metadata.ambiguous_lens = lens.ambiguous;
@@ -351,7 +352,7 @@ PictureMetadata read_metadata(const std::string &path) {
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         store_text(read_style(exif), metadata.key.style, "--style", metadata);
         read_processing(path, *image, metadata);
-        metadata.is_of_camera = is_of_camera(*image);
+        metadata.is_of_camera = is_of_camera(*image) && !is_of_converter(*image);
         metadata.mark = correction_mark_of(image->xmpData());
         metadata.orientation =
             static_cast<uint16_t>(in_range(read_number(exif, {"Exif.Image.Orientation"}), 9.0).value_or(1.0));
@@ -399,6 +400,7 @@ bool write_metadata(const std::string &path, const PictureMetadata &metadata) {
         Exiv2::ExifData &exif = image.exifData();
         set_text(exif, "Exif.Image.Make", key.camera_maker);
         set_text(exif, "Exif.Image.Model", key.camera_model);
+        set_text(exif, "Exif.Image.Software", metadata.software.c_str());
         set_text(exif, "Exif.Photo.LensModel", key.lens);
         set_rational(exif, "Exif.Photo.FocalLength", key.focal_mm);
         set_rational(exif, "Exif.Photo.SubjectDistance", key.distance_m);

@@ -39,8 +39,10 @@ struct PictureMetadata {
 
     std::string ambiguous_lens;  // what does not identify the lens, see lens_name.hpp
 
+    std::string software;  // that wrote the file: the camera's, or a program
+
     PictureSize size;           // pixels, as stored; 0 = unknown
-    bool is_of_camera = false;  // whether the file is a JPEG or HEIC as cameras write them
+    bool is_of_camera = false;  // a JPEG or HEIC as cameras write them, not from a raw converter
 
     std::optional<CorrectionMark> mark;  // mark of lensprof, if any
 

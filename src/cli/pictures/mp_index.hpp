@@ -20,6 +20,11 @@ struct MpPicture {
     bool is_preview() const { return (type() & 0xff0000) == 0x010000; }  // a large thumbnail of the first picture
     bool is_view() const { return (type() & 0xff0000) == 0x020000; }     // of a panorama, stereo pair or multi-angle
     bool is_gain_map() const { return type() == 0x050000; }
+
+    void remove_dependence() {
+        attribute &= 0x3fffffff;  // without the flags of dependent parent and child
+        dependent[0] = dependent[1] = 0;
+    }
 };
 
 // The pictures of the index at `bytes`, after its mark "MPF"; empty optional if it is damaged.

@@ -12,7 +12,7 @@ namespace {
 const char *describe_kind_from(KindFrom from) {
     return from == KindFrom::option     ? "as requested"
            : from == KindFrom::pictures ? "according to the pictures"
-           : from == KindFrom::none     ? "because no picture states the camera; use --camera-kind to change it"
+           : from == KindFrom::none     ? "because no picture is a camera's own JPEG; use --camera-kind to change it"
                                         : "typical of reconstructions; use --camera-kind to change it";
 }
 

@@ -115,6 +115,7 @@ PictureMetadata metadata_of(const Truth &truth, uint32_t i) {
     set_text(m.key.camera_maker, sizeof m.key.camera_maker, "lensprof");
     set_text(m.key.camera_model, sizeof m.key.camera_model, "Simulated Camera");
     set_text(m.key.lens, sizeof m.key.lens, "Simulated Lens");
+    m.software = "lensprof";  // so that the response is not taken for that of a camera's own JPEG
     double half = truth.cameras[i].hfov_deg * std::acos(-1.0) / 360.0;
     m.key.focal_mm = std::round(180.0 / std::tan(half)) / 10.0;  // on a sensor 36 mm wide
     m.key.aperture = kSimulatedFNumber;
