@@ -34,7 +34,7 @@ program: deps ## build the program alone: build/lensprof
 	cmake --preset release -DLENSPROF_TESTS=OFF >/dev/null
 	cmake --build --preset release -j $(JOBS) --target lensprof_program
 
-demo: program ## calibrate and correct a rendered sequence, or yours: make demo PHOTOS=dir/pano.pto
+demo: program ## the whole job, from pictures to a page about them: rendered ones, or yours with PHOTOS=folder
 	examples/demo.sh "$(PHOTOS)"
 
 check: test-deps build ## the quick tests, a few minutes
@@ -42,10 +42,10 @@ check: test-deps build ## the quick tests, a few minutes
 
 # Warnings end the project's own test run, with GCC and, in the sanitizer build, with clang.
 test: WERROR := ON
-test: test-deps build ## all tests but the campaigns of `make soak`, and the same under sanitizers
+test: test-deps build ## all tests of the release build but the campaigns of `make soak`
 	ctest --preset all -j $(JOBS)
-	$(MAKE) sanitize WERROR=ON
 
+sanitize: WERROR := ON
 sanitize: test-deps ## build and run the C and C++ tests under address and undefined behaviour sanitizers
 	cmake --preset sanitize -DLENSPROF_WERROR=$(WERROR)
 	cmake --build --preset sanitize -j $(JOBS)
