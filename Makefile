@@ -89,8 +89,8 @@ abi-baseline: ## write tests/install/abi-baseline.xml again, after a compatible 
 	python3 tests/install/abi_check.py write
 
 abi-headers: ## save the public headers as those of this release, whose programs all later libraries must serve
-	mkdir -p tests/install/headers-0.2/lensprof
-	cp include/lensprof/*.h tests/install/headers-0.2/lensprof/
+	mkdir -p tests/install/headers-0.3/lensprof
+	cp include/lensprof/*.h tests/install/headers-0.3/lensprof/
 
 abi: ## generate _abi.py and abi_dump.c of the Python package from the public headers (package python3-pycparser)
 	python3 bindings/python/tools/make_abi.py

@@ -31,7 +31,7 @@
 #include <stdint.h>
 
 #define LENSPROF_VERSION_MAJOR 0
-#define LENSPROF_VERSION_MINOR 2
+#define LENSPROF_VERSION_MINOR 3
 #define LENSPROF_VERSION_PATCH 0
 
 #if defined(__GNUC__)
@@ -111,7 +111,7 @@ typedef int (*lensprof_progress)(double done, void *user);
 /* Name of a status, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other values. Static storage. */
 LENSPROF_API const char *lensprof_status_name(lensprof_status status);
 
-/* "0.2.0". Static storage. */
+/* "0.3.0". Static storage. */
 LENSPROF_API const char *lensprof_version(void);
 
 #ifdef __cplusplus

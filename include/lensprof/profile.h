@@ -84,7 +84,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_camera_model_validate(co
 /* Origin of a profile. The size stays 768 bytes: new members use the reserved ones. */
 typedef struct lensprof_provenance {
     char method[32];        /* "transfer", "import", ... */
-    char software[32];      /* "lensprof 0.2.0" */
+    char software[32];      /* "lensprof 0.3.0" */
     char source[256];       /* file or database of origin */
     int64_t created_unix_s; /* seconds since 1970-01-01 UTC; 0 = unknown */
     uint32_t images;        /* pictures used */

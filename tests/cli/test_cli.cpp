@@ -36,8 +36,8 @@ void test_help(void **) {
 }
 
 void test_version(void **) {
-    assert_string_equal(must_exit(done, {"version"}).c_str(), "lensprof 0.2.0\n");
-    assert_string_equal(must_exit(done, {"--version"}).c_str(), "lensprof 0.2.0\n");
+    assert_string_equal(must_exit(done, {"version"}).c_str(), "lensprof 0.3.0\n");
+    assert_string_equal(must_exit(done, {"--version"}).c_str(), "lensprof 0.3.0\n");
 }
 
 void test_unknown_command(void **) {

@@ -45,7 +45,7 @@ static void assert_kept(void) {
     assert_int_equal(profile.provenance.created_unix_s, 5);
     assert_int_equal(profile.provenance.prior_id, 7);
     assert_int_equal(profile.provenance.forced, 1);
-    assert_string_equal(profile.provenance.software, "lensprof 0.2.0");
+    assert_string_equal(profile.provenance.software, "lensprof 0.3.0");
     assert_ok(lensprof_profile_validate(&profile));
 }
 

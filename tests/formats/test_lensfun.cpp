@@ -67,7 +67,7 @@ void test_golden(void **) {
     assert_int_equal(all[0].key.processing, LENSPROF_PROCESSING_RAW);
     assert_string_equal(all[0].key.camera_model, "");
     assert_string_equal(all[0].provenance.method, "import");
-    assert_string_equal(all[0].provenance.software, "lensprof 0.2.0");
+    assert_string_equal(all[0].provenance.software, "lensprof 0.3.0");
     assert_string_equal(all[0].provenance.source, "dir/golden.xml; Lensfun database, CC BY-SA 3.0");
     assert_true(all[0].provenance.created_unix_s == 0 && all[0].provenance.heldout_rms == LENSPROF_UNKNOWN);
     for (const Falloff &entry : all) assert_true(entry.usable == (entry.valid == LENSPROF_OK));
@@ -333,7 +333,7 @@ void test_bombs(void **) {
     assert_string_equal(database.entries[0].key.lens, "&b;&x;");
 }
 
-const char *const kWritten = R"(<!-- written by lensprof 0.2.0; <mount> may be changed to that of your camera -->
+const char *const kWritten = R"(<!-- written by lensprof 0.3.0; <mount> may be changed to that of your camera -->
 <lensdatabase version="1">
     <lens>
         <maker>Carl</maker>

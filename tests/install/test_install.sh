@@ -28,8 +28,17 @@ if grep -rl "$build_dir" "$prefix/include" "$lib_dir/cmake" "$lib_dir/pkgconfig"
 say "program"
 version=$(sed -n 's/^#define LENSPROF_VERSION_\(MAJOR\|MINOR\|PATCH\) //p' "$source_dir/include/lensprof/base.h" | paste -sd.)
 [ "$(env -i "$prefix/bin/lensprof" version)" = "lensprof $version" ] || wrong "bin/lensprof does not print lensprof $version"
-used=$(ldd "$prefix/bin/lensprof" | sed -n 's/.*liblensprof.so.0.2 => \(.*\) (.*/\1/p')
-[ "$(realpath "$used")" = "$(realpath "$lib_dir/liblensprof.so.0.2")" ] || wrong "bin/lensprof uses $used, not the installed library"
+used=$(ldd "$prefix/bin/lensprof" | sed -n 's/.*liblensprof.so.0.3 => \(.*\) (.*/\1/p')
+[ "$(realpath "$used")" = "$(realpath "$lib_dir/liblensprof.so.0.3")" ] || wrong "bin/lensprof uses $used, not the installed library"
+
+say "a program of 0.2"
+echo 'const char *lensprof_version(void) { return "0.2.0"; }' >"$work/older.c"
+echo 'const char *lensprof_version(void); int main(void) { return !lensprof_version(); }' >"$work/of_older.c"
+mkdir "$work/older"
+quiet "$CC" -shared -fPIC -Wl,-soname,liblensprof.so.0.2 "$work/older.c" -o "$work/older/liblensprof.so"
+quiet "$CC" "$work/of_older.c" -L"$work/older" -llensprof -o "$work/of_older"
+if LD_LIBRARY_PATH=$lib_dir "$work/of_older" 2>"$work/loader"; then wrong "it runs with this library"; fi
+grep -q "liblensprof.so.0.2: cannot open" "$work/loader" || wrong "$(cat "$work/loader")"
 
 say "pkg-config"
 export PKG_CONFIG_PATH=$lib_dir/pkgconfig

@@ -32,17 +32,17 @@ class Finding(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             copy = pathlib.Path(folder) / "lensprof"
             shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-            shutil.copy(os.environ["LENSPROF_LIBRARY"], copy / "liblensprof.so.0.2")
+            shutil.copy(os.environ["LENSPROF_LIBRARY"], copy / "liblensprof.so.0.3")
             result = run_python("import lensprof; print(lensprof._library.lib._name)", LENSPROF_LIBRARY=None,
                                 PYTHONPATH=folder)
-            self.assertEqual(result.stdout.strip(), str(copy / "liblensprof.so.0.2"), result.stderr)
+            self.assertEqual(result.stdout.strip(), str(copy / "liblensprof.so.0.3"), result.stderr)
 
     def test_library_of_the_loader(self):
         with tempfile.TemporaryDirectory() as folder:
-            shutil.copy(os.environ["LENSPROF_LIBRARY"], pathlib.Path(folder) / "liblensprof.so.0.2")
+            shutil.copy(os.environ["LENSPROF_LIBRARY"], pathlib.Path(folder) / "liblensprof.so.0.3")
             result = run_python("import lensprof; print(lensprof._library.lib._name)", LENSPROF_LIBRARY=None,
                                 LD_LIBRARY_PATH=folder)
-            self.assertEqual(result.stdout.strip(), "liblensprof.so.0.2", result.stderr)
+            self.assertEqual(result.stdout.strip(), "liblensprof.so.0.3", result.stderr)
 
     def test_no_library_at_all(self):
         code = "import ctypes, ctypes.util\ndef refuse(name): raise OSError\nctypes.CDLL = refuse\n" \
@@ -59,7 +59,7 @@ class Finding(unittest.TestCase):
 
                 def __new__(cls):
                     return b"0.1.0"
-        with self.assertRaisesRegex(ImportError, "old.so: is lensprof 0.1.0, but this package is for 0.2"):
+        with self.assertRaisesRegex(ImportError, "old.so: is lensprof 0.1.0, but this package is for 0.3"):
             _library._check_version(Old)
 
     def test_version(self):

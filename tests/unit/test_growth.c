@@ -24,7 +24,7 @@ static int remove_directory(void **state) {
     return rmdir(directory);
 }
 
-/* For ABIs with 64 bit addresses: the struct sizes of 0.2.0 remain the first version for ever. */
+/* For ABIs with 64 bit addresses: the struct sizes of 0.3.0 remain the first version for ever. */
 static void test_first_sizes_stay(void **state) {
     (void)state;
     for (size_t i = 0; sizeof(void *) == 8 && i < STRUCTS; i++)

@@ -10,7 +10,7 @@ from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c
                     c_size_t, c_ssize_t, c_uint32, c_uint8, c_void_p)
 from enum import IntEnum, IntFlag
 
-VERSION = "0.2.0"  # of the headers
+VERSION = "0.3.0"  # of the headers
 
 RESPONSE_SAMPLES = 1024
 EMOR_MODES = 25

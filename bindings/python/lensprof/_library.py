@@ -25,8 +25,8 @@ def _file_names() -> list[str]:
     if sys.platform == "win32":
         return ["lensprof.dll"]
     if sys.platform == "darwin":
-        return ["liblensprof.0.2.dylib", "liblensprof.dylib"]
-    return ["liblensprof.so.0.2", "liblensprof.so"]
+        return ["liblensprof.0.3.dylib", "liblensprof.dylib"]
+    return ["liblensprof.so.0.3", "liblensprof.so"]
 
 
 def _find() -> ctypes.CDLL:
@@ -88,7 +88,7 @@ def initialised(kind: Type[S], **fields: object) -> S:
 
 
 def version() -> str:
-    """Version of the shared library, e.g. "0.2.0"."""
+    """Version of the shared library, e.g. "0.3.0"."""
     return lib.lensprof_version().decode()
 
 

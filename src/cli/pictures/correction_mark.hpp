@@ -23,7 +23,7 @@ struct CorrectionMark {
     bool linear = false;                // proportional to light
     bool is_exposure_measured = false;  // EXIF holds the exposure measured by lensprof, not the one stated by the
                                         // camera
-    std::string software;               // "lensprof 0.2.0"
+    std::string software;               // "lensprof 0.3.0"
     std::string model;                  // source of falloff and response
     std::string source;                 // name of the source picture, without folder
     std::string digest;                 // digest_of that file

@@ -417,7 +417,7 @@ static void init_flat_result(void *given, size_t size, uint32_t i) {
 
 typedef struct growing {
     const char *name;
-    size_t size, first; /* in these headers, and in 0.2.0 with 64 bit addresses */
+    size_t size, first; /* in these headers, and in 0.3.0 with 64 bit addresses */
     uint32_t count;     /* number of elements, if it is an array */
     void (*init)(void *given, size_t size, uint32_t i);
     lensprof_status (*call)(void *given, lensprof_error *error);

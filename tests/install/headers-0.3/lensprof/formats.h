@@ -26,6 +26,8 @@ typedef struct lensprof_import_entry {
     uint32_t usable; /* 0: not a valid falloff (provenance.doubt has the reason); lensprof_profile_validate refuses the
                       * profile. 1: a valid profile, but provenance.doubt may have a warning */
     uint32_t holds;  /* lensprof_holds: PROFILES, or from lensprof_import what the file holds, the rest being neutral */
+    double change; /* of a response that decreased in places: the largest change that made it increasing, levels (1/255
+                    * of its range); otherwise 0 */
 } lensprof_import_entry;
 
 /* Receives the entries in file order. A return value other than OK stops the reading and becomes its result, with the
@@ -190,6 +192,8 @@ typedef struct lensprof_map {
  * squares of the relative error, and a gain grid if the polynomials leave more than 0.2 %. Sets vignetting and grid of
  * an initialised *profile, removes its covariance and leaves the rest. *worst (may be NULL) receives the largest
  * relative error left; for maps with a side of more than 1024, that of means over up to 64 values along each side.
+ * A dark surround with a sharp edge, as outside the circle of a fisheye, is unknown, too; there the falloff stays that
+ * of the nearest known place. If the rest is a circle, provenance.source states it.
  * Errors: ARGUMENT, also for values below 0; SIZE; NOT_FINITE; VIGNETTING for a map with too few known values or that
  * no falloff approximates; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_read(const lensprof_map *map, uint32_t width,
@@ -285,8 +289,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_write(const 
  *    from 10 km on), and the f-number 2^(Av / 2) from the APEX ApertureValue Av. RAW if CameraRawProfile is True,
  *    otherwise JPEG. Texts, sensor and frame missing in an entry are those of the first entry.
  *  - vignetting: VignetteModelParam1..3 with radii in FocalLengthX longer sides of the frame, rescaled; or, if there
- *    are VignetteModelPiecewiseParam, their refit. Frames without ImageWidth and ImageLength are taken as 3:2. If
- *    FocalLengthY differs, a map of the frame is fitted, with a gain grid for the part that is not radial.
+ *    are VignetteModelPiecewiseParam, their refit. Frames without ImageWidth and ImageLength are taken as 3:2. If the
+ *    refit is off by more than 1 %, or FocalLengthY differs, a map of the frame is fitted, with a gain grid.
  *  - provenance, and what is checked first: as lensprof_lensfun_read. doubt, also: a refit with an error above 1 %.
  * In entries that are not usable, k may be NaN. Errors (the text names the line): ARGUMENT; SIZE over 64 MiB, 2 million
  * elements or attributes, 20000 entries or 1000 knots; SYNTAX; MEMORY; the return value of the visitor. */
@@ -333,8 +337,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_drone_xmp_read(const voi
  * nearest tables as in libcamera. If they are not grey, the key's color_temperature_k is set to it. luminance_strength
  * is not applied: the tables are the measured values. Without both calibrations there is one curve, otherwise three.
  * columns, rows: of the tables; 0 and 0 for those of 16 x 12 and 32 x 32. profile, *worst and errors as
- * lensprof_map_read; SYNTAX names line or path; UNSUPPORTED for a file with corner_strength, which replaces the table.
- */
+ * lensprof_map_read; SYNTAX names line or path; NOT_FOUND for a tuning file without luminance_lut; UNSUPPORTED for one
+ * with corner_strength, which replaces the table. A comma before a closing bracket is accepted, as by libcamera. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const void *data, size_t size, double ct,
                                                                   uint32_t columns, uint32_t rows, uint32_t width,
                                                                   uint32_t height, lensprof_profile *profile,
@@ -406,6 +410,9 @@ typedef struct lensprof_import_options {
     const lensprof_profile_key *key; /* for files that hold a response or a falloff: key of the resulting profile. NULL:
                                         an empty one, JPEG for a response and RAW for a falloff. Empty texts are filled
                                         from the file if it has them */
+    uint32_t strict;   /* responses: 1 refuses values that decrease, as the function of the format does; 0 replaces
+                          them by the nearest increasing curve */
+    uint32_t reserved; /* 0 */
 } lensprof_import_options;
 
 /* AUTO, layout RGB, inverse curves; nothing else known. */
@@ -416,7 +423,8 @@ static inline void lensprof_import_options_init(lensprof_import_options *options
 
 /* Reads a file of any format and visits each of its profiles, as the function of the format does, or one profile with
  * its response or falloff (`holds` of the entry states which; the other is neutral). doubt, also: a refit with an error
- * above 1 %; an M that increases by more than 0.05, which may be a gain. options may be NULL.
+ * above 1 %; an M that increases by more than 0.05, which may be a gain; a response that decreased and was changed by
+ * more than 1 level (RESPONSE if by more than a tenth of its range, or with `strict`). options may be NULL.
  * The caller extracts data from containers: opcodes in a TIFF or DNG, XMP in a picture and maps as pictures are
  * UNSUPPORTED, and the text states what to pass. A map has the size of the frame or, if that is not given, its own.
  * Errors: ARGUMENT; STRUCT_SIZE; SIZE over 64 MiB; SYNTAX for an empty file and a damaged blob; UNSUPPORTED also if

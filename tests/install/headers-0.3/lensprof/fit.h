@@ -69,7 +69,7 @@ typedef enum lensprof_loss {
  * e^gamma) give the same pictures. */
 typedef enum lensprof_gamma_from {
     LENSPROF_GAMMA_AUTO = 0,      /* default: known exposures and the prior, weighted by their standard errors */
-    LENSPROF_GAMMA_PRIOR = 1,     /* only the prior on the response */
+    LENSPROF_GAMMA_PRIOR = 1,     /* only the priors on response and falloff */
     LENSPROF_GAMMA_EXPOSURES = 2, /* only known_ev of the images; the prior if these do not differ */
     LENSPROF_GAMMA_KNOWN = 3,     /* results only: fixed parameters, i.e. response, falloff or exposures */
     LENSPROF_GAMMA_NONE = 4, /* results only: nothing, as there is no prior (the paper's method): gamma is arbitrary */
@@ -95,6 +95,9 @@ typedef struct lensprof_fit_image {
                           setting belong to one camera. Fixed or known exposures apply relative to other images of the
                           same camera. DEBEVEC allows only one camera */
     uint32_t reserved; /* 0 */
+    double f_number_ratio; /* f-number over the widest one of the lens, 1..1024: 1 wide open, 2 two stops down; 0 =
+                              unknown. Selects the lenses whose falloffs a falloff that pictures leave open resembles */
+    double crop_factor;    /* diagonal of 36 x 24 mm over that of the sensor, 0.1..100; 0 = unknown. The same */
 } lensprof_fit_image;
 
 /* Image `index` of the array, with a frame of width x height px: setting 0, camera 0; exposure and white balance not
@@ -113,6 +116,16 @@ typedef enum lensprof_fit_response {
                                        covariance of that kind */
     LENSPROF_FIT_RESPONSE_PROFILE = 3 /* the pictures do not show it: that of the profile given as the prior */
 } lensprof_fit_response;
+
+/* What a result consists of: the most complex description of the pictures that predicts held-out pairs better than all
+ * simpler ones. */
+typedef enum lensprof_fit_model {
+    LENSPROF_FIT_MODEL_FULL = 0,      /* everything that was free */
+    LENSPROF_FIT_MODEL_LENS = 1,      /* exposures and white balances, and the falloff of the profile as it is */
+    LENSPROF_FIT_MODEL_EXPOSURES = 2, /* exposures and white balances alone, with the typical response of the kind */
+    LENSPROF_FIT_MODEL_NOTHING = 3    /* none of these is better than the pictures as they are. The members are those of
+                                         the full description, which should not be applied */
+} lensprof_fit_model;
 
 /* How lensprof_fit_options.profile was used. */
 typedef enum lensprof_profile_prior {
@@ -295,11 +308,18 @@ typedef struct lensprof_fit_result {
     lensprof_fit_setting *settings; /* the caller's array of setting_count initialised elements, indexed by setting, set
                                        before the call; or NULL */
     uint32_t setting_count;
-    uint32_t reserved2;           /* 0 */
+    uint32_t equal_exposures;     /* 1: no exposure of the reference's camera was known and its pictures show no
+                                     difference, so that they are taken as equal */
     lensprof_fit_camera *cameras; /* the caller's array of camera_count initialised elements, indexed by camera, set
                                      before the call; or NULL */
     uint32_t camera_count;
-    uint32_t reserved3; /* 0 */
+    uint32_t model; /* lensprof_fit_model */
+    /* How far the pictures alone are from what is known of lenses, in combined standard errors: their falloff, and the
+     * centre of it. That knowledge loses weight where pictures clearly contradict it. The farthest of all settings; 0
+     * if not estimated, or without a prior */
+    double falloff_prior_distance, center_prior_distance;
+    double error_inflation; /* variance of the falloff over that of independent pairs, at least 1: pairs that lie
+                               together have errors in common. Standard errors include it */
 } lensprof_fit_result;
 
 /* An empty result with a linear response. */

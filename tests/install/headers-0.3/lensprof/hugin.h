@@ -29,7 +29,9 @@ typedef struct lensprof_pto_image {
     int32_t crop[4];        /* left, top, right, bottom (right and bottom exclusive); the frame if there is no crop */
     uint32_t crop_circular; /* 1: only the circle about the centre of the crop that touches its nearer sides is used */
     uint32_t left_out;      /* 1: the result in the project excludes this image, whose exposure is unknown */
-    uint32_t reserved;      /* 0 */
+    uint32_t of_crop;       /* 1: the crop is a picture of its own, because the file has other images of the project in
+                               other crops, or because it is a circle off the middle of the file. Then `vignetting` is
+                               that of the crop as a frame: about its middle, r = 1 in its corners */
 } lensprof_pto_image;
 
 /* All zero, to be filled by lensprof_pto_get_image. */

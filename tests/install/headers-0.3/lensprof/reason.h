@@ -37,11 +37,12 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_IMAGE_ODD = 151,                 /* image: median residual, levels of 255 */
     LENSPROF_REASON_STILL_IMAGE_ODD = 152,           /* image: median residual, levels of 255 */
     LENSPROF_REASON_WEAK_PATTERNS = 153,             /* share of the residual's variance; levels of 255 */
-    LENSPROF_REASON_IMAGES_LEFT_OUT = 154,           /* first image left out: number of images */
+    LENSPROF_REASON_IMAGES_LEFT_OUT = 154,           /* first image that disagrees and was left out: number of them */
     LENSPROF_REASON_MANY_OUTLIERS = 155,             /* share of the pairs that disagree; held-out RMS, levels of 255 */
-    LENSPROF_REASON_SEAMS_STAY = 156,       /* median residual; median residual before the fit; levels of 255 */
-    LENSPROF_REASON_LINKS_UNVERIFIED = 157, /* first image: number of images */
-    LENSPROF_REASON_LINKS_CONTRADICT = 158, /* image of the first link: number of links */
+    LENSPROF_REASON_SEAMS_STAY = 156,         /* median residual; median residual before the fit; levels of 255 */
+    LENSPROF_REASON_LINKS_UNVERIFIED = 157,   /* first image: number of images */
+    LENSPROF_REASON_LINKS_CONTRADICT = 158,   /* image of the first link: number of links */
+    LENSPROF_REASON_IMAGES_UNCONNECTED = 159, /* first image left out, as none of them disagrees: number of images */
 
     /* Exposures, and the exponent gamma, which pictures alone do not determine. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201, /* image: standard error, EV */
@@ -69,6 +70,9 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FALLOFF_RISES = 403,      /* largest M; its standard error */
     LENSPROF_REASON_CENTER_ON_LIMIT = 404,    /* distance, half diagonals */
     LENSPROF_REASON_FALLOFF_DARK = 405,       /* smallest M */
+    LENSPROF_REASON_SAME_VIEW = 406,          /* change of r^2 between the ends of most pairs, at most */
+    LENSPROF_REASON_EXPOSURES_ONLY = 407,     /* a simpler model predicts held-out pairs as well */
+    LENSPROF_REASON_NOTHING_BETTER = 408,     /* no model predicts held-out pairs better than no correction */
     LENSPROF_REASON_NOT_RADIAL = 451,         /* share of the residual's variance; levels of 255 */
     LENSPROF_REASON_FAR_CENTER = 452,         /* distance, half diagonals */
     LENSPROF_REASON_FALLOFF_RISES_SOME = 453, /* largest M; its standard error */
