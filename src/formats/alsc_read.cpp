@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/alsc.hpp"
 #include "formats/falloff/map.hpp"
@@ -155,13 +155,11 @@ double read_alsc(std::string_view text, double ct, Shape shape, lensprof_profile
 
 using namespace lensprof;
 
-lensprof_status lensprof_alsc_read(const void *data, size_t size, double ct, uint32_t columns, uint32_t rows,
-                                   uint32_t width, uint32_t height, lensprof_profile *profile, double *worst,
-                                   lensprof_error *error) {
+lensprof_status lp_alsc_read(const void *data, size_t size, double ct, uint32_t columns, uint32_t rows, uint32_t width,
+                             uint32_t height, lensprof_profile *profile, double *worst, lensprof_error *error) {
     if ((!data && size) || !profile || !(ct == LENSPROF_UNKNOWN || (ct > 0.0 && ct <= 1e6))) {
-        set_error(
-            error,
-            "lensprof_alsc_read: give a buffer, a profile and a colour temperature of up to 1000000 K or unknown");
+        set_error(error,
+                  "lensprof_import: give a buffer, a profile and a colour temperature of up to 1000000 K or unknown");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {

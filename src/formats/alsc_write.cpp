@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/alsc.hpp"
 #include "formats/falloff/map.hpp"
@@ -91,13 +91,12 @@ std::string alsc_text(const lensprof_profile &profile, double ct, const Shape &s
 
 using namespace lensprof;
 
-lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct, uint32_t columns, uint32_t rows,
-                                    uint32_t width, uint32_t height, void *data, size_t capacity, size_t *count,
-                                    lensprof_error *error) {
+lensprof_status lp_alsc_write(const lensprof_profile *profile, double ct, uint32_t columns, uint32_t rows,
+                              uint32_t width, uint32_t height, void *data, size_t capacity, size_t *count,
+                              lensprof_error *error) {
     if (!profile || !(ct == LENSPROF_UNKNOWN || (ct >= 1.0 && ct <= 1e6)) || (!data && capacity)) {
-        set_error(
-            error,
-            "lensprof_alsc_write: give a profile, a colour temperature of 1 to 1000000 K or unknown, and a buffer");
+        set_error(error,
+                  "lensprof_export: give a profile, a colour temperature of 1 to 1000000 K or unknown, and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     if (ct == LENSPROF_UNKNOWN) ct = profile->key.color_temperature_k;

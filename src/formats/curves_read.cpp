@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/responses.hpp"
 
@@ -212,11 +212,11 @@ uint32_t read_curves(std::string_view text, uint32_t curve, Repair &repair, lens
 
 using namespace lensprof;
 
-lensprof_status lensprof_curves_read(const void *data, size_t size, uint32_t curve, lensprof_response *responses,
-                                     uint32_t *count, lensprof_error *error) {
+lensprof_status lp_curves_read(const void *data, size_t size, uint32_t curve, lensprof_response *responses,
+                               uint32_t *count, lensprof_error *error) {
     if ((!data && size) || !responses || !count || curve > LENSPROF_CURVE_FORWARD) {
         set_error(error,
-                  "lensprof_curves_read: data, responses or count is NULL, or the kind is unknown; see lensprof_curve");
+                  "lensprof_import: data, responses or count is NULL, or the kind is unknown; see lensprof_curve");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {

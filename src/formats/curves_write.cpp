@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/falloff/curve_table.hpp"
 
@@ -47,13 +47,11 @@ std::string curves_text(const lensprof_response *responses, uint32_t count, uint
 
 using namespace lensprof;
 
-lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32_t response_count, uint32_t curve,
-                                      uint32_t rows, void *data, size_t capacity, size_t *count,
-                                      lensprof_error *error) {
+lensprof_status lp_curves_write(const lensprof_response *responses, uint32_t response_count, uint32_t curve,
+                                uint32_t rows, void *data, size_t capacity, size_t *count, lensprof_error *error) {
     if (!responses || (response_count != 1 && response_count != 3) || curve > LENSPROF_CURVE_FORWARD || rows < 2
         || rows > kMaxCurveRows || (!data && capacity)) {
-        set_error(error,
-                  "lensprof_curves_write: give 1 or 3 responses, a lensprof_curve, 2 to 65536 rows and a buffer");
+        set_error(error, "lensprof_export: give 1 or 3 responses, a lensprof_curve, 2 to 65536 rows and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error,

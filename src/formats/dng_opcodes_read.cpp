@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "falloff/map_fit.hpp"
 #include "falloff/refit.hpp"
@@ -139,11 +139,11 @@ std::string read_gains(const OpcodeGains &gains, PixelFrame frame, uint32_t layo
 
 using namespace lensprof;
 
-lensprof_status lensprof_dng_opcodes_read(const void *data, size_t size, uint32_t width, uint32_t height,
-                                          uint32_t layout, const char *source, lensprof_import_visitor visit,
-                                          void *user, lensprof_error *error) {
+lensprof_status lp_dng_opcodes_read(const void *data, size_t size, uint32_t width, uint32_t height, uint32_t layout,
+                                    const char *source, lensprof_import_visitor visit, void *user,
+                                    lensprof_error *error) {
     if ((!data && size) || !visit) {
-        set_error(error, "lensprof_dng_opcodes_read: data or visit is NULL; pass a buffer and a function");
+        set_error(error, "lensprof_import: data or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "falloff/map_fit.hpp"
 #include "falloff/refit.hpp"
@@ -188,11 +188,11 @@ double write_maps(const lensprof_profile &profile, PixelFrame frame, uint32_t la
 
 using namespace lensprof;
 
-lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile, uint32_t width, uint32_t height,
-                                           uint32_t layout, uint32_t form, void *data, size_t capacity, size_t *count,
-                                           double *worst, lensprof_error *error) {
+lensprof_status lp_dng_opcodes_write(const lensprof_profile *profile, uint32_t width, uint32_t height, uint32_t layout,
+                                     uint32_t form, void *data, size_t capacity, size_t *count, double *worst,
+                                     lensprof_error *error) {
     if (!profile || (!data && capacity)) {
-        set_error(error, "lensprof_dng_opcodes_write: profile or data is NULL; pass a profile and a buffer");
+        set_error(error, "lensprof_export: profile or data is NULL; pass a profile and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     OpcodeBytes list;

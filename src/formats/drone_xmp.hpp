@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 namespace lensprof {
 
@@ -16,7 +16,7 @@ struct DronePacket {
     const char *maker;       // of the camera, if the packet does not contain it; or NULL
 };
 
-// lensprof_drone_xmp_read of it.
+// lp_drone_xmp_read of it.
 lensprof_status read_drone_packet(const DronePacket &packet, lensprof_import_visitor visit, void *user,
                                   lensprof_error *error);
 

@@ -324,12 +324,11 @@ lensprof_status read_drone_packet(const DronePacket &in, lensprof_import_visitor
 
 using namespace lensprof;
 
-lensprof_status lensprof_drone_xmp_read(const void *data, size_t size, uint32_t width, uint32_t height,
-                                        const char *source, lensprof_import_visitor visit, void *user,
-                                        lensprof_error *error) {
+lensprof_status lp_drone_xmp_read(const void *data, size_t size, uint32_t width, uint32_t height, const char *source,
+                                  lensprof_import_visitor visit, void *user, lensprof_error *error) {
     if ((!data && size) || !visit || !width || !height) {
         set_error(error,
-                  "lensprof_drone_xmp_read: data or visit is NULL, or a side is 0; pass a packet, its picture's size "
+                  "lensprof_import: data or visit is NULL, or a side is 0; pass a packet, its picture's size "
                   "and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <memory>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/json.hpp"
 
@@ -254,10 +254,10 @@ lensprof_status walk(const JsonText &text, const char *source, lensprof_profile 
 
 using namespace lensprof;
 
-lensprof_status lensprof_json_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
-                                   void *user, lensprof_error *error) {
+lensprof_status lp_json_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
+                             void *user, lensprof_error *error) {
     if ((!data && size) || !visit) {
-        set_error(error, "lensprof_json_read: data or visit is NULL; pass a buffer and a function");
+        set_error(error, "lensprof_import: data or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;

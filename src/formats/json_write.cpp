@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/json.hpp"
 
@@ -215,10 +215,10 @@ void write_profile(JsonWriter &json, const lensprof_profile &profile) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_json_write(const lensprof_profile *const *profiles, uint32_t profile_count, void *data,
-                                    size_t capacity, size_t *count, lensprof_error *error) {
+lensprof_status lp_json_write(const lensprof_profile *const *profiles, uint32_t profile_count, void *data,
+                              size_t capacity, size_t *count, lensprof_error *error) {
     if ((!profiles && profile_count) || (!data && capacity)) {
-        set_error(error, "lensprof_json_write: profiles or data is NULL; pass a buffer");
+        set_error(error, "lensprof_export: profiles or data is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error, [&] { return profiles_text(profiles, profile_count); });

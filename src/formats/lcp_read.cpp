@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "falloff/map_fit.hpp"
 #include "falloff/refit.hpp"
@@ -262,10 +262,10 @@ lensprof_status visit_falloff(lensprof_profile &profile, const LcpFalloff &fallo
 
 using namespace lensprof;
 
-lensprof_status lensprof_lcp_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
-                                  void *user, lensprof_error *error) {
+lensprof_status lp_lcp_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
+                            void *user, lensprof_error *error) {
     if ((!data && size) || !visit) {
-        set_error(error, "lensprof_lcp_read: data or visit is NULL; pass a buffer and a function");
+        set_error(error, "lensprof_import: data or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;

@@ -6,7 +6,7 @@
 #include <string>
 #include <tuple>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "falloff/refit.hpp"
 #include "formats/falloff/export.hpp"
@@ -139,10 +139,10 @@ void LcpWriter::append(const lensprof_profile &profile, uint32_t index) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles, uint32_t profile_count, uint32_t width,
-                                   uint32_t height, void *data, size_t capacity, size_t *count, lensprof_error *error) {
+lensprof_status lp_lcp_write(const lensprof_profile *const *profiles, uint32_t profile_count, uint32_t width,
+                             uint32_t height, void *data, size_t capacity, size_t *count, lensprof_error *error) {
     if ((!profiles && profile_count) || (!data && capacity)) {
-        set_error(error, "lensprof_lcp_write: profiles or data is NULL; pass a buffer");
+        set_error(error, "lensprof_export: profiles or data is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error, [&] {

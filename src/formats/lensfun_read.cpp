@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "falloff/refit.hpp"
 #include "formats/falloff/import.hpp"
@@ -196,10 +196,10 @@ lensprof_status LensfunReader::walk(Use use) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_lensfun_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
-                                      void *user, lensprof_error *error) {
+lensprof_status lp_lensfun_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
+                                void *user, lensprof_error *error) {
     if ((!data && size) || !visit) {
-        set_error(error, "lensprof_lensfun_read: data or visit is NULL; pass a buffer and a function");
+        set_error(error, "lensprof_import: data or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;

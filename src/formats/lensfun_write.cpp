@@ -6,7 +6,7 @@
 #include <string>
 #include <tuple>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/falloff/export.hpp"
 #include "formats/falloff/radius.hpp"
@@ -89,10 +89,10 @@ std::string database_text(const lensprof_profile *const *profiles, uint32_t coun
 
 using namespace lensprof;
 
-lensprof_status lensprof_lensfun_write(const lensprof_profile *const *profiles, uint32_t profile_count, void *data,
-                                       size_t capacity, size_t *count, lensprof_error *error) {
+lensprof_status lp_lensfun_write(const lensprof_profile *const *profiles, uint32_t profile_count, void *data,
+                                 size_t capacity, size_t *count, lensprof_error *error) {
     if ((!profiles && profile_count) || (!data && capacity)) {
-        set_error(error, "lensprof_lensfun_write: profiles or data is NULL; pass a buffer");
+        set_error(error, "lensprof_export: profiles or data is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error, [&] { return database_text(profiles, profile_count); });

@@ -1,7 +1,7 @@
 // TUM's pcalib.txt, which DSO and its kin read: the inverse response at evenly spaced grey values.
 #include <algorithm>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/responses.hpp"
 
@@ -72,10 +72,9 @@ lensprof_response read_pcalib(std::string_view text, Repair &repair) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_pcalib_read(const void *data, size_t size, lensprof_response *response,
-                                     lensprof_error *error) {
+lensprof_status lp_pcalib_read(const void *data, size_t size, lensprof_response *response, lensprof_error *error) {
     if ((!data && size) || !response) {
-        set_error(error, "lensprof_pcalib_read: data or response is NULL; pass a buffer and a response");
+        set_error(error, "lensprof_import: data or response is NULL; pass a buffer and a response");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
@@ -84,10 +83,10 @@ lensprof_status lensprof_pcalib_read(const void *data, size_t size, lensprof_res
     });
 }
 
-lensprof_status lensprof_pcalib_write(const lensprof_response *response, void *data, size_t capacity, size_t *count,
-                                      lensprof_error *error) {
+lensprof_status lp_pcalib_write(const lensprof_response *response, void *data, size_t capacity, size_t *count,
+                                lensprof_error *error) {
     if (!response || (!data && capacity)) {
-        set_error(error, "lensprof_pcalib_write: response or data is NULL; pass a response and a buffer");
+        set_error(error, "lensprof_export: response or data is NULL; pass a response and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error, [&] { return pcalib_text(*response); });

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "formats/falloff/curve_table.hpp"
 #include "formats/falloff/map.hpp"
@@ -244,10 +244,10 @@ void read_radical_responses(std::string_view data, Repair &repair, lensprof_resp
 
 using namespace lensprof;
 
-lensprof_status lensprof_radical_response_read(const void *data, size_t size, lensprof_response *responses,
-                                               lensprof_error *error) {
+lensprof_status lp_radical_response_read(const void *data, size_t size, lensprof_response *responses,
+                                         lensprof_error *error) {
     if ((!data && size) || !responses) {
-        set_error(error, "lensprof_radical_response_read: data or responses is NULL; pass a buffer and 3 responses");
+        set_error(error, "lensprof_import: data or responses is NULL; pass a buffer and 3 responses");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
@@ -258,19 +258,19 @@ lensprof_status lensprof_radical_response_read(const void *data, size_t size, le
     });
 }
 
-lensprof_status lensprof_radical_response_write(const lensprof_response *responses, uint32_t response_count, void *data,
-                                                size_t capacity, size_t *count, lensprof_error *error) {
+lensprof_status lp_radical_response_write(const lensprof_response *responses, uint32_t response_count, void *data,
+                                          size_t capacity, size_t *count, lensprof_error *error) {
     if (!responses || (response_count != 1 && response_count != 3) || (!data && capacity)) {
-        set_error(error, "lensprof_radical_response_write: give 1 or 3 responses and a buffer");
+        set_error(error, "lensprof_export: give 1 or 3 responses and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error, [&] { return responses_data(responses, response_count); });
 }
 
-lensprof_status lensprof_radical_vignetting_read(const void *data, size_t size, lensprof_profile *profile,
-                                                 double *worst, lensprof_error *error) {
+lensprof_status lp_radical_vignetting_read(const void *data, size_t size, lensprof_profile *profile, double *worst,
+                                           lensprof_error *error) {
     if ((!data && size) || !profile) {
-        set_error(error, "lensprof_radical_vignetting_read: data or profile is NULL; pass a buffer and a profile");
+        set_error(error, "lensprof_import: data or profile is NULL; pass a buffer and a profile");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
@@ -281,10 +281,10 @@ lensprof_status lensprof_radical_vignetting_read(const void *data, size_t size, 
     });
 }
 
-lensprof_status lensprof_radical_vignetting_write(const lensprof_profile *profile, uint32_t width, uint32_t height,
-                                                  void *data, size_t capacity, size_t *count, lensprof_error *error) {
+lensprof_status lp_radical_vignetting_write(const lensprof_profile *profile, uint32_t width, uint32_t height,
+                                            void *data, size_t capacity, size_t *count, lensprof_error *error) {
     if (!profile || (!data && capacity)) {
-        set_error(error, "lensprof_radical_vignetting_write: give a profile and a buffer");
+        set_error(error, "lensprof_export: give a profile and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(data, capacity, count, error, [&] { return vignetting_data(*profile, width, height); });

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <memory>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "cli/pictures/opcode_tag.hpp"
 
@@ -275,8 +275,8 @@ void test_exiftool(void **) {
     Bytes list(20000);
     size_t needed = 0;
     const auto write = [&](uint32_t form, uint16_t tag) {
-        assert_ok(lensprof_dng_opcodes_write(profile.get(), width - 4, height - 2, LENSPROF_LAYOUT_GBRG, form,
-                                             list.data(), list.size(), &needed, nullptr, nullptr));
+        assert_ok(lp_dng_opcodes_write(profile.get(), width - 4, height - 2, LENSPROF_LAYOUT_GBRG, form, list.data(),
+                                       list.size(), &needed, nullptr, nullptr));
         write_opcode_list(path, path, tag, Bytes(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(needed)));
     };
     write(LENSPROF_DNG_GAIN_MAP, tag_opcode_list2);

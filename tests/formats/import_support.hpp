@@ -11,7 +11,7 @@ extern "C" {
 #include <string>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 // The results of a reader.
 struct Imported {

@@ -8,7 +8,7 @@ extern "C" {
 #include <string>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 struct Falloff {
     lensprof_profile_key key;
@@ -36,7 +36,7 @@ inline Database read_lensfun(const std::string &text, const char *source = "test
     Database database{};
     lensprof_error error;
     std::vector<char> exact(text.begin(), text.end());
-    database.status = lensprof_lensfun_read(exact.data(), exact.size(), source, collect, &database.entries, &error);
+    database.status = lp_lensfun_read(exact.data(), exact.size(), source, collect, &database.entries, &error);
     database.error = error.text;
     return database;
 }
@@ -48,10 +48,9 @@ inline std::string write_lensfun(const std::vector<lensprof_profile> &profiles, 
     const auto count = static_cast<uint32_t>(profiles.size());
     size_t needed = 0;
     lensprof_error error;
-    lensprof_status result = lensprof_lensfun_write(pointers.data(), count, nullptr, 0, &needed, &error);
+    lensprof_status result = lp_lensfun_write(pointers.data(), count, nullptr, 0, &needed, &error);
     std::string text(needed, '\0');
-    if (result == LENSPROF_OK)
-        result = lensprof_lensfun_write(pointers.data(), count, text.data(), needed, &needed, &error);
+    if (result == LENSPROF_OK) result = lp_lensfun_write(pointers.data(), count, text.data(), needed, &needed, &error);
     if (status) *status = result;
     if (why) *why = error.text;
     return result == LENSPROF_OK ? text : "";

@@ -10,7 +10,7 @@ extern "C" {
 #include <string>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 using Profile = std::unique_ptr<lensprof_profile>;
 
@@ -74,7 +74,7 @@ inline Read read_json(const std::string &text, const char *source = "a.json") {
     Read read{};
     lensprof_error error;
     const std::vector<char> bytes = exact(text);
-    read.status = lensprof_json_read(bytes.data(), bytes.size(), source, keep_profile, &read.profiles, &error);
+    read.status = lp_json_read(bytes.data(), bytes.size(), source, keep_profile, &read.profiles, &error);
     read.error = error.text;
     assert_true((read.status == LENSPROF_OK) == read.error.empty());
     return read;
@@ -99,8 +99,7 @@ inline std::string written(const WriteText &write, lensprof_status *status = nul
 
 inline std::string write_json(const std::vector<const lensprof_profile *> &profiles) {
     return written([&](void *text, size_t capacity, size_t *needed, lensprof_error *error) {
-        return lensprof_json_write(profiles.data(), static_cast<uint32_t>(profiles.size()), text, capacity, needed,
-                                   error);
+        return lp_json_write(profiles.data(), static_cast<uint32_t>(profiles.size()), text, capacity, needed, error);
     });
 }
 

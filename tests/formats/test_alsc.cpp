@@ -20,8 +20,8 @@ Found read(const std::string &text, double ct = LENSPROF_UNKNOWN, uint32_t colum
     const Profile before = copy_of(*found.profile);
     lensprof_error error;
     const std::vector<char> bytes = exact(text);
-    found.status = lensprof_alsc_read(bytes.data(), bytes.size(), ct, columns, rows, kWidth, kHeight,
-                                      found.profile.get(), &found.worst, &error);
+    found.status = lp_alsc_read(bytes.data(), bytes.size(), ct, columns, rows, kWidth, kHeight, found.profile.get(),
+                                &found.worst, &error);
     found.error = error.text;
     if (found.status != LENSPROF_OK)
         assert_memory_equal(found.profile.get(), before.get(), sizeof *before);
@@ -32,7 +32,7 @@ Found read(const std::string &text, double ct = LENSPROF_UNKNOWN, uint32_t colum
 
 std::string write(const lensprof_profile &profile, double ct = 5000, uint32_t columns = 16, uint32_t rows = 12) {
     return written([&](void *text, size_t capacity, size_t *needed, lensprof_error *error) {
-        return lensprof_alsc_write(&profile, ct, columns, rows, kWidth, kHeight, text, capacity, needed, error);
+        return lp_alsc_write(&profile, ct, columns, rows, kWidth, kHeight, text, capacity, needed, error);
     });
 }
 
@@ -202,7 +202,7 @@ void test_refused(void **) {
     assert_int_equal(read(good, NAN).status, LENSPROF_ERROR_ARGUMENT);
     const Profile p = lens();
     const auto status = [&](double ct, uint32_t columns, uint32_t width) {
-        return lensprof_alsc_write(p.get(), ct, columns, 12, width, 10, nullptr, 0, nullptr, nullptr);
+        return lp_alsc_write(p.get(), ct, columns, 12, width, 10, nullptr, 0, nullptr, nullptr);
     };
     assert_int_equal(status(5000, 1, 10), LENSPROF_ERROR_SIZE);
     assert_int_equal(status(5000, 257, 10), LENSPROF_ERROR_SIZE);

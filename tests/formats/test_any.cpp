@@ -167,15 +167,14 @@ void test_same_as_by_hand(void **) {
     const std::string table = corpus("curves/rgb.csv"), vgn = corpus("maps/centers.vgn");
     auto responses = std::make_unique<lensprof_response[]>(3);
     uint32_t count = 0;
-    assert_ok(
-        lensprof_curves_read(table.data(), table.size(), LENSPROF_CURVE_INVERSE, responses.get(), &count, nullptr));
+    assert_ok(lp_curves_read(table.data(), table.size(), LENSPROF_CURVE_INVERSE, responses.get(), &count, nullptr));
     const auto options = import_options(LENSPROF_FORMAT_CURVES);
     const Found curves = import(table, &options);
     assert_int_equal(curves.profiles[0]->responses, count);
     assert_memory_equal(curves.profiles[0]->response, responses.get(), count * sizeof responses[0]);
     const auto own = profile_of(0, 0, 0);
     double worst = 0.0;
-    assert_ok(lensprof_radical_vignetting_read(vgn.data(), vgn.size(), own.get(), &worst, nullptr));
+    assert_ok(lp_radical_vignetting_read(vgn.data(), vgn.size(), own.get(), &worst, nullptr));
     const Found found = import(vgn, nullptr);
     assert_memory_equal(found.profiles[0]->vignetting, own->vignetting, sizeof own->vignetting);
     assert_memory_equal(&found.profiles[0]->grid, &own->grid, sizeof own->grid);

@@ -15,7 +15,7 @@ std::unique_ptr<Curves> read(const std::string &text, uint32_t curve = LENSPROF_
     lensprof_error error;
     const std::vector<char> bytes = exact(text);
     curves->count = 99;
-    curves->status = lensprof_curves_read(bytes.data(), bytes.size(), curve, curves->response, &curves->count, &error);
+    curves->status = lp_curves_read(bytes.data(), bytes.size(), curve, curves->response, &curves->count, &error);
     curves->error = error.text;
     assert_true((curves->status == LENSPROF_OK) == curves->error.empty());
     assert_true(curves->status == LENSPROF_OK || curves->count == 99);
@@ -24,7 +24,7 @@ std::unique_ptr<Curves> read(const std::string &text, uint32_t curve = LENSPROF_
 
 std::string write(const lensprof_response *responses, uint32_t count, uint32_t curve, uint32_t rows) {
     return written([&](void *text, size_t capacity, size_t *needed, lensprof_error *error) {
-        return lensprof_curves_write(responses, count, curve, rows, text, capacity, needed, error);
+        return lp_curves_write(responses, count, curve, rows, text, capacity, needed, error);
     });
 }
 
@@ -159,13 +159,13 @@ void test_refused(void **) {
     const auto profile = new_profile();
     lensprof_response *r = profile->response;
     uint32_t count;
-    assert_int_equal(lensprof_curves_read("1\n2", 3, 4, r, &count, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_curves_read("1\n2", 3, 0, r, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_curves_write(r, 2, 0, 256, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_curves_write(r, 1, 0, 1, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_curves_write(r, 1, 4, 256, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_curves_read("1\n2", 3, 4, r, &count, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_curves_read("1\n2", 3, 0, r, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_curves_write(r, 2, 0, 256, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_curves_write(r, 1, 0, 1, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_curves_write(r, 1, 4, 256, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     r[2].table[3] = NAN;
-    assert_int_equal(lensprof_curves_write(r, 3, 0, 256, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_RESPONSE);
+    assert_int_equal(lp_curves_write(r, 3, 0, 256, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_RESPONSE);
 }
 
 // 256 greys of x^gamma, of some range, with a dip of so many levels in front of each of the given greys.

@@ -65,8 +65,8 @@ Imported read(const Bytes &bytes, uint32_t layout = LENSPROF_LAYOUT_RGB, uint32_
     Imported imported{};
     lensprof_error error;
     const Bytes exact(bytes.begin(), bytes.end());
-    imported.status = lensprof_dng_opcodes_read(exact.data(), exact.size(), width, height, layout, "a.dng", keep_entry,
-                                                &imported, &error);
+    imported.status =
+        lp_dng_opcodes_read(exact.data(), exact.size(), width, height, layout, "a.dng", keep_entry, &imported, &error);
     imported.error = error.text;
     return imported;
 }
@@ -80,10 +80,10 @@ void assert_refused(const Imported &imported, lensprof_status status, const char
 Bytes write(const lensprof_profile &profile, uint32_t layout, uint32_t form, double *worst = nullptr,
             uint32_t width = 600, uint32_t height = 400) {
     size_t needed = 0;
-    assert_ok(lensprof_dng_opcodes_write(&profile, width, height, layout, form, nullptr, 0, &needed, nullptr, nullptr));
+    assert_ok(lp_dng_opcodes_write(&profile, width, height, layout, form, nullptr, 0, &needed, nullptr, nullptr));
     Bytes bytes(needed);
-    assert_ok(lensprof_dng_opcodes_write(&profile, width, height, layout, form, bytes.data(), needed, &needed, worst,
-                                         nullptr));
+    assert_ok(
+        lp_dng_opcodes_write(&profile, width, height, layout, form, bytes.data(), needed, &needed, worst, nullptr));
     return bytes;
 }
 
@@ -291,7 +291,7 @@ void test_write_refused(void **) {
         uint8_t bytes[8] = {7};
         size_t needed = 99;
         assert_int_equal(
-            lensprof_dng_opcodes_write(&profile, 600, 400, layout, form, bytes, sizeof bytes, &needed, nullptr, &error),
+            lp_dng_opcodes_write(&profile, 600, 400, layout, form, bytes, sizeof bytes, &needed, nullptr, &error),
             status);
         assert_non_null(strstr(error.text, text));
         assert_int_equal(bytes[0], 7);
@@ -313,9 +313,9 @@ void test_write_refused(void **) {
     profile = profile_of(-0.3, 0, 0);
     profile->key.processing = LENSPROF_PROCESSING_CORRECTED;
     fails(*profile, LENSPROF_LAYOUT_RGB, 1, LENSPROF_ERROR_UNSUPPORTED, "corrected in camera");
-    assert_int_equal(lensprof_dng_opcodes_write(nullptr, 6, 4, 2, 0, nullptr, 0, nullptr, nullptr, nullptr),
+    assert_int_equal(lp_dng_opcodes_write(nullptr, 6, 4, 2, 0, nullptr, 0, nullptr, nullptr, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_dng_opcodes_write(profile.get(), 0, 4, 2, 0, nullptr, 0, nullptr, nullptr, nullptr),
+    assert_int_equal(lp_dng_opcodes_write(profile.get(), 0, 4, 2, 0, nullptr, 0, nullptr, nullptr, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
 }
 
@@ -340,12 +340,11 @@ void test_read_refused(void **) {
     assert_refused(read(beyond), LENSPROF_ERROR_SYNTAX, "after the last opcode");
     assert_refused(read(list_of({good}), LENSPROF_LAYOUT_RGBA), LENSPROF_ERROR_ARGUMENT, "layout");
     assert_refused(read(list_of({good}), LENSPROF_LAYOUT_RGB, 0), LENSPROF_ERROR_ARGUMENT, "frame");
-    assert_int_equal(lensprof_dng_opcodes_read(nullptr, 4, 6, 4, 2, nullptr, keep_entry, nullptr, nullptr),
+    assert_int_equal(lp_dng_opcodes_read(nullptr, 4, 6, 4, 2, nullptr, keep_entry, nullptr, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
     const Bytes list = list_of({good});
-    assert_int_equal(
-        lensprof_dng_opcodes_read(list.data(), list.size(), 6, 4, 2, nullptr, refuse_entry, nullptr, nullptr),
-        LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(lp_dng_opcodes_read(list.data(), list.size(), 6, 4, 2, nullptr, refuse_entry, nullptr, nullptr),
+                     LENSPROF_ERROR_CANCELLED);
 }
 
 void test_maps_refused(void **) {

@@ -28,7 +28,7 @@ Imported read(const std::string &text, uint32_t width = 1280, uint32_t height = 
     lensprof_error error;
     const std::vector<char> exact(text.begin(), text.end());
     imported.status =
-        lensprof_drone_xmp_read(exact.data(), exact.size(), width, height, "a.tif", keep_entry, &imported, &error);
+        lp_drone_xmp_read(exact.data(), exact.size(), width, height, "a.tif", keep_entry, &imported, &error);
     imported.error = error.text;
     return imported;
 }
@@ -221,9 +221,8 @@ void test_refused(void **) {
     for (size_t size = 0; size < all.rfind("</x:xmpmeta>"); size += 3)
         assert_int_equal(read(all.substr(0, size)).status, LENSPROF_ERROR_SYNTAX);
     assert_ok(read(all + std::string(5, '\0')).status);  // with padding, as TIFF writers add
-    assert_int_equal(
-        lensprof_drone_xmp_read(all.data(), all.size(), 1280, 960, nullptr, refuse_entry, nullptr, nullptr),
-        LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(lp_drone_xmp_read(all.data(), all.size(), 1280, 960, nullptr, refuse_entry, nullptr, nullptr),
+                     LENSPROF_ERROR_CANCELLED);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "pto_support.h"
 
 #include "failing_new.h"
+#include "formats/each_format.h"
 
 static const char points[] = "0 1 10.5 20 30 40.25 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0\n";
 
@@ -75,7 +76,7 @@ static lensprof_status read_lensfun(world *w) {
         "<cropfactor>1</cropfactor><calibration><vignetting model=\"pa\" focal=\"9\" aperture=\"2\" "
         "distance=\"1\" k1=\"-0.3\"/></calibration></lens></lensdatabase>";
     int entries = 0;
-    lensprof_status status = lensprof_lensfun_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
+    lensprof_status status = lp_lensfun_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
@@ -84,7 +85,7 @@ static lensprof_status write_lensfun(world *w) {
     const lensprof_profile *const profiles[1] = {w->profile};
     char text[1000] = "untouched";
     size_t needed = 0;
-    lensprof_status status = lensprof_lensfun_write(profiles, 1, text, sizeof text, &needed, NULL);
+    lensprof_status status = lp_lensfun_write(profiles, 1, text, sizeof text, &needed, NULL);
     assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
     return status;
 }
@@ -95,7 +96,7 @@ static lensprof_status read_json(world *w) {
         "{\"profiles\":[{\"key\":{\"lens\":\"A lens with a rather long name\",\"processing\":\"raw\"},"
         "\"vignetting\":{\"k\":[[-0.3,0,0]]},\"response\":{\"kind\":\"emor\",\"emor\":[0.1]},\"a\":[[[]]]}]}";
     int entries = 0;
-    lensprof_status status = lensprof_json_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
+    lensprof_status status = lp_json_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
@@ -104,7 +105,7 @@ static lensprof_status read_wrong_json(world *w) {
     (void)w;
     int entries = 0;
     const char text[] = "{\"key\":{\"processing\":\"a word that is too long for the small string of any library\"}}";
-    lensprof_status status = lensprof_json_read(text, sizeof text - 1, NULL, count_entry, &entries, NULL);
+    lensprof_status status = lp_json_read(text, sizeof text - 1, NULL, count_entry, &entries, NULL);
     return status == LENSPROF_ERROR_SYNTAX ? LENSPROF_OK : status;
 }
 
@@ -113,7 +114,7 @@ static lensprof_status write_json(world *w) {
     static char text[100000];
     strcpy(text, "untouched");
     size_t needed = 0;
-    lensprof_status status = lensprof_json_write(profiles, 2, text, sizeof text, &needed, NULL);
+    lensprof_status status = lp_json_write(profiles, 2, text, sizeof text, &needed, NULL);
     assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
     return status;
 }
@@ -122,7 +123,7 @@ static lensprof_status read_pcalib(world *w) {
     w->response.kind = 99;
     char text[1024] = "";
     for (int i = 0; i < 256; i++) sprintf(text + strlen(text), "%d ", i);
-    lensprof_status status = lensprof_pcalib_read(text, strlen(text), &w->response, NULL);
+    lensprof_status status = lp_pcalib_read(text, strlen(text), &w->response, NULL);
     assert_true((w->response.kind == 99) == (status != LENSPROF_OK));
     lensprof_response_set_linear(&w->response);
     return status;
@@ -133,8 +134,7 @@ static lensprof_status read_curves(world *w) {
     uint32_t count = 99;
     static lensprof_response responses[3];
     (void)w;
-    lensprof_status status =
-        lensprof_curves_read(text, sizeof text - 1, LENSPROF_CURVE_INVERSE, responses, &count, NULL);
+    lensprof_status status = lp_curves_read(text, sizeof text - 1, LENSPROF_CURVE_INVERSE, responses, &count, NULL);
     assert_true((count == 99) == (status != LENSPROF_OK));
     return status;
 }
@@ -142,12 +142,9 @@ static lensprof_status read_curves(world *w) {
 /* All writers of tables. */
 static lensprof_status write_tables(world *w) {
     static char text[20000];
-    const lensprof_frame_time frame = {"00001", 1.5, 2.5};
-    lensprof_status status = lensprof_pcalib_write(&w->response, text, sizeof text, NULL, NULL);
+    lensprof_status status = lp_pcalib_write(&w->response, text, sizeof text, NULL, NULL);
     if (status != LENSPROF_OK) return status;
-    status = lensprof_curves_write(&w->response, 1, LENSPROF_CURVE_LOG, 256, text, sizeof text, NULL, NULL);
-    if (status != LENSPROF_OK) return status;
-    return lensprof_times_write(&frame, 1, text, sizeof text, NULL, NULL);
+    return lp_curves_write(&w->response, 1, LENSPROF_CURVE_LOG, 256, text, sizeof text, NULL, NULL);
 }
 
 static lensprof_status read_lcp(world *w) {
@@ -158,7 +155,7 @@ static lensprof_status read_lcp(world *w) {
         "FocalLengthY=\"1.1\" VignetteModelParam1=\"-0.3\"/></PerspectiveModel></rdf:li></rdf:Seq>"
         "</x:CameraProfiles></rdf:RDF>";
     int entries = 0;
-    lensprof_status status = lensprof_lcp_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
+    lensprof_status status = lp_lcp_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
@@ -167,7 +164,7 @@ static lensprof_status write_lcp(world *w) {
     const lensprof_profile *const profiles[1] = {w->profile};
     char text[4000] = "untouched";
     size_t needed = 0;
-    lensprof_status status = lensprof_lcp_write(profiles, 1, 0, 0, text, sizeof text, &needed, NULL);
+    lensprof_status status = lp_lcp_write(profiles, 1, 0, 0, text, sizeof text, &needed, NULL);
     assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
     return status;
 }
@@ -178,8 +175,7 @@ static lensprof_status read_drone_xmp(world *w) {
         "<rdf:RDF><rdf:Description tiff:Make=\"A long name of a maker\" drone-dji:VignettingData=\"0.001, "
         "0.00001, 0.000001\"/></rdf:RDF>";
     int entries = 0;
-    lensprof_status status =
-        lensprof_drone_xmp_read(text, sizeof text - 1, 60, 40, "a file", count_entry, &entries, NULL);
+    lensprof_status status = lp_drone_xmp_read(text, sizeof text - 1, 60, 40, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
@@ -191,8 +187,8 @@ static lensprof_status read_opcodes(world *w) {
         [3] = 2,   [7] = 3,   [19] = 56, [4 + 72 + 3] = 9, [4 + 72 + 15] = 80, [103] = 12,   [107] = 18,  [115] = 1,
         [119] = 1, [123] = 1, [127] = 1, [131] = 1,        [167] = 1,          [168] = 0x3F, [169] = 0xC0};
     int entries = 0;
-    lensprof_status status = lensprof_dng_opcodes_read(list, sizeof list, 18, 12, LENSPROF_LAYOUT_RGB, "a file",
-                                                       count_entry, &entries, NULL);
+    lensprof_status status =
+        lp_dng_opcodes_read(list, sizeof list, 18, 12, LENSPROF_LAYOUT_RGB, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
@@ -200,8 +196,8 @@ static lensprof_status read_opcodes(world *w) {
 static lensprof_status write_opcodes(world *w) {
     uint8_t bytes[16384] = {7};
     size_t needed = 0;
-    lensprof_status status = lensprof_dng_opcodes_write(w->profile, 18, 12, LENSPROF_LAYOUT_RGB, LENSPROF_DNG_GAIN_MAP,
-                                                        bytes, sizeof bytes, &needed, NULL, NULL);
+    lensprof_status status = lp_dng_opcodes_write(w->profile, 18, 12, LENSPROF_LAYOUT_RGB, LENSPROF_DNG_GAIN_MAP, bytes,
+                                                  sizeof bytes, &needed, NULL, NULL);
     assert_true((bytes[0] == 7) == (status != LENSPROF_OK));
     return status;
 }
@@ -220,12 +216,12 @@ static lensprof_status read_falloffs(world *w) {
     const char tuning[] =
         "{\"luminance_lut\":[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1],\"calibrations_Cr\":[{\"ct\":3000,\"table\":"
         "[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1]}]}";
-    lensprof_status status = lensprof_map_read(&map, 16, 12, w->profile, NULL, NULL);
+    lensprof_status status = lp_map_read(&map, 16, 12, w->profile, NULL, NULL);
     if (status == LENSPROF_OK)
-        status = lensprof_radical_vignetting_write(before, 16, 12, radical, sizeof radical, &bytes, NULL);
-    if (status == LENSPROF_OK) status = lensprof_radical_vignetting_read(radical, bytes, w->profile, NULL, NULL);
+        status = lp_radical_vignetting_write(before, 16, 12, radical, sizeof radical, &bytes, NULL);
+    if (status == LENSPROF_OK) status = lp_radical_vignetting_read(radical, bytes, w->profile, NULL, NULL);
     if (status == LENSPROF_OK)
-        status = lensprof_alsc_read(tuning, sizeof tuning - 1, 3000, 3, 3, 30, 30, w->profile, NULL, NULL);
+        status = lp_alsc_read(tuning, sizeof tuning - 1, 3000, 3, 3, 30, 30, w->profile, NULL, NULL);
     else
         assert_int_equal(status, LENSPROF_ERROR_MEMORY);
     memcpy(w->profile, before, sizeof *before);
@@ -240,9 +236,9 @@ static lensprof_status write_falloffs(world *w) {
     lensprof_status status = lensprof_map_write(w->profile, 16, 12, 16, 12, 3, LENSPROF_MAP_GAIN, values, NULL);
     assert_true((values[0] == 99) == (status != LENSPROF_OK));
     if (status != LENSPROF_OK) return status;
-    status = lensprof_radical_response_write(&w->response, 1, text, sizeof text, NULL, NULL);
+    status = lp_radical_response_write(&w->response, 1, text, sizeof text, NULL, NULL);
     if (status != LENSPROF_OK) return status;
-    return lensprof_alsc_write(w->profile, 5000, 16, 12, 160, 120, text, sizeof text, NULL, NULL);
+    return lp_alsc_write(w->profile, 5000, 16, 12, 160, 120, text, sizeof text, NULL, NULL);
 }
 
 static lensprof_status read_points(world *w) {

@@ -182,15 +182,14 @@ lensprof_status stop(void *, const lensprof_import_entry *) { return LENSPROF_ER
 void test_calls(void **) {
     lensprof_error error;
     const std::string text = write_json({full_profile().get()});
-    assert_int_equal(lensprof_json_read(text.data(), text.size(), nullptr, stop, nullptr, &error),
-                     LENSPROF_ERROR_CANCELLED);
-    assert_int_equal(lensprof_json_read(nullptr, 1, nullptr, stop, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_json_read("{}", 2, nullptr, nullptr, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_json_write(nullptr, 1, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_json_read(text.data(), text.size(), nullptr, stop, nullptr, &error), LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(lp_json_read(nullptr, 1, nullptr, stop, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_json_read("{}", 2, nullptr, nullptr, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_json_write(nullptr, 1, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     Profile bad = new_profile();
     bad->vignetting[0].k[0] = -5;
     const lensprof_profile *const one = bad.get();
-    assert_int_equal(lensprof_json_write(&one, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_VIGNETTING);
+    assert_int_equal(lp_json_write(&one, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_VIGNETTING);
     assert_non_null(strstr(error.text, "profile 0: is invalid"));
     // Texts of a database need not be UTF-8, but JSON must be.
     Profile latin = new_profile();

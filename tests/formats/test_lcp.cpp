@@ -64,7 +64,7 @@ Imported read(const std::string &text, const char *source = "my.lcp") {
     Imported imported{};
     lensprof_error error;
     const std::vector<char> exact(text.begin(), text.end());
-    imported.status = lensprof_lcp_read(exact.data(), exact.size(), source, keep_entry, &imported, &error);
+    imported.status = lp_lcp_read(exact.data(), exact.size(), source, keep_entry, &imported, &error);
     imported.error = error.text;
     return imported;
 }
@@ -230,10 +230,10 @@ std::string write(const std::vector<lensprof_profile> &profiles, uint32_t width 
     const auto count = static_cast<uint32_t>(profiles.size());
     size_t needed = 0;
     lensprof_error error;
-    lensprof_status status = lensprof_lcp_write(pointers.data(), count, width, height, nullptr, 0, &needed, &error);
+    lensprof_status status = lp_lcp_write(pointers.data(), count, width, height, nullptr, 0, &needed, &error);
     std::string text(needed, '\0');
     if (status == LENSPROF_OK)
-        status = lensprof_lcp_write(pointers.data(), count, width, height, text.data(), needed, &needed, &error);
+        status = lp_lcp_write(pointers.data(), count, width, height, text.data(), needed, &needed, &error);
     assert_int_equal(status, expected);
     assert_non_null(strstr(error.text, why));
     return status == LENSPROF_OK ? text : "";
@@ -345,8 +345,8 @@ void test_write_refused(void **) {
     write({good}, 100, 0, LENSPROF_ERROR_ARGUMENT, "only one side");
     write({good}, 2000000, 100, LENSPROF_ERROR_SIZE, "million");
     const lensprof_profile *none = nullptr;
-    assert_int_equal(lensprof_lcp_write(&none, 1, 0, 0, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_lcp_write(nullptr, 1, 0, 0, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lcp_write(&none, 1, 0, 0, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lcp_write(nullptr, 1, 0, 0, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
 }
 
 void test_read_refused(void **) {
@@ -375,9 +375,9 @@ void test_read_refused(void **) {
     std::string many;
     for (int i = 0; i < 20001; i++) many += "<rdf:li/>";
     refused(kHead + many + kTail, LENSPROF_ERROR_SIZE, "over 20000 entries");
-    assert_int_equal(lensprof_lcp_read(all.data(), all.size(), nullptr, refuse_entry, nullptr, nullptr),
+    assert_int_equal(lp_lcp_read(all.data(), all.size(), nullptr, refuse_entry, nullptr, nullptr),
                      LENSPROF_ERROR_CANCELLED);
-    assert_int_equal(lensprof_lcp_read(nullptr, 1, nullptr, refuse_entry, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lcp_read(nullptr, 1, nullptr, refuse_entry, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
 }
 
 }  // namespace

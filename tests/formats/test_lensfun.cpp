@@ -219,7 +219,7 @@ lensprof_status stop_at_third(void *user, const lensprof_import_entry *) {
 void test_visitor_stops(void **) {
     int count = 0;
     lensprof_error error;
-    assert_int_equal(lensprof_lensfun_read(kGolden.data(), kGolden.size(), "", stop_at_third, &count, &error),
+    assert_int_equal(lp_lensfun_read(kGolden.data(), kGolden.size(), "", stop_at_third, &count, &error),
                      LENSPROF_ERROR_FULL);
     assert_int_equal(count, 3);
     assert_string_equal(error.text, "");
@@ -388,12 +388,12 @@ void test_capacity(void **) {
     std::vector<char> text(whole.size() + 1, 'x');
     size_t needed = 0;
     lensprof_error error;
-    assert_int_equal(lensprof_lensfun_write(&pointer, 1, text.data(), whole.size() - 1, &needed, &error),
+    assert_int_equal(lp_lensfun_write(&pointer, 1, text.data(), whole.size() - 1, &needed, &error),
                      LENSPROF_ERROR_CAPACITY);
     assert_non_null(strchr(error.text, ';'));
     assert_int_equal(needed, whole.size());
     assert_true(text[0] == 'x');
-    assert_ok(lensprof_lensfun_write(&pointer, 1, text.data(), text.size(), nullptr, nullptr));
+    assert_ok(lp_lensfun_write(&pointer, 1, text.data(), text.size(), nullptr, nullptr));
     assert_string_equal(text.data(), whole.c_str());
     assert_non_null(strstr(write_lensfun({}).c_str(), "<lensdatabase version=\"1\" />"));
 }
@@ -438,13 +438,13 @@ void test_write_refuses(void **) {
     expect_refused(with([](P &p) { p.key.aperture = 1.8, p.key.distance_m = INFINITY; }), argument, "earlier profile");
     const lensprof_profile *const none = nullptr;
     lensprof_error error;
-    assert_int_equal(lensprof_lensfun_write(&none, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lensfun_write(&none, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
     assert_non_null(strstr(error.text, "profile 0: is NULL"));
-    assert_int_equal(lensprof_lensfun_write(nullptr, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_lensfun_write(&none, 0, nullptr, 5, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lensfun_write(nullptr, 1, nullptr, 0, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lensfun_write(&none, 0, nullptr, 5, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
     std::vector<Falloff> entries;
-    assert_int_equal(lensprof_lensfun_read(nullptr, 5, "", collect, &entries, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_lensfun_read(kGolden.data(), 5, "", nullptr, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lensfun_read(nullptr, 5, "", collect, &entries, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_lensfun_read(kGolden.data(), 5, "", nullptr, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
 }
 
 void test_round_trip_is_exact(void **) {

@@ -43,7 +43,7 @@ void test_round_trip(void **) {
                 const lensprof_map map = {columns, rows, channels, sense, values.data()};
                 Profile found = full_profile();
                 double worst = 99;
-                assert_ok(lensprof_map_read(&map, kWidth, kHeight, found.get(), &worst, nullptr));
+                assert_ok(lp_map_read(&map, kWidth, kHeight, found.get(), &worst, nullptr));
                 assert_true(worst < 1e-6);
                 assert_int_equal(found->vignettings, channels);
                 assert_int_equal(found->grid.columns, 0);
@@ -64,7 +64,7 @@ void test_coded(void **) {
     for (float &value : values) value = roundf(value * 255);
     const lensprof_map map = {kWidth, kHeight, 1, 0, values.data()};
     Profile found = new_profile();
-    assert_ok(lensprof_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
+    assert_ok(lp_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
     assert_true(worst_beside(*found, *truth) < 1e-3);
 }
 
@@ -82,7 +82,7 @@ void test_grid(void **) {
     const lensprof_map map = {kWidth, kHeight, 3, 1, values.data()};
     Profile found = new_profile();
     double worst;
-    assert_ok(lensprof_map_read(&map, kWidth, kHeight, found.get(), &worst, nullptr));
+    assert_ok(lp_map_read(&map, kWidth, kHeight, found.get(), &worst, nullptr));
     assert_true(worst < 0.006);
     assert_int_equal(found->grid.channels, 3);
     const std::vector<float> again = write(*found, kWidth, kHeight, 3, 1);
@@ -98,7 +98,7 @@ void test_narrow(void **) {
         const std::vector<float> values = write(*truth, shape[0], shape[1], 1, 0);
         const lensprof_map map = {shape[0], shape[1], 1, 0, values.data()};
         Profile found = new_profile();
-        assert_ok(lensprof_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
+        assert_ok(lp_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
         assert_true(worst_beside(*found, *truth) < 0.02);
     }
 }
@@ -173,7 +173,7 @@ void test_fisheye(void **) {
         Profile found = new_profile();
         lensprof_error error;
         double worst = 99;
-        const lensprof_status status = lensprof_map_read(&read, map.width, map.height, found.get(), &worst, &error);
+        const lensprof_status status = lp_map_read(&read, map.width, map.height, found.get(), &worst, &error);
         if (status != LENSPROF_OK) fail_msg("radius %g: %s", map.radius, error.text);
         assert_ok(lensprof_profile_validate(found.get()));
         const auto at = [&](double x, double y) {
@@ -220,7 +220,7 @@ void test_dark_corners_are_known(void **) {
     values[100 * kWidth + 100] = 0;
     const lensprof_map map = {kWidth, kHeight, 1, 0, values.data()};
     Profile found = new_profile();
-    assert_ok(lensprof_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
+    assert_ok(lp_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
     assert_null(strstr(found->provenance.source, "valid"));
     const auto at = [&](double x, double y) {
         return lensprof_profile_falloff(found.get(), 1, kWidth, kHeight, x, y, nullptr);
@@ -273,7 +273,7 @@ void test_holes(void **) {
         const lensprof_map map = {shape.width, shape.height, shape.channels, 0, values.data()};
         Profile found = new_profile();
         lensprof_error error = {};
-        const lensprof_status status = lensprof_map_read(&map, shape.width, shape.height, found.get(), nullptr, &error);
+        const lensprof_status status = lp_map_read(&map, shape.width, shape.height, found.get(), nullptr, &error);
         if (status != (shape.share ? LENSPROF_ERROR_VIGNETTING : LENSPROF_OK)
             || (shape.share && !strstr(error.text, shape.share)))
             fail_msg("%s: status %d, \"%s\"", shape.name, int(status), error.text);
@@ -287,7 +287,7 @@ void test_refused(void **) {
     const Profile before = copy_of(*found);
     lensprof_error error;
     const auto read = [&](lensprof_status status, const char *words) {
-        assert_int_equal(lensprof_map_read(&map, kWidth, kHeight, found.get(), nullptr, &error), status);
+        assert_int_equal(lp_map_read(&map, kWidth, kHeight, found.get(), nullptr, &error), status);
         if (!strstr(error.text, words)) fail_msg("\"%s\" instead of \"%s\"", error.text, words);
         assert_memory_equal(found.get(), before.get(), sizeof *before);
     };

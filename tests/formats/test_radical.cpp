@@ -23,14 +23,14 @@ struct Responses {
 lensprof_status read_responses(const std::string &data, Responses &responses, std::string *why = nullptr) {
     lensprof_error error;
     const std::vector<char> bytes = exact(data);
-    const lensprof_status status = lensprof_radical_response_read(bytes.data(), bytes.size(), responses.r, &error);
+    const lensprof_status status = lp_radical_response_read(bytes.data(), bytes.size(), responses.r, &error);
     if (why) *why = error.text;
     return status;
 }
 
 std::string write_responses(const lensprof_response *responses, uint32_t count) {
     return written([&](void *data, size_t capacity, size_t *needed, lensprof_error *error) {
-        return lensprof_radical_response_write(responses, count, data, capacity, needed, error);
+        return lp_radical_response_write(responses, count, data, capacity, needed, error);
     });
 }
 
@@ -75,8 +75,7 @@ Found read_vgn(const std::string &data) {
     const Profile before = copy_of(*found.profile);
     lensprof_error error;
     const std::vector<char> bytes = exact(data);
-    found.status =
-        lensprof_radical_vignetting_read(bytes.data(), bytes.size(), found.profile.get(), &found.worst, &error);
+    found.status = lp_radical_vignetting_read(bytes.data(), bytes.size(), found.profile.get(), &found.worst, &error);
     found.error = error.text;
     if (found.status != LENSPROF_OK)
         assert_memory_equal(found.profile.get(), before.get(), sizeof *before);
@@ -87,7 +86,7 @@ Found read_vgn(const std::string &data) {
 
 std::string write_vgn(const lensprof_profile &profile, uint32_t width, uint32_t height) {
     return written([&](void *data, size_t capacity, size_t *needed, lensprof_error *error) {
-        return lensprof_radical_vignetting_write(&profile, width, height, data, capacity, needed, error);
+        return lp_radical_vignetting_write(&profile, width, height, data, capacity, needed, error);
     });
 }
 
@@ -211,17 +210,13 @@ void test_refused(void **) {
     t[7] = -1;
     not_read(kLine + header(22, 5, 0, 1) + bytes_of(t), LENSPROF_ERROR_VIGNETTING, "not above 0");
     const Profile p = full_profile();
-    assert_int_equal(lensprof_radical_vignetting_write(p.get(), 1, 9, nullptr, 0, nullptr, nullptr),
-                     LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_radical_vignetting_write(nullptr, 9, 9, nullptr, 0, nullptr, nullptr),
-                     LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_radical_vignetting_read(nullptr, 9, p.get(), nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_radical_response_write(p->response, 2, nullptr, 0, nullptr, nullptr),
-                     LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_radical_response_read(nullptr, 9, responses->r, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_radical_vignetting_write(p.get(), 1, 9, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_SIZE);
+    assert_int_equal(lp_radical_vignetting_write(nullptr, 9, 9, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_radical_vignetting_read(nullptr, 9, p.get(), nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_radical_response_write(p->response, 2, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lp_radical_response_read(nullptr, 9, responses->r, nullptr), LENSPROF_ERROR_ARGUMENT);
     p->response[1].table[5] = 7;
-    assert_int_equal(lensprof_radical_response_write(p->response, 3, nullptr, 0, nullptr, nullptr),
-                     LENSPROF_ERROR_RESPONSE);
+    assert_int_equal(lp_radical_response_write(p->response, 3, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_RESPONSE);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
-// Fuzzing tables of responses and frame times: pcalib.txt, times.txt, CSV and pfstools' .m. Invariant for any bytes: an
+// Fuzzing tables of responses: pcalib.txt, CSV and pfstools' .m. Invariant for any bytes: an
 // invalid text gives a status of formats.h and an error text, and the outputs are untouched; otherwise every response
 // is valid, and reads back after writing.
 #include <memory>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "fuzz_main.hpp"
 
@@ -42,16 +42,15 @@ bool try_pcalib(const std::vector<char> &bytes) {
     lensprof_response &response = responses->r[0];
     lensprof_error error;
     response.kind = 99;
-    const lensprof_status status = lensprof_pcalib_read(bytes.data(), bytes.size(), &response, &error);
+    const lensprof_status status = lp_pcalib_read(bytes.data(), bytes.size(), &response, &error);
     check_outcome(status, error);
     demand(status == LENSPROF_OK || response.kind == 99, "failed call wrote an output");
     if (status != LENSPROF_OK) return false;
     demand(lensprof_response_validate(&response) == LENSPROF_OK, "an invalid response");
     const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
-        return lensprof_pcalib_write(&response, to, capacity, needed, nullptr);
+        return lp_pcalib_write(&response, to, capacity, needed, nullptr);
     });
-    demand(lensprof_pcalib_read(text.data(), text.size(), &responses->r[1], nullptr) == LENSPROF_OK,
-           "does not read back");
+    demand(lp_pcalib_read(text.data(), text.size(), &responses->r[1], nullptr) == LENSPROF_OK, "does not read back");
     return true;
 }
 
@@ -59,46 +58,25 @@ bool try_curves(const std::vector<char> &bytes, uint32_t curve) {
     auto responses = std::make_unique<Responses>(), again = std::make_unique<Responses>();
     uint32_t count = 99, same = 0;
     lensprof_error error;
-    const lensprof_status status =
-        lensprof_curves_read(bytes.data(), bytes.size(), curve, responses->r, &count, &error);
+    const lensprof_status status = lp_curves_read(bytes.data(), bytes.size(), curve, responses->r, &count, &error);
     check_outcome(status, error);
     demand((status == LENSPROF_OK) == (count != 99), "status and outputs contradict each other");
     if (status != LENSPROF_OK) return false;
     for (uint32_t c = 0; c < count; c++)
         demand(lensprof_response_validate(&responses->r[c]) == LENSPROF_OK, "an invalid response");
     const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
-        return lensprof_curves_write(responses->r, count, curve, 64, to, capacity, needed, nullptr);
+        return lp_curves_write(responses->r, count, curve, 64, to, capacity, needed, nullptr);
     });
     // A response that is black except at its end has no irradiance that a table of logarithms can hold.
-    const lensprof_status read = lensprof_curves_read(text.data(), text.size(), curve, again->r, &same, nullptr);
+    const lensprof_status read = lp_curves_read(text.data(), text.size(), curve, again->r, &same, nullptr);
     demand(read == LENSPROF_OK ? same == count : read == LENSPROF_ERROR_RESPONSE, "does not read back");
-    return true;
-}
-
-bool try_times(const std::vector<char> &bytes) {
-    uint32_t count = 99;
-    lensprof_error error;
-    const lensprof_status status = lensprof_times_read(bytes.data(), bytes.size(), nullptr, 0, &count, &error);
-    check_outcome(status, error);
-    if (status != LENSPROF_OK) return false;
-    std::vector<lensprof_frame_time> frames(count + 1), again(count + 1);
-    demand(lensprof_times_read(bytes.data(), bytes.size(), frames.data(), count + 1, &count, nullptr) == LENSPROF_OK,
-           "not read twice");
-    if (count == 0) return true;
-    const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
-        return lensprof_times_write(frames.data(), count, to, capacity, needed, nullptr);
-    });
-    uint32_t same = 0;
-    demand(lensprof_times_read(text.data(), text.size(), again.data(), count + 1, &same, nullptr) == LENSPROF_OK
-               && same == count,
-           "does not read back");
     return true;
 }
 
 bool try_bytes(const std::vector<char> &bytes) {
     bool read = try_pcalib(bytes);
     for (uint32_t curve = 0; curve <= LENSPROF_CURVE_FORWARD; curve++) read |= try_curves(bytes, curve);
-    return try_times(bytes) || read;
+    return read;
 }
 
 }  // namespace

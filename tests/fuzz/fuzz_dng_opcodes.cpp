@@ -3,6 +3,8 @@
 // writing.
 #include "fuzz_import.hpp"
 
+#include "formats/each_format.h"
+
 namespace {
 
 const char *const kTarget = "fuzz_dng_opcodes";
@@ -12,7 +14,7 @@ constexpr uint32_t kWidth = 18, kHeight = 12;  // small, so that maps are sample
 lensprof_status read(const std::vector<char> &bytes, uint32_t layout, Visited &visited) {
     lensprof_error error{};
     const lensprof_status status =
-        lensprof_dng_opcodes_read(bytes.data(), bytes.size(), kWidth, kHeight, layout, "fuzz", visit, &visited, &error);
+        lp_dng_opcodes_read(bytes.data(), bytes.size(), kWidth, kHeight, layout, "fuzz", visit, &visited, &error);
     check_reading(status, error, visited,
                   {LENSPROF_ERROR_SYNTAX, LENSPROF_ERROR_UNSUPPORTED, LENSPROF_ERROR_SIZE, LENSPROF_ERROR_NOT_FOUND,
                    LENSPROF_ERROR_NOT_FINITE, LENSPROF_ERROR_VIGNETTING});
@@ -22,13 +24,13 @@ lensprof_status read(const std::vector<char> &bytes, uint32_t layout, Visited &v
 // Writes a falloff as a map; a steep one may be invalid after reading it back.
 void write_and_read(const lensprof_profile &profile) {
     size_t size = 0;
-    demand(lensprof_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP, nullptr,
-                                      0, &size, nullptr, nullptr)
+    demand(lp_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP, nullptr, 0,
+                                &size, nullptr, nullptr)
                == LENSPROF_OK,
            "not written");
     std::vector<char> bytes(size);
-    demand(lensprof_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP,
-                                      bytes.data(), size, &size, nullptr, nullptr)
+    demand(lp_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP, bytes.data(),
+                                size, &size, nullptr, nullptr)
                == LENSPROF_OK,
            "not written");
     Visited again;

@@ -2,7 +2,7 @@
 // delivers no entry; otherwise every entry is a valid profile, and reads back the same after writing.
 #include <memory>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "fuzz_main.hpp"
 
@@ -55,7 +55,7 @@ lensprof_status visit(void *user, const lensprof_import_entry *entry) {
 
 lensprof_status read(const std::vector<char> &text, Profiles &profiles) {
     lensprof_error error;
-    const lensprof_status status = lensprof_json_read(text.data(), text.size(), "fuzz", visit, &profiles, &error);
+    const lensprof_status status = lp_json_read(text.data(), text.size(), "fuzz", visit, &profiles, &error);
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_UNSUPPORTED
                || status == LENSPROF_ERROR_VIGNETTING || status == LENSPROF_ERROR_RESPONSE
                || status == LENSPROF_ERROR_ARGUMENT || status == LENSPROF_ERROR_NOT_FINITE,
@@ -70,10 +70,9 @@ std::vector<char> write(const Profiles &profiles) {
     for (const auto &profile : profiles) pointers.push_back(profile.get());
     const auto count = static_cast<uint32_t>(pointers.size());
     size_t bytes = 0;
-    demand(lensprof_json_write(pointers.data(), count, nullptr, 0, &bytes, nullptr) == LENSPROF_OK, "not written");
+    demand(lp_json_write(pointers.data(), count, nullptr, 0, &bytes, nullptr) == LENSPROF_OK, "not written");
     std::vector<char> text(bytes);
-    demand(lensprof_json_write(pointers.data(), count, text.data(), bytes, &bytes, nullptr) == LENSPROF_OK,
-           "not written");
+    demand(lp_json_write(pointers.data(), count, text.data(), bytes, &bytes, nullptr) == LENSPROF_OK, "not written");
     return text;
 }
 

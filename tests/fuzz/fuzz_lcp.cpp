@@ -6,13 +6,15 @@
 
 #include "fuzz_import.hpp"
 
+#include "formats/each_format.h"
+
 namespace {
 
 const char *const kTarget = "fuzz_lcp";
 
 lensprof_status read(const std::vector<char> &text, Visited &visited) {
     lensprof_error error{};
-    const lensprof_status status = lensprof_lcp_read(text.data(), text.size(), "fuzz", visit, &visited, &error);
+    const lensprof_status status = lp_lcp_read(text.data(), text.size(), "fuzz", visit, &visited, &error);
     check_reading(status, error, visited, {LENSPROF_ERROR_SYNTAX});
     return status;
 }
@@ -22,12 +24,12 @@ bool same(double a, double b) { return a == b || std::fabs(a - b) <= 1e-9 * std:
 void write_and_read(const lensprof_profile &profile) {
     const lensprof_profile *const pointer = &profile;
     size_t size = 0;
-    const lensprof_status status = lensprof_lcp_write(&pointer, 1, 600, 400, nullptr, 0, &size, nullptr);
+    const lensprof_status status = lp_lcp_write(&pointer, 1, 600, 400, nullptr, 0, &size, nullptr);
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_ARGUMENT || status == LENSPROF_ERROR_UNSUPPORTED,
            "another status of writing");
     if (status != LENSPROF_OK) return;
     std::vector<char> text(size);
-    demand(lensprof_lcp_write(&pointer, 1, 600, 400, text.data(), size, &size, nullptr) == LENSPROF_OK, "not written");
+    demand(lp_lcp_write(&pointer, 1, 600, 400, text.data(), size, &size, nullptr) == LENSPROF_OK, "not written");
     Visited again;
     const lensprof_status reread = read(text, again);
     if (reread != LENSPROF_OK || again.usable.empty()) return;  // numbers outside the range of a lens profile

@@ -5,13 +5,15 @@
 
 #include "fuzz_import.hpp"
 
+#include "formats/each_format.h"
+
 namespace {
 
 const char *const kTarget = "fuzz_lensfun";
 
 lensprof_status read(const std::vector<char> &text, Visited &visited) {
     lensprof_error error{};
-    const lensprof_status status = lensprof_lensfun_read(text.data(), text.size(), "fuzz", visit, &visited, &error);
+    const lensprof_status status = lp_lensfun_read(text.data(), text.size(), "fuzz", visit, &visited, &error);
     check_reading(status, error, visited, {LENSPROF_ERROR_SYNTAX, LENSPROF_ERROR_UNSUPPORTED});
     return status;
 }
@@ -20,9 +22,9 @@ lensprof_status read(const std::vector<char> &text, Visited &visited) {
 void write_and_read(const lensprof_profile &profile) {
     const lensprof_profile *const pointer = &profile;
     size_t bytes = 0;
-    demand(lensprof_lensfun_write(&pointer, 1, nullptr, 0, &bytes, nullptr) == LENSPROF_OK, "not written");
+    demand(lp_lensfun_write(&pointer, 1, nullptr, 0, &bytes, nullptr) == LENSPROF_OK, "not written");
     std::vector<char> text(bytes);
-    demand(lensprof_lensfun_write(&pointer, 1, text.data(), bytes, &bytes, nullptr) == LENSPROF_OK, "not written");
+    demand(lp_lensfun_write(&pointer, 1, text.data(), bytes, &bytes, nullptr) == LENSPROF_OK, "not written");
     Visited again;
     demand(read(text, again) == LENSPROF_OK && again.entries == 1, "does not read back");
     demand(again.usable.size() == 1 || profile.vignetting[0].center[0] || profile.vignetting[0].center[1],

@@ -3,7 +3,7 @@
 // writing.
 #include <memory>
 
-#include <lensprof/formats.h>
+#include "formats/each_format.h"
 
 #include "fuzz_main.hpp"
 
@@ -74,14 +74,14 @@ bool check_falloff(lensprof_status status, const lensprof_error &error, const le
 bool try_responses(const std::vector<char> &bytes) {
     auto responses = std::make_unique<lensprof_response[]>(6);
     lensprof_error error;
-    const lensprof_status status = lensprof_radical_response_read(bytes.data(), bytes.size(), responses.get(), &error);
+    const lensprof_status status = lp_radical_response_read(bytes.data(), bytes.size(), responses.get(), &error);
     check_outcome(status, error);
     if (status != LENSPROF_OK) return false;
     for (int c = 0; c < 3; c++) demand(lensprof_response_validate(&responses[c]) == LENSPROF_OK, "an invalid response");
     const std::vector<char> data = written([&](void *to, size_t capacity, size_t *needed) {
-        return lensprof_radical_response_write(responses.get(), 3, to, capacity, needed, nullptr);
+        return lp_radical_response_write(responses.get(), 3, to, capacity, needed, nullptr);
     });
-    demand(lensprof_radical_response_read(data.data(), data.size(), responses.get() + 3, nullptr) == LENSPROF_OK,
+    demand(lp_radical_response_read(data.data(), data.size(), responses.get() + 3, nullptr) == LENSPROF_OK,
            "does not read back");
     return true;
 }
@@ -91,13 +91,12 @@ bool try_vignetting(const std::vector<char> &bytes) {
     lensprof_error error;
     double worst = -7.0;
     const lensprof_status status =
-        lensprof_radical_vignetting_read(bytes.data(), bytes.size(), profile.get(), &worst, &error);
+        lp_radical_vignetting_read(bytes.data(), bytes.size(), profile.get(), &worst, &error);
     if (!check_falloff(status, error, *profile, worst)) return false;
     const std::vector<char> data = written([&](void *to, size_t capacity, size_t *needed) {
-        return lensprof_radical_vignetting_write(profile.get(), 16, 12, to, capacity, needed, nullptr);
+        return lp_radical_vignetting_write(profile.get(), 16, 12, to, capacity, needed, nullptr);
     });
-    const lensprof_status read =
-        lensprof_radical_vignetting_read(data.data(), data.size(), again.get(), nullptr, nullptr);
+    const lensprof_status read = lp_radical_vignetting_read(data.data(), data.size(), again.get(), nullptr, nullptr);
     // A falloff at the limit of validity may exceed it when rounded or refitted.
     demand(read == LENSPROF_OK || read == LENSPROF_ERROR_VIGNETTING, "does not read back");
     return true;
@@ -108,10 +107,10 @@ bool try_tables(const std::vector<char> &bytes) {
     lensprof_error error;
     double worst = -7.0;
     const lensprof_status status =
-        lensprof_alsc_read(bytes.data(), bytes.size(), 4000, 4, 3, 400, 300, profile.get(), &worst, &error);
+        lp_alsc_read(bytes.data(), bytes.size(), 4000, 4, 3, 400, 300, profile.get(), &worst, &error);
     if (!check_falloff(status, error, *profile, worst)) return false;
     written([&](void *to, size_t capacity, size_t *needed) {
-        return lensprof_alsc_write(profile.get(), 4000, 4, 3, 400, 300, to, capacity, needed, nullptr);
+        return lp_alsc_write(profile.get(), 4000, 4, 3, 400, 300, to, capacity, needed, nullptr);
     });
     return true;
 }

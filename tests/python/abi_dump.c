@@ -433,10 +433,6 @@ static void print_structs(void) {
     FIELD(lensprof_import_entry, usable);
     FIELD(lensprof_import_entry, holds);
     FIELD(lensprof_import_entry, change);
-    STRUCT(lensprof_frame_time);
-    FIELD(lensprof_frame_time, id);
-    FIELD(lensprof_frame_time, time_s);
-    FIELD(lensprof_frame_time, exposure_ms);
     STRUCT(lensprof_map);
     FIELD(lensprof_map, columns);
     FIELD(lensprof_map, rows);

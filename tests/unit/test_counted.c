@@ -6,13 +6,13 @@
 #include <glob.h>
 #include <unistd.h>
 
+#include "formats/each_format.h"
 #include "install/growth/calls.h"
 
 static const char project[] =
     "p f2 w1000 h500 v180 n\"TIFF\"\n"
     "i w160 h120 f0 v50 Va1 Vb-0.3 Vc0 Vd0 r0 p0 y0 Eev10 Er1 Eb1 n\"a picture.jpg\"\n";
 static const char point_lines[] = "0 1 1 2 3 4 .1 .1 .1 .2 .2 .2 0 1 2 0\n0 1 5 6 7 8 .1 .1 .1 .2 .2 .2 0 1 2 0\n";
-static const char time_lines[] = "00000 0.0 1.5\n00001 0.5 2\n00002 1\n";
 
 static lensprof_pto *pto;
 static lensprof_store *store;
@@ -21,7 +21,6 @@ static const lensprof_pair one_pair = {{0, 1}, {{10, 10}, {20, 20}}, {{0.1, 0.1,
 static const lensprof_match one_match = {{0, 1}, {{40, 30}, {40, 30}}, {{0}}};
 static const lensprof_camera cameras[2] = {{.width = WIDTH, .height = HEIGHT}, {.width = WIDTH, .height = HEIGHT}};
 static lensprof_export_options as_json;
-static const lensprof_frame_time frames[2] = {{"00000", 0.0, 1.5}, {"00001", 0.5, 2.0}};
 
 /* name(buffer, capacity, count, error) for the table, for bytes and for elements. */
 #define BYTES(name, call) \
@@ -38,23 +37,20 @@ static const lensprof_frame_time frames[2] = {{"00000", 0.0, 1.5}, {"00001", 0.5
 BYTES(pto_get_name, lensprof_pto_get_name(pto, 0, b, capacity, count, error))
 BYTES(pto_write, lensprof_pto_write(pto, b, capacity, count, error))
 BYTES(points_write, lensprof_points_write(&one_pair, 1, cameras, 2, b, capacity, count, error))
-BYTES(lensfun_write, lensprof_lensfun_write(profiles, 1, b, capacity, count, error))
-BYTES(json_write, lensprof_json_write(profiles, 1, b, capacity, count, error))
-BYTES(lcp_write, lensprof_lcp_write(profiles, 1, 0, 0, b, capacity, count, error))
-BYTES(pcalib_write, lensprof_pcalib_write(&here.linear, b, capacity, count, error))
-BYTES(times_write, lensprof_times_write(frames, 2, b, capacity, count, error))
-BYTES(curves_write, lensprof_curves_write(&here.linear, 1, 0, 16, b, capacity, count, error))
-BYTES(alsc_write, lensprof_alsc_write(&here.profile, 5000, 4, 3, WIDTH, HEIGHT, b, capacity, count, error))
-BYTES(radical_response_write, lensprof_radical_response_write(&here.linear, 1, b, capacity, count, error))
-BYTES(radical_vignetting_write,
-      lensprof_radical_vignetting_write(&here.profile, WIDTH, HEIGHT, b, capacity, count, error))
-BYTES(dng_opcodes_write, lensprof_dng_opcodes_write(&here.profile, WIDTH, HEIGHT, LENSPROF_LAYOUT_RGB,
-                                                    LENSPROF_DNG_RADIAL, b, capacity, count, NULL, error))
+BYTES(lensfun_write, lp_lensfun_write(profiles, 1, b, capacity, count, error))
+BYTES(json_write, lp_json_write(profiles, 1, b, capacity, count, error))
+BYTES(lcp_write, lp_lcp_write(profiles, 1, 0, 0, b, capacity, count, error))
+BYTES(pcalib_write, lp_pcalib_write(&here.linear, b, capacity, count, error))
+BYTES(curves_write, lp_curves_write(&here.linear, 1, 0, 16, b, capacity, count, error))
+BYTES(alsc_write, lp_alsc_write(&here.profile, 5000, 4, 3, WIDTH, HEIGHT, b, capacity, count, error))
+BYTES(radical_response_write, lp_radical_response_write(&here.linear, 1, b, capacity, count, error))
+BYTES(radical_vignetting_write, lp_radical_vignetting_write(&here.profile, WIDTH, HEIGHT, b, capacity, count, error))
+BYTES(dng_opcodes_write, lp_dng_opcodes_write(&here.profile, WIDTH, HEIGHT, LENSPROF_LAYOUT_RGB, LENSPROF_DNG_RADIAL, b,
+                                              capacity, count, NULL, error))
 BYTES(export, lensprof_export(profiles, 1, &as_json, b, capacity, count, error))
 BYTES(profile_pack, (snprintf(error->text, sizeof error->text, "-"),
                      lensprof_profile_pack(&here.profile, 0, b, capacity, count))) /* reports no text */
 ELEMENTS(points_read, lensprof_points_read(point_lines, sizeof point_lines - 1, b, capacity, count, error))
-ELEMENTS(times_read, lensprof_times_read(time_lines, sizeof time_lines - 1, b, capacity, count, error))
 ELEMENTS(store_list, lensprof_store_list(store, NULL, b, capacity, count, error))
 ELEMENTS(store_list_lenses, lensprof_store_list_lenses(store, NULL, b, capacity, count, error))
 ELEMENTS(store_list_cameras, lensprof_store_list_cameras(store, NULL, b, capacity, count, error))
@@ -84,7 +80,6 @@ static const struct {
     ROW(json_write, 1, TEXT),
     ROW(lcp_write, 1, TEXT),
     ROW(pcalib_write, 1, TEXT),
-    ROW(times_write, 1, TEXT),
     ROW(curves_write, 1, TEXT),
     ROW(alsc_write, 1, TEXT),
     ROW(radical_response_write, 1, OTHERS),
@@ -93,7 +88,6 @@ static const struct {
     ROW(export, 1, TEXT),
     ROW(profile_pack, 1, OTHERS),
     ROW(points_read, sizeof(lensprof_pair), OTHERS),
-    ROW(times_read, sizeof(lensprof_frame_time), OTHERS),
     ROW(store_list, sizeof(lensprof_store_row), OTHERS),
     ROW(store_list_lenses, sizeof(lensprof_store_summary), OTHERS),
     ROW(store_list_cameras, sizeof(lensprof_store_summary), OTHERS),
@@ -198,13 +192,14 @@ static void test_buffer_is_needed(void **state) {
     }
 }
 
-/* Declarations with a capacity in the public headers all have the same form. */
+/* Declarations with a capacity all have the same form. */
 static void test_table_is_complete(void **state) {
     (void)state;
     static char text[1 << 17];
     size_t found = 0;
     glob_t headers;
     assert_int_equal(glob(LENSPROF_INCLUDE "/lensprof/*.h", 0, NULL, &headers), 0);
+    assert_int_equal(glob(LENSPROF_INCLUDE "/../src/formats/each_format.h", GLOB_APPEND, NULL, &headers), 0);
     for (size_t h = 0; h < headers.gl_pathc; h++) {
         FILE *file = fopen(headers.gl_pathv[h], "rb");
         assert_non_null(file);

@@ -16,13 +16,8 @@ from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
 from .fit import FitCamera, FitImage, FitOptions, FitResult, FitSetting, fit_overlap, fit_radiance, transfer_rms
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
-from .formats import (FormatInfo, FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write,
-                      detect_format, dng_opcodes_read, dng_opcodes_write, drone_xmp_read, export_profiles,
-                      format_info, import_profiles, json_read, json_write, lcp_read, lcp_write, lensfun_read,
-                      lensfun_read_cameras, lensfun_write, map_read, map_write, pcalib_read, pcalib_write,
-                      points_read, points_write,
-                      radical_response_read, radical_response_write, radical_vignetting_read,
-                      radical_vignetting_write, times_read, times_write)
+from .formats import (FormatInfo, Pto, PtoImage, detect_format, export_profiles, format_info, import_profiles,
+                      lensfun_read_cameras, map_read, map_write, points_read, points_write)
 from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
 from .profile import CameraModel, Profile, ProfileKey, Provenance
@@ -31,22 +26,19 @@ from .sample import SampleImage, SampleOptions, sample_matches, sample_overlap, 
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow, StoreStats, StoreSummary, lookup_in
 
 __all__ = [
-    "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
-    "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
-    "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitCamera", "FitImage", "FitModel", "FitOptions", "FitResponse",
-    "FitResult", "FitSetting", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
-    "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE",
-    "Layout", "LinkState", "Lookup", "LookupOptions", "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE",
-    "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance",
-    "Pto", "PtoImage", "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
+    "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel",
+    "CurveKind", "Direction", "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error",
+    "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitCamera", "FitImage",
+    "FitModel", "FitOptions", "FitResponse", "FitResult", "FitSetting", "FixedPlan", "FlatGrid", "FlatImage",
+    "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "Free", "GRID_SIDE", "GainGrid", "GammaFrom",
+    "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE", "Layout", "LinkState", "Lookup", "LookupOptions",
+    "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
+    "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
+    "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName",
-    "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct",
-    "curves_read", "curves_write", "detect_format", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read",
-    "emor_table", "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal",
-    "import_profiles", "json_read", "json_write", "layout_channels", "layout_samples", "lcp_read", "lcp_write",
-    "lensfun_read", "lensfun_read_cameras", "lensfun_write", "lookup_in", "map_read", "map_write", "pcalib_read",
-    "pcalib_write", "points_read", "points_write", "radical_response_read", "radical_response_write",
-    "radical_vignetting_read", "radical_vignetting_write", "reason_name", "reason_text", "sample_matches", "sample_overlap",
-    "sample_tracks", "sample_type_bytes", "simulate", "status_name", "times_read", "times_write", "transfer_rms",
-    "version",
+    "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "correct", "detect_format", "emor_table",
+    "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles",
+    "layout_channels", "layout_samples", "lensfun_read_cameras", "lookup_in", "map_read", "map_write", "points_read",
+    "points_write", "reason_name", "reason_text", "sample_matches", "sample_overlap", "sample_tracks",
+    "sample_type_bytes", "simulate", "status_name", "transfer_rms", "version",
 ]

@@ -1003,14 +1003,6 @@ ImportVisitor = CFUNCTYPE(c_int, c_void_p, POINTER(ImportEntry))
 CameraVisitor = CFUNCTYPE(c_int, c_void_p, POINTER(CameraModel))
 
 
-class FrameTime(Structure):
-    _fields_ = [
-        ("id", c_char * 64),
-        ("time_s", c_double),
-        ("exposure_ms", c_double),
-    ]
-
-
 class Map(Structure):
     _fields_ = [
         ("columns", c_uint32),
@@ -1253,7 +1245,6 @@ STRUCTS = {
     "lensprof_flat_result": FlatResult,
     "lensprof_pto_image": PtoImage,
     "lensprof_import_entry": ImportEntry,
-    "lensprof_frame_time": FrameTime,
     "lensprof_map": Map,
     "lensprof_format_info": FormatInfo,
     "lensprof_import_options": ImportOptions,
@@ -1432,48 +1423,10 @@ FUNCTIONS = {
     "lensprof_points_write": (c_int, [POINTER(Pair), c_uint32, POINTER(Camera), c_uint32, c_void_p, c_size_t,
                                       POINTER(c_size_t), POINTER(ErrorText)]),
     # formats.h
-    "lensprof_lensfun_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
     "lensprof_lensfun_read_cameras": (c_int, [c_void_p, c_size_t, c_char_p, CameraVisitor, c_void_p,
                                               POINTER(ErrorText)]),
-    "lensprof_lensfun_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
-                                       POINTER(ErrorText)]),
-    "lensprof_json_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
-                                    POINTER(ErrorText)]),
-    "lensprof_json_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
-    "lensprof_pcalib_read": (c_int, [c_void_p, c_size_t, POINTER(Response), POINTER(ErrorText)]),
-    "lensprof_pcalib_write": (c_int, [POINTER(Response), c_void_p, c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
-    "lensprof_times_read": (c_int, [c_void_p, c_size_t, POINTER(FrameTime), c_uint32, POINTER(c_uint32),
-                                    POINTER(ErrorText)]),
-    "lensprof_times_write": (c_int, [POINTER(FrameTime), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
-                                     POINTER(ErrorText)]),
-    "lensprof_curves_read": (c_int, [c_void_p, c_size_t, c_uint32, POINTER(Response), POINTER(c_uint32),
-                                     POINTER(ErrorText)]),
-    "lensprof_curves_write": (c_int, [POINTER(Response), c_uint32, c_uint32, c_uint32, c_void_p, c_size_t,
-                                      POINTER(c_size_t), POINTER(ErrorText)]),
-    "lensprof_map_read": (c_int, [POINTER(Map), c_uint32, c_uint32, POINTER(Profile), POINTER(c_double),
-                                  POINTER(ErrorText)]),
     "lensprof_map_write": (c_int, [POINTER(Profile), c_uint32, c_uint32, c_uint32, c_uint32, c_uint32, c_uint32,
                                    POINTER(c_float), POINTER(ErrorText)]),
-    "lensprof_radical_response_read": (c_int, [c_void_p, c_size_t, POINTER(Response), POINTER(ErrorText)]),
-    "lensprof_radical_response_write": (c_int, [POINTER(Response), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
-                                                POINTER(ErrorText)]),
-    "lensprof_radical_vignetting_read": (c_int, [c_void_p, c_size_t, POINTER(Profile), POINTER(c_double),
-                                                 POINTER(ErrorText)]),
-    "lensprof_radical_vignetting_write": (c_int, [POINTER(Profile), c_uint32, c_uint32, c_void_p, c_size_t,
-                                                  POINTER(c_size_t), POINTER(ErrorText)]),
-    "lensprof_dng_opcodes_read": (c_int, [c_void_p, c_size_t, c_uint32, c_uint32, c_uint32, c_char_p, ImportVisitor,
-                                          c_void_p, POINTER(ErrorText)]),
-    "lensprof_dng_opcodes_write": (c_int, [POINTER(Profile), c_uint32, c_uint32, c_uint32, c_uint32, c_void_p, c_size_t,
-                                           POINTER(c_size_t), POINTER(c_double), POINTER(ErrorText)]),
-    "lensprof_lcp_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
-    "lensprof_lcp_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_uint32, c_uint32, c_void_p, c_size_t,
-                                   POINTER(c_size_t), POINTER(ErrorText)]),
-    "lensprof_drone_xmp_read": (c_int, [c_void_p, c_size_t, c_uint32, c_uint32, c_char_p, ImportVisitor, c_void_p,
-                                        POINTER(ErrorText)]),
-    "lensprof_alsc_read": (c_int, [c_void_p, c_size_t, c_double, c_uint32, c_uint32, c_uint32, c_uint32,
-                                   POINTER(Profile), POINTER(c_double), POINTER(ErrorText)]),
-    "lensprof_alsc_write": (c_int, [POINTER(Profile), c_double, c_uint32, c_uint32, c_uint32, c_uint32, c_void_p,
-                                    c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
     "lensprof_format_get_info": (POINTER(FormatInfo), [c_uint32]),
     "lensprof_format_detect": (c_uint32, [c_void_p, c_size_t, c_char_p]),
     "lensprof_import_options_init_sized": (None, [POINTER(ImportOptions), c_size_t]),

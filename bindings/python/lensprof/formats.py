@@ -236,17 +236,6 @@ def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: 
     return _written(lambda *buffer: write(pointers, len(given), *settings, *buffer), what)
 
 
-def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
-    """The falloffs of a Lensfun database (.xml) as (profile, usable), about 50 kB each, in file order.
-
-    usable is False for an invalid falloff, which cannot be stored or applied; provenance.doubt states the reason, and
-    may have a warning for others. source: origin of the text, for provenance.source.
-    """
-    data = _content(text, "text")
-    return _imported(lambda *rest: lib.lensprof_lensfun_read(data, len(data), *rest), source,
-                     "the database cannot be read")
-
-
 def lensfun_read_cameras(text: Union[str, bytes], source: str = "") -> list[CameraModel]:
     """The cameras of a Lensfun database (.xml), for Store.put_camera()."""
     data, error, name = _content(text, "text"), _abi.ErrorText(), _bytes(source)
@@ -268,99 +257,21 @@ def lensfun_read_cameras(text: Union[str, bytes], source: str = "") -> list[Came
     return found
 
 
-def lensfun_write(profiles: Iterable[Profile]) -> str:
-    """A Lensfun database (.xml) of the falloffs of profiles with known lens, crop factor, focal length and aperture."""
-    return _database(lib.lensprof_lensfun_write, profiles, (), "the database cannot be written").decode()
+def _import_options(format: Format, frame: tuple[int, int], key: Optional[ProfileKey]) -> Any:
+    options = initialised(_abi.ImportOptions)
+    options.format = _format(format)
+    options.width, options.height = (integer(side, "frame") for side in frame)
+    if key is not None:
+        options.key = pointer(_abi.ProfileKey.from_buffer(key))
+    return options
 
 
-def json_read(text: Union[str, bytes], source: str = "") -> list[Profile]:
-    """The profiles in JSON, as printed by `lensprof profile show --json` or made by json_write.
-
-    source: origin of the text, for provenance.source if the text does not contain it.
-    """
-    data = _content(text, "text")
-    found = _imported(lambda *rest: lib.lensprof_json_read(data, len(data), *rest), source, "the profiles cannot be read")
-    return [profile for profile, _ in found]
-
-
-def json_write(profiles: Iterable[Profile]) -> str:
-    """Profiles as JSON (docs/json.md); json_read restores the same profiles."""
-    return _database(lib.lensprof_json_write, profiles, (), "the profiles cannot be written").decode()
-
-
-def pcalib_read(text: Union[str, bytes]) -> Response:
-    """The response of a pcalib.txt of TUM's tools, DSO and related programs: 256 (or up to 65536) increasing
-    irradiances."""
-    data, response, error = _content(text, "text"), Response(), _abi.ErrorText()
-    check(lib.lensprof_pcalib_read(data, len(data), byref(response), byref(error)), "pcalib cannot be read", error)
-    return response
-
-
-def pcalib_write(response: Response) -> str:
-    """A pcalib.txt: 256 irradiances from 0 to 255, strictly increasing."""
-    return _written(lambda *buffer: lib.lensprof_pcalib_write(byref(response), *buffer),
-                    "pcalib cannot be written").decode()
-
-
-class FrameTime(Value, _abi.FrameTime):
-    """A line of times.txt: id as written, time_s, exposure_ms (UNKNOWN if missing)."""
-
-    id = Text()
-    time_s: float
-    exposure_ms: float
-
-
-def times_read(text: Union[str, bytes]) -> list[FrameTime]:
-    """The frames of a times.txt: name, time stamp and, if known, exposure time on each line."""
-    data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
-    check(lib.lensprof_times_read(data, len(data), None, 0, byref(found), byref(error)), "times cannot be read", error)
-    frames = (_abi.FrameTime * found.value)()
-    check(lib.lensprof_times_read(data, len(data), frames, len(frames), byref(found), byref(error)),
-          "times cannot be read", error)
-    return [FrameTime.from_buffer_copy(frame) for frame in frames]
-
-
-def times_write(frames: Iterable[FrameTime]) -> str:
-    """A times.txt of frames."""
-    given = list(frames)
-    array = (_abi.FrameTime * len(given))(*given)
-    return _written(lambda *buffer: lib.lensprof_times_write(array, len(given), *buffer),
-                    "times cannot be written").decode()
-
-
-def curves_read(text: Union[str, bytes], kind: CurveKind = CurveKind.INVERSE) -> list[Response]:
-    """One or three responses of a text table (CSV, or .m of pfstools). The table does not state its content: pass
-    it."""
-    data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
-    responses = (_abi.Response * 3)()
-    check(lib.lensprof_curves_read(data, len(data), int(CurveKind(kind)), responses, byref(found), byref(error)),
-          "the table cannot be read", error)
-    return [Response.from_buffer_copy(responses[i]) for i in range(found.value)]
-
-
-def curves_write(responses: Union[Response, Iterable[Response]], kind: CurveKind = CurveKind.INVERSE,
-                 rows: int = 256) -> str:
-    """One or three responses as CSV."""
-    given = one_or_three(responses, Response, "responses")
-    array = (_abi.Response * len(given))(*given)
-    return _written(lambda *buffer: lib.lensprof_curves_write(array, len(given), int(CurveKind(kind)),
-                                                              integer(rows, "rows"), *buffer),
-                    "the table cannot be written").decode()
-
-
-def _refitted(read: Callable[..., int], profile: Optional[Profile], what: str) -> tuple[Profile, float]:
-    """A copy of the profile (or a new one) with the falloff that was read, and its largest relative error."""
-    found, worst, error = profile.copy() if profile is not None else Profile(), c_double(), _abi.ErrorText()
-    check(read(byref(found), byref(worst), byref(error)), what, error)
-    return found, worst.value
-
-
-def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: Optional[tuple[int, int]] = None,
-             profile: Optional[Profile] = None) -> tuple[Profile, float]:
-    """The falloff of a map (rows, columns) or (rows, columns, 3), and the largest relative error left.
+def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: tuple[int, int] = (0, 0),
+             key: Optional[ProfileKey] = None) -> tuple[Profile, bool]:
+    """The falloff of a map (rows, columns) or (rows, columns, 3) as a profile, and whether it is usable.
 
     Values are linear, in any unit; 0 = unknown. frame: width and height of the pictures it applies to, px; by default
-    those of the map. profile: copied for the rest of the result.
+    those of the map. key: as for import_profiles.
     """
     array = np.ascontiguousarray(values, dtype=np.float32)
     if array.ndim not in (2, 3):
@@ -368,9 +279,11 @@ def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: 
     rows, columns = array.shape[:2]
     given = initialised(_abi.Map, columns=columns, rows=rows, channels=array.shape[2] if array.ndim == 3 else 1,
                         sense=int(MapSense(sense)), values=_arrays.address(array, c_float))
-    width, height = frame if frame is not None else (columns, rows)
-    return _refitted(lambda *out: lib.lensprof_map_read(byref(given), integer(width, "width"), integer(height, "height"),
-                                                        *out), profile, "the map cannot be read")
+    options = _import_options(Format.MAP, frame, key)
+    options.map = pointer(given)
+    (entry,) = _imported(lambda _source, *rest: lib.lensprof_import(None, 0, byref(options), *rest), "",
+                         "the map cannot be read")
+    return entry
 
 
 def map_write(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int, int]] = None, channels: int = 1,
@@ -387,107 +300,6 @@ def map_write(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int
                                  channels, int(MapSense(sense)), _arrays.address(values, c_float), byref(error)),
           "the map cannot be written", error)
     return values[:, :, 0] if channels == 1 else values
-
-
-def radical_response_read(data: bytes) -> list[Response]:
-    """The responses of red, green and blue of a .crf file of radical."""
-    given, responses, error = _content(data), (_abi.Response * 3)(), _abi.ErrorText()
-    check(lib.lensprof_radical_response_read(given, len(given), responses, byref(error)), "the file cannot be read", error)
-    return [Response.from_buffer_copy(response) for response in responses]
-
-
-def radical_response_write(responses: Union[Response, Iterable[Response]]) -> bytes:
-    """A .crf file of radical."""
-    given = one_or_three(responses, Response, "responses")
-    array = (_abi.Response * len(given))(*given)
-    return _written(lambda *buffer: lib.lensprof_radical_response_write(array, len(given), *buffer),
-                    "the file cannot be written")
-
-
-def radical_vignetting_read(data: bytes, profile: Optional[Profile] = None) -> tuple[Profile, float]:
-    """The falloff of a .vgn file of radical, and the largest relative error left; as map_read."""
-    given = _content(data)
-    return _refitted(lambda *out: lib.lensprof_radical_vignetting_read(given, len(given), *out), profile,
-                     "the file cannot be read")
-
-
-def radical_vignetting_write(profile: Profile, width: int, height: int) -> bytes:
-    """A .vgn file of radical for pictures of width x height px."""
-    return _written(lambda *buffer: lib.lensprof_radical_vignetting_write(byref(profile), integer(width, "width"),
-                                                                          integer(height, "height"), *buffer),
-                    "the file cannot be written")
-
-
-def dng_opcodes_read(data: bytes, width: int, height: int, layout: Layout = Layout.RGB,
-                     source: str = "") -> tuple[Profile, bool]:
-    """The falloff of a DNG opcode list, the bytes of the tag OpcodeList2 or OpcodeList3, and whether it is usable.
-
-    width, height: of the frame that the opcodes apply to. layout: RGGB, GRBG, GBRG or BGGR for a mosaic (OpcodeList2),
-    RGB for three planes (OpcodeList3), GREY for one. provenance.doubt lists opcodes that are left out.
-    """
-    given = _content(data)
-    (entry,) = _imported(
-        lambda *rest: lib.lensprof_dng_opcodes_read(given, len(given), integer(width, "width"), integer(height, "height"),
-                                                    integer(layout, "layout"), *rest),
-        source, "the opcodes cannot be read")
-    return entry
-
-
-def dng_opcodes_write(profile: Profile, width: int, height: int, layout: Layout = Layout.RGB,
-                      form: DngForm = DngForm.GAIN_MAP) -> tuple[bytes, float]:
-    """The falloff of a profile as a DNG opcode list, and the largest relative error of its gains within the frame."""
-    if not isinstance(profile, Profile):
-        raise TypeError("profile takes a Profile")
-    worst = c_double()
-    numbers = (integer(width, "width"), integer(height, "height"), integer(layout, "layout"), integer(form, "form"))
-    text = _written(lambda *buffer: lib.lensprof_dng_opcodes_write(byref(profile), *numbers, *buffer[:3], byref(worst),
-                                                                   buffer[3]), "the opcodes cannot be written")
-    return text, worst.value
-
-
-def lcp_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
-    """The falloffs of an Adobe lens profile (.lcp), in the form of lensfun_read."""
-    data = _content(text, "text")
-    return _imported(lambda *rest: lib.lensprof_lcp_read(data, len(data), *rest), source,
-                     "the lens profile cannot be read")
-
-
-def lcp_write(profiles: Iterable[Profile], width: int = 0, height: int = 0) -> str:
-    """An Adobe lens profile (.lcp) of the falloffs of profiles of one camera and lens, with known crop factor, focal
-    length and aperture. width, height: of the frames; both 0 = unknown, taken as 3:2."""
-    return _database(lib.lensprof_lcp_write, profiles, (integer(width, "width"), integer(height, "height")),
-                     "the lens profile cannot be written").decode()
-
-
-def drone_xmp_read(text: Union[str, bytes], width: int, height: int, source: str = "") -> tuple[Profile, bool]:
-    """The falloff that a MicaSense, Parrot Sequoia, DJI or Sentera camera writes into the XMP packet of a picture of
-    width x height pixels, and whether it is usable."""
-    data = _content(text, "text")
-    (entry,) = _imported(
-        lambda *rest: lib.lensprof_drone_xmp_read(data, len(data), integer(width, "width"), integer(height, "height"),
-                                                  *rest),
-        source, "the XMP packet cannot be read")
-    return entry
-
-
-def alsc_read(text: Union[str, bytes], frame: tuple[int, int], ct: float = _abi.UNKNOWN,
-              size: tuple[int, int] = (0, 0), profile: Optional[Profile] = None) -> tuple[Profile, float]:
-    """The falloff of a libcamera tuning file for the Raspberry Pi, and the largest relative error left.
-
-    frame: width and height of the sensor, px. ct: colour temperature, K; by default that of the file. size: columns and
-    rows of tables other than 16 x 12 and 32 x 32. profile: as in map_read.
-    """
-    data, numbers = _content(text, "text"), [integer(n, "columns, rows, width or height") for n in (*size, *frame)]
-    return _refitted(lambda *out: lib.lensprof_alsc_read(data, len(data), ct, *numbers, *out), profile,
-                     "the tables cannot be read")
-
-
-def alsc_write(profile: Profile, frame: tuple[int, int], ct: float = _abi.UNKNOWN,
-               size: tuple[int, int] = (16, 12)) -> str:
-    """Falloff and gain grid as the "rpi.alsc" of a tuning file, with tables of size (columns, rows)."""
-    numbers = [integer(n, "columns, rows, width or height") for n in (*size, *frame)]
-    return _written(lambda *buffer: lib.lensprof_alsc_write(byref(profile), ct, *numbers, *buffer),
-                    "the tables cannot be written").decode()
 
 
 class FormatInfo(NamedTuple):
@@ -520,21 +332,21 @@ def import_profiles(data: Union[str, bytes], name: str = "", *, format: Format =
                     key: Optional[ProfileKey] = None, frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0),
                     layout: Layout = Layout.RGB, curve: CurveKind = CurveKind.INVERSE,
                     color_temperature_k: float = _abi.UNKNOWN, strict: bool = False) -> list[tuple[Profile, bool]]:
-    """The profiles of a file of any format, in the form of lensfun_read. data: the content of the file.
+    """The profiles of a file of any format as (profile, usable), about 50 kB each, in file order.
+
+    data: the content of the file. usable is False for an invalid falloff, which cannot be stored or applied;
+    provenance.doubt states the reason, and may have a warning for others.
 
     A response or a falloff makes one profile with `key`. name: of the file, for detection and provenance.source. frame:
     width and height of the pictures, which opcodes, XMP and alsc do not contain. tables: columns and rows, of alsc. The
     bytes are those of the format, not of a picture around them: opcodes without their DNG, XMP without its JPEG.
     strict: refuse a response that decreases anywhere, instead of reading the nearest increasing curve.
     """
-    content, options = _content(data), initialised(_abi.ImportOptions)
-    options.format, options.layout, options.curve = _format(format), int(Layout(layout)), int(CurveKind(curve))
-    options.width, options.height = (integer(side, "frame") for side in frame)
+    content, options = _content(data), _import_options(format, frame, key)
+    options.layout, options.curve = int(Layout(layout)), int(CurveKind(curve))
     options.columns, options.rows = (integer(side, "tables") for side in tables)
     options.color_temperature_k = color_temperature_k
     options.strict = int(strict)
-    if key is not None:
-        options.key = pointer(_abi.ProfileKey.from_buffer(key))
 
     def read(source: bytes, *rest: Any) -> int:
         options.name = source

@@ -38,8 +38,11 @@ Json provenance_json(const lensprof_provenance &p) {
 
 Json profile_json(int64_t id, const lensprof_profile &profile) {
     const lensprof_profile *const pointer = &profile;
+    lensprof_export_options options;
+    lensprof_export_options_init(&options);
+    options.format = LENSPROF_FORMAT_JSON;
     const auto write = [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
-        return lensprof_json_write(&pointer, 1, text, capacity, count, error);
+        return lensprof_export(&pointer, 1, &options, text, capacity, count, error);
     };
     Json json = Json::parse(written("profile as JSON", write));
     json["response"]["values"] = samples_json(profile.response, profile.responses);

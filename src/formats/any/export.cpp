@@ -4,6 +4,7 @@
 
 #include "core/sized.h"
 #include "formats/any/detect.hpp"
+#include "formats/each_format.h"
 #include "formats/text/text.hpp"
 
 namespace lensprof {
@@ -25,8 +26,8 @@ struct Output {
 // One opcode of a radial falloff where that comes near enough, else a map.
 lensprof_status write_opcodes(const lensprof_profile &profile, const lensprof_export_options &o, const Output &out) {
     const auto write = [&](uint32_t form, void *data, size_t capacity, size_t *count, double *worst) {
-        return lensprof_dng_opcodes_write(&profile, o.width, o.height, o.layout, form, data, capacity, count, worst,
-                                          out.error);
+        return lp_dng_opcodes_write(&profile, o.width, o.height, o.layout, form, data, capacity, count, worst,
+                                    out.error);
     };
     uint32_t form = o.dng_form;
     if (form == LENSPROF_DNG_AUTO) {
@@ -53,17 +54,17 @@ lensprof_status write_one(const lensprof_profile &p, const lensprof_export_optio
     case LENSPROF_FORMAT_BLOB: return write_blob(p, o, out);
     case LENSPROF_FORMAT_DNG_OPCODES: return write_opcodes(p, o, out);
     case LENSPROF_FORMAT_PCALIB:  // one curve: green's of three
-        return lensprof_pcalib_write(&p.response[p.responses / 2], out.data, out.capacity, out.count, out.error);
+        return lp_pcalib_write(&p.response[p.responses / 2], out.data, out.capacity, out.count, out.error);
     case LENSPROF_FORMAT_CURVES:
-        return lensprof_curves_write(p.response, p.responses, o.curve, o.rows ? o.rows : kCurveRows, out.data,
-                                     out.capacity, out.count, out.error);
+        return lp_curves_write(p.response, p.responses, o.curve, o.rows ? o.rows : kCurveRows, out.data, out.capacity,
+                               out.count, out.error);
     case LENSPROF_FORMAT_RADICAL_RESPONSE:
-        return lensprof_radical_response_write(p.response, p.responses, out.data, out.capacity, out.count, out.error);
+        return lp_radical_response_write(p.response, p.responses, out.data, out.capacity, out.count, out.error);
     case LENSPROF_FORMAT_RADICAL_VIGNETTING:
-        return lensprof_radical_vignetting_write(&p, o.width, o.height, out.data, out.capacity, out.count, out.error);
+        return lp_radical_vignetting_write(&p, o.width, o.height, out.data, out.capacity, out.count, out.error);
     default:
-        return lensprof_alsc_write(&p, o.color_temperature_k, o.columns ? o.columns : kColumns, o.rows ? o.rows : kRows,
-                                   o.width, o.height, out.data, out.capacity, out.count, out.error);
+        return lp_alsc_write(&p, o.color_temperature_k, o.columns ? o.columns : kColumns, o.rows ? o.rows : kRows,
+                             o.width, o.height, out.data, out.capacity, out.count, out.error);
     }
 }
 
@@ -72,10 +73,10 @@ lensprof_status write_many(const lensprof_profile *const *profiles, uint32_t pro
     size_t size = 0;
     const auto write = [&](void *data, size_t capacity, size_t *count) {
         if (o.format == LENSPROF_FORMAT_LENSFUN)
-            return lensprof_lensfun_write(profiles, profile_count, data, capacity, count, out.error);
+            return lp_lensfun_write(profiles, profile_count, data, capacity, count, out.error);
         if (o.format == LENSPROF_FORMAT_LCP)
-            return lensprof_lcp_write(profiles, profile_count, o.width, o.height, data, capacity, count, out.error);
-        return lensprof_json_write(profiles, profile_count, data, capacity, count, out.error);
+            return lp_lcp_write(profiles, profile_count, o.width, o.height, data, capacity, count, out.error);
+        return lp_json_write(profiles, profile_count, data, capacity, count, out.error);
     };
     const lensprof_status status = write(out.data, std::min(out.capacity, kMaxBytes), &size);
     if (status != LENSPROF_OK && status != LENSPROF_ERROR_CAPACITY) return status;

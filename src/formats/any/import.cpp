@@ -9,6 +9,7 @@
 #include "falloff/rise.hpp"
 #include "formats/any/detect.hpp"
 #include "formats/drone_xmp.hpp"
+#include "formats/each_format.h"
 #include "formats/falloff/import.hpp"
 #include "formats/responses.hpp"
 #include "formats/text/text.hpp"
@@ -84,21 +85,20 @@ lensprof_status read_falloff(const Input &in, Part &part, lensprof_error *error)
     if (o.format != LENSPROF_FORMAT_RADICAL_VIGNETTING && !o.map) demand_frame(o);
     switch (o.format) {
     case LENSPROF_FORMAT_DNG_OPCODES:
-        return lensprof_dng_opcodes_read(in.data, in.size, o.width, o.height, o.layout, nullptr, take_falloff, &part,
-                                         error);
+        return lp_dng_opcodes_read(in.data, in.size, o.width, o.height, o.layout, nullptr, take_falloff, &part, error);
     case LENSPROF_FORMAT_DRONE_XMP:
         return read_drone_packet({in.data, in.size, o.width, o.height, nullptr, part.profile.key.camera_maker},
                                  take_falloff, &part, error);
     case LENSPROF_FORMAT_MAP:
-        status = lensprof_map_read(o.map, o.width ? o.width : o.map->columns, o.height ? o.height : o.map->rows,
-                                   &part.profile, &worst, error);
+        status = lp_map_read(o.map, o.width ? o.width : o.map->columns, o.height ? o.height : o.map->rows,
+                             &part.profile, &worst, error);
         break;
     case LENSPROF_FORMAT_RADICAL_VIGNETTING:
-        status = lensprof_radical_vignetting_read(in.data, in.size, &part.profile, &worst, error);
+        status = lp_radical_vignetting_read(in.data, in.size, &part.profile, &worst, error);
         break;
     default:
-        status = lensprof_alsc_read(in.data, in.size, o.color_temperature_k, o.columns, o.rows, o.width, o.height,
-                                    &part.profile, &worst, error);
+        status = lp_alsc_read(in.data, in.size, o.color_temperature_k, o.columns, o.rows, o.width, o.height,
+                              &part.profile, &worst, error);
     }
     put_text(part.profile.provenance.doubt, sizeof part.profile.provenance.doubt, refit_remark(worst));
     return status;
@@ -243,9 +243,9 @@ lensprof_status lensprof_import(const void *data, size_t size, const lensprof_im
     if (status != LENSPROF_OK) return status;
     const char *const name = in.options.name;
     switch (in.options.format) {
-    case LENSPROF_FORMAT_LENSFUN: return lensprof_lensfun_read(data, size, name, visit, user, error);
-    case LENSPROF_FORMAT_LCP: return lensprof_lcp_read(data, size, name, visit, user, error);
-    case LENSPROF_FORMAT_JSON: return lensprof_json_read(data, size, name, visit, user, error);
+    case LENSPROF_FORMAT_LENSFUN: return lp_lensfun_read(data, size, name, visit, user, error);
+    case LENSPROF_FORMAT_LCP: return lp_lcp_read(data, size, name, visit, user, error);
+    case LENSPROF_FORMAT_JSON: return lp_json_read(data, size, name, visit, user, error);
     case LENSPROF_FORMAT_BLOB: return import_blob(in, visit, user, error);
     default: return import_part(in, lensprof_format_get_info(in.options.format)->holds, visit, user, error);
     }

@@ -289,21 +289,16 @@ static lensprof_status use_profile(lensprof_store *store, void *given, lensprof_
 /* As output: found, unpacked, refitted. */
 static lensprof_status find_profile(lensprof_store *store, void *given, lensprof_error *error) {
     static uint8_t blob[1 << 15];
-    static float values[32 * 24];
     size_t bytes = 0;
     lensprof_profile *profile = given;
     if (lensprof_store_put(store, &here.profile, NULL, error) != LENSPROF_OK) return LENSPROF_ERROR_STRUCT_SIZE;
     if (lensprof_profile_pack(&here.profile, 0, blob, sizeof blob, &bytes) != LENSPROF_OK)
         return LENSPROF_ERROR_ARGUMENT;
-    for (int n = 0; n < 32 * 24; n++) values[n] = 0.5f;
-    const lensprof_map map = {32, 24, 1, LENSPROF_MAP_ATTENUATION, values};
     const lensprof_status status = lensprof_store_get(store, 1, profile, error);
     if (status == LENSPROF_OK) expect(profile->vignetting[0].k[0] == true_k1, "the profile got");
     expect(lensprof_store_find(store, &here.profile.key, profile, NULL, error) == status, "store_find");
     expect(lensprof_profile_unpack(blob, bytes, profile) == status, "profile_unpack");
     if (status == LENSPROF_OK) expect(profile->vignetting[0].k[0] == true_k1, "the profile unpacked");
-    expect(lensprof_map_read(&map, WIDTH, HEIGHT, profile, NULL, error) == status, "map_read");
-    if (status == LENSPROF_OK) expect(is_near(profile->vignetting[0].k[0], 0.0, 1e-6), "the profile of a map");
     return status;
 }
 
