@@ -1,4 +1,11 @@
-/* lensprof/store.h - the profile database (SQLite).
+/* lensprof/store.h - the profile database (SQLite), and pictures corrected by what it holds.
+ *
+ *     lensprof_profile_key_init(&key), lensprof_profile_init(&profile);   // the rest of the key stays unknown
+ *     strcpy(key.lens, "Acme 50mm f/1.8"), key.focal_mm = 50, key.aperture = 2.8, key.crop_factor = 1.5;
+ *     status = lensprof_store_open("lenses.db", LENSPROF_STORE_READ, &store, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_store_lookup(store, &key, NULL, &profile, NULL, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_correct(&profile, NULL, &image, &error);
+ *     lensprof_store_close(store);
  *
  * Every call is one transaction, or part of the caller's transaction. It is atomic, even if the process is killed or
  * the power fails. The file is in write-ahead mode: readers and a writer do not block each other, and a call waits up
@@ -9,6 +16,7 @@
 #ifndef LENSPROF_STORE_H
 #define LENSPROF_STORE_H
 
+#include "apply.h"
 #include "profile.h"
 #include "reason.h"
 
@@ -139,7 +147,9 @@ static inline void lensprof_lookup_init(lensprof_lookup *lookup) { lensprof_look
  * before those without one; without such profiles, the typical response of the kind of camera. A stored profile that
  * matches everything is returned unchanged. Any other answer has the given key, no gain grid, provenance method
  * "lookup", and a covariance of both parts. Nothing is written. NOT_FOUND if there is no such lens or nothing near
- * enough: *lookup is then filled as far as possible and *profile is unchanged. Both must be initialised. */
+ * enough: *lookup is then filled as far as possible, *profile is unchanged, and the text of the error is the reason.
+ * *profile must be initialised, and *lookup if it is given. options may be NULL, for the defaults, and lookup, if the
+ * answer alone is wanted. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
                                                                      const lensprof_profile_key *key,
                                                                      const lensprof_lookup_options *options,
@@ -327,6 +337,15 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_nearest_lenses(len
                                                                              const lensprof_profile_key *key,
                                                                              lensprof_store_name *names, uint32_t most,
                                                                              uint32_t *count, lensprof_error *error);
+
+/* Removes the falloff (and gain grid) of a profile from a whole picture, in place. Samples are encoded by the response
+ * of the profile, before and after. exposure: exposure and white balance of the picture, which become 0 EV and 1, 1, 1;
+ * NULL keeps them. apply.h has the same in parts: without heap, for tiles, other encodings, and many pictures of one
+ * plan. Errors: ARGUMENT for NULL; those of lensprof_image_validate, lensprof_apply_options_set_profile and
+ * lensprof_plan_init, with the picture unchanged; UNSUPPORTED for the layout PLANAR; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_correct(const lensprof_profile *profile,
+                                                                const lensprof_exposure *exposure,
+                                                                const lensprof_image *image, lensprof_error *error);
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,6 @@ awk '$0 == "```c" { on = 1; next } on && /^```/ { exit } on' "$source_dir/README
 lines=$(wc -l < "$work/readme.c")
 [ "$lines" -ge 10 ] && [ "$lines" -le 22 ] || { echo "README's example has $lines lines"; exit 1; }
 cat "$source_dir/tests/install/readme_main.c" >> "$work/readme.c"
-"$3" -std=c99 -Wall -Wextra -pedantic -Werror -I"$source_dir/include" -o "$work/readme" "$work/readme.c" "$library" -lm \
+"$3" -std=c99 -D_DEFAULT_SOURCE -Wall -Wextra -pedantic -Werror -I"$source_dir/include" -o "$work/readme" "$work/readme.c" "$library" -lm \
     -Wl,-rpath,"$(dirname "$library")"
 "$work/readme"

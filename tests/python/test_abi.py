@@ -84,7 +84,8 @@ class Tables(unittest.TestCase):
 
     def test_every_function_has_a_pythonic_face(self):
         sources = "".join(path.read_text() for path in PACKAGE.glob("*.py") if path.name != "_abi.py")
-        for name in set(_abi.FUNCTIONS) - {name for name, _ in _abi.INITS.values()}:
+        others = {"lensprof_correct"}  # lensprof.correct makes a plan, which has more options
+        for name in set(_abi.FUNCTIONS) - {name for name, _ in _abi.INITS.values()} - others:
             self.assertRegex(sources, rf"lib(rary)?\.{name}\b")
 
     def test_structures_with_a_size_have_it_set_by_their_init(self):

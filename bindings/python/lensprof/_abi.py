@@ -1473,4 +1473,5 @@ FUNCTIONS = {
                                             POINTER(c_uint32), POINTER(ErrorText)]),
     "lensprof_store_nearest_lenses": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(StoreName), c_uint32,
                                               POINTER(c_uint32), POINTER(ErrorText)]),
+    "lensprof_correct": (c_int, [POINTER(Profile), POINTER(Exposure), POINTER(Image), POINTER(ErrorText)]),
 }

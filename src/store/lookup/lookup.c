@@ -230,9 +230,9 @@ static lensprof_status check_lookup(const lensprof_profile_key *key, const lensp
                                     lensprof_lookup_options *options, const lensprof_profile *profile,
                                     const lensprof_lookup *lookup, lensprof_error *error) {
     lensprof_lookup_options_init(options);
-    const char *wrong = lp_sized_take(options, given, FIRST_OPTIONS);
+    const char *wrong = given ? lp_sized_take(options, given, FIRST_OPTIONS) : NULL;
     if (wrong) return lp_store_fail_size("lensprof_lookup_options", wrong, error);
-    wrong = lp_sized_wrong(lookup, FIRST_LOOKUP, sizeof *lookup);
+    wrong = lookup ? lp_sized_wrong(lookup, FIRST_LOOKUP, sizeof *lookup) : NULL;
     if (wrong) return lp_store_fail_size("lensprof_lookup", wrong, error);
     const lensprof_status status = lp_store_check_size(profile, error);
     if (status != LENSPROF_OK) return status;
@@ -255,8 +255,8 @@ lensprof_status lensprof_store_lookup_in(lensprof_store *const *stores, uint32_t
                                          lensprof_lookup *lookup, lensprof_error *error) {
     lensprof_lookup_options options;
     lp_store_clear(error);
-    if (!stores || !count || has_null(stores, count) || !key || !given || !profile || !lookup)
-        return lp_store_fail_argument("no store, or store, key, options, profile or lookup is NULL", error);
+    if (!stores || !count || has_null(stores, count) || !key || !profile)
+        return lp_store_fail_argument("no store, or store, key or profile is NULL", error);
     lensprof_status status = check_lookup(key, given, &options, profile, lookup, error);
     if (status != LENSPROF_OK) return status;
     work *w = calloc(1, sizeof *w);
@@ -264,7 +264,7 @@ lensprof_status lensprof_store_lookup_in(lensprof_store *const *stores, uint32_t
     w->stores = stores, w->count = count, w->key = key, w->options = options;
     status = look_up(w, error);
     if (status == LENSPROF_OK) lp_sized_copy(profile, &stores[w->lookup.falloff_store]->scratch);
-    if (status == LENSPROF_OK || status == LENSPROF_ERROR_NOT_FOUND) lp_sized_copy(lookup, &w->lookup);
+    if (lookup && (status == LENSPROF_OK || status == LENSPROF_ERROR_NOT_FOUND)) lp_sized_copy(lookup, &w->lookup);
     free(w);
     return status;
 }
