@@ -46,6 +46,7 @@ int main(void) {
     lensprof_fit_image images[IMAGES];
     lensprof_exposure exposures[IMAGES];
     lensprof_fit_options options;
+    lensprof_fit *fit;
     lensprof_error error;
     uint32_t i;
 
@@ -58,10 +59,12 @@ int main(void) {
     lensprof_fit_options_init(&options);
     options.channels = 1;
     lensprof_fit_result_init(&result);
-    if (lensprof_fit_overlap(&options, images, IMAGES, pairs, PAIRS, exposures, &result, &error) != LENSPROF_OK) {
+    if (lensprof_fit_overlap(&options, images, IMAGES, pairs, PAIRS, NULL, 0, exposures, &fit, &error) != LENSPROF_OK
+        || lensprof_fit_setting_at(fit, LENSPROF_FIT_REFERENCE, &result, &error) != LENSPROF_OK) {
         printf("%s\n", error.text);
         return 1;
     }
+    lensprof_fit_destroy(fit);
     printf("usable: %s, residual %.2f of 255 levels\n", result.usable ? "yes" : result.reason, result.heldout_rms);
     for (i = 0; i < IMAGES; i++) printf("image %u: %+.3f EV, true %+.3f\n", i, exposures[i].ev, true_ev[i]);
     printf("light in the corner: %.3f, true %.3f\n", lensprof_vignetting_eval(&result.vignetting[0], 1.0, NULL),

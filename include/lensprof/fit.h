@@ -180,9 +180,15 @@ static inline void lensprof_fit_options_init(lensprof_fit_options *options) {
     lensprof_fit_options_init_sized(options, sizeof *options);
 }
 
-/* How well one image is determined. Its size may grow: see lensprof_fit_result.image_quality_size. */
+/* A fit: what the calls below found, asked by image, lens setting and camera. Calls on one fit may run in several
+ * threads. */
+typedef struct lensprof_fit lensprof_fit;
+
+/* How well one image is determined. */
 typedef struct lensprof_fit_image_quality {
-    double ev_sigma;               /* standard error of ev, EV; 0 if fixed or not determined */
+    uint32_t struct_size;
+    uint32_t joined; /* 1: consistent pairs connect it to the reference of the result; 0: it was left out */
+    double ev_sigma; /* standard error of ev, EV; 0 if fixed or not determined */
     double white_balance_sigma[3]; /* standard errors of the factors */
     double median_residual;        /* median absolute transfer residual of its pairs, levels of 255; 0 without pairs */
     double known_ev_residual;      /* ev minus known_ev minus the common offset, EV; 0 if unknown */
@@ -192,43 +198,95 @@ typedef struct lensprof_fit_image_quality {
     uint32_t inliers;           /* pairs within 3 sigma of the noise */
     uint32_t component;         /* smallest index of an image connected to it through pairs */
     uint32_t known_ev_left_out; /* 1: known_ev contradicts the pictures and the known_ev of others, and was not used */
-    uint32_t joined;            /* 1: consistent pairs connect it to the reference of the result; 0: it was left out */
-    uint32_t reserved;          /* 0 */
 } lensprof_fit_image_quality;
+
+/* No pairs, left out. */
+LENSPROF_API void lensprof_fit_image_quality_init_sized(lensprof_fit_image_quality *quality, size_t size);
+static inline void lensprof_fit_image_quality_init(lensprof_fit_image_quality *quality) {
+    lensprof_fit_image_quality_init_sized(quality, sizeof *quality);
+}
 
 #define LENSPROF_COVERAGE_BINS 10
 
-/* Result for one lens setting. Members have the same meaning as in lensprof_fit_result. */
-typedef struct lensprof_fit_setting {
+/* The result for one lens setting: of the setting itself, of its camera's fit, and of the whole fit. */
+typedef struct lensprof_fit_result {
     uint32_t struct_size;
-    uint32_t images;  /* images of this setting in the fit; if 0, the other members have no meaning */
-    uint32_t pairs;   /* pairs with an end in these images */
-    uint32_t usable;  /* 1: the response and this vignetting form a profile to store */
-    char reason[256]; /* why not usable; if usable, a warning or empty */
-    lensprof_vignetting vignetting[3];
-    uint32_t radius_ends[LENSPROF_COVERAGE_BINS];
-    uint32_t reason_code;
-    uint32_t reason_values;
-    lensprof_item reason_item;
-    double reason_value[2];
-    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* covariance_size is the result's */
-    double gamma_direction[LENSPROF_COVARIANCE_MAX];
-} lensprof_fit_setting;
 
-/* No falloff, not usable. */
-LENSPROF_API void lensprof_fit_setting_init_sized(lensprof_fit_setting *setting, size_t size);
-static inline void lensprof_fit_setting_init(lensprof_fit_setting *setting) {
-    lensprof_fit_setting_init_sized(setting, sizeof *setting);
+    /* The lens setting. */
+    uint32_t images;        /* of this setting in the fit; if 0, the other members have no meaning */
+    uint32_t setting_pairs; /* pairs with an end in these images */
+    uint32_t usable;        /* 1: response and vignetting are a profile to store; 0: not, as `reason` states */
+    char reason[256];       /* why not usable; if usable, a warning or empty */
+    lensprof_vignetting vignetting[3]; /* per channel; all equal if `vignettings` is 1; they share one centre */
+    uint32_t radius_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in rings of r, each 1/10 half diagonal wide */
+    uint32_t reason_code;                         /* lensprof_reason that `reason` states */
+    uint32_t reason_values;                       /* number of reason_value, 0..2 */
+    lensprof_item reason_item;                    /* the image concerned */
+    double reason_value[2];                       /* numbers, in the units of reason.h */
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* includes the uncertainty of the data, of
+                                                                             gamma and of a prior profile */
+    double gamma_direction[LENSPROF_COVARIANCE_MAX]; /* change of each parameter per unit of ln gamma */
+
+    /* Its camera. */
+    uint32_t camera;
+    uint32_t covariance_size; /* order as in profile.h; fixed parameters have zero rows; 0 = not determined */
+    lensprof_response response;
+    uint32_t vignettings;   /* falloff curves: 1 or 3 */
+    uint32_t pairs;         /* pairs used by the camera's fit */
+    uint32_t evens;         /* 1: the result evens out these pictures, whether or not it is a profile to store: held-out
+                               pairs differ far less than before, and no two images differ more */
+    uint32_t response_from; /* lensprof_fit_response */
+    uint32_t profile_prior; /* lensprof_profile_prior */
+    uint32_t gamma_from;    /* main source of gamma: PRIOR, EXPOSURES, KNOWN, NONE, PROFILE, FALLOFF or CAMERAS */
+    double gamma_sigma;     /* standard error of ln gamma; 0 for KNOWN, LENSPROF_UNKNOWN for NONE */
+    double before_rms;      /* |B1 - B2| of the held-out pairs, levels of 255 */
+    double heldout_rms;     /* transfer residual of held-out pairs, levels of 255 */
+    double heldout_median;  /* median absolute transfer residual of held-out pairs, levels of 255 */
+    double noise_levels;    /* estimated noise of a sample, levels of 255 */
+    double inlier_share;    /* share of pairs within 3 sigma of the noise */
+    double frame_share; /* share of the inliers' residual variance explained by one map over the frame: the falloff is
+                           not radial. 0 for pure noise */
+    double image_share; /* further share explained by a separate map per image, which no camera model explains (local
+                           tone mapping, changing light). 0 for pure noise */
+    double light_spread_ev; /* root mean square difference of the light at the two ends of a pair, EV; the response is
+                               estimated from these differences */
+    uint32_t grey_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in tenths of the grey range, all channels */
+    uint32_t converged;
+    uint32_t iterations;
+    uint32_t model;           /* lensprof_fit_model */
+    uint32_t equal_exposures; /* 1: no exposure of the camera was known and its pictures show no difference, so that
+                                 they are taken as equal */
+    /* How far the pictures alone are from what is known of lenses, in combined standard errors: their falloff, and the
+     * centre of it. That knowledge loses weight where pictures clearly contradict it. The farthest of all settings; 0
+     * if not estimated, or without a prior */
+    double falloff_prior_distance, center_prior_distance;
+    double error_inflation; /* variance of the falloff over that of independent pairs, at least 1: pairs that lie
+                               together have errors in common. Standard errors include it */
+
+    /* The whole fit. */
+    uint32_t reference;  /* image that fixes the gauge: that of the options; if that one was left out, the first of the
+                            group; if its camera's pictures are not evened out, one of the camera with the most images
+                            that are */
+    uint32_t left_out;   /* images not in the largest consistent group, which the fit excludes */
+    uint32_t components; /* connected groups of images; 1 if all are connected */
+    uint32_t setting_count; /* lens settings: 1 + the largest number given */
+    uint32_t camera_count;  /* cameras: 1 + the largest number given */
+    uint32_t reserved;      /* 0 */
+    double seconds;         /* time taken by the solver */
+} lensprof_fit_result;
+
+/* No images, a linear response. */
+LENSPROF_API void lensprof_fit_result_init_sized(lensprof_fit_result *result, size_t size);
+static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
+    lensprof_fit_result_init_sized(result, sizeof *result);
 }
 
-/* Result for one camera, if the fit has several. Members named as in lensprof_fit_result belong to the camera's own
- * fit, on the pairs between its own images. Pairs with other cameras then connect it to the camera of the reference:
- * together with what each fit knows, they determine the exponent gamma with which both cameras see the same light, and
- * the offset of its exposures per channel. */
+/* How one of several cameras joins the others. Each has a fit of its own, on the pairs between its own images. Pairs
+ * with other cameras then connect it to the camera of the reference: together with what each fit knows, they determine
+ * the exponent gamma with which both cameras see the same light, and the offset of its exposures per channel. */
 typedef struct lensprof_fit_camera {
     uint32_t struct_size;
-    uint32_t images; /* images of this camera in its fit. If 0, the other members have no meaning, as no pairs connect
-                        two of its images */
+    uint32_t images; /* images of this camera in its fit; if 0, no pairs connect two of its images */
     uint32_t joined; /* 1: its exposures are relative to the reference; 0: too few pairs with other cameras, or most of
                         these contradict it; the ev of its images is NaN */
     uint32_t shared_pairs;      /* pairs between it and another camera that joined */
@@ -237,153 +295,84 @@ typedef struct lensprof_fit_camera {
     double log_gamma;           /* shift of its own fit along its family, to agree with the others */
     double offset_sigma_ev; /* standard error of the offset of its exposures, mostly due to the light at white, which no
                                pair shows; 0 for the camera of the reference */
-    lensprof_response response;
-    uint32_t vignettings, pairs, evens, gamma_from;
-    uint32_t response_from, profile_prior, covariance_size, converged;
-    double gamma_sigma, before_rms, heldout_rms, heldout_median, noise_levels, inlier_share, frame_share, image_share,
-        light_spread_ev;
-    uint32_t grey_ends[LENSPROF_COVERAGE_BINS];
-    uint32_t reference; /* image whose exposure was fixed in its own fit */
-    uint32_t setting;   /* setting of that image */
-    uint32_t attached;  /* additional images without consistent pairs in its own fit, whose exposures follow from pairs
-                           with other cameras */
-    uint32_t reserved;  /* 0 */
+    uint32_t reference;     /* image whose exposure was fixed in its own fit */
+    uint32_t setting;       /* setting of that image: lensprof_fit_setting_at has the result of the camera's own fit */
+    uint32_t attached;      /* additional images without consistent pairs in its own fit, whose exposures follow from
+                               pairs with other cameras */
+    uint32_t reserved;      /* 0 */
 } lensprof_fit_camera;
-/* No images, a linear response. */
+
+/* No images. */
 LENSPROF_API void lensprof_fit_camera_init_sized(lensprof_fit_camera *camera, size_t size);
 static inline void lensprof_fit_camera_init(lensprof_fit_camera *camera) {
     lensprof_fit_camera_init_sized(camera, sizeof *camera);
 }
 
-/* Result of a fit. With several cameras, the members describe the camera of the reference, except exposures,
- * image_quality, settings, left_out and seconds, which cover all cameras; `cameras` has the others. If the pictures of
- * the reference's camera are not evened out, the reference moves to the camera with the most images that are. With
- * several lens settings, vignetting, radius_ends, usable, reason, covariance and gamma_direction describe the setting
- * of the reference; `settings` has all. */
-typedef struct lensprof_fit_result {
-    uint32_t struct_size;
-    uint32_t usable;             /* 1: a profile to store; 0: not usable, with the reason in words */
-    uint32_t image_quality_size; /* bytes per element of image_quality, set by the _init function */
-    uint32_t reserved;           /* 0 */
-    char reason[256];            /* why not usable; if usable, a warning or empty */
-    lensprof_response response;
-    lensprof_vignetting vignetting[3]; /* per channel; all equal if `vignettings` is 1; they share one centre */
-    uint32_t vignettings;              /* 1 or 3 */
-    uint32_t pairs;                    /* pairs used */
-    uint32_t components;               /* connected groups of images; 1 if all are connected */
-    uint32_t iterations;
-    uint32_t converged;
-    uint32_t gamma_from;   /* main source of gamma: PRIOR, EXPOSURES, KNOWN, NONE, PROFILE or FALLOFF */
-    double gamma_sigma;    /* standard error of ln gamma; 0 for KNOWN, LENSPROF_UNKNOWN for NONE */
-    double before_rms;     /* |B1 - B2| of the held-out pairs, levels of 255 */
-    double heldout_rms;    /* transfer residual of held-out pairs, levels of 255 */
-    double heldout_median; /* median absolute transfer residual of held-out pairs, levels of 255 */
-    double noise_levels;   /* estimated noise of a sample, levels of 255 */
-    double inlier_share;   /* share of pairs within 3 sigma of the noise */
-    double frame_share; /* share of the inliers' residual variance explained by one map over the frame: the falloff is
-                           not radial. 0 for pure noise */
-    double image_share; /* further share explained by a separate map per image, which no camera model explains (local
-                           tone mapping, changing light). 0 for pure noise */
-    double seconds;     /* time taken by the solver */
-    uint32_t radius_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in rings of r, each 1/10 half diagonal wide */
-    uint32_t grey_ends[LENSPROF_COVERAGE_BINS];   /* pair ends in tenths of the grey range, all channels */
-    uint32_t covariance_size; /* order as in profile.h; fixed parameters have zero rows; 0 = not determined */
-    uint32_t profile_prior;   /* lensprof_profile_prior */
-    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* includes the uncertainty of the data, of
-                                                                             gamma and of a prior profile */
-    double gamma_direction[LENSPROF_COVARIANCE_MAX]; /* change of each parameter per unit of ln gamma */
-    lensprof_fit_image_quality *image_quality; /* the caller's array of image_count, set before the call; or NULL */
-    uint32_t reason_code;                      /* lensprof_reason that `reason` states */
-    uint32_t reason_values;                    /* number of reason_value, 0..2 */
-    lensprof_item reason_item;                 /* the image concerned */
-    double reason_value[2];                    /* numbers, in the units of reason.h */
-    uint32_t evens; /* 1: the result evens out these pictures, whether or not it is a profile to store: held-out pairs
-                       differ far less than before, and no two images differ more */
-    uint32_t left_out;  /* number of images not in the largest consistent group, which the fit excludes */
-    uint32_t reference; /* image that fixes the gauge: that of the options or, if that one was left out, the first of
-                           the group */
-    uint32_t response_from; /* lensprof_fit_response */
-    double light_spread_ev; /* root mean square difference of the light at the two ends of a pair, EV; the response is
-                               estimated from these differences */
-    lensprof_fit_setting *settings; /* the caller's array of setting_count initialised elements, indexed by setting, set
-                                       before the call; or NULL */
-    uint32_t setting_count;
-    uint32_t equal_exposures;     /* 1: no exposure of the reference's camera was known and its pictures show no
-                                     difference, so that they are taken as equal */
-    lensprof_fit_camera *cameras; /* the caller's array of camera_count initialised elements, indexed by camera, set
-                                     before the call; or NULL */
-    uint32_t camera_count;
-    uint32_t model; /* lensprof_fit_model */
-    /* How far the pictures alone are from what is known of lenses, in combined standard errors: their falloff, and the
-     * centre of it. That knowledge loses weight where pictures clearly contradict it. The farthest of all settings; 0
-     * if not estimated, or without a prior */
-    double falloff_prior_distance, center_prior_distance;
-    double error_inflation; /* variance of the falloff over that of independent pairs, at least 1: pairs that lie
-                               together have errors in common. Standard errors include it */
-} lensprof_fit_result;
-
-/* An empty result with a linear response. */
-LENSPROF_API void lensprof_fit_result_init_sized(lensprof_fit_result *result, size_t size, size_t image_quality_size);
-static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
-    lensprof_fit_result_init_sized(result, sizeof *result, sizeof(lensprof_fit_image_quality));
-}
+/* Bytes of memory that a fit of these images takes; 0 for NULL or a setting or camera out of range. */
+LENSPROF_API size_t lensprof_fit_bytes(const lensprof_fit_image *images, uint32_t image_count);
 
 /* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives exposure and white balance of
- * every image, relative to the reference. A fit that ran returns OK even if the result is poor: see `usable` and
- * `evens`. If not all images are consistent, the fit uses the largest group that is; the ev of an image left out is NaN
- * (image_quality.joined 0). Pictures of a stationary camera are used all together or not at all.
- * Method RADIANCE joins pairs that share an end (image, position and values) into a track.
- * Errors: ARGUMENT for indices, values outside 0..1, unusable options, a setting beyond `settings` or a camera beyond
- * `cameras`; with DEBEVEC also for an image without known exposure, a free falloff or a fixed response. NOT_FINITE for
- * NaN; NO_SAMPLES without pairs, and with several cameras if none has pairs between two of its own images; NO_UNKNOWNS
- * if nothing is free; UNSUPPORTED for a method missing in this version, and for several settings with DEBEVEC, or of
- * one camera with TRANSFER_FUNCTION; CANCELLED; MEMORY. */
+ * every image, relative to the reference. *fit receives the rest: in memory[size], 8-byte aligned, of at least
+ * lensprof_fit_bytes, which must outlive it; or, if memory is NULL, in memory of its own. Release it with
+ * lensprof_fit_destroy. A fit that ran returns OK even if the result is poor: see `usable` and `evens`. If not all
+ * images are consistent, the fit uses the largest group that is; the ev of an image left out is NaN. Pictures of a
+ * stationary camera are used all together or not at all. Method RADIANCE joins pairs that share an end (image, position
+ * and values) into a track.
+ * Errors: ARGUMENT for indices, values outside 0..1 and unusable options; with DEBEVEC also for an image without known
+ * exposure, a free falloff or a fixed response. CAPACITY for too little or unaligned memory; NOT_FINITE for NaN;
+ * NO_SAMPLES without pairs, and with several cameras if none has pairs between two of its own images; NO_UNKNOWNS if
+ * nothing is free; UNSUPPORTED for a method missing in this version, and for several settings with DEBEVEC, or of one
+ * camera with TRANSFER_FUNCTION; CANCELLED; MEMORY. exposures and *fit are then unchanged. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options,
                                                                     const lensprof_fit_image *images,
                                                                     uint32_t image_count, const lensprof_pair *pairs,
-                                                                    uint32_t pair_count, lensprof_exposure *exposures,
-                                                                    lensprof_fit_result *result, lensprof_error *error);
+                                                                    uint32_t pair_count, void *memory, size_t size,
+                                                                    lensprof_exposure *exposures, lensprof_fit **fit,
+                                                                    lensprof_error *error);
 
-/* Fits the tracks of `observation_count` observations, given in any order, with the method `radiance`. Options,
- * exposures and result are as for lensprof_fit_overlap. Pairs in the result are adjacent unsaturated observations of a
- * track. Errors: as there; also ARGUMENT for a point with one observation, or with two in one image; NO_SAMPLES if no
- * point has two observations that are neither black nor saturated; UNSUPPORTED for another method. */
+/* Fits the tracks of `observation_count` observations, given in any order, with the method `radiance`. The other
+ * arguments are those of lensprof_fit_overlap. Pairs in the result are adjacent unsaturated observations of a track.
+ * Errors: as there; also ARGUMENT for a point with one observation, or with two in one image; NO_SAMPLES if no point
+ * has two observations that are neither black nor saturated; UNSUPPORTED for another method. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_fit_radiance(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
-                      const lensprof_observation *observations, uint32_t observation_count,
-                      lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error);
+                      const lensprof_observation *observations, uint32_t observation_count, void *memory, size_t size,
+                      lensprof_exposure *exposures, lensprof_fit **fit, lensprof_error *error);
 
-/* Copies the result of a fit to an initialised profile, to be stored or applied. Sets response, vignettings and
- * covariance, and clears the gain grid. Sets in the provenance: method (from the options), software, pictures and pairs
+/* Releases a fit, whose memory is the caller's again; NULL is allowed. */
+LENSPROF_API void lensprof_fit_destroy(lensprof_fit *fit);
+
+/* The setting of the image that fixes the gauge. */
+#define LENSPROF_FIT_REFERENCE 0xFFFFFFFFu
+
+/* What was found for image `index`, lens setting `setting` (or LENSPROF_FIT_REFERENCE) and camera `camera`. The structs
+ * must be initialised. A setting or camera that no image has is empty. Errors: ARGUMENT for NULL, a released fit and
+ * numbers out of range; STRUCT_SIZE. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_image_at(const lensprof_fit *fit, uint32_t index,
+                                                                     lensprof_fit_image_quality *quality,
+                                                                     lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_setting_at(const lensprof_fit *fit, uint32_t setting,
+                                                                       lensprof_fit_result *result,
+                                                                       lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_camera_at(const lensprof_fit *fit, uint32_t camera,
+                                                                      lensprof_fit_camera *result,
+                                                                      lensprof_error *error);
+
+/* Makes the profile of a lens setting (or LENSPROF_FIT_REFERENCE), to be stored or applied: response, vignettings,
+ * covariance, no gain grid, in an initialised *profile. Sets in the provenance: method, software, pictures and pairs
  * (including those of a prior profile that the result contains), heldout_rms, inlier_share, not_usable and doubt
  * (empty, or that the pictures do not show the response). Leaves the rest to the caller: key, source, time, prior_id
- * and forced. options: those of the fit, whose profile is read; NULL = unknown. image_count: that of the fit; pictures
- * left out are not counted. Errors: ARGUMENT, also for a result that no fit has filled; STRUCT_SIZE; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_fit(lensprof_profile *profile,
-                                                                         const lensprof_fit_result *result,
-                                                                         const lensprof_fit_options *options,
-                                                                         uint32_t image_count, lensprof_error *error);
+ * and forced. Errors: as lensprof_fit_setting_at, ARGUMENT also for a setting without images; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_profile(const lensprof_fit *fit, uint32_t setting,
+                                                                    lensprof_profile *profile, lensprof_error *error);
 
-/* Replaces the setting of the reference in a result by another setting, so that lensprof_profile_from_fit makes the
- * profile of that setting (pass setting->images as the number of images). Sets vignetting, radius_ends, pairs,
- * covariance, gamma_direction, usable and reason from the setting, and left_out to 0. Errors: ARGUMENT, also for a
- * setting without images; STRUCT_SIZE. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result,
-                                                                                const lensprof_fit_setting *setting,
-                                                                                lensprof_error *error);
-/* The same for a camera: replaces the result of the reference's camera by that of another camera's own fit. The result
- * is not usable until one of its settings is taken. Errors: ARGUMENT, also for a camera without images; STRUCT_SIZE. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result,
-                                                                               const lensprof_fit_camera *camera,
-                                                                               lensprof_error *error);
-
-/* Root mean square of the symmetric transfer residual (levels of 255) and, if not NULL, its median absolute value, for
- * pairs under a given model (vignetting of the three channels, the same for all settings). This is the figure in
- * lensprof_fit_result.heldout_rms. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_transfer_rms(
-    const lensprof_response *response, const lensprof_vignetting vignetting[3], const lensprof_fit_image *images,
-    const lensprof_exposure *exposures, uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
-    uint32_t channels, double *rms, double *median, lensprof_error *error);
+/* Root mean square of the symmetric transfer residual of pairs under a fit (levels of 255) and, if not NULL, its median
+ * absolute value: the figure in lensprof_fit_result.heldout_rms. Errors: those of lensprof_fit_overlap; ARGUMENT also
+ * for a released fit and an image that was left out. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_transfer_rms(const lensprof_fit *fit,
+                                                                         const lensprof_pair *pairs,
+                                                                         uint32_t pair_count, double *rms,
+                                                                         double *median, lensprof_error *error);
 
 #ifdef __cplusplus
 }

@@ -96,9 +96,14 @@ static inline void lensprof_flat_options_init(lensprof_flat_options *options) {
     lensprof_flat_options_init_sized(options, sizeof *options);
 }
 
-/* Quality of one picture. Its size may grow: see lensprof_flat_result.image_quality_size. Shares refer to the card's
- * part of the frame. "Of the shot": the value is that of the whole shot. */
+/* A fit of a card: what the call below found. Calls on one fit may run in several threads. */
+typedef struct lensprof_flat lensprof_flat;
+
+/* Quality of one picture. Shares refer to the card's part of the frame. "Of the shot": the value is that of the whole
+ * shot. */
 typedef struct lensprof_flat_image_quality {
+    uint32_t struct_size;
+    uint32_t cells;                  /* of the shot: number of cells used */
     double white_share, black_share; /* share of cells that contain samples beyond the limits */
     double noise_levels;             /* noise of a view pixel, levels of 255; median over the cells */
     double ev_residual; /* its light minus that of the other pictures of its shot, EV; 0 for a single picture */
@@ -107,9 +112,13 @@ typedef struct lensprof_flat_image_quality {
                            diagonal */
     double radius;      /* of the shot: largest r of a cell used, half diagonals */
     uint32_t card[4];   /* of the shot: left, top, width, height of the card, px of the frame */
-    uint32_t cells;     /* of the shot: number of cells used */
-    uint32_t reserved;  /* 0 */
 } lensprof_flat_image_quality;
+
+/* All zero. */
+LENSPROF_API void lensprof_flat_image_quality_init_sized(lensprof_flat_image_quality *quality, size_t size);
+static inline void lensprof_flat_image_quality_init(lensprof_flat_image_quality *quality) {
+    lensprof_flat_image_quality_init_sized(quality, sizeof *quality);
+}
 
 /* Dust, or a mark on the card: a small dark place that was excluded. Frozen value struct. */
 typedef struct lensprof_flat_spot {
@@ -122,11 +131,11 @@ typedef struct lensprof_flat_spot {
 
 typedef struct lensprof_flat_result {
     uint32_t struct_size;
-    uint32_t usable;             /* 1, or 0 with the reason in words */
-    uint32_t image_quality_size; /* bytes per element of image_quality, set by the _init function */
-    uint32_t covariance_size;    /* order as in profile.h, with the coefficients of the responses in the options; fixed
-                                    parameters have zero rows; 0 = not determined, or more than LENSPROF_COVARIANCE_MAX */
-    char reason[256];            /* why not usable; if usable, a warning or empty */
+    uint32_t usable;          /* 1, or 0 with the reason in words */
+    uint32_t images;          /* pictures given */
+    uint32_t covariance_size; /* order as in profile.h, with the coefficients of the responses in the options; fixed
+                                 parameters have zero rows; 0 = not determined, or more than LENSPROF_COVARIANCE_MAX */
+    char reason[256];         /* why not usable; if usable, a warning or empty */
     lensprof_vignetting vignetting[3]; /* per channel; all equal if `vignettings` is 1; they share one centre */
     uint32_t vignettings;              /* 1 or 3 */
     uint32_t light;                    /* EVEN, PLANE or QUADRATIC */
@@ -151,35 +160,49 @@ typedef struct lensprof_flat_result {
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lensprof_gain_grid gain_grid; /* residual of the polynomial: the attenuation is M times this grid, which is 1 at the
                                      centre of M. 0 x 0 if not requested, or if the pictures do not show it */
-    lensprof_flat_image_quality *image_quality; /* the caller's array of `image_count`, set before the call; or NULL */
-    uint32_t reason_code;                       /* lensprof_reason that `reason` states */
-    uint32_t reason_values;                     /* number of reason_value, 0..2 */
-    lensprof_item reason_item;                  /* the image or shot concerned */
-    double reason_value[2];                     /* numbers, in the units of reason.h */
+    uint32_t reason_code;         /* lensprof_reason that `reason` states */
+    uint32_t reason_values;       /* number of reason_value, 0..2 */
+    lensprof_item reason_item;    /* the image or shot concerned */
+    double reason_value[2];       /* numbers, in the units of reason.h */
 } lensprof_flat_result;
 
 /* An empty result. */
-LENSPROF_API void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size, size_t image_quality_size);
+LENSPROF_API void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size);
 static inline void lensprof_flat_result_init(lensprof_flat_result *result) {
-    lensprof_flat_result_init_sized(result, sizeof *result, sizeof(lensprof_flat_image_quality));
+    lensprof_flat_result_init_sized(result, sizeof *result);
 }
 
-/* Fits the falloff to `image_count` pictures. A fit that ran returns OK even if the result is poor: see `usable`.
- * Errors: ARGUMENT or SIZE for unusable options, different turn_deg within a shot or different frames; NOT_FINITE for
- * NaN in a float view (the text names image and pixel); NO_SAMPLES if no cell lies between black and white; NO_UNKNOWNS
- * if nothing is free; RESPONSE for an invalid response; CANCELLED; MEMORY. */
+/* Bytes of memory that a fit of this number of pictures takes; 0 beyond LENSPROF_FLAT_IMAGES. */
+LENSPROF_API size_t lensprof_flat_bytes(uint32_t image_count);
+
+/* Fits the falloff to `image_count` pictures. *flat receives all that was found: in memory[size], 8-byte aligned, of at
+ * least lensprof_flat_bytes, which must outlive it; or, if memory is NULL, in memory of its own. Release it with
+ * lensprof_flat_destroy. A fit that ran returns OK even if the result is poor: see `usable`.
+ * Errors: ARGUMENT or SIZE for unusable options, different turn_deg within a shot or different frames; CAPACITY for too
+ * little or unaligned memory; NOT_FINITE for NaN in a float view (the text names image and pixel); NO_SAMPLES if no
+ * cell lies between black and white; NO_UNKNOWNS if nothing is free; RESPONSE for an invalid response; CANCELLED;
+ * MEMORY. *flat is then unchanged. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_flat(const lensprof_flat_options *options,
                                                                  const lensprof_flat_image *images,
-                                                                 uint32_t image_count, lensprof_flat_result *result,
-                                                                 lensprof_error *error);
+                                                                 uint32_t image_count, void *memory, size_t size,
+                                                                 lensprof_flat **flat, lensprof_error *error);
 
-/* Copies the result to an initialised profile, as lensprof_profile_from_fit does: the responses of the options (linear
- * by default), vignettings, covariance and gain grid; method "flat"; `pairs` counts cells. options: those of the
- * fit, whose responses are read; NULL = a linear response. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_flat(lensprof_profile *profile,
-                                                                          const lensprof_flat_result *result,
-                                                                          const lensprof_flat_options *options,
-                                                                          uint32_t image_count, lensprof_error *error);
+/* Releases a fit, whose memory is the caller's again; NULL is allowed. */
+LENSPROF_API void lensprof_flat_destroy(lensprof_flat *flat);
+
+/* What was found, and what picture `index` gave to it. The structs must be initialised. Errors: ARGUMENT for NULL, a
+ * released fit and a number out of range; STRUCT_SIZE. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_get(const lensprof_flat *flat,
+                                                                 lensprof_flat_result *result, lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_image_at(const lensprof_flat *flat, uint32_t index,
+                                                                      lensprof_flat_image_quality *quality,
+                                                                      lensprof_error *error);
+
+/* Makes the profile in an initialised *profile, as lensprof_fit_profile does: the responses of the options (linear by
+ * default), vignettings, covariance and gain grid; method "flat"; `pairs` counts cells. Errors: as lensprof_flat_get;
+ * MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_profile(const lensprof_flat *flat,
+                                                                     lensprof_profile *profile, lensprof_error *error);
 
 #ifdef __cplusplus
 }

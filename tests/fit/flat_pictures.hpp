@@ -114,12 +114,18 @@ struct FlatPictures {
                                               lensprof_flat_image_quality *quality = nullptr) const {
         auto result = std::make_unique<lensprof_flat_result>();
         lensprof_flat_result_init(result.get());
-        result->image_quality = quality;
         lensprof_error error;
-        lensprof_status status =
-            lensprof_fit_flat(&o, images.data(), static_cast<uint32_t>(images.size()), result.get(), &error);
+        lensprof_flat *flat = nullptr;
+        const auto count = static_cast<uint32_t>(images.size());
+        const lensprof_status status = lensprof_fit_flat(&o, images.data(), count, nullptr, 0, &flat, &error);
         if (status != LENSPROF_OK) print_error("%s: %s\n", lensprof_status_name(status), error.text);
         assert_int_equal(status, LENSPROF_OK);
+        assert_ok(lensprof_flat_get(flat, result.get(), &error));
+        for (uint32_t i = 0; i < count && quality; i++) {
+            lensprof_flat_image_quality_init(&quality[i]);
+            assert_ok(lensprof_flat_image_at(flat, i, &quality[i], &error));
+        }
+        lensprof_flat_destroy(flat);
         return result;
     }
 };

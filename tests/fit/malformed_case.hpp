@@ -10,14 +10,12 @@ namespace malformed {
 
 const double kNone = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
 
-struct Case {
+struct Case : FitRun {
     uint64_t random;
     Simulation s;
     lensprof_response given;  // target of options.response, if it is set
     lensprof_fit_options options;
-    std::vector<lensprof_exposure> exposures;
-    std::vector<lensprof_fit_image_quality> quality;
-    lensprof_fit_result result;
+    std::vector<uint64_t> memory;  // of the fit; empty: the library's
     lensprof_error error;
     bool null_options = false, null_images = false, null_pairs = false, null_exposures = false, null_result = false,
          null_error = false;
@@ -48,7 +46,6 @@ inline Case::Case(uint32_t number) : random(0x9e3779b97f4a7c15ull * (number + 1)
         options.free = LENSPROF_FREE_RESPONSE;
         for (auto &image : s.fit_images) image.known_ev = 4.0 * uniform(), image.known_ev_sigma = 0.1;
     }
-    lensprof_fit_result_init(&result);
 }
 
 inline int count_down(double, void *user) {
@@ -61,16 +58,21 @@ inline lensprof_status Case::run() {
     exposures.resize(s.fit_images.size());  // exactly as many as announced: a sanitizer detects any more
     if (!exposures.empty())
         std::memset(static_cast<void *>(exposures.data()), 0xFF, exposures.size() * sizeof exposures[0]);
-    quality.assign(s.fit_images.size(), lensprof_fit_image_quality{});
-    for (auto &q : quality) q.ev_sigma = q.median_residual = q.radius = kNone;
-    result.image_quality = chance(0.5) ? quality.data() : nullptr;
-    result.before_rms = result.noise_levels = result.inlier_share = result.seconds = kNone;
-    result.heldout_rms = result.heldout_median = result.vignetting[0].k[0] = result.response.table[7] = kNone;
-    std::strcpy(result.reason, "stale");
-    return lensprof_fit_overlap(null_options ? nullptr : &options, null_images ? nullptr : s.fit_images.data(),
-                                static_cast<uint32_t>(s.fit_images.size()), null_pairs ? nullptr : s.pairs.data(),
-                                static_cast<uint32_t>(s.pairs.size()), null_exposures ? nullptr : exposures.data(),
-                                null_result ? nullptr : &result, null_error ? nullptr : &error);
+    memory.clear();
+    if (chance(0.5))  // exactly as much as needed, with anything in it
+        memory.assign(lensprof_fit_bytes(s.fit_images.data(), static_cast<uint32_t>(s.fit_images.size())) / 8,
+                      0x5A5A5A5A5A5A5A5Aull);
+    lensprof_fit *fit = nullptr;
+    const lensprof_status status = lensprof_fit_overlap(
+        null_options ? nullptr : &options, null_images ? nullptr : s.fit_images.data(),
+        static_cast<uint32_t>(s.fit_images.size()), null_pairs ? nullptr : s.pairs.data(),
+        static_cast<uint32_t>(s.pairs.size()), memory.empty() ? nullptr : memory.data(), 8 * memory.size(),
+        null_exposures ? nullptr : exposures.data(), null_result ? nullptr : &fit, null_error ? nullptr : &error);
+    if (status == LENSPROF_OK)
+        take(fit);
+    else
+        assert_null(fit);
+    return status;
 }
 
 // Numbers at and beyond every limit.

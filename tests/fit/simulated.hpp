@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 extern "C" {
@@ -171,10 +172,49 @@ inline bool is_monotone(const lensprof_response &response) {
 
 // A fit with all its results.
 struct FitRun {
+    std::shared_ptr<lensprof_fit> held;
     std::vector<lensprof_exposure> exposures;
     std::vector<lensprof_fit_image_quality> quality;
-    lensprof_fit_result result;
+    lensprof_fit_result result;  // of the setting of the reference
+    std::vector<lensprof_fit_result> settings;
+    std::vector<lensprof_fit_camera> cameras;
+
+    // The result of a camera's own fit.
+    const lensprof_fit_result &of_camera(size_t camera) const { return settings[cameras[camera].setting]; }
+
+    // Takes a fit, and asks it for everything.
+    void take(lensprof_fit *fit) {
+        held = {fit, lensprof_fit_destroy};
+        lensprof_fit_result_init(&result);
+        assert_ok(lensprof_fit_setting_at(fit, LENSPROF_FIT_REFERENCE, &result, nullptr));
+        settings.assign(result.setting_count, result);
+        for (uint32_t s = 0; s < settings.size(); s++)
+            assert_ok(lensprof_fit_setting_at(fit, s, &settings[s], nullptr));
+        cameras.resize(result.camera_count);
+        for (uint32_t k = 0; k < cameras.size(); k++) {
+            lensprof_fit_camera_init(&cameras[k]);
+            assert_ok(lensprof_fit_camera_at(fit, k, &cameras[k], nullptr));
+        }
+        quality.resize(exposures.size());
+        for (uint32_t i = 0; i < quality.size(); i++) {
+            lensprof_fit_image_quality_init(&quality[i]);
+            assert_ok(lensprof_fit_image_at(fit, i, &quality[i], nullptr));
+        }
+    }
 };
+
+// A fit of pairs; everything is taken if it returns OK.
+inline lensprof_status fit_into(FitRun &run, const lensprof_fit_options &options,
+                                const std::vector<lensprof_fit_image> &images, const std::vector<lensprof_pair> &pairs,
+                                lensprof_error *error = nullptr) {
+    run.exposures.resize(images.size());
+    lensprof_fit *fit = nullptr;
+    const lensprof_status status =
+        lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
+                             static_cast<uint32_t>(pairs.size()), nullptr, 0, run.exposures.data(), &fit, error);
+    if (status == LENSPROF_OK) run.take(fit);
+    return status;
+}
 
 inline lensprof_fit_options default_fit() {
     lensprof_fit_options options;
@@ -184,14 +224,8 @@ inline lensprof_fit_options default_fit() {
 
 inline FitRun run_fit(const Simulation &s, const lensprof_fit_options &options = default_fit()) {
     FitRun run;
-    run.exposures.resize(s.images);
-    run.quality.resize(s.images);
-    lensprof_fit_result_init(&run.result);
-    run.result.image_quality = run.quality.data();
     lensprof_error error;
-    lensprof_status status =
-        lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                             static_cast<uint32_t>(s.pairs.size()), run.exposures.data(), &run.result, &error);
+    const lensprof_status status = fit_into(run, options, s.fit_images, s.pairs, &error);
     if (status != LENSPROF_OK) print_error("%s\n", error.text);
     assert_ok(status);
     return run;

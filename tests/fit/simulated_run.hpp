@@ -4,28 +4,13 @@
 #include "simulated_tracks.hpp"
 
 struct Run : FitRun {
-    std::vector<lensprof_fit_setting> settings;
-    std::vector<lensprof_fit_camera> cameras;
-
-    // Room for `count` settings and cameras.
-    explicit Run(const Simulation &s, size_t count = 2) : settings(count), cameras(count) {
-        exposures.resize(s.images);
-        quality.resize(s.images);
-        lensprof_fit_result_init(&result);
-        result.image_quality = quality.data();
-        for (auto &setting : settings) lensprof_fit_setting_init(&setting);
-        for (auto &camera : cameras) lensprof_fit_camera_init(&camera);
-        result.settings = settings.data(), result.cameras = cameras.data();
-        result.setting_count = result.camera_count = static_cast<uint32_t>(count);
-    }
-
+    Run() = default;
+    explicit Run(const Simulation &) {}
     lensprof_status fit(const Simulation &s, const lensprof_fit_options &options, lensprof_error *error = nullptr) {
-        return lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                    static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, error);
+        return fit_into(*this, options, s.fit_images, s.pairs, error);
     }
     lensprof_status fit(const TrackSimulation &s, const lensprof_fit_options &options) {
-        return lensprof_fit_radiance(&options, s.fit_images.data(), s.images, s.observations.data(),
-                                     static_cast<uint32_t>(s.observations.size()), exposures.data(), &result, nullptr);
+        return fit_into(*this, options, s.fit_images, s.observations, nullptr);
     }
 };
 

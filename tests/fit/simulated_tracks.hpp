@@ -79,17 +79,24 @@ inline lensprof_fit_options radiance_fit() {
     return options;
 }
 
+// A fit of tracks; everything is taken if it returns OK.
+inline lensprof_status fit_into(FitRun &run, const lensprof_fit_options &options,
+                                const std::vector<lensprof_fit_image> &images,
+                                const std::vector<lensprof_observation> &observations, lensprof_error *error) {
+    run.exposures.resize(images.size());
+    lensprof_fit *fit = nullptr;
+    const lensprof_status status = lensprof_fit_radiance(
+        &options, images.data(), static_cast<uint32_t>(images.size()), observations.data(),
+        static_cast<uint32_t>(observations.size()), nullptr, 0, run.exposures.data(), &fit, error);
+    if (status == LENSPROF_OK) run.take(fit);
+    return status;
+}
+
 inline FitRun run_radiance(const TrackSimulation &s, const std::vector<lensprof_observation> &observations,
                            const lensprof_fit_options &options = radiance_fit()) {
     FitRun run;
-    run.exposures.resize(s.images);
-    run.quality.resize(s.images);
-    lensprof_fit_result_init(&run.result);
-    run.result.image_quality = run.quality.data();
     lensprof_error error;
-    lensprof_status status =
-        lensprof_fit_radiance(&options, s.fit_images.data(), s.images, observations.data(),
-                              static_cast<uint32_t>(observations.size()), run.exposures.data(), &run.result, &error);
+    const lensprof_status status = fit_into(run, options, s.fit_images, observations, &error);
     if (status != LENSPROF_OK) print_error("%s\n", error.text);
     assert_ok(status);
     return run;

@@ -38,11 +38,11 @@ double grey_error(const Simulation &s, const Run &run, uint32_t image) {
     for (int k = 3; k <= 100; k++)
         for (uint32_t c = 0; c < s.channels; c++) {
             const double light = k / 100.0, seen = lensprof_response_eval(&s.of_camera[0], light, nullptr);
-            const double found = lensprof_response_invert(&run.cameras[0].response, seen, nullptr)
+            const double found = lensprof_response_invert(&run.of_camera(0).response, seen, nullptr)
                                  * lensprof_exposure_factor(&run.exposures[image], c);
             const double truth = light * lensprof_exposure_factor(&s.exposures[image], c);
             if (truth > 0.9) continue;  // too close to white, which pairs do not cover
-            worst = std::max(worst, std::abs(lensprof_response_eval(&run.cameras[camera].response, found, nullptr)
+            worst = std::max(worst, std::abs(lensprof_response_eval(&run.of_camera(camera).response, found, nullptr)
                                              - lensprof_response_eval(&s.of_camera[camera], truth, nullptr)));
         }
     return worst;
@@ -92,7 +92,7 @@ void check_found(const Simulation &s, const Run &run) {
         assert_int_equal(camera.reference % 2, n);
     }
     assert_true(run.cameras[0].offset_sigma_ev == 0.0 && run.cameras[1].offset_sigma_ev > 0.0);
-    assert_memory_equal(&run.result.response, &run.cameras[0].response, sizeof run.result.response);
+    assert_memory_equal(&run.result.response, &run.of_camera(0).response, sizeof run.result.response);
 }
 
 void test_each_response_is_found(void **) {
@@ -136,10 +136,10 @@ void test_knowledge_of_one_serves_the_other(void **) {
     Run run(s);
     assert_ok(run.fit(s, default_fit()));
     assert_close(gamma_of(s, run, 1), 1.0, 0.03);
-    assert_true(run.cameras[1].gamma_sigma < 0.03);
-    assert_int_equal(run.cameras[0].gamma_from, LENSPROF_GAMMA_EXPOSURES);
-    assert_int_equal(run.cameras[1].gamma_from, LENSPROF_GAMMA_CAMERAS);
-    assert_true(without.cameras[1].gamma_sigma > 2.0 * run.cameras[1].gamma_sigma);
+    assert_true(run.of_camera(1).gamma_sigma < 0.03);
+    assert_int_equal(run.of_camera(0).gamma_from, LENSPROF_GAMMA_EXPOSURES);
+    assert_int_equal(run.of_camera(1).gamma_from, LENSPROF_GAMMA_CAMERAS);
+    assert_true(without.of_camera(1).gamma_sigma > 2.0 * run.of_camera(1).gamma_sigma);
 }
 
 // Errors are consistent with their standard errors if the exposures of one camera are known. Checked are the other
@@ -162,7 +162,7 @@ void test_stated_errors_hold(void **) {
             worst = std::max(worst, std::abs(error(i)));
             if (i > 1) within += std::pow(error(i) - error(1), 2) / (own(i) + own(1)), inner++;
         }
-        of_gamma += std::pow((gamma_of(s, run, 1) - 1.0) / run.cameras[1].gamma_sigma, 2);
+        of_gamma += std::pow((gamma_of(s, run, 1) - 1.0) / run.of_camera(1).gamma_sigma, 2);
     }
     const double within_rms = std::sqrt(within / inner), between_rms = std::sqrt(between / outer),
                  gamma_rms = std::sqrt(of_gamma / runs);
@@ -177,7 +177,7 @@ void test_priors_err_together(void **) {
     const auto s = alternating<Simulation>();
     Run run(s);
     assert_ok(run.fit(s, default_fit()));
-    for (const auto &camera : run.cameras) {
+    for (const auto &camera : run.settings) {
         assert_int_equal(camera.gamma_from, LENSPROF_GAMMA_PRIOR);
         assert_true(camera.gamma_sigma > 0.2);
     }
@@ -185,7 +185,7 @@ void test_priors_err_together(void **) {
     options.prior_weight = 0.0;
     Run open(s);
     assert_ok(open.fit(s, options));
-    for (const auto &camera : open.cameras) {
+    for (const auto &camera : open.settings) {
         assert_int_equal(camera.gamma_from, LENSPROF_GAMMA_NONE);
         assert_true(camera.gamma_sigma == LENSPROF_UNKNOWN);
     }
@@ -195,7 +195,7 @@ void test_priors_err_together(void **) {
     for (size_t i = 1; i < s.images; i += 2) held.fit_images[i].exposure = s.exposures[i], held.fit_images[i].free = 0;
     Run known(held);
     assert_ok(known.fit(held, options));
-    assert_int_equal(known.cameras[0].gamma_from, LENSPROF_GAMMA_CAMERAS);
+    assert_int_equal(known.of_camera(0).gamma_from, LENSPROF_GAMMA_CAMERAS);
     assert_close(gamma_of(held, known, 0), 1.0, 0.03);
 }
 
@@ -204,13 +204,13 @@ void test_numbers_are_names(void **) {
     const auto s = alternating<Simulation>();
     Simulation renamed = s;
     for (auto &image : renamed.fit_images) image.setting = image.setting ? 0 : 63, image.camera = image.camera ? 7 : 9;
-    Run run(s), other(s, 64);
+    Run run(s), other(s);
     assert_ok(run.fit(s, default_fit()));
     assert_ok(other.fit(renamed, default_fit()));
     const FitRun unasked = run_fit(s);
     assert_memory_equal(run.exposures.data(), other.exposures.data(), s.images * sizeof run.exposures[0]);
     assert_memory_equal(run.exposures.data(), unasked.exposures.data(), s.images * sizeof run.exposures[0]);
-    assert_memory_equal(&run.cameras[1].response, &other.cameras[7].response, sizeof run.result.response);
+    assert_memory_equal(&run.of_camera(1).response, &other.of_camera(7).response, sizeof run.result.response);
     assert_int_equal(other.cameras[5].images, 0);
 }
 
@@ -356,7 +356,7 @@ void test_any_reference(void **) {
     assert_ok(other.fit(s, options));
     assert_int_equal(other.result.reference, 3);
     assert_true(other.exposures[3].ev == 0.0);
-    assert_memory_equal(&other.result.response, &other.cameras[1].response, sizeof other.result.response);
+    assert_memory_equal(&other.result.response, &other.of_camera(1).response, sizeof other.result.response);
     for (size_t i = 0; i < s.images; i++)
         assert_close(other.exposures[i].ev - other.exposures[0].ev, first.exposures[i].ev, 0.01);
 }
@@ -437,23 +437,13 @@ void test_profile_of_a_camera(void **) {
     assert_ok(run.fit(s, default_fit()));
     lensprof_profile profile;
     lensprof_profile_init(&profile);
-    lensprof_fit_result own = run.result;
-    lensprof_error error;
-    assert_ok(lensprof_fit_result_take_camera(&own, &run.cameras[1], &error));
-    assert_ok(lensprof_fit_result_take_setting(&own, &run.settings[1], &error));
-    assert_ok(lensprof_profile_from_fit(&profile, &own, nullptr, run.settings[1].images, &error));
+    assert_ok(lensprof_fit_profile(run.held.get(), 1, &profile, nullptr));
     assert_ok(lensprof_profile_validate(&profile));
     assert_memory_equal(profile.vignetting, run.settings[1].vignetting, sizeof profile.vignetting);
-    assert_memory_equal(profile.response[0].table, run.cameras[1].response.table, sizeof profile.response[0].table);
-    assert_true(profile.provenance.heldout_rms == run.cameras[1].heldout_rms);
+    assert_memory_equal(profile.response[0].table, run.of_camera(1).response.table, sizeof profile.response[0].table);
+    assert_true(profile.provenance.heldout_rms == run.of_camera(1).heldout_rms);
     assert_int_equal(profile.provenance.images, 5);
     assert_true(profile.covariance_size > 0);
-    lensprof_fit_camera none;
-    lensprof_fit_camera_init(&none);
-    assert_int_equal(lensprof_fit_result_take_camera(&own, &none, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_result_take_camera(&own, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
-    none.struct_size = 8;
-    assert_int_equal(lensprof_fit_result_take_camera(&own, &none, &error), LENSPROF_ERROR_STRUCT_SIZE);
 }
 
 void test_bad_input(void **) {
@@ -463,12 +453,6 @@ void test_bad_input(void **) {
     lensprof_fit_options options = default_fit();
     options.method = LENSPROF_METHOD_DEBEVEC;
     assert_int_equal(run.fit(s, options, &error), LENSPROF_ERROR_UNSUPPORTED);
-    run.result.camera_count = 1;
-    assert_int_equal(run.fit(s, default_fit(), &error), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(error.item.index, 1);
-    run.result.camera_count = 2;
-    run.cameras[1].struct_size = 0;
-    assert_int_equal(run.fit(s, default_fit(), &error), LENSPROF_ERROR_STRUCT_SIZE);
     auto mixed = s;
     mixed.fit_images[3].setting = 0;  // belongs to camera 1
     assert_int_equal(run_fit(s).result.usable, 1);
@@ -480,7 +464,7 @@ void test_bad_input(void **) {
     assert_int_equal(other.fit(beyond, default_fit(), &error), LENSPROF_ERROR_ARGUMENT);
     auto alone = s;
     for (uint32_t i = 0; i < s.images; i++) alone.fit_images[i].camera = alone.fit_images[i].setting = i;
-    Run each(s, s.images);
+    Run each(s);
     assert_int_equal(each.fit(alone, default_fit(), &error), LENSPROF_ERROR_NO_SAMPLES);
 }
 

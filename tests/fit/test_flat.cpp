@@ -214,9 +214,9 @@ static void what_is_wrong_is_said(void **) {
     none.shoot(0);
     lensprof_flat_options o = none.options();
     o.find_card = 1;
-    auto r = std::make_unique<lensprof_flat_result>();
-    lensprof_flat_result_init(r.get());
-    assert_int_equal(lensprof_fit_flat(&o, none.images.data(), 1, r.get(), nullptr), LENSPROF_ERROR_NO_SAMPLES);
+    lensprof_flat *flat = nullptr;
+    assert_int_equal(lensprof_fit_flat(&o, none.images.data(), 1, nullptr, 0, &flat, nullptr),
+                     LENSPROF_ERROR_NO_SAMPLES);
 }
 
 // A response from (0, 0) through two points to (1, 1).

@@ -5,6 +5,9 @@ struct Input {
     FlatPictures pictures;
     lensprof_flat_options options;
     std::unique_ptr<lensprof_flat_result> result = std::make_unique<lensprof_flat_result>();
+    lensprof_flat *flat = nullptr;
+    void *memory = nullptr;
+    size_t size = 0;
     lensprof_error error;
 
     Input() {
@@ -14,20 +17,26 @@ struct Input {
         options = pictures.options();
         lensprof_flat_result_init(result.get());
     }
+    Input(const Input &) = delete;
+    ~Input() { lensprof_flat_destroy(flat); }
 
     lensprof_status run() {
-        return lensprof_fit_flat(&options, pictures.images.data(), static_cast<uint32_t>(pictures.images.size()),
-                                 result.get(), &error);
+        const auto count = static_cast<uint32_t>(pictures.images.size());
+        lensprof_flat_destroy(flat);
+        flat = nullptr;
+        const lensprof_status status =
+            lensprof_fit_flat(&options, pictures.images.data(), count, memory, size, &flat, &error);
+        if (status == LENSPROF_OK) assert_ok(lensprof_flat_get(flat, result.get(), nullptr));
+        return status;
     }
 
     // Checks that the call is refused with a sentence and the result is unchanged.
     void refused(lensprof_status status) {
-        auto before = std::make_unique<lensprof_flat_result>(*result);
         lensprof_status got = run();
         if (got != status) print_error("%s: %s\n", lensprof_status_name(got), error.text);
         assert_int_equal(got, status);
         assert_true(strlen(error.text) > 10);
-        assert_memory_equal(before.get(), result.get(), sizeof *result);
+        assert_null(flat);
     }
 };
 
@@ -41,16 +50,20 @@ static void good_input_is_taken(void **) {
 static void null_pointers_and_sizes(void **) {
     Input in;
     auto *images = in.pictures.images.data();
-    assert_int_equal(lensprof_fit_flat(nullptr, images, 1, in.result.get(), nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_flat(&in.options, nullptr, 1, in.result.get(), nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_flat(&in.options, images, 1, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_flat(&in.options, images, 0, in.result.get(), nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_flat(&in.options, images, 129, in.result.get(), nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_flat(nullptr, images, 1, nullptr, 0, &in.flat, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_flat(&in.options, nullptr, 1, nullptr, 0, &in.flat, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_flat(&in.options, images, 1, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_flat(&in.options, images, 0, nullptr, 0, &in.flat, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_flat(&in.options, images, 129, nullptr, 0, &in.flat, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     in.options.struct_size = 8;
     in.refused(LENSPROF_ERROR_STRUCT_SIZE);
     Input other;
-    other.result->struct_size++;
-    other.refused(LENSPROF_ERROR_STRUCT_SIZE);
+    other.memory = &other, other.size = lensprof_flat_bytes(2) - 1;
+    other.refused(LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_flat_bytes(0), 0);
+    assert_int_equal(lensprof_flat_bytes(LENSPROF_FLAT_IMAGES + 1), 0);
 }
 
 struct Spoil {
@@ -152,11 +165,12 @@ static void tiny_and_odd_pictures_are_survived(void **) {
             p.shoot(0);
             lensprof_flat_options o = p.options();
             o.grid = LENSPROF_FLAT_GRID_ALWAYS;
-            auto r = std::make_unique<lensprof_flat_result>();
-            lensprof_flat_result_init(r.get());
-            lensprof_status status = lensprof_fit_flat(&o, p.images.data(), 1, r.get(), nullptr);
+            lensprof_flat *flat = nullptr;
+            const lensprof_status status = lensprof_fit_flat(&o, p.images.data(), 1, nullptr, 0, &flat, nullptr);
             assert_true(status == LENSPROF_OK || status == LENSPROF_ERROR_NO_SAMPLES);
             if (status != LENSPROF_OK) continue;
+            lensprof_flat_destroy(flat);
+            const auto r = p.fit(o);
             assert_int_equal(r->usable, 0);
             assert_true(strlen(r->reason) > 10);
             for (const auto &v : r->vignetting) assert_ok(lensprof_vignetting_validate(&v));

@@ -402,12 +402,7 @@ void test_linear_cameras_hold_the_response(void **) {
     assert_int_equal(run.result.response.kind, LENSPROF_RESPONSE_LINEAR);
     assert_close(s.gamma(run.exposures), 1.0, 0.005);
     options.camera_kind = LENSPROF_CAMERA_LINEAR + 1;
-    lensprof_fit_result result;
-    lensprof_fit_result_init(&result);
-    lensprof_error error;
-    assert_int_equal(lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(), 1000,
-                                          run.exposures.data(), &result, &error),
-                     LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(fit_into(run, options, s.fit_images, s.pairs), LENSPROF_ERROR_ARGUMENT);
 }
 
 // Exposures known much better than a camera can set them cause no numerical problem.

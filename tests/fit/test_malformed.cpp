@@ -38,7 +38,7 @@ std::string fault_of_result(const Case &c) {
     if ((r.vignettings != 1 && r.vignettings != 3) || r.gamma_from < LENSPROF_GAMMA_PRIOR
         || r.gamma_from > LENSPROF_GAMMA_NONE || !(r.gamma_sigma >= -1.0 && r.gamma_sigma < 1e9))
         return "falloff curves or gamma";
-    for (const auto &q : r.image_quality ? c.quality : std::vector<lensprof_fit_image_quality>())
+    for (const auto &q : c.quality)
         for (double v : {q.ev_sigma, q.white_balance_sigma[0], q.white_balance_sigma[2], q.median_residual,
                          q.known_ev_residual, q.radius, q.grey_low, q.grey_high})
             if (!std::isfinite(v)) return "the quality of an image is not finite";
@@ -48,7 +48,7 @@ std::string fault_of_result(const Case &c) {
         left_out += is_left_out;
         if (!is_left_out && lensprof_exposure_validate(&c.exposures[i]) != LENSPROF_OK)
             return "exposure " + std::to_string(i) + " is out of range: " + text_of(c.exposures[i]);
-        if (r.image_quality && c.quality[i].joined == is_left_out) return "joined contradicts the exposure";
+        if (c.quality[i].joined == is_left_out) return "joined contradicts the exposure";
     }
     if (left_out != r.left_out || r.reference >= c.exposures.size() || std::isnan(c.exposures[r.reference].ev))
         return "images left out, or the reference";
@@ -101,7 +101,6 @@ double seconds_now() {
 std::string fault_of_case(uint32_t number, lensprof_status &status, Case &c, double &seconds) {
     g_case = number;
     mutate(c);
-    lensprof_fit_result before;
     c.error.text[0] = 0;
     double began = seconds_now();
     status = c.run();  // fills the outputs with impossible values
@@ -112,12 +111,7 @@ std::string fault_of_case(uint32_t number, lensprof_status &status, Case &c, dou
         for (const auto &e : c.exposures)
             for (size_t b = 0; b < sizeof e; b++)
                 if (reinterpret_cast<const unsigned char *>(&e)[b] != 0xFF) return "an error, but exposures changed";
-        lensprof_fit_result_init(&before);
-        bool same = std::strcmp(c.result.reason, "stale") == 0 && std::isnan(c.result.seconds)
-                    && std::isnan(c.result.heldout_rms) && std::isnan(c.result.response.table[7])
-                    && c.result.usable == before.usable && c.result.pairs == before.pairs
-                    && std::memcmp(c.result.covariance, before.covariance, sizeof before.covariance) == 0;
-        return same ? "" : "an error, but the result changed";
+        return c.held ? "an error, but a fit" : "";
     }
     std::string fault = fault_of_result(c);
     return fault.empty() ? fault_of_gauge(c) : fault;
@@ -150,9 +144,10 @@ void test_malformed_problems_repeat(void **) {
     for (uint32_t number = 0; number < kCases; number += 97) {
         Case a(number), b(number);
         mutate(a), mutate(b);
-        assert_int_equal(a.run(), b.run());
+        const lensprof_status status = a.run();
+        assert_int_equal(status, b.run());
+        if (status != LENSPROF_OK) continue;
         a.result.seconds = b.result.seconds = 0.0;
-        a.result.image_quality = b.result.image_quality = nullptr;
         assert_memory_equal(&a.result, &b.result, sizeof a.result);
         assert_memory_equal(a.exposures.data(), b.exposures.data(), a.exposures.size() * sizeof a.exposures[0]);
     }

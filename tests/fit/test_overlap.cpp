@@ -3,20 +3,14 @@
 
 namespace {
 
-struct Run {
-    std::vector<lensprof_exposure> exposures;
-    lensprof_fit_result result;
+struct Run : FitRun {
     double gamma;
 };
 
 Run fit(const Simulation &s, const lensprof_fit_options &options) {
     Run run;
-    run.exposures.resize(s.images);
-    lensprof_fit_result_init(&run.result);
     lensprof_error error;
-    lensprof_status status =
-        lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                             static_cast<uint32_t>(s.pairs.size()), run.exposures.data(), &run.result, &error);
+    const lensprof_status status = fit_into(run, options, s.fit_images, s.pairs, &error);
     if (status != LENSPROF_OK) print_error("%s\n", error.text);
     assert_ok(status);
     assert_true(is_monotone(run.result.response));
@@ -55,9 +49,7 @@ double clean_rms(const Simulation &s, const Run &run) {
     clean.exposures.clear(), clean.fit_images.clear(), clean.pairs.clear();
     clean.make(1000, 0.0, 0.0, 1.0, 42);
     double rms = 0;
-    assert_ok(lensprof_transfer_rms(&run.result.response, run.result.vignetting, s.fit_images.data(),
-                                    run.exposures.data(), s.images, clean.pairs.data(), 1000, s.channels, &rms, nullptr,
-                                    nullptr));
+    assert_ok(lensprof_fit_transfer_rms(run.held.get(), clean.pairs.data(), 1000, &rms, nullptr, nullptr));
     return rms;
 }
 

@@ -290,13 +290,6 @@ void test_images_with_few_pairs_are_left_out_together(void **) {
     assert_int_equal(run.result.usable, 1);
     assert_int_equal(run.result.left_out, 7);
     for (uint32_t i = 0; i < s.images; i++) assert_int_equal(std::isnan(run.exposures[i].ev), is_weak(i));
-    std::vector<lensprof_exposure> exposures(s.images);  // the same without a place for the images' quality
-    lensprof_fit_result result;
-    lensprof_fit_result_init(&result);
-    assert_ok(lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                   static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, nullptr));
-    assert_int_equal(result.left_out, 7);
-    assert_close(exposures[1].ev, run.exposures[1].ev, 0.0);
 }
 
 // Two images, each connected to the other alone, are unconnected; with an image that disagrees, the reason is about

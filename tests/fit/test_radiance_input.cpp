@@ -5,12 +5,12 @@
 
 namespace {
 
-struct Call {
+struct Call : FitRun {
     TrackSimulation s;
     lensprof_fit_options options = radiance_fit();
     std::vector<lensprof_observation> tracks;
-    std::vector<lensprof_exposure> exposures;
-    lensprof_fit_result result;
+    void *memory = nullptr;
+    size_t size = 0;
     lensprof_error error;
 
     Call() {
@@ -20,20 +20,19 @@ struct Call {
         tracks = s.observations;
         exposures.resize(s.images);
         std::memset(exposures.data(), 0x5A, exposures.size() * sizeof exposures[0]);
-        lensprof_fit_result_init(&result);
     }
     lensprof_status run() {
         auto exposures_before = exposures;
-        lensprof_fit_result before;
-        std::memcpy(&before, &result, sizeof result);
+        lensprof_fit *fit = nullptr;
         lensprof_status status = lensprof_fit_radiance(
             &options, s.fit_images.data(), static_cast<uint32_t>(s.fit_images.size()), tracks.data(),
-            static_cast<uint32_t>(tracks.size()), exposures.data(), &result, &error);
+            static_cast<uint32_t>(tracks.size()), memory, size, exposures.data(), &fit, &error);
         if (status != LENSPROF_OK) {
             assert_memory_equal(exposures.data(), exposures_before.data(), exposures.size() * sizeof exposures[0]);
-            assert_memory_equal(&result, &before, sizeof result);
+            assert_null(fit);
             assert_true(error.text[0] != 0);
         }
+        if (status == LENSPROF_OK) take(fit);
         return status;
     }
 };
@@ -47,7 +46,7 @@ struct Call {
 
 void test_refuses(void **) {
     REFUSED(call.options.struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
-    REFUSED(call.result.struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
+    REFUSED((call.memory = &call, call.size = 8), LENSPROF_ERROR_CAPACITY);
     REFUSED(call.options.method = LENSPROF_METHOD_TRANSFER, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(call.options.method = LENSPROF_METHOD_TRANSFER_FUNCTION, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(call.options.method = LENSPROF_METHOD_DEBEVEC, LENSPROF_ERROR_UNSUPPORTED);
@@ -102,20 +101,21 @@ void test_names_what_is_wrong(void **) {
 void test_null(void **) {
     Call call;
     uint32_t count = static_cast<uint32_t>(call.tracks.size());
-    assert_int_equal(lensprof_fit_radiance(nullptr, call.s.fit_images.data(), 6, call.tracks.data(), count,
-                                           call.exposures.data(), &call.result, nullptr),
+    lensprof_fit *fit = nullptr;
+    assert_int_equal(lensprof_fit_radiance(nullptr, call.s.fit_images.data(), 6, call.tracks.data(), count, nullptr, 0,
+                                           call.exposures.data(), &fit, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_radiance(&call.options, nullptr, 6, call.tracks.data(), count, call.exposures.data(),
-                                           &call.result, nullptr),
+    assert_int_equal(lensprof_fit_radiance(&call.options, nullptr, 6, call.tracks.data(), count, nullptr, 0,
+                                           call.exposures.data(), &fit, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, nullptr, count,
-                                           call.exposures.data(), &call.result, nullptr),
-                     LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, call.tracks.data(), count,
-                                           nullptr, &call.result, nullptr),
+    assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, nullptr, count, nullptr, 0,
+                                           call.exposures.data(), &fit, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, call.tracks.data(), count,
-                                           call.exposures.data(), nullptr, nullptr),
+                                           nullptr, 0, nullptr, &fit, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, call.tracks.data(), count,
+                                           nullptr, 0, call.exposures.data(), nullptr, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
 }
 

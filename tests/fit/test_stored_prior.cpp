@@ -37,11 +37,11 @@ lensprof_status fit(const Simulation &s, const lensprof_profile *profile, Found 
     lensprof_fit_options_init(&options);
     options.profile = profile;
     options.method = method;
-    lensprof_fit_result_init(found.result.get());
-    found.exposures.resize(s.images);
-    return lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                static_cast<uint32_t>(s.pairs.size()), found.exposures.data(), found.result.get(),
-                                error);
+    FitRun run;
+    const lensprof_status status = fit_into(run, options, s.fit_images, s.pairs, error);
+    if (status != LENSPROF_OK) return status;
+    *found.result = run.result, found.exposures = run.exposures;
+    return status;
 }
 
 // The profile that the command would store.
@@ -257,9 +257,9 @@ void test_three_curves_for_one_and_one_for_three(void **) {
             lensprof_fit_options_init(&options);
             options.profile = stored.get();
             options.vignettings = asked;
-            lensprof_fit_result_init(found.result.get());
-            assert_ok(lensprof_fit_overlap(&options, s.fit_images.data(), 2, s.pairs.data(), 2000,
-                                           found.exposures.data(), found.result.get(), nullptr));
+            Simulation two = s;
+            two.fit_images.resize(2), two.pairs.resize(2000), two.images = 2;
+            *found.result = run_fit(two, options).result;
             assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_USED);
             assert_int_equal(found.result->vignettings, asked);
             assert_true(errors_of(s, *found.result).falloff < 0.06);

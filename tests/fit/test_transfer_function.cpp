@@ -40,9 +40,7 @@ double clean_rms(const Simulation &s, const FitRun &run) {
     clean.fit_images.clear(), clean.pairs.clear();
     clean.make(1000, 0.0, 0.0, 1.0, 43);
     double rms = 0;
-    assert_ok(lensprof_transfer_rms(&run.result.response, run.result.vignetting, s.fit_images.data(),
-                                    run.exposures.data(), s.images, clean.pairs.data(), 1000, s.channels, &rms, nullptr,
-                                    nullptr));
+    assert_ok(lensprof_fit_transfer_rms(run.held.get(), clean.pairs.data(), 1000, &rms, nullptr, nullptr));
     return rms;
 }
 
@@ -182,14 +180,10 @@ void test_cancelling(void **) {
         lensprof_fit_options options = by_transfer_functions(true);
         options.progress = cancel_after;
         options.progress_user = &calls;
-        std::vector<lensprof_exposure> exposures(s.images);
-        lensprof_fit_result result;
-        lensprof_fit_result_init(&result);
+        FitRun run;
         lensprof_error error;
-        assert_int_equal(lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                              static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, &error),
-                         LENSPROF_ERROR_CANCELLED);
-        assert_int_equal(result.usable, 0);
+        assert_int_equal(fit_into(run, options, s.fit_images, s.pairs, &error), LENSPROF_ERROR_CANCELLED);
+        assert_true(!run.held);
         assert_non_null(std::strstr(error.text, "cancelled"));
     }
 }
@@ -202,7 +196,6 @@ void test_result_does_not_depend_on_threads(void **) {
     options.threads = 5;
     FitRun five = run_fit(s, options);
     one.result.seconds = five.result.seconds = 0.0;
-    one.result.image_quality = five.result.image_quality = nullptr;
     assert_memory_equal(&one.result, &five.result, sizeof one.result);
     assert_memory_equal(one.exposures.data(), five.exposures.data(), one.exposures.size() * sizeof one.exposures[0]);
     assert_memory_equal(one.quality.data(), five.quality.data(), one.quality.size() * sizeof one.quality[0]);

@@ -74,7 +74,7 @@ void test_the_profile_says_that_it_is_not_shown(void **) {
         assert_int_equal(run.result.response_from, LENSPROF_FIT_RESPONSE_KIND);
         auto profile = std::make_unique<lensprof_profile>();
         lensprof_profile_init(profile.get());
-        assert_ok(lensprof_profile_from_fit(profile.get(), &run.result, &options, s.images, nullptr));
+        assert_ok(lensprof_fit_profile(run.held.get(), 0, profile.get(), nullptr));
         assert_ok(lensprof_profile_validate(profile.get()));
         assert_true(lensprof_provenance_doubts_response(&profile->provenance) == 1);
     }
@@ -101,7 +101,7 @@ void test_the_profile_is_held_where_there_is_one(void **) {
     const FitRun first = run_fit(shown, options);
     auto profile = std::make_unique<lensprof_profile>();
     lensprof_profile_init(profile.get());
-    assert_ok(lensprof_profile_from_fit(profile.get(), &first.result, &options, shown.images, nullptr));
+    assert_ok(lensprof_fit_profile(first.held.get(), 0, profile.get(), nullptr));
     for (uint32_t i = 0; i < profile->covariance_size; i++)  // the response alone: this lens is corrected
         for (uint32_t j = 0; j < profile->covariance_size; j++)
             if (std::max(i, j) >= profile->response[0].modes)

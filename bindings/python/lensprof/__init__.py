@@ -14,7 +14,7 @@ from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE
                       MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE)
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
-from .fit import FitCamera, FitImage, FitOptions, FitResult, FitSetting, fit_overlap, fit_radiance, transfer_rms
+from .fit import FitCamera, FitImage, FitOptions, FitResult, fit_overlap, fit_radiance
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .formats import (FormatInfo, Pto, PtoImage, detect_format, export_profiles, format_info, import_profiles,
                       lensfun_read_cameras, map_read, map_write, points_read, points_write)
@@ -29,7 +29,7 @@ __all__ = [
     "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel",
     "CurveKind", "Direction", "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error",
     "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitCamera", "FitImage",
-    "FitModel", "FitOptions", "FitResponse", "FitResult", "FitSetting", "FixedPlan", "FlatGrid", "FlatImage",
+    "FitModel", "FitOptions", "FitResponse", "FitResult", "FixedPlan", "FlatGrid", "FlatImage",
     "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "Free", "GRID_SIDE", "GainGrid", "GammaFrom",
     "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE", "Layout", "LinkState", "Lookup", "LookupOptions",
     "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
@@ -40,5 +40,5 @@ __all__ = [
     "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles",
     "layout_channels", "layout_samples", "lensfun_read_cameras", "lookup_in", "map_read", "map_write", "points_read",
     "points_write", "reason_name", "reason_text", "sample_matches", "sample_overlap", "sample_tracks",
-    "sample_type_bytes", "simulate", "status_name", "transfer_rms", "version",
+    "sample_type_bytes", "simulate", "status_name", "version",
 ]

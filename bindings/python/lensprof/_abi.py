@@ -21,6 +21,7 @@ SETTINGS_MAX = 64
 CAMERAS_MAX = 64
 MODES_AUTO = 4294967295
 COVERAGE_BINS = 10
+FIT_REFERENCE = 4294967295
 FLAT_IMAGES = 128
 FLAT_SPOTS = 32
 LOOKUP_ROWS = 24
@@ -731,8 +732,14 @@ class FitOptions(Structure):
     ]
 
 
+class Fit(Structure):
+    """Opaque."""
+
+
 class FitImageQuality(Structure):
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("joined", c_uint32),
         ("ev_sigma", c_double),
         ("white_balance_sigma", c_double * 3),
         ("median_residual", c_double),
@@ -744,16 +751,14 @@ class FitImageQuality(Structure):
         ("inliers", c_uint32),
         ("component", c_uint32),
         ("known_ev_left_out", c_uint32),
-        ("joined", c_uint32),
-        ("reserved", c_uint32),
     ]
 
 
-class FitSetting(Structure):
+class FitResult(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("images", c_uint32),
-        ("pairs", c_uint32),
+        ("setting_pairs", c_uint32),
         ("usable", c_uint32),
         ("reason", c_char * 256),
         ("vignetting", Vignetting * 3),
@@ -764,6 +769,39 @@ class FitSetting(Structure):
         ("reason_value", c_double * 2),
         ("covariance", c_double * 1296),
         ("gamma_direction", c_double * 36),
+        ("camera", c_uint32),
+        ("covariance_size", c_uint32),
+        ("response", Response),
+        ("vignettings", c_uint32),
+        ("pairs", c_uint32),
+        ("evens", c_uint32),
+        ("response_from", c_uint32),
+        ("profile_prior", c_uint32),
+        ("gamma_from", c_uint32),
+        ("gamma_sigma", c_double),
+        ("before_rms", c_double),
+        ("heldout_rms", c_double),
+        ("heldout_median", c_double),
+        ("noise_levels", c_double),
+        ("inlier_share", c_double),
+        ("frame_share", c_double),
+        ("image_share", c_double),
+        ("light_spread_ev", c_double),
+        ("grey_ends", c_uint32 * 10),
+        ("converged", c_uint32),
+        ("iterations", c_uint32),
+        ("model", c_uint32),
+        ("equal_exposures", c_uint32),
+        ("falloff_prior_distance", c_double),
+        ("center_prior_distance", c_double),
+        ("error_inflation", c_double),
+        ("reference", c_uint32),
+        ("left_out", c_uint32),
+        ("components", c_uint32),
+        ("setting_count", c_uint32),
+        ("camera_count", c_uint32),
+        ("reserved", c_uint32),
+        ("seconds", c_double),
     ]
 
 
@@ -777,81 +815,10 @@ class FitCamera(Structure):
         ("light_difference_ev", c_double),
         ("log_gamma", c_double),
         ("offset_sigma_ev", c_double),
-        ("response", Response),
-        ("vignettings", c_uint32),
-        ("pairs", c_uint32),
-        ("evens", c_uint32),
-        ("gamma_from", c_uint32),
-        ("response_from", c_uint32),
-        ("profile_prior", c_uint32),
-        ("covariance_size", c_uint32),
-        ("converged", c_uint32),
-        ("gamma_sigma", c_double),
-        ("before_rms", c_double),
-        ("heldout_rms", c_double),
-        ("heldout_median", c_double),
-        ("noise_levels", c_double),
-        ("inlier_share", c_double),
-        ("frame_share", c_double),
-        ("image_share", c_double),
-        ("light_spread_ev", c_double),
-        ("grey_ends", c_uint32 * 10),
         ("reference", c_uint32),
         ("setting", c_uint32),
         ("attached", c_uint32),
         ("reserved", c_uint32),
-    ]
-
-
-class FitResult(Structure):
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("usable", c_uint32),
-        ("image_quality_size", c_uint32),
-        ("reserved", c_uint32),
-        ("reason", c_char * 256),
-        ("response", Response),
-        ("vignetting", Vignetting * 3),
-        ("vignettings", c_uint32),
-        ("pairs", c_uint32),
-        ("components", c_uint32),
-        ("iterations", c_uint32),
-        ("converged", c_uint32),
-        ("gamma_from", c_uint32),
-        ("gamma_sigma", c_double),
-        ("before_rms", c_double),
-        ("heldout_rms", c_double),
-        ("heldout_median", c_double),
-        ("noise_levels", c_double),
-        ("inlier_share", c_double),
-        ("frame_share", c_double),
-        ("image_share", c_double),
-        ("seconds", c_double),
-        ("radius_ends", c_uint32 * 10),
-        ("grey_ends", c_uint32 * 10),
-        ("covariance_size", c_uint32),
-        ("profile_prior", c_uint32),
-        ("covariance", c_double * 1296),
-        ("gamma_direction", c_double * 36),
-        ("image_quality", POINTER(FitImageQuality)),
-        ("reason_code", c_uint32),
-        ("reason_values", c_uint32),
-        ("reason_item", Item),
-        ("reason_value", c_double * 2),
-        ("evens", c_uint32),
-        ("left_out", c_uint32),
-        ("reference", c_uint32),
-        ("response_from", c_uint32),
-        ("light_spread_ev", c_double),
-        ("settings", POINTER(FitSetting)),
-        ("setting_count", c_uint32),
-        ("equal_exposures", c_uint32),
-        ("cameras", POINTER(FitCamera)),
-        ("camera_count", c_uint32),
-        ("model", c_uint32),
-        ("falloff_prior_distance", c_double),
-        ("center_prior_distance", c_double),
-        ("error_inflation", c_double),
     ]
 
 
@@ -900,8 +867,14 @@ class FlatOptions(Structure):
     ]
 
 
+class Flat(Structure):
+    """Opaque."""
+
+
 class FlatImageQuality(Structure):
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("cells", c_uint32),
         ("white_share", c_double),
         ("black_share", c_double),
         ("noise_levels", c_double),
@@ -910,8 +883,6 @@ class FlatImageQuality(Structure):
         ("gradient", c_double * 2),
         ("radius", c_double),
         ("card", c_uint32 * 4),
-        ("cells", c_uint32),
-        ("reserved", c_uint32),
     ]
 
 
@@ -930,7 +901,7 @@ class FlatResult(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("usable", c_uint32),
-        ("image_quality_size", c_uint32),
+        ("images", c_uint32),
         ("covariance_size", c_uint32),
         ("reason", c_char * 256),
         ("vignetting", Vignetting * 3),
@@ -954,7 +925,6 @@ class FlatResult(Structure):
         ("grid_residual", c_double),
         ("covariance", c_double * 1296),
         ("gain_grid", GainGrid),
-        ("image_quality", POINTER(FlatImageQuality)),
         ("reason_code", c_uint32),
         ("reason_values", c_uint32),
         ("reason_item", Item),
@@ -1235,9 +1205,8 @@ STRUCTS = {
     "lensprof_fit_image": FitImage,
     "lensprof_fit_options": FitOptions,
     "lensprof_fit_image_quality": FitImageQuality,
-    "lensprof_fit_setting": FitSetting,
-    "lensprof_fit_camera": FitCamera,
     "lensprof_fit_result": FitResult,
+    "lensprof_fit_camera": FitCamera,
     "lensprof_flat_image": FlatImage,
     "lensprof_flat_options": FlatOptions,
     "lensprof_flat_image_quality": FlatImageQuality,
@@ -1261,7 +1230,9 @@ STRUCTS = {
 
 OPAQUE = {
     "lensprof_plan": Plan,
+    "lensprof_fit": Fit,
     "lensprof_fixed_plan": FixedPlan,
+    "lensprof_flat": Flat,
     "lensprof_pto": Pto,
     "lensprof_store": Store,
 }
@@ -1284,12 +1255,13 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
     FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
-    FitSetting: ("lensprof_fit_setting_init_sized", [FitSetting]),
+    FitImageQuality: ("lensprof_fit_image_quality_init_sized", [FitImageQuality]),
+    FitResult: ("lensprof_fit_result_init_sized", [FitResult]),
     FitCamera: ("lensprof_fit_camera_init_sized", [FitCamera]),
-    FitResult: ("lensprof_fit_result_init_sized", [FitResult, FitImageQuality]),
     FlatImage: ("lensprof_flat_image_init_sized", [FlatImage]),
     FlatOptions: ("lensprof_flat_options_init_sized", [FlatOptions]),
-    FlatResult: ("lensprof_flat_result_init_sized", [FlatResult, FlatImageQuality]),
+    FlatImageQuality: ("lensprof_flat_image_quality_init_sized", [FlatImageQuality]),
+    FlatResult: ("lensprof_flat_result_init_sized", [FlatResult]),
     PtoImage: ("lensprof_pto_image_init_sized", [PtoImage]),
     ImportOptions: ("lensprof_import_options_init_sized", [ImportOptions]),
     ExportOptions: ("lensprof_export_options_init_sized", [ExportOptions]),
@@ -1371,20 +1343,22 @@ FUNCTIONS = {
     # fit.h
     "lensprof_fit_image_init_sized": (None, [POINTER(FitImage), c_size_t, c_uint32, c_uint32, c_uint32]),
     "lensprof_fit_options_init_sized": (None, [POINTER(FitOptions), c_size_t]),
-    "lensprof_fit_setting_init_sized": (None, [POINTER(FitSetting), c_size_t]),
+    "lensprof_fit_image_quality_init_sized": (None, [POINTER(FitImageQuality), c_size_t]),
+    "lensprof_fit_result_init_sized": (None, [POINTER(FitResult), c_size_t]),
     "lensprof_fit_camera_init_sized": (None, [POINTER(FitCamera), c_size_t]),
-    "lensprof_fit_result_init_sized": (None, [POINTER(FitResult), c_size_t, c_size_t]),
+    "lensprof_fit_bytes": (c_size_t, [POINTER(FitImage), c_uint32]),
     "lensprof_fit_overlap": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Pair), c_uint32,
-                                     POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
+                                     c_void_p, c_size_t, POINTER(Exposure), POINTER(POINTER(Fit)), POINTER(ErrorText)]),
     "lensprof_fit_radiance": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Observation), c_uint32,
-                                      POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
-    "lensprof_profile_from_fit": (c_int, [POINTER(Profile), POINTER(FitResult), POINTER(FitOptions), c_uint32,
-                                          POINTER(ErrorText)]),
-    "lensprof_fit_result_take_setting": (c_int, [POINTER(FitResult), POINTER(FitSetting), POINTER(ErrorText)]),
-    "lensprof_fit_result_take_camera": (c_int, [POINTER(FitResult), POINTER(FitCamera), POINTER(ErrorText)]),
-    "lensprof_transfer_rms": (c_int, [POINTER(Response), POINTER(Vignetting), POINTER(FitImage), POINTER(Exposure),
-                                      c_uint32, POINTER(Pair), c_uint32, c_uint32, POINTER(c_double), POINTER(c_double),
+                                      c_void_p, c_size_t, POINTER(Exposure), POINTER(POINTER(Fit)),
                                       POINTER(ErrorText)]),
+    "lensprof_fit_destroy": (None, [POINTER(Fit)]),
+    "lensprof_fit_image_at": (c_int, [POINTER(Fit), c_uint32, POINTER(FitImageQuality), POINTER(ErrorText)]),
+    "lensprof_fit_setting_at": (c_int, [POINTER(Fit), c_uint32, POINTER(FitResult), POINTER(ErrorText)]),
+    "lensprof_fit_camera_at": (c_int, [POINTER(Fit), c_uint32, POINTER(FitCamera), POINTER(ErrorText)]),
+    "lensprof_fit_profile": (c_int, [POINTER(Fit), c_uint32, POINTER(Profile), POINTER(ErrorText)]),
+    "lensprof_fit_transfer_rms": (c_int, [POINTER(Fit), POINTER(Pair), c_uint32, POINTER(c_double), POINTER(c_double),
+                                          POINTER(ErrorText)]),
     # fixed.h
     "lensprof_fixed_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
     "lensprof_fixed_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(FixedPlan)),
@@ -1394,11 +1368,15 @@ FUNCTIONS = {
     # flat.h
     "lensprof_flat_image_init_sized": (None, [POINTER(FlatImage), c_size_t]),
     "lensprof_flat_options_init_sized": (None, [POINTER(FlatOptions), c_size_t]),
-    "lensprof_flat_result_init_sized": (None, [POINTER(FlatResult), c_size_t, c_size_t]),
-    "lensprof_fit_flat": (c_int, [POINTER(FlatOptions), POINTER(FlatImage), c_uint32, POINTER(FlatResult),
-                                  POINTER(ErrorText)]),
-    "lensprof_profile_from_flat": (c_int, [POINTER(Profile), POINTER(FlatResult), POINTER(FlatOptions), c_uint32,
-                                           POINTER(ErrorText)]),
+    "lensprof_flat_image_quality_init_sized": (None, [POINTER(FlatImageQuality), c_size_t]),
+    "lensprof_flat_result_init_sized": (None, [POINTER(FlatResult), c_size_t]),
+    "lensprof_flat_bytes": (c_size_t, [c_uint32]),
+    "lensprof_fit_flat": (c_int, [POINTER(FlatOptions), POINTER(FlatImage), c_uint32, c_void_p, c_size_t,
+                                  POINTER(POINTER(Flat)), POINTER(ErrorText)]),
+    "lensprof_flat_destroy": (None, [POINTER(Flat)]),
+    "lensprof_flat_get": (c_int, [POINTER(Flat), POINTER(FlatResult), POINTER(ErrorText)]),
+    "lensprof_flat_image_at": (c_int, [POINTER(Flat), c_uint32, POINTER(FlatImageQuality), POINTER(ErrorText)]),
+    "lensprof_flat_profile": (c_int, [POINTER(Flat), POINTER(Profile), POINTER(ErrorText)]),
     # hugin.h
     "lensprof_pto_image_init_sized": (None, [POINTER(PtoImage), c_size_t]),
     "lensprof_pto_read": (c_int, [c_void_p, c_size_t, POINTER(POINTER(Pto)), POINTER(ErrorText)]),

@@ -1,18 +1,17 @@
 """Recovers response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
 from __future__ import annotations
 
-import ctypes
-from ctypes import byref, c_double, sizeof
-from typing import Any, Iterable, Optional, Sequence, Union
+from ctypes import POINTER, byref, c_double, sizeof
+from typing import Any, Optional, Sequence
 
 import numpy as np
 
 from . import _abi, _arrays
 from ._abi import CameraKind, FitModel, FitResponse, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
-from ._library import check, lib
+from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
-from ._struct import (Curves, Enumerated, Flag, Nested, Numbers, OptionalReference, Struct, Text, Value, Vector, integer,
-                      one_or_three)
+from ._struct import (Curves, Enumerated, Flag, Nested, Numbers, OptionalReference, Struct, Text, Value, Vector,
+                      integer)
 from .model import Exposure, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
 from .reason import Item
@@ -102,37 +101,10 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
         return [name for name in super()._names() if not name.startswith("link")]
 
 
-class FitSetting(Struct, _abi.FitSetting):
-    """Result for one lens setting; the fields have the same meaning as in FitResult.
-
-    images: images of this setting in the fit; if 0, the other fields have no meaning. pairs: pairs with an end in them.
-    """
-
-    images: int
-    pairs: int
-    usable = Flag()
-    reason = Text()
-    vignetting = Curves(Vignetting, "_vignettings")
-    radius_ends = Vector(writable=False)
-    reason_code = Enumerated(Reason)
-    reason_values: int
-    reason_item = Nested(Item)
-    reason_value = Numbers("reason_values")
-    covariance = Covariance()
-    gamma_direction = Vector(writable=False)
-    _vignettings = 1
-    _covariance_size = 0
-
-    @property
-    def covariance_size(self) -> int:
-        return self._covariance_size
-
-
 class FitCamera(Struct, _abi.FitCamera):
-    """Result for one camera, if the fit has several; the fields have the same meaning as in FitResult, for a fit of the
-    pairs between its own images.
+    """How one of several cameras joins the others; FitResult.settings[setting] is the result of its own fit.
 
-    images: images of this camera in its fit; if 0, the other fields have no meaning. attached: additional images, whose
+    images: images of this camera in its fit, 0 if no pairs connect two of them. attached: additional images, whose
     exposures follow from pairs with other cameras. joined: its exposures are relative to the reference, through pairs
     with other cameras; otherwise they are NaN. shared_pairs: pairs with another camera; agreeing_share: share of them
     within 3 sigma of the residual; light_difference_ev: median difference of the light at their ends. log_gamma: shift
@@ -148,59 +120,74 @@ class FitCamera(Struct, _abi.FitCamera):
     light_difference_ev: float
     log_gamma: float
     offset_sigma_ev: float
-    response = Nested(Response)
-    vignettings: int
-    pairs: int
-    evens = Flag()
-    gamma_from = Enumerated(GammaFrom)
-    response_from = Enumerated(FitResponse)
-    profile_prior = Enumerated(ProfilePrior)
-    covariance_size: int
-    converged = Flag()
-    gamma_sigma: float
-    before_rms: float
-    heldout_rms: float
-    heldout_median: float
-    noise_levels: float
-    inlier_share: float
-    frame_share: float
-    image_share: float
-    light_spread_ev: float
-    grey_ends = Vector(writable=False)
     reference: int
     setting: int
 
 
-class FitResult(Struct, _abi.FitResult):
-    """Result of a fit. Arrays are views on this object.
+class _Fit(Handle):
+    """The fit of the library, with what it holds of all images, settings and cameras."""
 
-    usable: a profile to store; if False, `reason` states why; if True, `reason` may have a warning. evens: the result
-    evens out these pictures, whether or not it is a profile to store. left_out: number of inconsistent images, with ev
-    NaN in `exposures` and `joined` 0 in `image_quality`; reference: the image of 0 EV. response_from: origin of the
-    response; light_spread_ev: difference of the light between the ends of pairs. reason_code: a Reason; reason_item:
-    the image concerned; reason_value: its numbers. response: of all images. vignetting: tuple of 1 (all channels) or 3.
-    exposures: exposure and white balance of every image relative to the reference, EXPOSURE_DTYPE; image_quality: how
-    well each image is determined, IMAGE_QUALITY_DTYPE. pairs: pairs used. components: connected groups of images.
-    gamma_from: what determined the exponent gamma; gamma_sigma: standard error of ln gamma; gamma_direction: change of
-    each parameter per unit of it. before_rms, heldout_rms, heldout_median, noise_levels: levels of 255. frame_share,
-    image_share: share of the residual variance that follows one map over the frame, or a separate map per image.
-    inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of the half diagonal and of the
-    grey range. covariance: n x n as in Profile; fixed parameters have zero rows. settings: tuple of FitSetting by
-    FitImage.setting; if there are several, vignetting, radius_ends, usable, reason, covariance and gamma_direction of
-    the result are those of the reference's setting. cameras: tuple of FitCamera by FitImage.camera; if there are
-    several, the other fields of the result describe the reference's camera, except exposures, image_quality and
-    left_out, which cover all. model: what the result consists of, the most complex description that predicts held-out
-    pairs better than all simpler ones. falloff_prior_distance, center_prior_distance: how far the pictures alone are
-    from what lenses have in common, in standard errors. error_inflation: variance of the falloff over that of
-    independent pairs. equal_exposures: no exposure was known and the pictures show no difference, so that all are taken
-    as equal.
+    def __init__(self, pointer: Any, exposures: np.ndarray):
+        super().__init__(pointer, lib.lensprof_fit_destroy)
+        self.exposures = exposures
+        self.quality = np.zeros(len(exposures), dtype=_arrays.IMAGE_QUALITY_DTYPE)
+        for index in range(len(exposures)):
+            quality = initialised(_abi.FitImageQuality)
+            self.ask(lib.lensprof_fit_image_at, index, quality)
+            self.quality[index] = np.frombuffer(quality, dtype=_arrays.IMAGE_QUALITY_DTYPE)[0]
+        self.reference = self.result(_abi.FIT_REFERENCE)
+        self.settings = tuple(self.result(setting) for setting in range(self.reference.setting_count))
+        cameras = [FitCamera() for _ in range(self.reference.camera_count)]
+        for number, camera in enumerate(cameras):
+            self.ask(lib.lensprof_fit_camera_at, number, camera)
+        self.cameras = tuple(cameras)
+
+    def ask(self, function: Any, number: int, part: Any) -> None:
+        error = _abi.ErrorText()
+        with self._use() as fit:
+            check(function(fit, number, byref(part), byref(error)), f"no part {number} of the fit", error)
+
+    def result(self, setting: int) -> FitResult:
+        result = FitResult()
+        self.ask(lib.lensprof_fit_setting_at, setting, result)
+        result._fit = self
+        return result
+
+
+class FitResult(Struct, _abi.FitResult):
+    """Result of a fit for one lens setting; fit_overlap returns that of the reference's. Arrays are views.
+
+    Of the setting: images and setting_pairs in it (if images is 0, the others have no meaning). usable: a profile to
+    store; if False, `reason` states why; if True, `reason` may have a warning. reason_code: a Reason; reason_item: the
+    image concerned; reason_value: its numbers. vignetting: tuple of 1 (all channels) or 3. radius_ends: pair ends by
+    tenths of the half diagonal. covariance: n x n as in Profile; fixed parameters have zero rows. gamma_direction:
+    change of each parameter per unit of ln gamma.
+
+    Of its camera: response. pairs used. evens: the result evens out these pictures, whether or not it is a profile to
+    store. response_from: origin of the response; light_spread_ev: difference of the light between the ends of pairs.
+    gamma_from: what determined the exponent gamma; gamma_sigma: standard error of ln gamma. before_rms, heldout_rms,
+    heldout_median, noise_levels: levels of 255. frame_share, image_share: share of the residual variance that follows
+    one map over the frame, or a separate map per image. inlier_share: 0..1. grey_ends: pair ends by tenths of the grey
+    range. model: what the result consists of, the most complex description that predicts held-out pairs better than all
+    simpler ones. equal_exposures: no exposure was known and the pictures show no difference, so that all are taken as
+    equal. falloff_prior_distance, center_prior_distance: how far the pictures alone are from what lenses have in
+    common, in standard errors. error_inflation: variance of the falloff over that of independent pairs.
+
+    Of the whole fit: exposures: exposure and white balance of every image relative to the reference, EXPOSURE_DTYPE;
+    image_quality: how well each image is determined, IMAGE_QUALITY_DTYPE. left_out: number of inconsistent images, with
+    ev NaN in `exposures` and `joined` 0 in `image_quality`; reference: the image of 0 EV. components: connected groups
+    of images. settings: tuple of FitResult by FitImage.setting. cameras: tuple of FitCamera by FitImage.camera.
+    seconds: time taken.
     """
 
+    images: int
+    setting_pairs: int
     usable = Flag()
     reason = Text()
     response = Nested(Response)
     vignetting = Curves(Vignetting, "vignettings")
     vignettings: int
+    camera: int
     pairs: int
     components: int
     iterations: int
@@ -235,89 +222,61 @@ class FitResult(Struct, _abi.FitResult):
     center_prior_distance: float
     error_inflation: float
     equal_exposures = Flag()
-
-    def __init__(self, image_count: int, options: Optional[FitOptions] = None, setting_count: int = 1,
-                 camera_count: int = 1):
-        super().__init__()
-        given = options or FitOptions()
-        self._options = FitOptions(method=given.method, profile=given.profile)
-        self._exposures = np.zeros(image_count, dtype=_arrays.EXPOSURE_DTYPE)
-        self._quality = np.zeros(image_count, dtype=_arrays.IMAGE_QUALITY_DTYPE)
-        self._settings = (FitSetting * setting_count)(*(FitSetting() for _ in range(setting_count)))
-        self._cameras = (FitCamera * camera_count)(*(FitCamera() for _ in range(camera_count)))
-        self._camera_of: dict[int, int] = {}  # of each setting
-
-    @classmethod
-    def _names(cls) -> list[str]:
-        hidden = "image_quality", "settings", "setting_count", "cameras", "camera_count"
-        return [name for name in super()._names() if name not in hidden]
+    setting_count: int
+    camera_count: int
+    _fit: Any = None
 
     @property
-    def settings(self) -> tuple[FitSetting, ...]:
-        settings = tuple(self._settings)
-        for number, setting in enumerate(settings):
-            camera = self._cameras[self._camera_of.get(number, 0)]
-            own = camera if camera.images else self
-            setting._vignettings, setting._covariance_size = own.vignettings, own.covariance_size
-        return settings
+    def settings(self) -> tuple[FitResult, ...]:
+        return self._fit.settings
 
     @property
     def cameras(self) -> tuple[FitCamera, ...]:
-        return tuple(self._cameras)
+        return self._fit.cameras
 
     @property
     def exposures(self) -> np.ndarray:
-        return self._exposures
+        return self._fit.exposures
 
     @property
     def image_quality(self) -> np.ndarray:
-        return self._quality
+        return self._fit.quality
 
     def exposure(self, index: int) -> Exposure:
         """Exposure and white balance of image `index`."""
-        return Exposure.from_buffer_copy(self._exposures[index])
+        return Exposure.from_buffer_copy(self.exposures[index])
 
     def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0,
                 setting: Optional[int] = None) -> Profile:
         """A profile of this result, to be stored or applied. source: file of origin. created_unix_s 0 = unknown.
         setting: number of the lens setting; None = that of the reference."""
-        profile, error, count = Profile(key=key), _abi.ErrorText(), len(self._exposures)
-        result: _abi.FitResult = self
-        if setting is not None:
-            result, found = _abi.FitResult.from_buffer_copy(self), self._settings[setting]
-            camera = self._cameras[self._camera_of.get(setting, 0)]
-            if camera.images:
-                check(lib.lensprof_fit_result_take_camera(byref(result), byref(camera), byref(error)),
-                      f"no profile of setting {setting}", error)
-            check(lib.lensprof_fit_result_take_setting(byref(result), byref(found), byref(error)),
-                  f"no profile of setting {setting}", error)
-            count = found.images
-        check(lib.lensprof_profile_from_fit(byref(profile), byref(result), byref(self._options), count,
-                                            byref(error)), "no profile", error)
+        profile, error = Profile(key=key), _abi.ErrorText()
+        number = _abi.FIT_REFERENCE if setting is None else integer(setting, "setting")
+        with self._fit._use() as fit:
+            check(lib.lensprof_fit_profile(fit, number, byref(profile), byref(error)),
+                  "no profile" if setting is None else f"no profile of setting {setting}", error)
         profile.provenance.source, profile.provenance.created_unix_s = source, created_unix_s
         return profile
 
-
-def _fit_images(images: Sequence[FitImage]) -> Any:
-    return (_abi.FitImage * len(images))(*images)
+    def transfer_rms(self, pairs: np.ndarray) -> tuple[float, float]:
+        """Root mean square and median absolute value of the transfer residual of pairs under this fit, in levels of
+        255."""
+        rms, median, error = c_double(), c_double(), _abi.ErrorText()
+        with self._fit._use() as fit:
+            check(lib.lensprof_fit_transfer_rms(fit, *_arrays.pairs(pairs), byref(rms), byref(median), byref(error)),
+                  "the pairs do not belong to this fit", error)
+        return rms.value, median.value
 
 
 def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], options: FitOptions) -> FitResult:
-    error, result = _abi.ErrorText(), FitResult(
-        len(images), options, min(1 + max((i.setting for i in images), default=0), _abi.SETTINGS_MAX),
-        min(1 + max((i.camera for i in images), default=0), _abi.CAMERAS_MAX))
-    result._camera_of = {i.setting: min(i.camera, len(result._cameras) - 1) for i in images}
-    out = _abi.FitResult.from_buffer(result)
-    out.settings = ctypes.cast(result._settings, ctypes.POINTER(_abi.FitSetting))
-    out.setting_count = len(result._settings)
-    out.cameras = ctypes.cast(result._cameras, ctypes.POINTER(_abi.FitCamera))
-    out.camera_count = len(result._cameras)
-    out.image_quality = _arrays.address(result.image_quality, _abi.FitImageQuality)
+    error, pointer = _abi.ErrorText(), POINTER(_abi.Fit)()
+    exposures = np.zeros(len(images), dtype=_arrays.EXPOSURE_DTYPE)
+    array = (_abi.FitImage * len(images))(*images)
     with calling(options) as call:
-        status = function(byref(call), _fit_images(images), len(images), *data,
-                          _arrays.address(result.exposures, _abi.Exposure), byref(result), byref(error))
+        status = function(byref(call), array, len(images), *data, None, 0, _arrays.address(exposures, _abi.Exposure),
+                          byref(pointer), byref(error))
     check(status, "the fit failed", error)
-    return result
+    return _Fit(pointer, exposures).reference
 
 
 def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
@@ -330,21 +289,3 @@ def fit_radiance(images: Sequence[FitImage], observations: np.ndarray,
     """Fits tracks of observations (OBSERVATION_DTYPE, in any order) over at least two images, with Method.RADIANCE."""
     return _fit(lib.lensprof_fit_radiance, images, _arrays.observations(observations),
                 options or FitOptions(method=Method.RADIANCE))
-
-
-def transfer_rms(response: Response, vignetting: Union[Vignetting, Iterable[Vignetting]], images: Sequence[FitImage],
-                 exposures: Union[np.ndarray, Iterable[Exposure]], pairs: np.ndarray,
-                 channels: int = 3) -> tuple[float, float]:
-    """Root mean square and median absolute value of the transfer residual of pairs under a model, in levels of 255.
-    vignetting: one for all channels, or three."""
-    curves = one_or_three(vignetting, Vignetting, "vignetting")
-    given = _arrays.exposures(exposures)
-    if len(given) != len(images):
-        raise ValueError(f"{len(given)} exposures for {len(images)} images; give one an image")
-    rms, median, error = c_double(), c_double(), _abi.ErrorText()
-    check(lib.lensprof_transfer_rms(byref(response), (_abi.Vignetting * 3)(*(curves * 3)[:3]), _fit_images(images),
-                                    _arrays.address(given, _abi.Exposure), len(images), *_arrays.pairs(pairs),
-                                    integer(channels, "channels"), byref(rms), byref(median),
-                                    byref(error)),
-          "this model and these pairs do not go together", error)
-    return rms.value, median.value

@@ -1,15 +1,15 @@
 """Falloff from pictures of a white card or another even light; see lensprof/flat.h."""
 from __future__ import annotations
 
-from ctypes import byref
+from ctypes import POINTER, byref
 from dataclasses import dataclass
-from typing import Optional, Sequence
+from typing import Any, Optional, Sequence
 
 import numpy as np
 
 from . import _abi, _arrays
 from ._abi import FlatGrid, FlatLight, Free, Layout, Reason
-from ._library import check, initialised, lib
+from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
 from ._struct import Count, Curves, Enumerated, Flag, Nested, Numbers, Referenced, Struct, Text, integer
 from .model import GainGrid, Response, Vignetting
@@ -115,14 +115,8 @@ class FlatResult(Struct, _abi.FlatResult):
     reason_values: int
     reason_item = Nested(Item)
     reason_value = Numbers("reason_values")
-
-    def __init__(self, image_count: int):
-        super().__init__()
-        self._quality = np.zeros(image_count, dtype=_arrays.FLAT_QUALITY_DTYPE)
-
-    @classmethod
-    def _names(cls) -> list[str]:
-        return [name for name in super()._names() if name != "image_quality"]
+    images: int
+    _flat: Any = None
 
     @property
     def spot(self) -> np.ndarray:
@@ -131,28 +125,38 @@ class FlatResult(Struct, _abi.FlatResult):
 
     @property
     def image_quality(self) -> np.ndarray:
-        return self._quality
+        return self._flat.quality
 
-    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0,
-                response: Optional[Response] = None) -> Profile:
-        """A profile of this result with the response that it was made with. source: file that it was made from."""
-        profile, options, error = Profile(key=key), FlatOptions(), _abi.ErrorText()
-        if response is not None:
-            options.response = response
-        check(lib.lensprof_profile_from_flat(byref(profile), byref(self), byref(options), len(self._quality),
-                                             byref(error)), "no profile", error)
+    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0) -> Profile:
+        """A profile of this result with the response of its pictures. source: file that it was made from."""
+        profile, error = Profile(key=key), _abi.ErrorText()
+        with self._flat._use() as flat:
+            check(lib.lensprof_flat_profile(flat, byref(profile), byref(error)), "no profile", error)
         profile.provenance.source, profile.provenance.created_unix_s = source, created_unix_s
         return profile
+
+
+class _Flat(Handle):
+    """The fit of the library, with what every picture gave to it."""
+
+    def __init__(self, pointer: Any, image_count: int):
+        super().__init__(pointer, lib.lensprof_flat_destroy)
+        self.quality = np.zeros(image_count, dtype=_arrays.FLAT_QUALITY_DTYPE)
+        self.result, error = FlatResult(), _abi.ErrorText()
+        check(lib.lensprof_flat_get(pointer, byref(self.result), byref(error)), "no result", error)
+        for index in range(image_count):
+            quality = initialised(_abi.FlatImageQuality)
+            check(lib.lensprof_flat_image_at(pointer, index, byref(quality), byref(error)), f"no image {index}", error)
+            self.quality[index] = np.frombuffer(quality, dtype=_arrays.FLAT_QUALITY_DTYPE)[0]
+        self.result._flat = self
 
 
 def fit_flat(images: Sequence[FlatImage], options: Optional[FlatOptions] = None) -> FlatResult:
     """Fits the falloff to pictures of a card. A fit that ran returns also when it is poor: see `usable`."""
     images, options, error = list(images), options or FlatOptions(), _abi.ErrorText()
     views = (_abi.FlatImage * len(images))(*[image._view(i) for i, image in enumerate(images)])
-    result = FlatResult(len(images))
-    out = _abi.FlatResult.from_buffer(result)
-    out.image_quality = _arrays.address(result.image_quality, _abi.FlatImageQuality)
+    pointer = POINTER(_abi.Flat)()
     with calling(options) as call:
-        status = lib.lensprof_fit_flat(byref(call), views, len(views), byref(result), byref(error))
+        status = lib.lensprof_fit_flat(byref(call), views, len(views), None, 0, byref(pointer), byref(error))
     check(status, "the fit failed", error)
-    return result
+    return _Flat(pointer, len(images)).result

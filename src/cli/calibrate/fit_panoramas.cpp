@@ -171,11 +171,9 @@ void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
     for (uint32_t i = 0; i < project.images.size(); i++) {
         fitted.setting_of.push_back(i);
         fitted.settings.emplace_back();
+        fitted.settings[i].images = fitted.settings[i].vignettings = 1;
         fitted.settings[i].vignetting[0] = project.images[i].vignetting;
-        fitted.camera_of.push_back(i);
-        fitted.cameras.emplace_back();
-        fitted.cameras[i].images = fitted.cameras[i].vignettings = 1;
-        fitted.cameras[i].response = model_of_project(project, i)->response[0];
+        fitted.settings[i].response = model_of_project(project, i)->response[0];
     }
     fitted.exposures = relative_to_joined(project);
     for (size_t i = 0; i < project.images.size(); i++)

@@ -254,7 +254,7 @@ int align(const Options &o, Streams &streams) {
     for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);
     Corrected written;
     if (fitted.corrects()) {
-        std::shared_ptr<const lensprof_profile> model = profile_of(fitted.result);
+        std::shared_ptr<const lensprof_profile> model = profile_of(*fitted.held);
         for (size_t i = 0; i < jobs.size(); i++) {
             jobs[i].model = model;
             jobs[i].exposure = exposures[i];

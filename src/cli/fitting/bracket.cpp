@@ -238,7 +238,7 @@ BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::ve
     input.options.reference = static_cast<uint32_t>(place - members.begin());
     Fitted best = fit(input, input.options.reference, project.path, progress, &report.quality);
     progress.clear();
-    report.fit = best.result;
+    report.fit = best.result, report.held = best.held;
     report.verdict = bracket_verdict(best.result, members, project.names);
     report_members(members, images, best, report, streams);
     if (!report.fit.usable) report.fit.evens = 0;  // a bracket must determine a response

@@ -20,19 +20,19 @@ namespace {
 Json falloffs_json(const BuildReport &report) {
     Json curves = Json::array();
     if (!report.has_falloff) return curves;
-    if (report.settings.empty()) add_falloff_curves(*profile_of(report.fit), "", curves);
+    if (report.settings.empty()) add_falloff_curves(*profile_of(*report.held), "", curves);
     for (const SettingReport &setting : report.settings)
-        if (setting.found.images) add_falloff_curves(*profile_of(result_of(report, setting)), setting.label, curves);
+        if (setting.found.images) add_falloff_curves(*profile_of(*report.held, setting.number), setting.label, curves);
     return curves;
 }
 
 Json responses_json(const BuildReport &report) {
     Json curves = Json::array();
-    if (report.cameras.empty()) add_response_curves(*profile_of(report.fit), "this fit", curves);
+    if (report.cameras.empty()) add_response_curves(*profile_of(*report.held), "this fit", curves);
     for (const CameraReport &camera : report.cameras) {
         if (!camera.found.images) continue;
         auto profile = new_profile();
-        profile->response[0] = camera.found.response;
+        profile->response[0] = camera.fit.response;
         add_response_curves(*profile, camera.label, curves);
     }
     return curves;
@@ -65,7 +65,8 @@ Json facts_json(const BuildReport &report) {
     add("pictures used",
         format("%zu of %zu", joined_images(report.exposures), report.names.size() + report.left_out.size()));
     add("pairs", std::to_string(fit.pairs));
-    if (report.has_falloff && report.settings.empty()) add("corner illuminance", corner_text(*profile_of(fit)));
+    if (report.has_falloff && report.settings.empty())
+        add("corner illuminance", corner_text(*profile_of(*report.held)));
     if (fit.before_rms > 0.0)
         add("residual (RMS, grey levels)", format("%.1f before, %.1f after", fit.before_rms, fit.heldout_rms));
     if (report.variance.pairs)

@@ -162,21 +162,27 @@ size_t joined_images(const std::vector<lensprof_exposure> &exposures) {
                                              [](const lensprof_exposure &e) { return !std::isnan(e.ev); }));
 }
 
-// For the results of lens settings and cameras.
-static void allocate_results(const std::vector<lensprof_fit_image> &images, Fitted &fitted) {
-    uint32_t last_setting = 0, last_camera = 0;
-    for (const lensprof_fit_image &image : images) {
-        fitted.setting_of.push_back(image.setting);
-        fitted.camera_of.push_back(image.camera);
-        last_setting = std::max(last_setting, image.setting);
-        last_camera = std::max(last_camera, image.camera);
+// Asks a fit for all that it found.
+static void ask(const lensprof_fit &held, const std::vector<lensprof_fit_image> &images, Fitted &fitted,
+                std::vector<lensprof_fit_image_quality> *quality) {
+    lensprof_error error{};
+    lensprof_fit_result_init(&fitted.result);
+    check(lensprof_fit_setting_at(&held, LENSPROF_FIT_REFERENCE, &fitted.result, &error), "fit", &error);
+    fitted.settings.assign(fitted.result.setting_count, fitted.result);
+    for (uint32_t s = 0; s < fitted.result.setting_count; s++)
+        check(lensprof_fit_setting_at(&held, s, &fitted.settings[s], &error), "fit", &error);
+    fitted.cameras.resize(fitted.result.camera_count);
+    for (uint32_t k = 0; k < fitted.result.camera_count; k++) {
+        lensprof_fit_camera_init(&fitted.cameras[k]);
+        check(lensprof_fit_camera_at(&held, k, &fitted.cameras[k], &error), "fit", &error);
     }
-    fitted.settings.resize(last_setting + 1);
-    for (auto &setting : fitted.settings) lensprof_fit_setting_init(&setting);
-    fitted.cameras.resize(last_camera + 1);
-    for (auto &camera : fitted.cameras) lensprof_fit_camera_init(&camera);
-    fitted.result.settings = fitted.settings.data(), fitted.result.cameras = fitted.cameras.data();
-    fitted.result.setting_count = last_setting + 1, fitted.result.camera_count = last_camera + 1;
+    for (uint32_t i = 0; i < images.size(); i++) {
+        fitted.setting_of.push_back(images[i].setting);
+        fitted.camera_of.push_back(images[i].camera);
+        if (!quality) continue;
+        lensprof_fit_image_quality_init(&(*quality)[i]);
+        check(lensprof_fit_image_at(&held, i, &(*quality)[i], &error), "fit", &error);
+    }
 }
 
 // A place in a picture, as in the frame of its setting.
@@ -226,30 +232,25 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     Fitted fitted;
     auto count = static_cast<uint32_t>(input.images.size());
     fitted.exposures.resize(count);
-    lensprof_fit_result_init(&fitted.result);
-    if (quality) {
-        quality->resize(count);
-        fitted.result.image_quality = quality->data();
-    }
-    allocate_results(input.images, fitted);
+    if (quality) quality->resize(count);
+    lensprof_fit *held = nullptr;
     input.options.progress = on_fit_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
     const auto *images = input.images.data();
     auto pairs = static_cast<uint32_t>(input.pairs.size()),
          observations = static_cast<uint32_t>(input.observations.size());
-    lensprof_status status = observations
-                                 ? lensprof_fit_radiance(&input.options, images, count, input.observations.data(),
-                                                         observations, fitted.exposures.data(), &fitted.result, &error)
-                                 : lensprof_fit_overlap(&input.options, images, count, input.pairs.data(), pairs,
-                                                        fitted.exposures.data(), &fitted.result, &error);
+    lensprof_status status =
+        observations ? lensprof_fit_radiance(&input.options, images, count, input.observations.data(), observations,
+                                             nullptr, 0, fitted.exposures.data(), &held, &error)
+                     : lensprof_fit_overlap(&input.options, images, count, input.pairs.data(), pairs, nullptr, 0,
+                                            fitted.exposures.data(), &held, &error);
+    fitted.held = {held, lensprof_fit_destroy};
     stop_if_interrupted();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
         throw Failure(ExitCode::usage, item + ": no parameter is estimated; give --free all");
     check(status, item, &error);
-    fitted.result.image_quality = nullptr;
-    fitted.result.settings = nullptr, fitted.result.setting_count = 0;
-    fitted.result.cameras = nullptr, fitted.result.camera_count = 0;
+    ask(*held, input.images, fitted, quality);
     fitted.reference = std::isnan(fitted.exposures[reference].ev) ? fitted.result.reference : reference;
     fitted.exposures = relative_exposures(fitted.exposures, fitted.reference);
     return fitted;
@@ -301,7 +302,7 @@ static void warn_of_unjoined_cameras(const BuildReport &report, const std::strin
         if (!camera.found.images)
             warn(streams, left_out + "no two of its pictures overlap enough; give more of them, or use --one-lens to "
                                      "treat all as one camera");
-        else if (!camera.found.evens && fitted_setting != report.settings.end() && !fitted_setting->found.usable)
+        else if (!camera.fit.evens && fitted_setting != report.settings.end() && !fitted_setting->found.usable)
             warn(streams, left_out + "its pictures cannot be corrected: " + fitted_setting->verdict.text);
         else
             warn(streams, left_out + "its overlap with pictures of the other cameras is too small or inconsistent; "
@@ -334,18 +335,16 @@ std::string not_usable_text(const std::string &source, const Verdict &verdict, c
 
 namespace {
 
-// The result of one setting. The prior is that of the reference's setting.
-int64_t store_setting(const lensprof_fit_result &result, size_t images, const SettingReport &setting,
+// The profile of one setting, which is stored if `is_usable` or forced.
+int64_t store_setting(const BuildReport &report, const SettingReport &setting, bool is_usable,
                       const StoreOptions &store, const Finish &finish) {
-    lensprof_fit_options options;
-    lensprof_fit_options_init(&options);
-    const EarlierProfile *prior = finish.prior;  // used by the response of all settings and by the falloff of one
-    if (prior && setting.is_reference) options.profile = prior->profile.get();
-    auto profile = profile_of(result, &options, images);
+    const EarlierProfile *prior = finish.prior;
+    auto profile = profile_of(*report.held, setting.number);
     profile->key = setting.key;
+    profile->provenance.not_usable = !is_usable;
     if (setting.is_turn_unknown) turn_profile_to_sensor(0, *profile);
-    const int64_t prior_id = prior && holds_prior(result) && prior->is_own ? prior->id : 0;
-    return store_profile(store, *profile, {finish.method, finish.source, result.usable != 0, prior_id});
+    const int64_t prior_id = prior && holds_prior(setting.found) && prior->is_own ? prior->id : 0;
+    return store_profile(store, *profile, {finish.method, finish.source, is_usable, prior_id});
 }
 
 // Stores the profiles of every usable lens setting, or of all with --force.
@@ -355,7 +354,8 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
     if (report.settings.empty() && is_wanted) {
         SettingReport single;
         single.key = key, single.is_reference = true, single.is_turn_unknown = report.is_turn_unknown;
-        report.profile_id = store_setting(report.fit, report.names.size(), single, store, finish);
+        single.number = LENSPROF_FIT_REFERENCE, single.found = report.fit;
+        report.profile_id = store_setting(report, single, report.fit.usable != 0, store, finish);
     }
     std::vector<SettingReport *> order;  // the reference first
     for (SettingReport &setting : report.settings) order.push_back(&setting);
@@ -366,7 +366,7 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
         if (!setting.found.images || !(setting.found.usable || store.force) || !setting.no_key.empty()) continue;
         setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
         if (setting.has_same_key) continue;  // a lookup could not distinguish them
-        setting.profile_id = store_setting(result_of(report, setting), setting.found.images, setting, store, finish);
+        setting.profile_id = store_setting(report, setting, setting.found.usable != 0, store, finish);
         if (setting.is_reference) report.profile_id = setting.profile_id;
     }
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,29 +74,28 @@ struct FitInput {
 
 // A result and the exposures that belong to it.
 struct Fitted {
-    lensprof_fit_result result{};
-    std::vector<lensprof_exposure> exposures;    // relative to the reference; ev is NaN for images left out
-    std::vector<lensprof_fit_setting> settings;  // indexed by the images' `setting`; `result` has that of the reference
-    std::vector<uint32_t> setting_of;            // per image
-    std::vector<uint16_t> turn_of;               // of the input
-    std::vector<lensprof_fit_camera> cameras;    // indexed by the images' `camera`; `result` has that of the reference
-    std::vector<uint32_t> camera_of;             // per image
-    uint32_t reference = 0;                      // the requested one, or the result's own if that was left out
+    std::shared_ptr<const lensprof_fit> held;   // NULL: not of a fit
+    lensprof_fit_result result{};               // of the setting of the reference
+    std::vector<lensprof_exposure> exposures;   // relative to the reference; ev is NaN for images left out
+    std::vector<lensprof_fit_result> settings;  // indexed by the images' `setting`
+    std::vector<uint32_t> setting_of;           // per image
+    std::vector<uint16_t> turn_of;              // of the input
+    std::vector<lensprof_fit_camera> cameras;   // indexed by the images' `camera`
+    std::vector<uint32_t> camera_of;            // per image
+    uint32_t reference = 0;                     // the requested one, or the result's own if that was left out
 
     // Whether the pictures can be corrected with it; storing a profile requires a usable result.
     bool corrects() const { return result.usable || result.evens; }
 
     // The falloff curves of an image, with the centre in the picture as stored, and their number in its camera's fit.
     std::array<lensprof_vignetting, 3> falloff_of(uint32_t image) const;
-    uint32_t falloff_curves_of(uint32_t image) const {
-        return has_camera_result(image) ? cameras[camera_of[image]].vignettings : result.vignettings;
-    }
-    const lensprof_response &response_of(uint32_t image) const {
-        return has_camera_result(image) ? cameras[camera_of[image]].response : result.response;
-    }
+    uint32_t falloff_curves_of(uint32_t image) const { return result_of(image).vignettings; }
+    const lensprof_response &response_of(uint32_t image) const { return result_of(image).response; }
 
-    // Whether the image belongs to one of several cameras.
-    bool has_camera_result(uint32_t image) const { return !cameras.empty() && cameras[camera_of[image]].images; }
+    // The result of an image's setting, or that of the reference if the setting is empty.
+    const lensprof_fit_result &result_of(uint32_t image) const {
+        return !settings.empty() && settings[setting_of[image]].images ? settings[setting_of[image]] : result;
+    }
 };
 
 // The number of images with an exposure in the result.

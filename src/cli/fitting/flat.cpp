@@ -132,15 +132,22 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
     stop_if_interrupted();
     FlatReport report = begin_report(input);
     report.load_s = lap(clock);
-    report.fit.image_quality = report.quality.data();
     input.options.progress = on_fit_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
-    lensprof_status status = lensprof_fit_flat(&input.options, input.images.data(),
-                                               static_cast<uint32_t>(input.images.size()), &report.fit, &error);
+    lensprof_flat *flat = nullptr;
+    const auto count = static_cast<uint32_t>(input.images.size());
+    const lensprof_status status =
+        lensprof_fit_flat(&input.options, input.images.data(), count, nullptr, 0, &flat, &error);
+    report.held = {flat, lensprof_flat_destroy};
     progress.clear();
     check_named(status, input.names.size() == 1 ? input.names[0] : input.names[0] + " and the others", error,
                 LENSPROF_ITEM_IMAGE, input.names);
+    check(lensprof_flat_get(flat, &report.fit, &error), "fit", &error);
+    for (uint32_t i = 0; i < count; i++) {
+        lensprof_flat_image_quality_init(&report.quality[i]);
+        check(lensprof_flat_image_at(flat, i, &report.quality[i], &error), "fit", &error);
+    }
     report.solve_s = lap(clock);
     report.verdict = verdict_of(report.fit);
     name_image(report.names, report.verdict);
@@ -150,7 +157,7 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
 
 int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &report, Streams &streams) {
     const auto &fit = report.fit;
-    auto profile = profile_of(fit, input.response, input.images.size());
+    auto profile = profile_of(*report.held);
     profile->key = input.key;
     const lensprof_flat_image &frame = input.images.front();
     const uint16_t turn = sensor_orientation(frame.width, frame.height, input.pictures.front().traits.orientation);

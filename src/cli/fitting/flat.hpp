@@ -59,6 +59,7 @@ struct FlatReport {
     std::vector<double> ev, turned;
     std::vector<lensprof_flat_image_quality> quality;
     std::vector<lensprof_response> response;
+    std::shared_ptr<const lensprof_flat> held;  // NULL without a fit
     lensprof_flat_result fit{};
     Verdict verdict;  // of it
     double load_s = 0, solve_s = 0;

@@ -26,7 +26,7 @@ Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
 
 std::string flat_page(const FlatReport &report, const std::string &title, const std::string &command,
                       const std::vector<std::string> &warnings) {
-    const auto profile = profile_of(report.fit, report.response, report.names.size());
+    const auto profile = profile_of(*report.held);
     Json page = new_page("card", title, "Falloff from pictures of a white card", command);
     page["verdict"] = page_verdict(report.fit.usable, false, report.verdict.text, warnings);
     page["facts"] = flat_facts(report, *profile);

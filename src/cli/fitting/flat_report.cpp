@@ -121,7 +121,7 @@ Json flat_json(const FlatReport &report) {
 void print_flat(const FlatReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_images(report, out);
-    print_vignettings(*profile_of(fit, report.response), out);
+    print_vignettings(*profile_of(*report.held), out);
     for (const auto &response : report.response) print_response(response, out);
     out << format("light     %s; its gradient %s\n", light_name(fit.light),
                   fit.light == LENSPROF_FLAT_LIGHT_EVEN ? "taken as zero"

@@ -299,8 +299,7 @@ void refuse_minority(const Project &project, ProjectFit &state) {
     std::snprintf(result.reason, sizeof result.reason,
                   "only %zu of %zu pictures take part in the result%s; give pictures that overlap by a third", joined,
                   all, is_verified ? "" : " and none of their overlaps shows the same content");
-    for (lensprof_fit_setting &setting : state.best.settings) setting.usable = 0;
-    for (lensprof_fit_camera &camera : state.best.cameras) camera.evens = 0;
+    for (lensprof_fit_result &setting : state.best.settings) setting.usable = setting.evens = 0;
 }
 
 // Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
@@ -385,7 +384,7 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         for (const SettingReport &other : report.settings)
             if (other.label == setting.label) setting.label += ", from " + project.names[first];
         setting.is_reference = s == settings.of_image[state.best.result.reference];
-        setting.found = state.best.settings[s];
+        setting.number = s, setting.found = state.best.settings[s];
         setting.is_turn_unknown = settings.is_turn_unknown[s];
         setting.verdict = verdict_of(setting.found);
         name_image(project.names, setting.verdict);
@@ -407,6 +406,7 @@ void report_cameras(const Project &project, const std::vector<PictureMetadata> &
             if (other.label == camera.label) camera.label += ", from " + project.names[first];
         camera.is_reference = k == settings.camera_of_image[state.best.result.reference];
         camera.found = state.best.cameras[k];
+        camera.fit = state.best.settings[camera.found.setting];
         report.cameras.push_back(camera);
     }
 }
@@ -509,7 +509,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
         resample(o, project, pictures, state);
     fit_reconstruction(project, state, streams);
     refuse_minority(project, state);
-    report.fit = state.best.result;
+    report.fit = state.best.result, report.held = state.best.held;
     report.verdict = verdict_of(state.best.result);
     warn_of_few_images(o, project, state.best, streams);
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)

@@ -18,7 +18,8 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
     bool is_storable = can_hold(best.result);
     uint32_t modes = std::min<uint32_t>(best.result.response.modes, project_modes);
     for (const lensprof_fit_camera &camera : best.cameras)  // whose responses are tables, which are projected
-        if (camera.images) modes = project_modes, is_storable = is_storable && can_hold(camera);
+        if (best.cameras.size() > 1 && camera.images)
+            modes = project_modes, is_storable = is_storable && can_hold(best.settings[camera.setting]);
     if (is_storable || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
     input.options.modes = modes;
     input.options.vignettings = 1;

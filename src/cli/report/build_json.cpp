@@ -82,20 +82,19 @@ Json left_out_json(const BuildReport &report) {
 Json settings_json(const BuildReport &report) {
     Json list = Json::array();
     for (const SettingReport &setting : report.settings) {
-        const lensprof_fit_setting &found = setting.found;
-        const lensprof_fit_result fit = found.images ? result_of(report, setting) : report.fit;
+        const lensprof_fit_result &found = setting.found;
         Json json;
         json["label"] = setting.label;
         if (!report.cameras.empty()) json["camera"] = setting.camera;
         json["key"] = key_json(setting.key);
         json["reference"] = setting.is_reference;
         json["images"] = found.images;
-        json["pairs"] = found.pairs;
+        json["pairs"] = found.setting_pairs;
         json["usable"] = found.images && found.usable;
         add_verdict(setting.verdict, json);
-        json["vignetting"] = found.images ? vignetting_json(found.vignetting, fit.vignettings) : Json();
+        json["vignetting"] = found.images ? vignetting_json(found.vignetting, found.vignettings) : Json();
         json["coverage"] = std::vector<uint32_t>(found.radius_ends, found.radius_ends + LENSPROF_COVERAGE_BINS);
-        json["covariance"] = found.images ? covariance_json(found.covariance, fit.covariance_size) : Json();
+        json["covariance"] = found.images ? covariance_json(found.covariance, found.covariance_size) : Json();
         json["profile"] = setting.profile_id ? Json(setting.profile_id) : Json();
         list.push_back(json);
     }
@@ -146,24 +145,25 @@ Json cameras_json(const BuildReport &report) {
     Json list = Json::array();
     for (const CameraReport &camera : report.cameras) {
         const lensprof_fit_camera &found = camera.found;
+        const lensprof_fit_result &fit = camera.fit;
         Json json;
         json["label"] = camera.label;
         json["reference"] = camera.is_reference;
         json["images"] = found.images;
         json["attached"] = found.attached;
         json["joined"] = found.joined != 0;
-        json["pairs"] = found.images ? Json(found.pairs) : Json();
+        json["pairs"] = found.images ? Json(fit.pairs) : Json();
         json["shared_pairs"] = found.shared_pairs;
         json["agreeing_share"] = found.shared_pairs ? Json(found.agreeing_share) : Json();
         json["light_difference_ev"] = found.shared_pairs ? Json(found.light_difference_ev) : Json();
         json["log_gamma"] = found.log_gamma;
         json["offset_sigma_ev"] = found.joined ? Json(found.offset_sigma_ev) : Json();
-        json["evens"] = found.images && found.evens;
-        json["response"] = found.images ? response_json(&found.response, 1) : Json();
-        if (found.images) json["response"]["from"] = response_from_name(found.response_from);
-        json["gamma_from"] = found.images ? Json(gamma_name(found.gamma_from)) : Json();
-        json["gamma_sigma"] = found.images ? number_or_null(found.gamma_sigma) : Json();
-        json["heldout_rms"] = found.images ? number_or_null(found.heldout_rms) : Json();
+        json["evens"] = found.images && fit.evens;
+        json["response"] = found.images ? response_json(&fit.response, 1) : Json();
+        if (found.images) json["response"]["from"] = response_from_name(fit.response_from);
+        json["gamma_from"] = found.images ? Json(gamma_name(fit.gamma_from)) : Json();
+        json["gamma_sigma"] = found.images ? number_or_null(fit.gamma_sigma) : Json();
+        json["heldout_rms"] = found.images ? number_or_null(fit.heldout_rms) : Json();
         list.push_back(json);
     }
     return list;

@@ -1,5 +1,4 @@
 // Parts of the report of `build` that its JSON object and its table share.
-#include "cli/program/library.hpp"
 #include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
 
@@ -11,15 +10,6 @@ bool holds_prior(const lensprof_fit_result &fit) {
 
 bool is_left_out(const BuildReport &report, size_t image) {
     return report.fit.left_out && image < report.quality.size() && !report.quality[image].joined;
-}
-
-lensprof_fit_result result_of(const BuildReport &report, const SettingReport &setting) {
-    lensprof_fit_result result = report.fit;
-    lensprof_error error{};
-    if (!report.cameras.empty() && report.cameras[setting.camera].found.images)
-        check(lensprof_fit_result_take_camera(&result, &report.cameras[setting.camera].found, &error), "fit", &error);
-    check(lensprof_fit_result_take_setting(&result, &setting.found, &error), "fit", &error);
-    return result;
 }
 
 const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit) {

@@ -106,12 +106,12 @@ std::string links_row(const std::vector<lensprof_link> &links) {
 
 // For one lens setting, or for each.
 void print_falloffs(const BuildReport &report, std::ostream &out) {
-    if (report.settings.empty()) print_vignettings(*profile_of(report.fit), out);
+    if (report.settings.empty()) print_vignettings(*profile_of(*report.held), out);
     for (const SettingReport &setting : report.settings) {
         if (!setting.found.images) continue;
         out << "setting   " << setting.label << format(", %s", counted(setting.found.images, "picture").c_str())
             << (setting.found.usable ? "" : "; not stored as a profile") << "\n";
-        print_vignettings(*profile_of(result_of(report, setting)), out);
+        print_vignettings(*profile_of(*report.held, setting.number), out);
     }
 }
 
@@ -133,13 +133,13 @@ void print_responses(const BuildReport &report, std::ostream &out) {
         else
             out << format("; the light of %u shared pairs differs by %.3f EV (median)", found.shared_pairs,
                           found.light_difference_ev);
-        if (found.images && !camera.is_reference && found.heldout_rms != LENSPROF_UNKNOWN)
-            out << format("; residual %.2f levels (RMS, held out)", found.heldout_rms);
+        if (found.images && !camera.is_reference && camera.fit.heldout_rms != LENSPROF_UNKNOWN)
+            out << format("; residual %.2f levels (RMS, held out)", camera.fit.heldout_rms);
         out << "\n";
         if (!found.images) continue;
-        if (found.response_from == LENSPROF_FIT_RESPONSE_KIND)
+        if (camera.fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
             out << "response  typical of the kind of camera: its pictures do not determine it\n";
-        print_response(found.response, out);
+        print_response(camera.fit.response, out);
     }
 }
 

@@ -16,27 +16,20 @@ inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || 
 // Which of the falloff curves is that of green: of one per channel the second, else the only one.
 constexpr uint32_t green_curve(size_t curves) { return curves == 3 ? 1 : 0; }
 
-// The profile of a fit with its covariance; key and origin are still empty.
-inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit,
-                                                    const lensprof_fit_options *options = nullptr, size_t images = 0) {
+// The profile of a lens setting of a fit with its covariance; key and origin are still empty.
+inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit &fit,
+                                                    uint32_t setting = LENSPROF_FIT_REFERENCE) {
     auto profile = new_profile();
     lensprof_error error{};
-    check(lensprof_profile_from_fit(profile.get(), &fit, options, static_cast<uint32_t>(images), &error), "fit",
-          &error);
+    check(lensprof_fit_profile(&fit, setting, profile.get(), &error), "fit", &error);
     return profile;
 }
 
-// The same for a card, with the responses of its pictures.
-inline std::unique_ptr<lensprof_profile>
-profile_of(const lensprof_flat_result &fit, const std::vector<lensprof_response> &responses, size_t images = 0) {
+// The same for a card.
+inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_flat &flat) {
     auto profile = new_profile();
-    lensprof_flat_options options;
-    lensprof_flat_options_init(&options);
-    options.response = responses.data();
-    options.responses = static_cast<uint32_t>(responses.size());
     lensprof_error error{};
-    check(lensprof_profile_from_flat(profile.get(), &fit, &options, static_cast<uint32_t>(images), &error), "fit",
-          &error);
+    check(lensprof_flat_profile(&flat, profile.get(), &error), "fit", &error);
     return profile;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -35,7 +36,8 @@ struct SettingReport {
     lensprof_profile_key key;
     uint32_t camera = 0;        // index of its camera
     bool is_reference = false;  // the setting of the reference, whose values are also in the fit
-    lensprof_fit_setting found{};
+    uint32_t number = 0;        // of the setting in the fit
+    lensprof_fit_result found{};
     Verdict verdict;
     int64_t profile_id = 0;        // 0 = not stored
     bool has_same_key = false;     // the key of the stored setting
@@ -48,6 +50,7 @@ struct CameraReport {
     std::string label;          // "Canon EOS 6D"
     bool is_reference = false;  // the camera of the reference, whose values are also in the fit
     lensprof_fit_camera found{};
+    lensprof_fit_result fit{};  // its own
 };
 
 // How much the colours of a point differ between pictures: the mean over pairs of pictures and channels of half the
@@ -72,13 +75,14 @@ struct BuildReport {
     std::vector<std::string> names;
     std::vector<lensprof_exposure> exposures;  // relative to the reference
     std::vector<lensprof_fit_image_quality> quality;
-    lensprof_fit_result fit{};
-    Verdict verdict;                      // of it
-    std::vector<SettingReport> settings;  // empty if all images have one lens setting
-    std::vector<uint32_t> setting_of;     // per image; empty: one setting
-    std::vector<CameraReport> cameras;    // empty if all images are from one camera
-    std::vector<uint32_t> camera_of;      // per image; empty: one camera
-    std::vector<lensprof_link> links;     // between the images, if they were determined
+    lensprof_fit_result fit{};                 // of the setting of the reference
+    std::shared_ptr<const lensprof_fit> held;  // what it is from; NULL without a fit
+    Verdict verdict;                           // of it
+    std::vector<SettingReport> settings;       // empty if all images have one lens setting
+    std::vector<uint32_t> setting_of;          // per image; empty: one setting
+    std::vector<CameraReport> cameras;         // empty if all images are from one camera
+    std::vector<uint32_t> camera_of;           // per image; empty: one camera
+    std::vector<lensprof_link> links;          // between the images, if they were determined
     uint32_t reference = 0;
     bool is_turn_unknown = false;  // if all images have one lens setting: as in SettingReport
     bool has_falloff = true;       // else the falloff cancels in these pictures
@@ -94,9 +98,6 @@ struct BuildReport {
     std::string no_prior;            // why there was no prior, if one was requested
     bool prior_is_composed = false;  // composed of several profiles, of which prior_id is the nearest
 };
-
-// The result with the values of a lens setting and its camera instead of those of the reference.
-lensprof_fit_result result_of(const BuildReport &report, const SettingReport &setting);
 
 // Whether the result of a fit uses its prior profile, or a part of it.
 bool holds_prior(const lensprof_fit_result &fit);

@@ -30,7 +30,7 @@ lensprof_status fit_tracks(FitCall &call, const lensprof_observation *observatio
         return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                     "fit: no point has two observations that are neither black nor saturated");
     const auto fit = [&](const lensprof_fit_options &options, const Group &group, lensprof_exposure *found,
-                         lensprof_fit_result &result) {
+                         FitResult &result) {
         fit_radiance(options, call.images.data(), call.count(), within(group), found, result);
     };
     const auto pairs_within = [&](const Group &group) { return pairs_of(within(group), call.channels()); };
@@ -50,7 +50,7 @@ void fit_group(FitCall &call, const lensprof_pair *pairs, uint32_t count, lenspr
         return group_pairs;
     };
     const auto fit = [&](const lensprof_fit_options &options, const Group &group, lensprof_exposure *found,
-                         lensprof_fit_result &result) {
+                         FitResult &result) {
         const std::vector<lensprof_pair> group_pairs = pairs_within(group);
         method(options, call.images.data(), call.count(), group_pairs.data(), static_cast<uint32_t>(group_pairs.size()),
                found, result);
@@ -80,7 +80,7 @@ lensprof_status fit_pairs(FitCall &call, const lensprof_pair *pairs, uint32_t co
 namespace {
 
 // Fits one camera of several, using only its images.
-bool fit_camera(const CameraInput &input, lensprof_exposure *exposures, lensprof_fit_result &result) {
+bool fit_camera(const CameraInput &input, lensprof_exposure *exposures, FitResult &result) {
     if (!has_unknowns(input.options, input.images.data(), static_cast<uint32_t>(input.images.size()))) return false;
     FitCall call;
     call.options = input.options;

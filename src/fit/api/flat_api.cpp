@@ -3,6 +3,7 @@
 #include <memory>
 #include <new>
 
+#include "fit/api/held.hpp"
 #include "fit/api/profile.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/sized.hpp"
@@ -10,14 +11,21 @@
 
 using namespace lensprof;
 
+struct lensprof_flat {
+    uint32_t mark;  // kHeldFlat until the fit is released
+    uint32_t is_own_memory, responses, reserved;
+    lensprof_flat_result *result;
+    lensprof_response *response;  // 3, of which `responses` are used
+    lensprof_flat_image_quality *quality;
+};
+
 namespace {
 
 constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr double kLargestTurn = 360.0;
-constexpr size_t kFirstFlatOptions = LP_END_OF(lensprof_flat_options, progress_user);
-constexpr size_t kFirstFlatImage = LP_END_OF(lensprof_flat_image, turn_deg);
-constexpr size_t kFirstFlatResult = LP_END_OF(lensprof_flat_result, image_quality);
-constexpr size_t kFirstQuality = LP_END_OF(lensprof_flat_image_quality, reserved);
+constexpr size_t kFirstFlatOptions = sizeof(lensprof_flat_options);
+constexpr size_t kFirstFlatImage = sizeof(lensprof_flat_image);
+constexpr uint32_t kHeldFlat = 0x4c504643u;
 
 // The first option that is out of range, with its range; NULL if all are valid.
 const char *broken_option(const lensprof_flat_options &o) {
@@ -83,27 +91,25 @@ lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_
 struct Call {
     lensprof_flat_options options;
     std::vector<lensprof_flat_image> images;
-    lensprof_flat_result result;
+    FlatResult result;
     std::vector<lensprof_flat_image_quality> quality;
 };
 
 lensprof_status take_call(const lensprof_flat_options *options, const lensprof_flat_image *images, uint32_t count,
-                          const lensprof_flat_result &result, Call &call, lensprof_error *error) {
-    lensprof_status status =
-        check_result(result, kFirstFlatResult, kFirstQuality, result.image_quality, "flat result", error);
-    if (status != LENSPROF_OK) return status;
+                          Call &call, lensprof_error *error) {
     lensprof_flat_options_init(&call.options);
     if (const char *wrong = lp_sized_take(&call.options, options, kFirstFlatOptions))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat options: %s", wrong);
-    status = check_options(call.options, count, error);
+    lensprof_status status = check_options(call.options, count, error);
     auto init = [](lensprof_flat_image &image, uint32_t) { lensprof_flat_image_init(&image); };
     if (status == LENSPROF_OK)
         status = take_all(images, count, kFirstFlatImage, LENSPROF_ITEM_IMAGE, init, call.images, error);
     for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++)
         status = check_image(call.options, call.images.data(), i, error);
     lensprof_flat_result_init(&call.result);
-    if (result.image_quality) call.quality.resize(count);
-    call.result.image_quality = result.image_quality ? call.quality.data() : nullptr;
+    if (status == LENSPROF_OK) call.quality.resize(count);
+    call.result.image_quality = call.quality.data();
+    call.result.images = count;
     return status;
 }
 
@@ -119,6 +125,25 @@ lensprof_status run(Call &call, lensprof_error *error) {
             LENSPROF_ERROR_NO_SAMPLES, error,
             "no part of a card lies between black and white; check exposures, limits, and the position of the card");
     return LENSPROF_OK;
+}
+
+// The fit of a finished call in memory[lensprof_flat_bytes].
+lensprof_flat *make_flat(const Call &call, void *memory, bool is_own) {
+    auto *block = static_cast<char *>(memory);
+    lensprof_flat &flat = *take_block<lensprof_flat>(block, 1);
+    flat = {};
+    flat.is_own_memory = is_own;
+    flat.result = take_block<lensprof_flat_result>(block, 1);
+    flat.response = take_block<lensprof_response>(block, 3);
+    flat.quality = take_block<lensprof_flat_image_quality>(block, call.quality.size());
+    *flat.result = call.result;
+    flat.responses = call.options.response ? call.options.responses : 1;
+    lensprof_response_set_linear(&flat.response[0]);
+    if (call.options.response) std::copy_n(call.options.response, flat.responses, flat.response);
+    std::copy(call.quality.begin(), call.quality.end(), flat.quality);
+    for (size_t i = 0; i < call.quality.size(); i++) flat.quality[i].struct_size = sizeof flat.quality[i];
+    flat.mark = kHeldFlat;
+    return &flat;
 }
 
 }  // namespace
@@ -141,20 +166,32 @@ void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t siz
     options->prior_weight = 1.0;
 }
 
-void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size, size_t image_quality_size) {
-    if (lp_sized_begin(result, size, kFirstFlatResult))
-        result->image_quality_size = static_cast<uint32_t>(image_quality_size);
+void lensprof_flat_image_quality_init_sized(lensprof_flat_image_quality *quality, size_t size) {
+    lp_sized_begin(quality, size, sizeof *quality);
+}
+
+void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size) {
+    lp_sized_begin(result, size, sizeof *result);
+}
+
+size_t lensprof_flat_bytes(uint32_t image_count) {
+    if (image_count == 0 || image_count > LENSPROF_FLAT_IMAGES) return 0;
+    return sizeof(lensprof_flat) + sizeof(lensprof_flat_result) + 3 * sizeof(lensprof_response)
+           + image_count * sizeof(lensprof_flat_image_quality);
 }
 
 lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const lensprof_flat_image *images,
-                                  uint32_t image_count, lensprof_flat_result *result, lensprof_error *error) {
+                                  uint32_t image_count, void *memory, size_t size, lensprof_flat **flat,
+                                  lensprof_error *error) {
     clear(error);
-    if (!options || !images || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: a pointer is NULL");
+    if (!options || !images || !flat) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: a pointer is NULL");
     try {
         const auto call = std::make_unique<Call>();
-        lensprof_status status = take_call(options, images, image_count, *result, *call, error);
+        lensprof_status status = take_call(options, images, image_count, *call, error);
+        const size_t bytes = lensprof_flat_bytes(image_count);
+        if (status == LENSPROF_OK) status = check_place({memory, size}, bytes, "flat", error);
         if (status == LENSPROF_OK) status = run(*call, error);
-        if (status == LENSPROF_OK) give_result(call->result, call->quality, result);
+        if (status == LENSPROF_OK) *flat = make_flat(*call, memory ? memory : ::operator new(bytes), !memory);
         return status;
     } catch (const Cancelled &) {
         return fail(LENSPROF_ERROR_CANCELLED, error, "flat: cancelled");
@@ -167,27 +204,33 @@ lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const le
     }
 }
 
-lensprof_status lensprof_profile_from_flat(lensprof_profile *profile, const lensprof_flat_result *result,
-                                           const lensprof_flat_options *given, uint32_t image_count,
-                                           lensprof_error *error) {
-    clear(error);
-    if (!profile || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "profile or result is NULL");
-    lensprof_flat_options options;
-    lensprof_flat_options_init(&options);
-    lensprof_flat_result flat;
-    lensprof_flat_result_init(&flat);
-    const lensprof_status status =
-        take_fitted(given, kFirstFlatOptions, options, result, kFirstFlatResult, flat, error);
+void lensprof_flat_destroy(lensprof_flat *flat) {
+    if (!flat || flat->mark != kHeldFlat) return;
+    flat->mark = 0;
+    if (flat->is_own_memory) ::operator delete(flat);
+}
+
+lensprof_status lensprof_flat_get(const lensprof_flat *flat, lensprof_flat_result *result, lensprof_error *error) {
+    const lensprof_status status = check_held(flat, result, kHeldFlat, "flat", error);
+    return status == LENSPROF_OK ? give(*flat->result, result, "flat", error) : status;
+}
+
+lensprof_status lensprof_flat_image_at(const lensprof_flat *flat, uint32_t index, lensprof_flat_image_quality *quality,
+                                       lensprof_error *error) {
+    const uint32_t count = flat && flat->mark == kHeldFlat ? flat->result->images : 0;
+    const lensprof_status status = check_part(flat, quality, kHeldFlat, "flat", index, count, "image", error);
+    return status == LENSPROF_OK ? give(flat->quality[index], quality, "flat", error) : status;
+}
+
+lensprof_status lensprof_flat_profile(const lensprof_flat *flat, lensprof_profile *profile, lensprof_error *error) {
+    const lensprof_status status = check_held(flat, profile, kHeldFlat, "flat", error);
     if (status != LENSPROF_OK) return status;
-    if (options.responses != 1 && options.responses != 3)
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "options: responses is %u; give 1 or 3", options.responses);
     const auto change = [&](lensprof_profile &target) {
-        put_result(flat, "flat", image_count, target);
-        target.responses = options.response ? options.responses : 1;
-        lensprof_response_set_linear(&target.response[0]);
-        if (options.response) std::copy_n(options.response, target.responses, target.response);
-        target.grid = flat.gain_grid;
-        target.provenance.pairs = flat.cells;
+        put_result(*flat->result, "flat", flat->result->images, target);
+        target.responses = flat->responses;
+        std::copy_n(flat->response, flat->responses, target.response);
+        target.grid = flat->result->gain_grid;
+        target.provenance.pairs = flat->result->cells;
     };
     return change_given_profile(profile, change, error);
 }

@@ -46,19 +46,4 @@ lensprof_status change_given_profile(lensprof_profile *given, Change change, len
     }
 }
 
-// Converts a result and its options to this library's struct versions; ARGUMENT if the counts are impossible for a fit.
-template <class Options, class Result>
-lensprof_status take_fitted(const Options *options, size_t first_options, Options &local_options, const Result *result,
-                            size_t first_result, Result &local_result, lensprof_error *error) {
-    if (options)
-        if (const char *wrong = lp_sized_take(&local_options, options, first_options))
-            return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "options: %s", wrong);
-    if (const char *wrong = lp_sized_take(&local_result, result, first_result))
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
-    if ((local_result.vignettings != 1 && local_result.vignettings != 3)
-        || local_result.covariance_size > LENSPROF_COVARIANCE_MAX)
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "result: not filled by a fit; pass one whose fit returned OK");
-    return LENSPROF_OK;
-}
-
 }  // namespace lensprof

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstring>
 #include <vector>
 
 #include "core/sized.h"
@@ -30,35 +29,6 @@ lensprof_status take_all(const T *given, uint32_t count, size_t first, lensprof_
         converted.push_back(next);
     }
     return LENSPROF_OK;
-}
-
-// Copies the per-image results into the caller's array, as many bytes of each as the caller's struct has.
-template <class T>
-void give_all(const std::vector<T> &quality, T *given, size_t step) {
-    for (size_t i = 0; i < quality.size(); i++)
-        std::memcpy(reinterpret_cast<char *>(given) + i * step, &quality[i], step);
-}
-
-// Rejects the caller's result, or the size of its image_quality, if it is incompatible with this library's structs.
-template <class Result, class Quality>
-lensprof_status check_result(const Result &result, size_t first, size_t first_quality, const Quality *quality,
-                             const char *item, lensprof_error *error) {
-    if (const char *wrong = lp_sized_wrong(&result, first, sizeof result))
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "%s: %s", item, wrong);
-    if (quality && (result.image_quality_size < first_quality || result.image_quality_size > sizeof *quality))
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error,
-                    "%s: image_quality_size is not set, or set by a newer lensprof; call the result's _init function",
-                    item);
-    return LENSPROF_OK;
-}
-
-// Copies the result `found` and its image_quality to the caller's; the caller's size, array and stride stay.
-template <class Result, class Quality>
-void give_result(Result &found, const std::vector<Quality> &quality, Result *given) {
-    found.image_quality = given->image_quality;
-    found.image_quality_size = given->image_quality_size;
-    if (given->image_quality) give_all(quality, given->image_quality, given->image_quality_size);
-    lp_sized_copy(given, &found);
 }
 
 }  // namespace lensprof

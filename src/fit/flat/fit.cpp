@@ -89,7 +89,7 @@ bool is_separated(const FlatFit &fit) {
     return turned && !model.own_light;
 }
 
-void fill_lens(const FlatFit &fit, lensprof_flat_result &r) {
+void fill_lens(const FlatFit &fit, FlatResult &r) {
     const FlatModel &model = fit.problem.model;
     r.vignettings = static_cast<uint32_t>(model.curves);
     for (int c = 0; c < 3; c++) r.vignetting[c] = falloff_of(model, fit.estimate.u, model.curves == 3 ? c : 0);
@@ -124,7 +124,7 @@ void take_pictures(FlatFit &fit) {
 }  // namespace
 
 bool fit_flat(const lensprof_flat_options &options, const lensprof_flat_image *images, uint32_t count,
-              lensprof_flat_result &result) {
+              FlatResult &result) {
     FlatFit fit{options, images, count, make_cell_grid(images, count), {}, {}, {}, {}, {}, {}};
     report(options, 0.0);
     take_pictures(fit);

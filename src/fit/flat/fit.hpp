@@ -5,6 +5,11 @@
 
 namespace lensprof {
 
+// The result while it is made.
+struct FlatResult : lensprof_flat_result {
+    lensprof_flat_image_quality *image_quality = nullptr;  // per picture
+};
+
 // All data of one call.
 struct FlatFit {
     const lensprof_flat_options &options;
@@ -21,14 +26,14 @@ struct FlatFit {
 
 // Throws Cancelled. False if no cell lies between black and white.
 bool fit_flat(const lensprof_flat_options &options, const lensprof_flat_image *images, uint32_t count,
-              lensprof_flat_result &result);
+              FlatResult &result);
 
 // Relative residual E / P - 1 of every cell of a shot and channel, less that of the gain grid (may be NULL); NaN for
 // cells without a residual. With `dust`, includes the cells that are left out.
 std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, const lensprof_gain_grid *gain, bool dust);
 
 // Looks for small dark spots. Adds their cells and the cells around them to left_out, and fills the result's spots.
-void find_spots(FlatFit &fit, lensprof_flat_result &result);
+void find_spots(FlatFit &fit, FlatResult &result);
 
 // Fits a grid of nodes to the residual of the falloff common to all shots; false if the cells do not cover the frame.
 bool fit_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);
@@ -37,9 +42,9 @@ bool fit_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);
 void normalise_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);
 
 // Fills everything except the verdict.
-void describe_flat(const FlatFit &fit, lensprof_flat_result &result);
+void describe_flat(const FlatFit &fit, FlatResult &result);
 
 // Fills `usable` and `reason`.
-void judge_flat(const FlatFit &fit, lensprof_flat_result &result);
+void judge_flat(const FlatFit &fit, FlatResult &result);
 
 }  // namespace lensprof

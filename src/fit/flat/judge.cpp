@@ -62,7 +62,7 @@ Worst steepest(const FlatFit &fit) {
 }
 
 // The picture whose exposure differs most from the others of its shot, by its index.
-Worst wrong_exposure(const FlatFit &fit, const lensprof_flat_result &r) {
+Worst wrong_exposure(const FlatFit &fit, const FlatResult &r) {
     Worst worst;
     for (uint32_t i = 0; i < fit.count && r.image_quality; i++) worst.take(std::abs(r.image_quality[i].ev_residual), i);
     return worst;
@@ -83,7 +83,7 @@ double contrast_of_light(const FlatFit &fit, uint32_t image) {
 }
 
 // Whether the response has almost no gradation in the range of the picture's grey values.
-bool has_no_gradation(const FlatFit &fit, lensprof_flat_result &r) {
+bool has_no_gradation(const FlatFit &fit, FlatResult &r) {
     for (uint32_t i = 0; i < fit.count; i++) {
         double contrast = contrast_of_light(fit, i);
         if (contrast < kSteepest) return refuse(r, of_image(LENSPROF_REASON_FLAT_RESPONSE_STEP, i, {contrast}));
@@ -92,7 +92,7 @@ bool has_no_gradation(const FlatFit &fit, lensprof_flat_result &r) {
     return false;
 }
 
-bool lacks_light(const FlatFit &fit, lensprof_flat_result &r) {
+bool lacks_light(const FlatFit &fit, FlatResult &r) {
     Worst white = worst_share_in(fit, CellState::white), black = worst_share_in(fit, CellState::black);
     if (white.value > kMuchClipped) return refuse(r, of_shot(LENSPROF_REASON_FLAT_WHITE, white.shot, {white.value}));
     if (black.value > kMuchClipped) return refuse(r, of_shot(LENSPROF_REASON_FLAT_BLACK, black.shot, {black.value}));
@@ -103,7 +103,7 @@ bool lacks_light(const FlatFit &fit, lensprof_flat_result &r) {
     return false;
 }
 
-bool contradicts_model(const FlatFit &fit, lensprof_flat_result &r) {
+bool contradicts_model(const FlatFit &fit, FlatResult &r) {
     Worst wrong = wrong_exposure(fit, r), steep = steepest(fit);
     if (wrong.value > kWrongEv)
         return refuse(r, of_image(LENSPROF_REASON_FLAT_EXPOSURE_WRONG, wrong.shot, {wrong.value}));
@@ -117,7 +117,7 @@ bool contradicts_model(const FlatFit &fit, lensprof_flat_result &r) {
     return false;
 }
 
-bool is_undetermined(const FlatFit &fit, lensprof_flat_result &r) {
+bool is_undetermined(const FlatFit &fit, FlatResult &r) {
     if (!r.converged) return refuse(r, {LENSPROF_REASON_NOT_SETTLED, {double(r.iterations)}});
     if (fit.covariance.size() == 0) return refuse(r, {LENSPROF_REASON_FLAT_UNDETERMINED, {}});
     // A residual that is not radial makes the polynomial uncertain, but not the product of polynomial and grid.
@@ -130,7 +130,7 @@ bool is_undetermined(const FlatFit &fit, lensprof_flat_result &r) {
 }
 
 // The most important warning about the card and the pictures.
-bool warns_of_card(const FlatFit &fit, lensprof_flat_result &r) {
+bool warns_of_card(const FlatFit &fit, FlatResult &r) {
     Worst wrong = wrong_exposure(fit, r), white = worst_share_in(fit, CellState::white),
           black = worst_share_in(fit, CellState::black);
     if (r.radius < kWholeRadius) return warn(r, {LENSPROF_REASON_FLAT_EXTRAPOLATED, {r.radius}});
@@ -144,7 +144,7 @@ bool warns_of_card(const FlatFit &fit, lensprof_flat_result &r) {
 }
 
 // The most important warning about light and lens.
-bool warns_of_light(const FlatFit &fit, lensprof_flat_result &r) {
+bool warns_of_light(const FlatFit &fit, FlatResult &r) {
     const auto &centre = r.vignetting[0].center;
     const double off_centre = std::hypot(centre[0], centre[1]), slant = steepest(fit).value;
     const bool by_prior =
@@ -160,7 +160,7 @@ bool warns_of_light(const FlatFit &fit, lensprof_flat_result &r) {
 
 }  // namespace
 
-void judge_flat(const FlatFit &fit, lensprof_flat_result &r) {
+void judge_flat(const FlatFit &fit, FlatResult &r) {
     if (lacks_light(fit, r) || has_no_gradation(fit, r) || contradicts_model(fit, r) || is_undetermined(fit, r)) return;
     accept(r);
     if (!warns_of_card(fit, r)) warns_of_light(fit, r);

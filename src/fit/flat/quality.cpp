@@ -115,7 +115,7 @@ double radius_of(const FlatFit &fit, const lensprof_vignetting &v, const FlatCel
     return std::sqrt(lensprof_vignetting_r2(&v, fit.grid.width, fit.grid.height, cell.x, cell.y, nullptr));
 }
 
-void describe_images(const FlatFit &fit, lensprof_flat_result &r) {
+void describe_images(const FlatFit &fit, FlatResult &r) {
     Responses responses(fit.options);
     for (size_t s = 0; s < fit.shots.size() && r.image_quality; s++) {
         const Shot &shot = fit.shots[s];
@@ -159,7 +159,7 @@ std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, cons
     return map;
 }
 
-void describe_flat(const FlatFit &fit, lensprof_flat_result &r) {
+void describe_flat(const FlatFit &fit, FlatResult &r) {
     Mean square, noise, inlier;
     r.radius = 0.0;
     for (const FlatCell &cell : fit.problem.cells) {

@@ -100,7 +100,7 @@ lensprof_flat_spot take_spot(FlatFit &fit, const std::vector<SpotMap> &maps, con
 
 }  // namespace
 
-void find_spots(FlatFit &fit, lensprof_flat_result &result) {
+void find_spots(FlatFit &fit, FlatResult &result) {
     std::vector<SpotMap> maps;
     std::vector<bool> dark(static_cast<size_t>(fit.grid.count()));
     for (int s = 0; s < fit.problem.model.shots; s++) {

@@ -50,7 +50,7 @@ struct Camera {
     bool is_fitted = false;
     uint32_t attached = 0;  // images
 
-    const lensprof_fit_result &result() const { return *found->result; }
+    const FitResult &result() const { return *found->result; }
     bool corrects() const { return is_fitted && (result().usable || result().evens); }
     uint32_t joined_images() const {
         return static_cast<uint32_t>(std::count_if(found->exposures.begin(), found->exposures.end(),
@@ -65,10 +65,10 @@ public:
         for (CameraInput &input : part_cameras(data, camera_of_)) cameras_.push_back({std::move(input), nullptr});
     }
 
-    bool run(const FitCamera &fit, lensprof_exposure *exposures, lensprof_fit_result &result);
+    bool run(const FitCamera &fit, lensprof_exposure *exposures, FitResult &result);
 
 private:
-    void fit_each(const FitCamera &fit, const lensprof_fit_result &result);
+    void fit_each(const FitCamera &fit, const FitResult &result);
     uint32_t choose_base() const;
     bool light_of(const lensprof_pair &pair, int side, const lensprof_exposure &exposure, double log_light[3],
                   double variance[3]) const;
@@ -82,8 +82,8 @@ private:
     void attach();
     void number_components();
     bool attach_image(uint32_t image, const std::vector<uint32_t> &pairs);
-    void write(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const;
-    void give_camera(uint32_t number, lensprof_fit_result &r) const;
+    void write(uint32_t base, lensprof_exposure *exposures, FitResult &result) const;
+    void give_camera(uint32_t number, FitResult &r) const;
 
     const lensprof_fit_options &options_;
     const std::vector<lensprof_fit_image> &images_;
@@ -95,7 +95,7 @@ private:
     std::vector<lensprof_fit_image_quality> quality_;  // of the same images
 };
 
-void CamerasFit::fit_each(const FitCamera &fit, const lensprof_fit_result &result) {
+void CamerasFit::fit_each(const FitCamera &fit, const FitResult &result) {
     double done = 0.0;  // share of the images
     for (Camera &camera : cameras_) {
         const double share = static_cast<double>(camera.input.images.size()) / static_cast<double>(images_.size());
@@ -133,7 +133,7 @@ bool CamerasFit::light_of(const lensprof_pair &pair, int side, const lensprof_ex
     const Camera &camera = cameras_[camera_of_[pair.image[side]]];
     const lensprof_fit_image &image = images_[pair.image[side]];
     if (!camera.corrects() || !camera.found->settings[image.setting].images || std::isnan(exposure.ev)) return false;
-    const lensprof_fit_result &r = camera.result();
+    const FitResult &r = camera.result();
     const lensprof_vignetting *curves = camera.found->settings[image.setting].vignetting;
     const double noise = std::max(r.noise_levels, 0.5) / 255.0;
     for (uint32_t c = 0; c < options_.channels; c++) {
@@ -176,7 +176,7 @@ std::vector<LightPair> CamerasFit::light_pairs() const {
 // white.
 double CamerasFit::response_variance(uint32_t number) const {
     const Camera &camera = cameras_[number];
-    const lensprof_fit_result &r = camera.result();
+    const FitResult &r = camera.result();
     const double at_white = r.response_from == LENSPROF_FIT_RESPONSE_OPTIONS ? 0.0 : kWhiteSigma * kWhiteSigma;
     const uint32_t modes = lp_covariance_modes(&r.response, 1), size = r.covariance_size;
     if (!modes || size < modes) return at_white;
@@ -280,7 +280,7 @@ void CamerasFit::join(uint32_t base) {
 void CamerasFit::raise(uint32_t number, double gamma_sigma, uint32_t gamma_from, std::array<double, 3> &shift) {
     const Joint &joint = joints_[number];
     Camera &camera = cameras_[number];
-    lensprof_fit_result &r = *camera.found->result;
+    FitResult &r = *camera.found->result;
     const lensprof_exposure &zero = camera.found->exposures[r.reference];
     for (uint32_t c = 0; c < options_.channels; c++)
         shift[c] = (std::exp(joint.log_gamma) - 1.0)
@@ -397,10 +397,11 @@ void renumber(const std::vector<uint32_t> &numbers, Verdict &verdict) {
 }
 
 // Writes a camera and its settings to the result.
-void CamerasFit::give_camera(uint32_t number, lensprof_fit_result &r) const {
+void CamerasFit::give_camera(uint32_t number, FitResult &r) const {
     const Camera &camera = cameras_[number];
     const Joint &joint = joints_[number];
-    lensprof_fit_camera &to = r.cameras[camera.input.number];
+    CameraResult &result = r.cameras[camera.input.number];
+    lensprof_fit_camera &to = result.joint;
     to.images = camera.is_fitted ? camera.joined_images() : 0;
     to.attached = camera.attached;
     to.joined = camera.is_fitted && joint.joined;
@@ -410,7 +411,7 @@ void CamerasFit::give_camera(uint32_t number, lensprof_fit_result &r) const {
     to.light_difference_ev = joint.residual / kLn2;
     to.log_gamma = joint.log_gamma;
     to.offset_sigma_ev = joint.offset_sigma / kLn2;
-    copy_camera(camera.result(), to);
+    copy_camera(camera.result(), result);
     to.reference = camera.input.numbers[camera.result().reference];
     to.setting = images_[to.reference].setting;
     for (const lensprof_fit_image &image : camera.input.images) {
@@ -419,9 +420,9 @@ void CamerasFit::give_camera(uint32_t number, lensprof_fit_result &r) const {
     }
 }
 
-void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const {
+void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &result) const {
     const Camera &first = cameras_[base];
-    lensprof_fit_result r = first.result();
+    FitResult r = first.result();
     r.image_quality = result.image_quality;
     r.settings = result.settings, r.setting_count = result.setting_count;
     r.cameras = result.cameras, r.camera_count = result.camera_count;
@@ -435,7 +436,10 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, lensprof_fit
     const auto left_out =
         static_cast<uint32_t>(std::find_if(exposures_.begin(), exposures_.end(), is_out) - exposures_.begin());
     const bool are_few = 2 * r.left_out > images_.size();  // that agree
-    if (are_few) r.evens = 0;
+    if (are_few) {
+        r.evens = 0;
+        for (uint32_t k = 0; k < r.camera_count; k++) r.cameras[k].evens = 0;
+    }
     for_each_verdict(r, [&](auto &verdict) {
         const uint32_t code = verdict.reason_code;
         const bool is_lesser = code == LENSPROF_REASON_NONE || is_of_greys(code);
@@ -447,7 +451,7 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, lensprof_fit
     result = r;
 }
 
-bool CamerasFit::run(const FitCamera &fit, lensprof_exposure *exposures, lensprof_fit_result &result) {
+bool CamerasFit::run(const FitCamera &fit, lensprof_exposure *exposures, FitResult &result) {
     fit_each(fit, result);
     const uint32_t base = choose_base();
     if (!cameras_[base].is_fitted) return false;
@@ -467,8 +471,7 @@ bool has_several_cameras(const lensprof_fit_options &options, const std::vector<
                           [&](const lensprof_fit_image &image) { return image.camera != images[0].camera; });
 }
 
-bool fit_cameras(const CamerasData &data, const FitCamera &fit, lensprof_exposure *exposures,
-                 lensprof_fit_result &result) {
+bool fit_cameras(const CamerasData &data, const FitCamera &fit, lensprof_exposure *exposures, FitResult &result) {
     return CamerasFit(data).run(fit, exposures, result);
 }
 

@@ -104,7 +104,7 @@ public:
           split_(split_pairs(pair_count, static_cast<uint32_t>(images_.size()))),
           all_(problem(split_.all)) {}
 
-    void run(lensprof_exposure *exposures, lensprof_fit_result &result) const;
+    void run(lensprof_exposure *exposures, FitResult &result) const;
 
 private:
     Problem problem(const std::vector<uint32_t> &keep) const {
@@ -120,7 +120,7 @@ private:
         set_log_inverse(g, estimate);
         return estimate;
     }
-    void judge_exposures(const Estimate &estimate, bool is_rising, lensprof_fit_result &r) const;
+    void judge_exposures(const Estimate &estimate, bool is_rising, FitResult &r) const;
 
     const lensprof_fit_options &options_;
     const std::vector<lensprof_fit_image> images_;
@@ -130,7 +130,7 @@ private:
 };
 
 // Detects exposures that make the equations of the response uninformative or wrong.
-void Fit::judge_exposures(const Estimate &estimate, bool is_rising, lensprof_fit_result &r) const {
+void Fit::judge_exposures(const Estimate &estimate, bool is_rising, FitResult &r) const {
     const double usual = exposure_spread(all_, estimate);
     if (usual >= kSmallestSpread && is_rising) return;
     if (usual < kSmallestSpread)
@@ -139,7 +139,7 @@ void Fit::judge_exposures(const Estimate &estimate, bool is_rising, lensprof_fit
         refuse(r, {LENSPROF_REASON_KNOWN_REVERSED, {}});
 }
 
-void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) const {
+void Fit::run(lensprof_exposure *exposures, FitResult &result) const {
     const bool has_heldout = split_.has_heldout();
     bool is_rising;
     advance(0.0);
@@ -154,7 +154,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) const {
     finish(
         {all_, gauge, estimate, has_heldout ? problem(split_.heldout) : all_, train, has_heldout,
          estimate_noise(all_, estimate, kFirstNoise), Covariance(), 1, true},
-        [&](lensprof_fit_result &r) { judge_exposures(estimate, is_rising, r); }, exposures, result);
+        [&](FitResult &r) { judge_exposures(estimate, is_rising, r); }, exposures, result);
 }
 
 }  // namespace
@@ -165,8 +165,7 @@ double known_exposure(const lensprof_fit_image *images, uint32_t reference, uint
 }
 
 void fit_debevec(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                 const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
-                 lensprof_fit_result &result) {
+                 const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures, FitResult &result) {
     std::vector<lensprof_fit_image> held(images, images + image_count);
     for (uint32_t i = 0; i < image_count; i++) {
         held[i].exposure.ev = images[images[i].ev_of].free & LENSPROF_FREE_EV

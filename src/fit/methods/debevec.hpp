@@ -4,12 +4,13 @@
 
 #include <lensprof/fit.h>
 
+#include "fit/verdict/result.hpp"
+
 namespace lensprof {
 
 // The known exposures of the images are taken as exact; white balances and falloff are as given.
 void fit_debevec(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                 const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
-                 lensprof_fit_result &result);
+                 const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures, FitResult &result);
 
 // The known exposure of an image, EV, relative to the reference, whose own exposure stays as given.
 double known_exposure(const lensprof_fit_image *images, uint32_t reference, uint32_t i);

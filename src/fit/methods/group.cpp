@@ -26,7 +26,7 @@ public:
         group_.reference = options.reference;
     }
 
-    void run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_fit_result &result);
+    void run(const FitGroup &fit, lensprof_exposure *exposures, FitResult &result);
 
 private:
     Problem problem(uint32_t reference) const;
@@ -34,13 +34,13 @@ private:
     void join_all();
     bool take_largest(const Problem &all);
     void choose_reference();
-    bool leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r);
-    std::vector<uint32_t> undetermined(const lensprof_exposure *exposures, const lensprof_fit_result &r) const;
-    bool break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r);
-    void note_quality(const lensprof_fit_result &r);
-    void describe(lensprof_exposure *exposures, lensprof_fit_result &r) const;
+    bool leave_out(const lensprof_exposure *exposures, const FitResult &r);
+    std::vector<uint32_t> undetermined(const lensprof_exposure *exposures, const FitResult &r) const;
+    bool break_links(const lensprof_exposure *exposures, const FitResult &r);
+    void note_quality(const FitResult &r);
+    void describe(lensprof_exposure *exposures, FitResult &r) const;
     template <class Verdict>
-    void warn_of_links(const lensprof_fit_result &all, Verdict &r) const;
+    void warn_of_links(const FitResult &all, Verdict &r) const;
     bool disagrees(uint32_t image) const;
     Reason left_out_reason(uint32_t all) const;
     uint32_t count_unverified(uint32_t &first) const;
@@ -129,7 +129,7 @@ void GroupFit::choose_reference() {
 }
 
 // For each setting of the problem.
-std::vector<Falloffs> falloffs_of(const Problem &problem, const lensprof_fit_result &r) {
+std::vector<Falloffs> falloffs_of(const Problem &problem, const FitResult &r) {
     std::vector<Falloffs> falloffs;
     for (uint32_t number : problem.setting_number) {
         const lensprof_vignetting *vignetting = r.settings ? r.settings[number].vignetting : r.vignetting;
@@ -139,7 +139,7 @@ std::vector<Falloffs> falloffs_of(const Problem &problem, const lensprof_fit_res
 }
 
 // Breaks the links with almost no pair that agrees with the result. Returns whether there are any.
-bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
+bool GroupFit::break_links(const lensprof_exposure *exposures, const FitResult &r) {
     Problem judged = problem();
     judged.vignettings = static_cast<int>(r.vignettings);
     const Estimate estimate = estimate_of(r.response, falloffs_of(judged, r), exposures, count_, judged.channels);
@@ -157,7 +157,7 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fi
 }
 
 // The images that have the fault of the verdict, which is about the exposure of the first or worst of them.
-std::vector<uint32_t> GroupFit::undetermined(const lensprof_exposure *exposures, const lensprof_fit_result &r) const {
+std::vector<uint32_t> GroupFit::undetermined(const lensprof_exposure *exposures, const FitResult &r) const {
     std::vector<uint32_t> images;
     if (r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE)
         for (const FewInliers &few : images_with_few_inliers(problem(group_.reference), r)) images.push_back(few.image);
@@ -170,7 +170,7 @@ std::vector<uint32_t> GroupFit::undetermined(const lensprof_exposure *exposures,
 
 // Breaks links that disagree; otherwise leaves out the image that the verdict is about, and with it all that have the
 // same fault, unless most have: then the fault is the reference's. Returns whether the group changed.
-bool GroupFit::leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
+bool GroupFit::leave_out(const lensprof_exposure *exposures, const FitResult &r) {
     const bool any = break_links(exposures, r);
     const bool is_image_reason = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE
                                  || r.reason_code == LENSPROF_REASON_IMAGE_DISAGREES
@@ -220,14 +220,14 @@ Reason GroupFit::left_out_reason(uint32_t all) const {
 }
 
 // Stores the quality that the last fit reports for its images.
-void GroupFit::note_quality(const lensprof_fit_result &r) {
+void GroupFit::note_quality(const FitResult &r) {
     for (uint32_t i = 0; i < count_; i++) was_fitted_[i] = was_fitted_[i] || group_.joined[i];
     quality_.resize(r.image_quality ? count_ : 0);
     for (uint32_t i = 0; i < quality_.size(); i++)
         if (group_.joined[i]) quality_[i] = r.image_quality[i];
 }
 
-void GroupFit::describe(lensprof_exposure *exposures, lensprof_fit_result &r) const {
+void GroupFit::describe(lensprof_exposure *exposures, FitResult &r) const {
     r.reference = group_.reference;
     r.left_out = static_cast<uint32_t>(std::count(group_.joined.begin(), group_.joined.end(), false));
     r.components = 0;
@@ -247,7 +247,7 @@ void GroupFit::describe(lensprof_exposure *exposures, lensprof_fit_result &r) co
 
 // Rejects a group that is too small; otherwise warns about data that contradict each other.
 template <class Verdict>
-void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
+void GroupFit::warn_of_links(const FitResult &all, Verdict &r) const {
     const auto first = std::find(group_.joined.begin(), group_.joined.end(), false) - group_.joined.begin();
     const auto image = static_cast<uint32_t>(first);
     if (2 * all.left_out >= count_) {
@@ -277,7 +277,7 @@ void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
         warn(r, of_image(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, {double(count)}));
 }
 
-void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_fit_result &result) {
+void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, FitResult &result) {
     const Problem all = problem();
     component_ = all.component;
     for (const Edge &edge : all.edges) had_pairs_[edge.image[0]] = had_pairs_[edge.image[1]] = true;
@@ -305,7 +305,7 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
 
 void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                        const PairsWithin &pairs_within, const FitGroup &fit, lensprof_exposure *exposures,
-                       lensprof_fit_result &result) {
+                       FitResult &result) {
     GroupFit(options, images, image_count, pairs_within).run(fit, exposures, result);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fit/problem/problem.hpp"
+#include "fit/verdict/result.hpp"
 
 namespace lensprof {
 
@@ -26,13 +27,13 @@ using PairsWithin = std::function<std::vector<lensprof_pair>(const Group &group)
 
 // Fits the data of a group's images and links with the given options.
 using FitGroup = std::function<void(const lensprof_fit_options &options, const Group &group,
-                                    lensprof_exposure *exposures, lensprof_fit_result &result)>;
+                                    lensprof_exposure *exposures, FitResult &result)>;
 
 // Fits all images. If links contradict the others, or the result cannot determine an image's exposure, fits again
 // without them, using the largest group of images that is still connected. Images outside of it have an ev of NaN. A
 // group of half of the images or fewer is rejected.
 void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                        const PairsWithin &pairs_within, const FitGroup &fit, lensprof_exposure *exposures,
-                       lensprof_fit_result &result);
+                       FitResult &result);
 
 }  // namespace lensprof

@@ -64,13 +64,13 @@ public:
           count_(count),
           alone_(options, image_count, make, count, nullptr, 0.0, options.profile ? 0.5 : 1.0) {}
 
-    void run(lensprof_exposure *exposures, lensprof_fit_result &r) {
+    void run(lensprof_exposure *exposures, FitResult &r) {
         run_with_profile(exposures, r);
         prefer_simpler({options_, image_count_, make_, count_}, informed_ ? *informed_ : alone_, exposures, r);
     }
 
 private:
-    void run_with_profile(lensprof_exposure *exposures, lensprof_fit_result &r) {
+    void run_with_profile(lensprof_exposure *exposures, FitResult &r) {
         alone_.run();
         alone_.describe(exposures, r);
         if (!options_.profile) return;
@@ -97,8 +97,8 @@ private:
     }
 
     // Stores the fit in `r` and `informed` if the pictures do not contradict this part of the profile.
-    Contradiction attempt(const Part &part, lensprof_exposure *exposures, const lensprof_fit_result &alone,
-                          lensprof_fit_result &r, std::unique_ptr<OverlapFit> &informed) {
+    Contradiction attempt(const Part &part, lensprof_exposure *exposures, const FitResult &alone, FitResult &r,
+                          std::unique_ptr<OverlapFit> &informed) {
         const auto profile = part_of(*options_.profile, part);
         if (!profile) return {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
         auto fit = std::make_unique<OverlapFit>(options_, image_count_, make_, count_, profile.get(),
@@ -130,7 +130,7 @@ private:
 };
 
 void run_fits(const lensprof_fit_options &options, uint32_t image_count, const OverlapFit::Make &make, uint32_t count,
-              lensprof_exposure *exposures, lensprof_fit_result &result) {
+              lensprof_exposure *exposures, FitResult &result) {
     Output output(result, exposures, image_count);  // the caller's stay unchanged until all is done
     output.result->profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
     InformedFit(options, image_count, make, count).run(output.exposures.data(), *output.result);
@@ -140,47 +140,47 @@ void run_fits(const lensprof_fit_options &options, uint32_t image_count, const O
 }  // namespace
 
 void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                 const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
-                 lensprof_fit_result &result) {
+                 const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures, FitResult &result) {
     auto make = [&](const lensprof_fit_options &of_fit, const std::vector<uint32_t> &keep) {
         return make_problem(of_fit, images, image_count, pairs, keep);
     };
     run_fits(options, image_count, make, pair_count, exposures, result);
     resolve_unobserved_response(
         options, image_count,
-        [&](const lensprof_fit_options &held, lensprof_exposure *held_exposures, lensprof_fit_result &r) {
+        [&](const lensprof_fit_options &held, lensprof_exposure *held_exposures, FitResult &r) {
             fit_overlap(held, images, image_count, pairs, pair_count, held_exposures, r);
         },
         exposures, result);
 }
 
 void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                  const Tracks &tracks, lensprof_exposure *exposures, lensprof_fit_result &result) {
+                  const Tracks &tracks, lensprof_exposure *exposures, FitResult &result) {
     auto make = [&](const lensprof_fit_options &of_fit, const std::vector<uint32_t> &keep) {
         return make_problem(of_fit, images, image_count, tracks, keep);
     };
     run_fits(options, image_count, make, static_cast<uint32_t>(tracks.tracks.size()), exposures, result);
     resolve_unobserved_response(
         options, image_count,
-        [&](const lensprof_fit_options &held, lensprof_exposure *held_exposures, lensprof_fit_result &r) {
+        [&](const lensprof_fit_options &held, lensprof_exposure *held_exposures, FitResult &r) {
             fit_radiance(held, images, image_count, tracks, held_exposures, r);
         },
         exposures, result);
 }
 
-Summary transfer_summary(const lensprof_response &response, const lensprof_vignetting vignetting[3],
-                         const lensprof_fit_image *images, const lensprof_exposure *exposures, uint32_t image_count,
-                         const lensprof_pair *pairs, uint32_t pair_count, int channels) {
+std::vector<double> transfer_levels(const lensprof_response &response, const std::vector<Falloffs> &falloffs,
+                                    const std::vector<lensprof_fit_image> &images, const lensprof_exposure *exposures,
+                                    const std::vector<lensprof_pair> &pairs, int channels) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
     options.channels = static_cast<uint32_t>(channels);
-    std::vector<uint32_t> keep(pair_count);
+    std::vector<uint32_t> keep(pairs.size());
     std::iota(keep.begin(), keep.end(), 0u);
-    Problem problem = make_problem(options, images, image_count, pairs, keep);
+    const auto image_count = static_cast<uint32_t>(images.size());
+    Problem problem = make_problem(options, images.data(), image_count, pairs.data(), keep);
     problem.vignettings = channels;
-    const std::vector<Falloffs> curves(static_cast<size_t>(problem.settings),
-                                       {vignetting[0], vignetting[1], vignetting[2]});
-    return summarise(residual_levels(problem, estimate_of(response, curves, exposures, image_count, channels)));
+    std::vector<Falloffs> curves;
+    for (const uint32_t setting : problem.setting_number) curves.push_back(falloffs[setting]);
+    return residual_levels(problem, estimate_of(response, curves, exposures, image_count, channels));
 }
 
 }  // namespace lensprof

@@ -396,7 +396,7 @@ double OverlapFit::worse_than(const OverlapFit &other) const {
     return error > 0.0 ? difference / error : 0.0;
 }
 
-void OverlapFit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
+void OverlapFit::describe(lensprof_exposure *exposures, FitResult &result) {
     Loss last = found_.used;
     last.noise = estimate_noise(all_, found_.estimate, found_.used.noise);
     const Covariance found = covariance(all_, prior_, gauge_, last, found_.estimate, &inflation_);

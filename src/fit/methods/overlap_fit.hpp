@@ -8,6 +8,7 @@
 #include "fit/methods/lens_weight.hpp"
 #include "fit/methods/method.hpp"
 #include "fit/prior/stored_prior.hpp"
+#include "fit/verdict/result.hpp"
 
 namespace lensprof {
 
@@ -52,11 +53,11 @@ public:
     bool predicts_better_than(const OverlapFit &simpler) const;
     bool predicts_better_than_nothing() const;
 
-    double falloff_distance(const lensprof_fit_result &alone) const { return stored_->falloff_distance(alone); }
-    double response_distance(const lensprof_fit_result &alone) const { return stored_->response_distance(alone); }
+    double falloff_distance(const FitResult &alone) const { return stored_->falloff_distance(alone); }
+    double response_distance(const FitResult &alone) const { return stored_->response_distance(alone); }
     double gamma_distance() const { return gauge_.contradiction(found_.estimate); }
 
-    void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
+    void describe(lensprof_exposure *exposures, FitResult &result);
 
 private:
     struct Fitted {

@@ -65,7 +65,7 @@ private:
 }  // namespace
 
 void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<uint32_t> &settings,
-                  std::vector<lensprof_exposure> &exposures, lensprof_fit_result &r) {
+                  std::vector<lensprof_exposure> &exposures, FitResult &r) {
     const double gamma = std::exp(log_gamma), old_sigma = std::max(r.gamma_sigma, 0.0), stated = sigma;
     sigma = std::max(sigma, 0.0);
     const uint32_t modes = lp_covariance_modes(&r.response, 1), size = r.covariance_size;
@@ -96,7 +96,7 @@ void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<
 }
 
 void offset_exposures(const Offset &offset, uint32_t channels, std::vector<lensprof_exposure> &exposures,
-                      lensprof_fit_result &r) {
+                      FitResult &r) {
     const size_t measured = channels == 3 ? 1 : 0;
     for (size_t i = 0; i < exposures.size(); i++) {
         lensprof_exposure &e = exposures[i];

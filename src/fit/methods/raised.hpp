@@ -8,6 +8,8 @@
 
 #include <lensprof/fit.h>
 
+#include "fit/verdict/result.hpp"
+
 namespace lensprof {
 
 // Raises response, falloffs and exposures of a result to the exponent exp(log_gamma), whose standard error is then
@@ -15,7 +17,7 @@ namespace lensprof {
 // are not `free` (LENSPROF_FREE_K1.._K3) stay. `settings`: the settings of the result that are its own. Exposures are
 // relative to its reference's.
 void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<uint32_t> &settings,
-                  std::vector<lensprof_exposure> &exposures, lensprof_fit_result &result);
+                  std::vector<lensprof_exposure> &exposures, FitResult &result);
 
 // Difference of the light of images, natural logarithm, with its standard errors: of the channel in which exposures are
 // measured, and of the other channels relative to it.
@@ -27,6 +29,6 @@ struct Offset {
 
 // Multiplies the light of all images by adjusting their exposures.
 void offset_exposures(const Offset &offset, uint32_t channels, std::vector<lensprof_exposure> &exposures,
-                      lensprof_fit_result &result);
+                      FitResult &result);
 
 }  // namespace lensprof

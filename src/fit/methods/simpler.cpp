@@ -16,7 +16,7 @@ constexpr uint32_t kLensFlags = kFalloffFlags | LENSPROF_FREE_CENTER;
 
 // Whether a simpler description is possible, and may explain the verdict. Verdicts about single images are about the
 // data: the group of images changes first (group.hpp). Few grey values show a falloff, but no response (unshown.hpp).
-bool may_be_simpler(const lensprof_fit_options &options, const lensprof_fit_result &r) {
+bool may_be_simpler(const lensprof_fit_options &options, const FitResult &r) {
     if (!(options.prior_weight > 0.0) || !(options.free & (LENSPROF_FREE_RESPONSE | kLensFlags))) return false;
     switch (r.reason_code) {
     case LENSPROF_REASON_FEW_BEHIND_EXPOSURE:
@@ -29,7 +29,7 @@ bool may_be_simpler(const lensprof_fit_options &options, const lensprof_fit_resu
 }
 
 // Whether M of all falloffs that were free is that of a lens, or of a camera that corrects it.
-bool is_possible(const lensprof_fit_options &options, lensprof_fit_result &r) {
+bool is_possible(const lensprof_fit_options &options, FitResult &r) {
     if (!(options.free & kFalloffFlags)) return true;
     bool all = true;
     for_each_verdict(r, [&](const auto &found) {
@@ -62,8 +62,7 @@ public:
 
     const OverlapFit &fit() const { return *fit_; }
 
-    void describe(uint32_t image_count, lensprof_fit_model model, lensprof_exposure *exposures,
-                  lensprof_fit_result &r) {
+    void describe(uint32_t image_count, lensprof_fit_model model, lensprof_exposure *exposures, FitResult &r) {
         fit_->describe(exposures, r);
         r.model = model;
         if (gamma_sigma_ > 0.0) state_typical(gamma_sigma_, image_count, exposures, r);
@@ -77,7 +76,7 @@ private:
 };
 
 // Whether the profile holds a falloff that can be used for all pictures.
-bool has_falloff(const FitData &data, const lensprof_fit_result &r) {
+bool has_falloff(const FitData &data, const FitResult &r) {
     const lensprof_profile *profile = data.options.profile;
     if (!profile || r.setting_count > 1 || profile->vignettings != 1) return false;
     const uint32_t first = lp_covariance_index(lp_covariance_modes(profile->response, profile->responses), 0);
@@ -86,14 +85,14 @@ bool has_falloff(const FitData &data, const lensprof_fit_result &r) {
 
 }  // namespace
 
-void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposure *exposures, lensprof_fit_result &r) {
+void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposure *exposures, FitResult &r) {
     r.model = LENSPROF_FIT_MODEL_FULL;
     if (full.is_still() || !may_be_simpler(data.options, r)) return;
     SimplerFit only(data, lensprof_vignetting{});
     const bool is_better = full.predicts_better_than(only.fit()) && full.predicts_better_than_nothing();
     if (is_better && (r.usable || r.evens) && is_possible(data.options, r)) return;
     Output simpler(r, exposures, data.image_count);
-    lensprof_fit_result &found = *simpler.result;
+    FitResult &found = *simpler.result;
     std::unique_ptr<SimplerFit> of_lens;
     if (has_falloff(data, r)) of_lens = std::make_unique<SimplerFit>(data, data.options.profile->vignetting[0]);
     if (of_lens && of_lens->fit().predicts_better_than(only.fit()) && of_lens->fit().predicts_better_than_nothing())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fit/methods/overlap_fit.hpp"
+#include "fit/verdict/result.hpp"
 
 namespace lensprof {
 
@@ -16,6 +17,6 @@ struct FitData {
 // Replaces the result of `full` if it is not usable, has a falloff that no lens has, or predicts held-out pairs no
 // better: by the falloff of the profile and exposures, or by exposures and white balances alone, whichever predicts
 // them better than nothing at all. If neither does, the pictures are corrected by nothing.
-void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposure *exposures, lensprof_fit_result &r);
+void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposure *exposures, FitResult &r);
 
 }  // namespace lensprof

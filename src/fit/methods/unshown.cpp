@@ -24,7 +24,7 @@ constexpr double kMinGreys = 2.0;  // tenths of the grey values: one determines 
 
 // The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
 template <class Part>  // the result, or one of its settings
-void state_errors(const double *covariance, const lensprof_fit_result &r, Part &part) {
+void state_errors(const double *covariance, const FitResult &r, Part &part) {
     const uint32_t n = r.covariance_size, modes = LENSPROF_EMOR_MODES;
     const double gamma_sigma = r.gamma_sigma;
     for (uint32_t i = 0; i < modes && n; i++) std::copy_n(covariance + i * modes, modes, part.covariance + i * n);
@@ -40,7 +40,7 @@ void state_errors(const double *covariance, const lensprof_fit_result &r, Part &
 }
 
 // Whether the profile contains information about the response, and the pictures do not contradict it.
-bool holds_response(const lensprof_profile &profile, const lensprof_fit_result &r) {
+bool holds_response(const lensprof_profile &profile, const FitResult &r) {
     const bool is_kept =
         r.profile_prior == LENSPROF_PROFILE_PRIOR_USED || r.profile_prior == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED;
     return is_kept && !lensprof_provenance_doubts_response(&profile.provenance)
@@ -49,7 +49,7 @@ bool holds_response(const lensprof_profile &profile, const lensprof_fit_result &
 
 // With the differences between cameras of the kind as the error.
 void hold_typical(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
-                  lensprof_exposure *exposures, lensprof_fit_result &r) {
+                  lensprof_exposure *exposures, FitResult &r) {
     lensprof_response typical;
     std::vector<double> covariance(LENSPROF_EMOR_MODES * LENSPROF_EMOR_MODES);
     double sigma;
@@ -66,8 +66,7 @@ void hold_typical(const lensprof_fit_options &options, uint32_t image_count, con
 
 }  // namespace
 
-void state_typical(double gamma_sigma, uint32_t image_count, const lensprof_exposure *exposures,
-                   lensprof_fit_result &r) {
+void state_typical(double gamma_sigma, uint32_t image_count, const lensprof_exposure *exposures, FitResult &r) {
     r.response_from = LENSPROF_FIT_RESPONSE_KIND;
     r.gamma_from = LENSPROF_GAMMA_PRIOR;
     r.gamma_sigma = gamma_sigma;
@@ -78,7 +77,7 @@ void state_typical(double gamma_sigma, uint32_t image_count, const lensprof_expo
 }
 
 void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
-                                 lensprof_exposure *exposures, lensprof_fit_result &r) {
+                                 lensprof_exposure *exposures, FitResult &r) {
     const bool is_narrow = r.reason_code == LENSPROF_REASON_FEW_GREYS;
     const bool is_even = r.light_spread_ev < kSmallestLightSpread && r.reason_code != LENSPROF_REASON_EXPOSURES_ALIKE;
     if (r.response_from != LENSPROF_FIT_RESPONSE_PICTURES || !(options.prior_weight > 0.0)) return;

@@ -84,7 +84,7 @@ bool is_of_profile(uint32_t reason) {
 
 }  // namespace
 
-void judge_evenness(const Found &found, lensprof_fit_result &r) {
+void judge_evenness(const Found &found, FitResult &r) {
     r.evens = 0;
     if (!r.usable && !is_of_profile(r.reason_code)) return;
     const std::vector<Seam> tested = seams_of(found.tested, found.train);

@@ -2,10 +2,11 @@
 #pragma once
 
 #include "fit/verdict/finish.hpp"
+#include "fit/verdict/result.hpp"
 
 namespace lensprof {
 
 // Fills `evens`. Adds a warning to a usable result that leaves seams or contradicts many pairs.
-void judge_evenness(const Found &found, lensprof_fit_result &result);
+void judge_evenness(const Found &found, FitResult &result);
 
 }  // namespace lensprof

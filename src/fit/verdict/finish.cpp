@@ -13,8 +13,7 @@ namespace lensprof {
 namespace {
 
 // The verdict on a result that holds the numbers of one setting.
-void judge_all(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_result,
-               lensprof_fit_result &r) {
+void judge_all(const Found &found, const std::function<void(FitResult &)> &judge_result, FitResult &r) {
     judge(found.problem, found.estimate, r);
     if (r.usable && r.reason_code == LENSPROF_REASON_NONE && found.gauge.oddness() > 1.0)
         warn(r, {LENSPROF_REASON_UNUSUAL_RESPONSE, {found.gauge.oddness(), r.gamma_sigma}});
@@ -29,8 +28,8 @@ bool has_pairs(const Problem &problem, int setting) {
 }
 
 // Copies a result's values for one setting into the caller's array.
-void give_setting(const Problem &problem, int number, const lensprof_fit_result &r) {
-    lensprof_fit_setting &setting = r.settings[problem.setting_number[static_cast<size_t>(number)]];
+void give_setting(const Problem &problem, int number, const FitResult &r) {
+    SettingResult &setting = r.settings[problem.setting_number[static_cast<size_t>(number)]];
     setting.images = setting.pairs = 0;
     std::vector<bool> has_pairs(problem.image_count);
     for (const Edge &edge : problem.edges) {
@@ -45,9 +44,9 @@ void give_setting(const Problem &problem, int number, const lensprof_fit_result 
 
 }  // namespace
 
-void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_result,
-            lensprof_exposure *exposures, lensprof_fit_result &result) {
-    lensprof_fit_result r = result;
+void finish(const Found &found, const std::function<void(FitResult &)> &judge_result, lensprof_exposure *exposures,
+            FitResult &result) {
+    FitResult r = result;
     r.iterations = found.iterations;
     r.converged = found.converged;
     std::vector<lensprof_fit_image_quality> image_quality(found.problem.image_count);  // the verdict always needs it

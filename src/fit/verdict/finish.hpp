@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "fit/solver/solver.hpp"
+#include "fit/verdict/result.hpp"
 
 namespace lensprof {
 
@@ -23,7 +24,7 @@ struct Found {
 
 // Fills the result except `profile_prior` and `seconds`, and the exposures. `judge_result` adds what only the method
 // knows, after the common verdict.
-void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_result,
-            lensprof_exposure *exposures, lensprof_fit_result &result);
+void finish(const Found &found, const std::function<void(FitResult &)> &judge_result, lensprof_exposure *exposures,
+            FitResult &result);
 
 }  // namespace lensprof

@@ -61,21 +61,21 @@ size_t count_informative(const Problem &problem) {
 }
 
 // The number of pair ends in a bin that counts as "a few".
-uint32_t few_pair_ends(const lensprof_fit_result &r) { return 2 + r.pairs / 1000; }
+uint32_t few_pair_ends(const FitResult &r) { return 2 + r.pairs / 1000; }
 
 // Whether a tenth of the grey values holds more than a few samples.
-bool is_covered(const Problem &problem, const lensprof_fit_result &r, int bin) {
+bool is_covered(const Problem &problem, const FitResult &r, int bin) {
     return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * few_pair_ends(r);
 }
 
-uint32_t covered_greys(const Problem &problem, const lensprof_fit_result &r) {
+uint32_t covered_greys(const Problem &problem, const FitResult &r) {
     uint32_t covered = 0;
     for (int bin = 0; bin < LENSPROF_COVERAGE_BINS; bin++) covered += is_covered(problem, r, bin);
     return covered;
 }
 
 // The longest run of tenths without samples: [first, last).
-std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_result &r) {
+std::pair<int, int> missing_greys(const Problem &problem, const FitResult &r) {
     std::pair<int, int> longest{0, 0};
     for (int bin = 0, first = 0; bin < LENSPROF_COVERAGE_BINS; bin++) {
         if (is_covered(problem, r, bin))
@@ -94,14 +94,14 @@ double largest_offset(const lensprof_vignetting &v) { return std::max(std::abs(v
 bool fits_response(const Estimate &estimate) { return estimate.modes > 0 || estimate.is_refined; }
 
 // Outer edge of the outermost ring that holds more than a few pair ends.
-double covered_radius(const lensprof_fit_result &r) {
+double covered_radius(const FitResult &r) {
     for (int bin = LENSPROF_COVERAGE_BINS; bin > 0; bin--)
         if (r.radius_ends[bin - 1] > few_pair_ends(r)) return bin / static_cast<double>(LENSPROF_COVERAGE_BINS);
     return 0.0;
 }
 
 // Covariance of k1..k3 of a curve, with gamma held.
-void covariance_held(const lensprof_fit_result &r, int curve, double held[9]) {
+void covariance_held(const FitResult &r, int curve, double held[9]) {
     const uint32_t n = r.covariance_size;
     const uint32_t first = lp_covariance_index(r.response.modes, static_cast<uint32_t>(curve));
     for (uint32_t i = 0; i < 9; i++) {
@@ -128,7 +128,7 @@ double radius_change(const Problem &problem) {
 }
 
 // The smallest M of the falloffs that were free.
-double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
+double darkest_of(const Problem &problem, const FitResult &r) {
     double darkest = 1.0;
     for (int curve = 0; curve < problem.vignettings && frees_falloff(problem); curve++)
         darkest = std::min(darkest, course_of(r.vignetting[curve]).lowest.m);
@@ -136,7 +136,7 @@ double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
 }
 
 // The largest M of a falloff that was free, and its standard error with gamma held, if it is clearly above `limit`.
-std::vector<double> rise_above(double limit, const Problem &problem, const lensprof_fit_result &r) {
+std::vector<double> rise_above(double limit, const Problem &problem, const FitResult &r) {
     double highest = 1.0, sigma = 0.0;
     for (int curve = 0; curve < problem.vignettings && r.covariance_size && frees_falloff(problem); curve++) {
         const MAt peak = course_of(r.vignetting[curve]).highest;
@@ -150,7 +150,7 @@ std::vector<double> rise_above(double limit, const Problem &problem, const lensp
 }
 
 // Standard error of M in the corner, with gamma held.
-double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
+double corner_sigma(const Problem &problem, const FitResult &r) {
     double worst = 0.0;
     for (int curve = 0; curve < problem.vignettings && r.covariance_size; curve++) {
         double held[9];
@@ -161,7 +161,7 @@ double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
 }
 
 // The image that disagrees most with those it overlaps, if the disagreement is clear; else -1.
-int odd_image(const Problem &problem, const lensprof_fit_result &r) {
+int odd_image(const Problem &problem, const FitResult &r) {
     int worst = -1;
     double limit = std::max(kOddImage, 4.0 * r.noise_levels);
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++)
@@ -173,7 +173,7 @@ int odd_image(const Problem &problem, const lensprof_fit_result &r) {
 }
 
 // The image whose exposure the pairs leave most uncertain, if by more than `limit` EV; else -1.
-int uncertain_image(const Problem &problem, const Estimate &estimate, const lensprof_fit_result &r, double &limit) {
+int uncertain_image(const Problem &problem, const Estimate &estimate, const FitResult &r, double &limit) {
     int worst = -1;
     limit = kLargestEvSigma;
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
@@ -198,7 +198,7 @@ uint32_t apart_image(const Problem &problem) {
 }
 
 // Whether pairs are too few, too similar, or at places that carry no information.
-bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+bool lacks_data(const Problem &problem, const Estimate &estimate, FitResult &r) {
     size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
     size_t informative = count_informative(problem);
     if (r.components > 1 && problem.image_unknowns > 0 && is_static(problem))
@@ -218,7 +218,7 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
     return false;
 }
 
-bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+bool contradicts_model(const Problem &problem, const Estimate &estimate, FitResult &r) {
     // otherwise a held value does not fit
     bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & kFalloffFlags) == kFalloffFlags;
     bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
@@ -239,13 +239,13 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
 }
 
 // The first image with almost no pair that agrees.
-bool disagrees(const Problem &problem, const lensprof_fit_result &r, uint32_t &image) {
+bool disagrees(const Problem &problem, const FitResult &r, uint32_t &image) {
     for (image = 0; image < problem.image_count && r.image_quality; image++)
         if (r.image_quality[image].inliers < kSmallestImageShare * r.image_quality[image].pairs) return true;
     return false;
 }
 
-bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+bool is_undetermined(const Problem &problem, const Estimate &estimate, FitResult &r) {
     if (!r.converged) return refuse(r, {LENSPROF_REASON_NOT_SETTLED, {double(r.iterations)}});
     if (r.covariance_size == 0 && !free_columns(problem, estimate.modes).empty())
         return refuse(r, {LENSPROF_REASON_UNDETERMINED, {}});
@@ -276,7 +276,7 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
     return false;
 }
 
-bool leaves_out_any(const Problem &problem, const lensprof_fit_result &r) {
+bool leaves_out_any(const Problem &problem, const FitResult &r) {
     return r.image_quality && std::any_of(r.image_quality, r.image_quality + problem.image_count, [](const auto &q) {
                return q.known_ev_left_out != 0;
            });
@@ -284,7 +284,7 @@ bool leaves_out_any(const Problem &problem, const lensprof_fit_result &r) {
 
 // The image whose exposure is farthest from its known one, if clearly; else -1. Considers only images that are left
 // out, if there are any.
-int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
+int contradicting_image(const Problem &problem, const FitResult &r) {
     int worst = -1;
     const bool any = leaves_out_any(problem, r);
     double limit = any ? 0.0 : kContradiction;
@@ -299,7 +299,7 @@ int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
 
 // Reports how known exposures contradict each other, or the exponent of the result, if they do. For many known
 // exposures, whose errors follow from their scatter, only steps and single errors are reported (contradicting_image).
-bool warns_of_known_exposures(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+bool warns_of_known_exposures(const Problem &problem, const Estimate &estimate, FitResult &r) {
     using Explanation = KnownExposures::Explanation;
     bool open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
     KnownExposures known = compare_known(problem, estimate, open);
@@ -322,7 +322,7 @@ bool warns_of_known_exposures(const Problem &problem, const Estimate &estimate, 
 }
 
 // The most important warning about a usable result.
-bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+bool warns_of_images(const Problem &problem, const Estimate &estimate, FitResult &r) {
     if (const HeldBalance held = held_balance(problem, estimate); held.levels > 0.0)
         return warn(r, of_image(LENSPROF_REASON_BALANCES_HELD, held.image, {held.levels}));
     const int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
@@ -337,7 +337,7 @@ bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_
     return warn(r, of_image(LENSPROF_REASON_KNOWN_WRONG, image, {std::abs(r.image_quality[image].known_ev_residual)}));
 }
 
-bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+bool warns_of_model(const Problem &problem, const Estimate &estimate, FitResult &r) {
     const bool is_still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
     const double image_pattern = r.noise_levels * std::sqrt(r.image_share),
                  frame_pattern = r.noise_levels * std::sqrt(r.frame_share);
@@ -357,7 +357,7 @@ bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_f
 
 }  // namespace
 
-std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const lensprof_fit_result &r) {
+std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const FitResult &r) {
     std::vector<FewInliers> few;
     if (problem.image_unknowns == 0 || !r.image_quality) return few;
     auto held = static_cast<size_t>(problem.image_unknowns);
@@ -371,12 +371,12 @@ std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const le
     return few;
 }
 
-double ev_sigma_of_pairs(const lensprof_fit_result &r, uint32_t image, double ev) {
+double ev_sigma_of_pairs(const FitResult &r, uint32_t image, double ev) {
     const double sigma = r.image_quality[image].ev_sigma, of_gamma = std::max(r.gamma_sigma, 0.0) * ev;
     return std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
 }
 
-void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+void judge(const Problem &problem, const Estimate &estimate, FitResult &r) {
     if (lacks_data(problem, estimate, r) || contradicts_model(problem, estimate, r)
         || is_undetermined(problem, estimate, r))
         return;

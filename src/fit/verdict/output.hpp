@@ -8,6 +8,8 @@
 
 #include <lensprof/fit.h>
 
+#include "fit/verdict/result.hpp"
+
 namespace lensprof {
 
 // Copies the verdict of a result, or of one of its lens settings.
@@ -44,17 +46,20 @@ void copy_camera(const From &from, To &to) {
     to.frame_share = from.frame_share, to.image_share = from.image_share, to.light_spread_ev = from.light_spread_ev;
     std::copy(std::begin(from.grey_ends), std::end(from.grey_ends), to.grey_ends);
     to.reference = from.reference;
+    to.iterations = from.iterations, to.model = from.model, to.equal_exposures = from.equal_exposures;
+    to.falloff_prior_distance = from.falloff_prior_distance, to.center_prior_distance = from.center_prior_distance;
+    to.error_inflation = from.error_inflation;
 }
 
 struct Output {
-    std::unique_ptr<lensprof_fit_result> result;
+    std::unique_ptr<FitResult> result;
     std::vector<lensprof_exposure> exposures;
     std::vector<lensprof_fit_image_quality> quality;
-    std::vector<lensprof_fit_setting> settings;
+    std::vector<SettingResult> settings;
 
     // Starts with the contents of the caller's result.
-    Output(const lensprof_fit_result &given, const lensprof_exposure *given_exposures, uint32_t image_count)
-        : result(std::make_unique<lensprof_fit_result>(given)),
+    Output(const FitResult &given, const lensprof_exposure *given_exposures, uint32_t image_count)
+        : result(std::make_unique<FitResult>(given)),
           exposures(given_exposures, given_exposures + image_count),
           quality(image_count),
           settings(given.settings, given.settings + given.setting_count) {
@@ -63,9 +68,9 @@ struct Output {
         result->settings = settings.empty() ? nullptr : settings.data();
     }
 
-    void write(lensprof_fit_result &to, lensprof_exposure *to_exposures) const {
+    void write(FitResult &to, lensprof_exposure *to_exposures) const {
         lensprof_fit_image_quality *to_quality = to.image_quality;
-        lensprof_fit_setting *to_settings = to.settings;
+        SettingResult *to_settings = to.settings;
         to = *result;
         to.image_quality = to_quality;
         to.settings = to_settings;

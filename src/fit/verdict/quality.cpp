@@ -22,7 +22,7 @@ double radius(const Problem &problem, const Estimate &estimate, const lensprof_p
 
 uint32_t bin_of(double value) { return static_cast<uint32_t>(std::clamp(value, 0.0, 0.999) * LENSPROF_COVERAGE_BINS); }
 
-void count_greys(const Problem &problem, lensprof_fit_result &r) {
+void count_greys(const Problem &problem, FitResult &r) {
     std::fill_n(r.grey_ends, LENSPROF_COVERAGE_BINS, 0u);
     for (const auto &pair : problem.pairs)
         for (int side = 0; side < 2; side++) {
@@ -41,7 +41,7 @@ double signed_residual(const PairTransfer &t, int channels) {
 }
 
 // Fills residuals, noise and the patterns they follow, and every image's median.
-void describe_residuals(const Problem &problem, const Estimate &estimate, double noise, lensprof_fit_result &r) {
+void describe_residuals(const Problem &problem, const Estimate &estimate, double noise, FitResult &r) {
     std::vector<double> chi2 = all_chi2(problem, estimate, noise), residual(problem.pairs.size());
     std::vector<bool> is_inlier(problem.pairs.size());
     for (size_t p = 0; p < chi2.size(); p++) is_inlier[p] = chi2[p] < inlier_limit(problem.channels);
@@ -67,7 +67,7 @@ void describe_residuals(const Problem &problem, const Estimate &estimate, double
 }
 
 void describe_images(const Problem &problem, const Gauge &gauge, const Estimate &estimate, const Covariance &found,
-                     lensprof_fit_result &r) {
+                     FitResult &r) {
     if (!r.image_quality) return;
     int measured = problem.measured_channel();
     std::vector<std::vector<double>> greys(problem.image_count);
@@ -110,7 +110,7 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
 // The covariance of the data, with gamma held, and that of gamma, which moves all parameters together: for the response
 // and one setting.
 void describe_covariance(const Problem &problem, const Gauge &gauge, const Estimate &estimate, const Covariance &found,
-                         int setting, lensprof_fit_result &r) {
+                         int setting, FitResult &r) {
     int modes = static_cast<int>(r.response.modes), curves = 3 * problem.vignettings, n = modes + curves + 2;
     auto column = [&](int i) {
         if (i < modes) return i;
@@ -151,7 +151,7 @@ Summary summarise(std::vector<double> values) {
     return summary;
 }
 
-void describe_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+void describe_model(const Problem &problem, const Estimate &estimate, FitResult &r) {
     if (estimate.modes < 0)
         r.response = estimate.fixed;
     else if (lensprof_response_set_emor(&r.response, estimate.emor.data(), static_cast<uint32_t>(estimate.modes))
@@ -161,7 +161,7 @@ void describe_model(const Problem &problem, const Estimate &estimate, lensprof_f
     r.pairs = static_cast<uint32_t>(problem.pairs.size());
 }
 
-void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, lensprof_fit_result &r) {
+void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, FitResult &r) {
     Summary summary = summarise(residual_levels(tested, train));
     r.heldout_rms = is_heldout ? summary.rms : LENSPROF_UNKNOWN;
     r.heldout_median = is_heldout ? summary.median : LENSPROF_UNKNOWN;
@@ -173,7 +173,7 @@ void describe_heldout(const Problem &tested, const Estimate &train, bool is_held
 }
 
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
-                      const Estimate &estimate, lensprof_fit_result &r) {
+                      const Estimate &estimate, FitResult &r) {
     r.components = problem.component_count();
     r.reference = problem.reference;
     r.left_out = 0;
@@ -187,7 +187,7 @@ void describe_quality(const Problem &problem, const Gauge &gauge, double noise, 
 }
 
 void describe_setting(const Problem &problem, const Gauge &gauge, const Covariance &found, const Estimate &estimate,
-                      int setting, lensprof_fit_result &r) {
+                      int setting, FitResult &r) {
     const Falloffs &curves = estimate.vignetting[static_cast<size_t>(setting)];
     for (size_t c = 0; c < 3; c++) r.vignetting[c] = curves[problem.vignettings == 3 ? c : 0];
     std::fill_n(r.radius_ends, LENSPROF_COVERAGE_BINS, 0u);

@@ -3,6 +3,7 @@
 
 #include "fit/base/quantile.hpp"
 #include "fit/solver/solver.hpp"
+#include "fit/verdict/result.hpp"
 
 namespace lensprof {
 
@@ -16,20 +17,20 @@ Summary summarise(std::vector<double> values);
 std::vector<double> residual_levels(const Problem &problem, const Estimate &estimate);
 
 // Fills the response and the numbers of pairs and falloff curves.
-void describe_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &result);
+void describe_model(const Problem &problem, const Estimate &estimate, FitResult &result);
 
 // Fills the residuals of pairs that the estimate has not seen; without such pairs, only their differences before
 // correction.
-void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, lensprof_fit_result &result);
+void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, FitResult &result);
 
 // Fills noise (from that of a grey value, 0..1), inlier share, patterns, coverage of the grey values and the images'
 // quality.
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
-                      const Estimate &estimate, lensprof_fit_result &result);
+                      const Estimate &estimate, FitResult &result);
 
 // Fills the fields of one lens setting: vignetting, covariance and coverage of the frame.
 void describe_setting(const Problem &problem, const Gauge &gauge, const Covariance &found, const Estimate &estimate,
-                      int setting, lensprof_fit_result &result);
+                      int setting, FitResult &result);
 
 // Root mean square difference, EV, of overlapping pictures, over pairs and channels. Below kSmallestSpread they do not
 // determine a response without falloff: their transfer functions are the identity.
@@ -47,14 +48,14 @@ void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_
 struct FewInliers {
     uint32_t image, inliers;
 };
-std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const lensprof_fit_result &result);
+std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const FitResult &result);
 
 // Standard error, EV, that the pairs alone leave to an image's exposure: without that of gamma. `ev`: its exposure
 // relative to the reference. Above the limit the exposure is not determined.
 constexpr double kLargestEvSigma = 0.3;
-double ev_sigma_of_pairs(const lensprof_fit_result &result, uint32_t image, double ev);
+double ev_sigma_of_pairs(const FitResult &result, uint32_t image, double ev);
 
 // Fills `usable` and `reason` from everything else.
-void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &result);
+void judge(const Problem &problem, const Estimate &estimate, FitResult &result);
 
 }  // namespace lensprof

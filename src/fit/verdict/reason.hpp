@@ -8,6 +8,8 @@
 
 #include <lensprof/fit.h>
 
+#include "fit/verdict/result.hpp"
+
 namespace lensprof {
 
 // The content of a verdict.
@@ -61,7 +63,7 @@ inline bool is_of_greys(uint32_t reason) {
 
 // Calls change(verdict) for the result's verdict and those of its lens settings.
 template <class Change>
-void for_each_verdict(lensprof_fit_result &r, Change change) {
+void for_each_verdict(FitResult &r, Change change) {
     change(r);
     for (uint32_t n = 0; n < r.setting_count; n++)
         if (r.settings[n].images) change(r.settings[n]);

@@ -38,12 +38,8 @@ static double draw(uint32_t *state) {
 typedef struct setting {
     lensprof_fit_image images[IMAGES];
     lensprof_fit_options fit;
-    lensprof_fit_result result;
-    lensprof_fit_image_quality quality[IMAGES];
     lensprof_flat_options flat;
     lensprof_flat_image card;
-    lensprof_flat_result card_result;
-    lensprof_flat_image_quality card_quality;
     lensprof_sample_options sample;
     lensprof_sample_image samples[2];
     lensprof_profile profile;
@@ -61,13 +57,11 @@ static void prepare_fit(void) {
     uint32_t state = 1, count = 0;
     for (uint32_t i = 0; i < IMAGES; i++) lensprof_fit_image_init(&here.images[i], i, WIDTH, HEIGHT);
     lensprof_fit_options_init(&here.fit);
-    lensprof_fit_result_init(&here.result);
     lensprof_response_set_linear(&here.linear);
     here.fit.channels = 1;
     here.fit.free = LENSPROF_FREE_K1;
     here.fit.response = &here.linear;
     here.fit.threads = 1;
-    here.result.image_quality = here.quality;
     while (count < PAIRS) {
         lensprof_pair *pair = &here.pairs[count];
         const double radiance = 0.05 + 0.5 * draw(&state);
@@ -88,7 +82,6 @@ static void prepare_fit(void) {
 static void prepare_card(void) {
     lensprof_flat_options_init(&here.flat);
     lensprof_flat_image_init(&here.card);
-    lensprof_flat_result_init(&here.card_result);
     here.flat.channels = 1;
     here.flat.free = LENSPROF_FREE_K1;
     here.flat.grid = LENSPROF_FLAT_GRID_NONE;
@@ -102,7 +95,6 @@ static void prepare_card(void) {
                                  HEIGHT,         LENSPROF_SAMPLE_F32,      LENSPROF_LAYOUT_GREY};
     here.card.view = view;
     here.card.width = WIDTH, here.card.height = HEIGHT;
-    here.card_result.image_quality = &here.card_quality;
 }
 
 /* Two pictures of one scene, 10 degrees apart. */
@@ -144,19 +136,30 @@ static void prepare_profiles(void) {
 
 /* ---- the calls: `given` is initialised, of any size ---- */
 
-static lensprof_status fit(const lensprof_fit_options *options, const lensprof_fit_image *images,
-                           lensprof_fit_result *result, lensprof_error *error) {
+/* What a fit is asked for; NULL = nothing. */
+typedef struct parts {
+    lensprof_fit_result *result;
+    lensprof_fit_image_quality *quality;
+    lensprof_fit_camera *camera;
+} parts;
+
+static lensprof_status fit(const lensprof_fit_options *options, const lensprof_fit_image *images, parts asked,
+                           lensprof_error *error) {
     lensprof_exposure exposures[IMAGES];
-    const lensprof_status status =
-        lensprof_fit_overlap(options, images, IMAGES, here.pairs, PAIRS, exposures, result, error);
+    lensprof_fit *held = NULL;
+    lensprof_status status =
+        lensprof_fit_overlap(options, images, IMAGES, here.pairs, PAIRS, NULL, 0, exposures, &held, error);
     if (status != LENSPROF_OK) return status;
-    expect(is_near(result->vignetting[0].k[0], true_k1, 0.01), "falloff of a fit");
     for (int i = 1; i < IMAGES; i++) expect(is_near(exposures[i].ev, true_ev[i], 0.01), "exposure of a fit");
-    const char *quality = (const char *)result->image_quality;
-    for (int i = 0; i < IMAGES; i++) {
-        const lensprof_fit_image_quality *one = (const void *)(quality + (size_t)i * result->image_quality_size);
-        expect(one->pairs == 2 * PAIRS / IMAGES, "pairs of an image's quality");
-    }
+    if (asked.result) status = lensprof_fit_setting_at(held, 0, asked.result, error);
+    if (status == LENSPROF_OK && asked.result)
+        expect(is_near(asked.result->vignetting[0].k[0], true_k1, 0.01), "falloff of a fit");
+    if (asked.quality) status = lensprof_fit_image_at(held, 1, asked.quality, error);
+    if (status == LENSPROF_OK && asked.quality)
+        expect(asked.quality->pairs == 2 * PAIRS / IMAGES, "pairs of an image's quality");
+    if (asked.camera) status = lensprof_fit_camera_at(held, 0, asked.camera, error);
+    if (status == LENSPROF_OK && asked.camera) expect(asked.camera->images == IMAGES, "images of a camera");
+    lensprof_fit_destroy(held);
     return status;
 }
 
@@ -166,26 +169,37 @@ static lensprof_status call_fit_options(void *given, lensprof_error *error) {
     options->free = LENSPROF_FREE_K1;
     options->response = &here.linear;
     options->threads = 1;
-    return fit(options, here.images, &here.result, error);
+    return fit(options, here.images, (parts){0}, error);
 }
 
 static lensprof_status call_fit_images(void *given, lensprof_error *error) {
-    return fit(&here.fit, given, &here.result, error);
+    return fit(&here.fit, given, (parts){0}, error);
 }
 
 static lensprof_status call_fit_result(void *given, lensprof_error *error) {
-    lensprof_fit_result *result = given;
-    result->image_quality = here.quality;
-    return fit(&here.fit, here.images, result, error);
+    return fit(&here.fit, here.images, (parts){.result = given}, error);
+}
+
+static lensprof_status call_fit_image_quality(void *given, lensprof_error *error) {
+    return fit(&here.fit, here.images, (parts){.quality = given}, error);
+}
+
+static lensprof_status call_fit_camera(void *given, lensprof_error *error) {
+    return fit(&here.fit, here.images, (parts){.camera = given}, error);
 }
 
 static lensprof_status flat(const lensprof_flat_options *options, const lensprof_flat_image *image,
-                            lensprof_flat_result *result, lensprof_error *error) {
+                            lensprof_flat_result *result, lensprof_flat_image_quality *quality, lensprof_error *error) {
     prepare_card(); /* the pixels */
-    const lensprof_status status = lensprof_fit_flat(options, image, 1, result, error);
+    lensprof_flat *held = NULL;
+    lensprof_status status = lensprof_fit_flat(options, image, 1, NULL, 0, &held, error);
     if (status != LENSPROF_OK) return status;
-    expect(is_near(result->vignetting[0].k[0], true_k1, 0.01), "falloff of a card");
-    expect(result->image_quality->cells > 100, "cells of a picture's quality");
+    if (result) status = lensprof_flat_get(held, result, error);
+    if (status == LENSPROF_OK && result)
+        expect(is_near(result->vignetting[0].k[0], true_k1, 0.01), "falloff of a card");
+    if (quality) status = lensprof_flat_image_at(held, 0, quality, error);
+    if (status == LENSPROF_OK && quality) expect(quality->cells > 100, "cells of a picture's quality");
+    lensprof_flat_destroy(held);
     return status;
 }
 
@@ -195,20 +209,22 @@ static lensprof_status call_flat_options(void *given, lensprof_error *error) {
     options->free = LENSPROF_FREE_K1;
     options->grid = LENSPROF_FLAT_GRID_NONE;
     options->threads = 1;
-    return flat(options, &here.card, &here.card_result, error);
+    return flat(options, &here.card, NULL, NULL, error);
 }
 
 static lensprof_status call_flat_image(void *given, lensprof_error *error) {
     lensprof_flat_image *image = given;
     image->view = here.card.view;
     image->width = WIDTH, image->height = HEIGHT;
-    return flat(&here.flat, image, &here.card_result, error);
+    return flat(&here.flat, image, NULL, NULL, error);
 }
 
 static lensprof_status call_flat_result(void *given, lensprof_error *error) {
-    lensprof_flat_result *result = given;
-    result->image_quality = &here.card_quality;
-    return flat(&here.flat, &here.card, result, error);
+    return flat(&here.flat, &here.card, given, NULL, error);
+}
+
+static lensprof_status call_flat_image_quality(void *given, lensprof_error *error) {
+    return flat(&here.flat, &here.card, NULL, given, error);
 }
 
 static lensprof_status sample(const lensprof_sample_options *options, const lensprof_sample_image *images,
@@ -392,6 +408,11 @@ INIT(sample_image)
 INIT(apply_options)
 INIT(profile)
 INIT(lookup_options)
+INIT(fit_result)
+INIT(fit_image_quality)
+INIT(fit_camera)
+INIT(flat_result)
+INIT(flat_image_quality)
 INIT(lookup)
 INIT(store_stats)
 INIT(pto_image)
@@ -400,14 +421,6 @@ INIT(export_options)
 
 static void init_fit_image(void *given, size_t size, uint32_t i) {
     lensprof_fit_image_init_sized(given, size, i, WIDTH, HEIGHT);
-}
-static void init_fit_result(void *given, size_t size, uint32_t i) {
-    (void)i;
-    lensprof_fit_result_init_sized(given, size, sizeof(lensprof_fit_image_quality));
-}
-static void init_flat_result(void *given, size_t size, uint32_t i) {
-    (void)i;
-    lensprof_flat_result_init_sized(given, size, sizeof(lensprof_flat_image_quality));
 }
 
 typedef struct growing {
@@ -420,12 +433,17 @@ typedef struct growing {
 } growing;
 
 static const growing structs[] = {
-    {"fit_options", sizeof(lensprof_fit_options), 144, 1, init_fit_options, call_fit_options, 1, 0},
-    {"fit_image", sizeof(lensprof_fit_image), 80, IMAGES, init_fit_image, call_fit_images, 1, 0},
-    {"fit_result", sizeof(lensprof_fit_result), 19648, 1, init_fit_result, call_fit_result, 1, 0},
+    {"fit_options", sizeof(lensprof_fit_options), 160, 1, init_fit_options, call_fit_options, 1, 0},
+    {"fit_image", sizeof(lensprof_fit_image), 104, IMAGES, init_fit_image, call_fit_images, 1, 0},
+    {"fit_result", sizeof(lensprof_fit_result), 19752, 1, init_fit_result, call_fit_result, 1, 1},
+    {"fit_image_quality", sizeof(lensprof_fit_image_quality), 96, 1, init_fit_image_quality, call_fit_image_quality, 1,
+     1},
+    {"fit_camera", sizeof(lensprof_fit_camera), 64, 1, init_fit_camera, call_fit_camera, 1, 1},
     {"flat_options", sizeof(lensprof_flat_options), 128, 1, init_flat_options, call_flat_options, 1, 0},
     {"flat_image", sizeof(lensprof_flat_image), 104, 1, init_flat_image, call_flat_image, 1, 0},
-    {"flat_result", sizeof(lensprof_flat_result), 24456, 1, init_flat_result, call_flat_result, 1, 0},
+    {"flat_result", sizeof(lensprof_flat_result), 24488, 1, init_flat_result, call_flat_result, 1, 1},
+    {"flat_image_quality", sizeof(lensprof_flat_image_quality), 88, 1, init_flat_image_quality, call_flat_image_quality,
+     1, 1},
     {"sample_options", sizeof(lensprof_sample_options), 40, 1, init_sample_options, call_sample_options, 1, 0},
     {"sample_image", sizeof(lensprof_sample_image), 224, 2, init_sample_image, call_sample_images, 1, 0},
     {"apply_options", sizeof(lensprof_apply_options), 176, 1, init_apply_options, call_apply_options, 1, 0},

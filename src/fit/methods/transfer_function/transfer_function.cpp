@@ -67,7 +67,7 @@ public:
         if (split_.has_heldout()) heldout_ = problem(split_.heldout);
     }
 
-    void run(lensprof_exposure *exposures, lensprof_fit_result &result);
+    void run(lensprof_exposure *exposures, FitResult &result);
 
 private:
     Problem problem(const std::vector<uint32_t> &keep) const {
@@ -88,7 +88,7 @@ private:
     Candidate candidate(const State &from, int modes);
     Candidate choose_modes(const State &start);
     Estimate in_emor(const State &state) const;
-    void judge_exposures(const State &state, lensprof_fit_result &result) const;
+    void judge_exposures(const State &state, FitResult &result) const;
     double log_exponent(const Estimate &estimate, const Estimate &other) const;
     Covariance scatter(const State &state);
 
@@ -217,7 +217,7 @@ Estimate Fit::in_emor(const State &state) const {
 }
 
 // Transfer functions of pictures with equal exposures are the identity, whatever the response.
-void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
+void Fit::judge_exposures(const State &state, FitResult &r) const {
     if ((!r.usable && r.converged) || !is_free_) return;  // with equal exposures, they do not converge either
     double usual = exposure_spread(all_, state.estimate);
     if (usual < kSmallestSpread) refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {usual}});
@@ -259,7 +259,7 @@ Covariance Fit::scatter(const State &state) {
         [this] { return is_cancelled(done_); });
 }
 
-void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
+void Fit::run(lensprof_exposure *exposures, FitResult &result) {
     bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && split_.has_heldout();
     bool any_curves = may_choose_vignettings(split_.has_heldout());
     int max_rounds = std::min(static_cast<int>(std::min(options_.max_iterations, 1000u)), kLastRounds);
@@ -293,14 +293,14 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     finish(
         {all_, gauge_, estimate, split_.has_heldout() ? heldout_ : all_, best.state.estimate, split_.has_heldout(),
          estimate_noise(all_, estimate, common_.noise), found, static_cast<uint32_t>(rounds), is_still},
-        [&](lensprof_fit_result &r) { judge_exposures(last, r); }, exposures, result);
+        [&](FitResult &r) { judge_exposures(last, r); }, exposures, result);
 }
 
 }  // namespace
 
 void fit_transfer_functions(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                             const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
-                            lensprof_fit_result &result) {
+                            FitResult &result) {
     Fit(options, images, image_count, pairs, pair_count).run(exposures, result);
 }
 

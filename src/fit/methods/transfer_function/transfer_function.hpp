@@ -4,10 +4,12 @@
 
 #include <lensprof/fit.h>
 
+#include "fit/verdict/result.hpp"
+
 namespace lensprof {
 
 void fit_transfer_functions(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                             const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
-                            lensprof_fit_result &result);
+                            FitResult &result);
 
 }  // namespace lensprof
