@@ -115,9 +115,8 @@ typedef struct lensprof_flat_image_quality {
 } lensprof_flat_image_quality;
 
 /* All zero. */
-LENSPROF_API void lensprof_flat_image_quality_init_sized(lensprof_flat_image_quality *quality, size_t size);
 static inline void lensprof_flat_image_quality_init(lensprof_flat_image_quality *quality) {
-    lensprof_flat_image_quality_init_sized(quality, sizeof *quality);
+    lensprof_init_sized(quality, sizeof *quality);
 }
 
 /* Dust, or a mark on the card: a small dark place that was excluded. Frozen value struct. */
@@ -167,9 +166,8 @@ typedef struct lensprof_flat_result {
 } lensprof_flat_result;
 
 /* An empty result. */
-LENSPROF_API void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size);
 static inline void lensprof_flat_result_init(lensprof_flat_result *result) {
-    lensprof_flat_result_init_sized(result, sizeof *result);
+    lensprof_init_sized(result, sizeof *result);
 }
 
 /* Bytes of memory that a fit of this number of pictures takes; 0 beyond LENSPROF_FLAT_IMAGES. */

@@ -35,10 +35,7 @@ typedef struct lensprof_pto_image {
 } lensprof_pto_image;
 
 /* All zero, to be filled by lensprof_pto_get_image. */
-LENSPROF_API void lensprof_pto_image_init_sized(lensprof_pto_image *image, size_t size);
-static inline void lensprof_pto_image_init(lensprof_pto_image *image) {
-    lensprof_pto_image_init_sized(image, sizeof *image);
-}
+static inline void lensprof_pto_image_init(lensprof_pto_image *image) { lensprof_init_sized(image, sizeof *image); }
 
 /* Parses a project. Creates *pto, which the caller must destroy.
  * Errors (the text names the line): ARGUMENT; SIZE over 64 MiB; SYNTAX; VARIABLE for an unknown name or image number on

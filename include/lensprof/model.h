@@ -146,9 +146,6 @@ typedef struct lensprof_exposure {
 /* ev = 0, white balance 1, 1, 1. */
 LENSPROF_API void lensprof_exposure_init(lensprof_exposure *exposure);
 
-/* e * w of a channel (0, 1, 2): 2^ev * white_balance[channel]; 0 for another channel. */
-LENSPROF_API double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel);
-
 /* LENSPROF_OK if |ev| <= 64 and the factors are in [1e-6, 1e6]. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure);
 

@@ -68,10 +68,6 @@ typedef struct lensprof_camera_model {
 /* Empty texts, unknown numbers, interchangeable lens. */
 LENSPROF_API void lensprof_camera_model_init(lensprof_camera_model *camera);
 
-/* LENSPROF_OK if it has a model, the texts are terminated and free of control characters and the numbers are in range.
- */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_camera_model_validate(const lensprof_camera_model *camera);
-
 /* Order of the estimated parameters, which are the rows and columns of a covariance:
  *  1. the EMoR coefficients of response 0 (`modes` of them); with three responses, then those of responses 1 and 2,
  *     each with its own `modes`; responses of other kinds have no parameters;
@@ -80,6 +76,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_camera_model_validate(co
  * A fixed parameter has a row and column of zeros. A covariance may be truncated: the uncertainty of parameters beyond
  * its size is unknown. The largest one has 25 modes, three vignetting curves and the centre. */
 #define LENSPROF_COVARIANCE_MAX 36
+
+/* The doubt of a fit whose pictures did not show the response (LENSPROF_FIT_RESPONSE_KIND). Lookups use the falloff of
+ * such a profile, but do not use its response for any other lens or setting. */
+#define LENSPROF_DOUBT_RESPONSE "response not shown by the pictures: typical of the kind"
 
 /* Origin of a profile. The size stays 768 bytes: new members use the reserved ones. */
 typedef struct lensprof_provenance {
@@ -130,11 +130,6 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_copy(lensprof_pr
  * covariance (finite, symmetric, non-negative diagonal) are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
 
-/* 1 if the doubt of a provenance concerns only the response, because the pictures of the fit did not show it
- * (LENSPROF_FIT_RESPONSE_KIND); otherwise 0. Lookups use the falloff of such a profile, but do not use its response for
- * any other lens or setting. */
-LENSPROF_API int lensprof_provenance_doubts_response(const lensprof_provenance *provenance);
-
 /* Relative illuminance at pixel (x, y), which may be fractional, of a frame of width x height pixels, in channel 0, 1
  * or 2 of a valid profile. This is the divisor of a correction: M times gain grid, > 0; 1 at the centre of the falloff
  * if there is no grid. Returns 0 for another channel. If not NULL, *sigma receives its standard error, computed from
@@ -149,7 +144,9 @@ LENSPROF_API double lensprof_profile_radial_falloff(const lensprof_profile *prof
                                                     double *sigma);
 
 /* The same in the corner, r = 1. */
-LENSPROF_API double lensprof_profile_corner_falloff(const lensprof_profile *profile, uint32_t channel, double *sigma);
+static inline double lensprof_profile_corner_falloff(const lensprof_profile *profile, uint32_t channel, double *sigma) {
+    return lensprof_profile_radial_falloff(profile, channel, 1.0, sigma);
+}
 
 typedef enum lensprof_pack {
     LENSPROF_PACK_COVARIANCE = 1 /* include the covariance, which a camera does not need: up to 5 kB */

@@ -1,5 +1,6 @@
 /* Version, names of status codes, and their descriptions. */
 #include "core/fail.h"
+#include "core/sized.h"
 
 #define TEXT_OF(x) #x
 #define TEXT(x) TEXT_OF(x)
@@ -7,6 +8,8 @@
 const char *lensprof_version(void) {
     return TEXT(LENSPROF_VERSION_MAJOR) "." TEXT(LENSPROF_VERSION_MINOR) "." TEXT(LENSPROF_VERSION_PATCH);
 }
+
+void lensprof_init_sized(void *given, size_t size) { (void)lp_sized_begin(given, size, size); }
 
 lensprof_status lp_fail(lensprof_error *error, lensprof_status status, const char *text) {
     if (!error) return status;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/exposure.h"
 #include "core/fail.h"
 #include "core/profile.h"
 #include "core/response.h"
@@ -142,7 +143,7 @@ double lp_center(const lensprof_apply_options *o, const lp_model *m, int axis) {
 }
 
 double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel) {
-    return lensprof_exposure_factor(&o->target, channel) / lensprof_exposure_factor(&o->source, channel);
+    return lp_exposure_factor(&o->target, channel) / lp_exposure_factor(&o->source, channel);
 }
 
 static lensprof_status validate_exposures(const lensprof_apply_options *o, lensprof_error *error) {

@@ -61,7 +61,7 @@ void lensprof_camera_model_init(lensprof_camera_model *camera) {
     camera->crop_factor = LENSPROF_UNKNOWN;
 }
 
-lensprof_status lensprof_camera_model_validate(const lensprof_camera_model *camera) {
+lensprof_status lp_camera_model_validate(const lensprof_camera_model *camera) {
     if (!camera || camera->fixed_lens > 1 || !is_known_or_unknown(camera->crop_factor, 1e4)
         || !is_empty(camera->reserved, sizeof camera->reserved / sizeof *camera->reserved))
         return LENSPROF_ERROR_ARGUMENT;
@@ -86,8 +86,8 @@ void lensprof_profile_init_sized(lensprof_profile *profile, size_t size) {
     profile->response[1] = profile->response[2] = profile->response[0];
 }
 
-int lensprof_provenance_doubts_response(const lensprof_provenance *provenance) {
-    static const char doubt[] = LP_DOUBT_RESPONSE;
+int lp_provenance_doubts_response(const lensprof_provenance *provenance) {
+    static const char doubt[] = LENSPROF_DOUBT_RESPONSE;
     for (size_t i = 0; i < sizeof doubt; i++)
         if (provenance->doubt[i] != doubt[i]) return 0;
     return 1;

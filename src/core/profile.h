@@ -6,12 +6,20 @@
 
 #include "core/sized.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Profiles are large, so they are read in the caller's memory, whatever their version. Members after this one may be
  * missing; read them through a function here, which knows their default. */
 #define LP_FIRST_PROFILE LP_END_OF(lensprof_profile, covariance)
 
-/* The doubt that lensprof_provenance_doubts_response detects. */
-#define LP_DOUBT_RESPONSE "response not shown by the pictures: typical of the kind"
+/* Whether the doubt of a provenance concerns the response alone (LENSPROF_DOUBT_RESPONSE). */
+int lp_provenance_doubts_response(const lensprof_provenance *provenance);
+
+/* LENSPROF_OK if it has a model, the texts are terminated and free of control characters and the numbers are in range.
+ */
+lensprof_status lp_camera_model_validate(const lensprof_camera_model *camera);
 
 /* No text of a profile may contain a control character, which would break listings. */
 static inline int lp_is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
@@ -25,4 +33,7 @@ int lp_are_key_numbers(const lensprof_profile_key *key);
 /* A provenance's figures: each in its range, or LENSPROF_UNKNOWN. */
 int lp_is_quality(double heldout_rms, double inlier_share);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

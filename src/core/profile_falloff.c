@@ -67,7 +67,3 @@ double lensprof_profile_radial_falloff(const lensprof_profile *profile, uint32_t
     set_sigma(sigma, lp_falloff_variance(profile->covariance, profile->covariance_size, first, r * r), 1.0);
     return lensprof_vignetting_eval(&profile->vignetting[curve], r * r, NULL);
 }
-
-double lensprof_profile_corner_falloff(const lensprof_profile *profile, uint32_t channel, double *sigma) {
-    return lensprof_profile_radial_falloff(profile, channel, 1.0, sigma);
-}

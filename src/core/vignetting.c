@@ -57,10 +57,6 @@ void lensprof_exposure_init(lensprof_exposure *exposure) {
     for (int c = 0; c < 3; c++) exposure->white_balance[c] = 1.0;
 }
 
-double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel) {
-    return channel < 3 ? exp2(exposure->ev) * exposure->white_balance[channel] : 0.0;
-}
-
 lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure) {
     if (!exposure) return LENSPROF_ERROR_ARGUMENT;
     if (!(fabs(exposure->ev) <= 64.0)) return LENSPROF_ERROR_EXPOSURE;

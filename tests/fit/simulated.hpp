@@ -8,6 +8,7 @@
 #include <vector>
 
 extern "C" {
+#include "core/exposure.h"
 #include "support.h"
 }
 #undef fail
@@ -79,7 +80,7 @@ struct Simulation {
             double local = local_factor(pair.image[side], pair.xy[side]);
             for (uint32_t c = 0; c < 3; c++) {
                 double m = lensprof_vignetting_eval(&falloff_of(pair.image[side], c), r2, nullptr) * local;
-                double e = lensprof_exposure_factor(&exposures[pair.image[side]], c);
+                double e = lp_exposure_factor(&exposures[pair.image[side]], c);
                 const double light = radiance[channels == 1 ? 0 : c] * m * e;
                 double b = lensprof_response_eval(&response_of(pair.image[side]), light, nullptr);
                 if (b > 250.0 / 255.0 || b < 3.0 / 255.0) return false;

@@ -1,6 +1,7 @@
 // Simulated tracks with a known camera: scene points seen in several images, saturated if too bright.
 #pragma once
 
+#include "core/exposure.h"
 #include "simulated.hpp"
 
 struct TrackSimulation : Simulation {
@@ -60,7 +61,7 @@ private:
             double r2 = lensprof_vignetting_r2(&falloff_of(o.image, 1), width, height, o.xy[0], o.xy[1], nullptr);
             for (uint32_t c = 0; c < 3; c++) {
                 double m = lensprof_vignetting_eval(&falloff_of(o.image, c), r2, nullptr);
-                double e = lensprof_exposure_factor(&exposures[o.image], c);
+                double e = lp_exposure_factor(&exposures[o.image], c);
                 const double light = radiance[channels == 1 ? 0 : c] * m * e;
                 double b = lensprof_response_eval(&response_of(o.image), light, nullptr);
                 double noisy = b + noise_levels / 255.0 * (noise_levels > 0.0 ? lp_normal(&random) : 0.0);

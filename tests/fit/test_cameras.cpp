@@ -1,4 +1,5 @@
 // Pictures of several cameras in one fit: a response per camera, and what joins the cameras.
+#include "core/exposure.h"
 #include "simulated_run.hpp"
 
 namespace {
@@ -39,8 +40,8 @@ double grey_error(const Simulation &s, const Run &run, uint32_t image) {
         for (uint32_t c = 0; c < s.channels; c++) {
             const double light = k / 100.0, seen = lensprof_response_eval(&s.of_camera[0], light, nullptr);
             const double found = lensprof_response_invert(&run.of_camera(0).response, seen, nullptr)
-                                 * lensprof_exposure_factor(&run.exposures[image], c);
-            const double truth = light * lensprof_exposure_factor(&s.exposures[image], c);
+                                 * lp_exposure_factor(&run.exposures[image], c);
+            const double truth = light * lp_exposure_factor(&s.exposures[image], c);
             if (truth > 0.9) continue;  // too close to white, which pairs do not cover
             worst = std::max(worst, std::abs(lensprof_response_eval(&run.of_camera(camera).response, found, nullptr)
                                              - lensprof_response_eval(&s.of_camera[camera], truth, nullptr)));

@@ -1,5 +1,6 @@
 // The basis of log inverse responses, and the linear equations for response and exposures (Kim & Pollefeys 2004, eq. 8
 // to 13), compared with a dense reference.
+#include "core/exposure.h"
 #include "simulated.hpp"
 
 #include <Eigen/Dense>
@@ -112,7 +113,7 @@ struct Setup {
             }
     }
     double true_log(uint32_t image, int c) const {
-        return std::log(lensprof_exposure_factor(&s.exposures[image], static_cast<uint32_t>(c)));
+        return std::log(lp_exposure_factor(&s.exposures[image], static_cast<uint32_t>(c)));
     }
 };
 

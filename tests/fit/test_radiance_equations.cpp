@@ -1,4 +1,5 @@
 // The radiance method's model: exact radiances, derivatives, elimination, trust in observations.
+#include "core/exposure.h"
 #include "falloff_prior_terms.hpp"
 #include "simulated_tracks.hpp"
 
@@ -50,7 +51,7 @@ struct Setting {
             estimate.log_exposure.push_back({});
             for (uint32_t c = 0; c < 3; c++)
                 estimate.log_exposure[i][c] =
-                    std::log(lensprof_exposure_factor(&simulation.exposures[i], c)) + 0.03 * (lp_random(&random) - 0.5);
+                    std::log(lp_exposure_factor(&simulation.exposures[i], c)) + 0.03 * (lp_random(&random) - 0.5);
         }
         loss.kind = kind;
     }
@@ -281,7 +282,7 @@ void test_distrusts_what_is_wrong(void **) {
     Setting s(3, 300, LENSPROF_LOSS_ROBUST);
     for (uint32_t i = 0; i < 4; i++)
         for (uint32_t c = 0; c < 3; c++)
-            s.estimate.log_exposure[i][c] = std::log(lensprof_exposure_factor(&s.simulation.exposures[i], c));
+            s.estimate.log_exposure[i][c] = std::log(lp_exposure_factor(&s.simulation.exposures[i], c));
     const lensprof_vignetting &own = s.simulation.vignetting;
     s.estimate.vignetting.assign(static_cast<size_t>(s.problem.settings), {own, own, own});
     s.estimate.modes = -1;

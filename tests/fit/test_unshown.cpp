@@ -1,4 +1,5 @@
 // Responses that the pictures do not determine.
+#include "core/profile.h"
 #include "simulated.hpp"
 
 #include <cstring>
@@ -76,7 +77,7 @@ void test_the_profile_says_that_it_is_not_shown(void **) {
         lensprof_profile_init(profile.get());
         assert_ok(lensprof_fit_profile(run.held.get(), 0, profile.get(), nullptr));
         assert_ok(lensprof_profile_validate(profile.get()));
-        assert_true(lensprof_provenance_doubts_response(&profile->provenance) == 1);
+        assert_true(lp_provenance_doubts_response(&profile->provenance) == 1);
     }
 }
 

@@ -1,5 +1,6 @@
 /* Hugin 2022 reads written files with the same meaning: nona corrects pictures with a written project and draws the
  * same masks, vig_optimize solves from written points. Skipped without the package hugin-tools. */
+#include "core/exposure.h"
 #include "pto_support.h"
 
 #include <lensprof/model.h>
@@ -101,8 +102,8 @@ static int take_picture(const char *path, const lensprof_response *response, con
     int low = 255, high = 0;
     for (int i = 0; i < HEIGHT * WIDTH * 3; i++) {
         double r2 = lensprof_vignetting_r2(&falloff, WIDTH, HEIGHT, i / 3 % WIDTH, i / 3 / WIDTH, NULL);
-        double light = RADIANCE * lensprof_vignetting_eval(&falloff, r2, NULL)
-                       * lensprof_exposure_factor(exposure, (uint32_t)(i % 3));
+        double light =
+            RADIANCE * lensprof_vignetting_eval(&falloff, r2, NULL) * lp_exposure_factor(exposure, (uint32_t)(i % 3));
         pixels[i] = (uint8_t)lround(255 * lensprof_response_eval(response, light, NULL));
         low = pixels[i] < low ? pixels[i] : low;
         high = pixels[i] > high ? pixels[i] : high;
@@ -130,7 +131,7 @@ static void test_nona_corrects_with_a_written_project(void **state) {
     run_nona(project);
     double expected[3];
     for (uint32_t c = 0; c < 3; c++) /* a picture at Eev = E is shown with exposure factor 1 */
-        expected[c] = 255 * lensprof_response_eval(response, RADIANCE * lensprof_exposure_factor(&taken[0], c), NULL);
+        expected[c] = 255 * lensprof_response_eval(response, RADIANCE * lp_exposure_factor(&taken[0], c), NULL);
     for (int image = 0; image < 2; image++) {
         static uint8_t pixels[HEIGHT * WIDTH * 4];
         double sum[3] = {0}, worst = 0;
@@ -218,7 +219,7 @@ static void make_pairs(lensprof_pair *pairs, int count, const lensprof_vignettin
             pairs[i].xy[side][1] = y;
             for (uint32_t c = 0; c < 3; c++)
                 pairs[i].value[side][c] =
-                    lensprof_response_eval(response, light * lensprof_exposure_factor(&taken[side], c), NULL);
+                    lensprof_response_eval(response, light * lp_exposure_factor(&taken[side], c), NULL);
         }
     }
     free(response);

@@ -5,6 +5,7 @@
 
 #include <pugixml.hpp>
 
+#include "core/profile.h"
 #include "lensfun_support.hpp"
 
 namespace {
@@ -112,7 +113,7 @@ void test_cameras(void **) {
     lensprof_error error{};
     assert_ok(read_cameras(kCameras, all, error));
     assert_int_equal(all.size(), 5);
-    for (const auto &camera : all) assert_ok(lensprof_camera_model_validate(&camera));
+    for (const auto &camera : all) assert_ok(lp_camera_model_validate(&camera));
     assert_string_equal(all[0].maker, "Canon Inc.");
     assert_string_equal(all[0].other_maker, "Canon");
     assert_string_equal(all[0].model, "Canon PowerShot X");

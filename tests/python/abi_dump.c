@@ -470,6 +470,7 @@ static void print_structs(void) {
     FIELD(lensprof_lookup, reserved2);
     FIELD(lensprof_lookup, response_id);
     FIELD(lensprof_lookup, response_weight);
+    FIELD(lensprof_lookup, nearest);
     STRUCT(lensprof_store_row);
     FIELD(lensprof_store_row, id);
     FIELD(lensprof_store_row, damaged);
@@ -513,9 +514,6 @@ static void print_structs(void) {
     FIELD(lensprof_store_summary, focal_mm);
     FIELD(lensprof_store_summary, aperture);
     FIELD(lensprof_store_summary, distance_m);
-    STRUCT(lensprof_store_name);
-    FIELD(lensprof_store_name, lens);
-    FIELD(lensprof_store_name, score);
 }
 
 static void print_values(void) {
@@ -537,6 +535,7 @@ static void print_values(void) {
     VALUE(LENSPROF_LOOKUP_ROWS);
     VALUE(LENSPROF_LOOKUP_REASONS);
     VALUE(LENSPROF_LOOKUP_RESPONSES);
+    VALUE(LENSPROF_LOOKUP_NEAREST);
     VALUE(LENSPROF_STATS_GROUPS);
     VALUE(LENSPROF_OK);
     VALUE(LENSPROF_ERROR_ARGUMENT);
@@ -804,6 +803,8 @@ static void print_values(void) {
     VALUE(LENSPROF_RESPONSE_FROM_CAMERA);
     VALUE(LENSPROF_RESPONSE_FROM_KIND);
     VALUE(LENSPROF_RESPONSE_FROM_RAW);
+    VALUE(LENSPROF_NAMES_LENSES);
+    VALUE(LENSPROF_NAMES_CAMERAS);
     VALUE(LENSPROF_FREE_RESPONSE);
     VALUE(LENSPROF_FREE_K1);
     VALUE(LENSPROF_FREE_K2);

@@ -153,13 +153,15 @@ static inline void lensprof_d_init(lensprof_d *d, uint32_t index) { lensprof_d_i
                                       made.C: ("lensprof_c_init_sized", [made.C, made.B])})
         self.assertNotIn("lensprof_b_init", made.FUNCTIONS)
 
+    def test_texts(self):
+        self.assertEqual(from_header("#define LENSPROF_TEXT \"a text\"")[1].TEXT, "a text")
+
     def test_what_has_no_form_is_refused(self):
         for text in ("typedef union lensprof_u { int a; } lensprof_u;",
                      "typedef struct lensprof_s { uint32_t bits : 3; } lensprof_s;",
                      "typedef struct lensprof_s { unsigned long n; } lensprof_s;",
                      "static inline int lensprof_alone(void) { return 1; }",
                      "extern int lensprof_global;",
-                     "#define LENSPROF_TEXT \"text\"",
                      "typedef enum lensprof_a { LENSPROF_A_X = 1 } lensprof_a;\n"
                      "typedef enum lensprof_b { LENSPROF_A_Y = 1 } lensprof_b;"):
             with self.subTest(text=text), self.assertRaises(make_abi.Refused):

@@ -127,9 +127,9 @@ class Stores(unittest.TestCase):
                 store.find_camera("Nikon", "ILCE-7M3")
             with refused(self, lp.Status.ERROR_ARGUMENT):
                 store.put_camera(lp.CameraModel(maker="Sony"))
-            names = store.nearest_lenses(lp.ProfileKey(lens="Planar 1.4/50"))
-            self.assertEqual(names[0].lens, "Planar 50 mm")
-            self.assertTrue(0 < names[0].score < 1)
+            with refused(self, lp.Status.ERROR_NOT_FOUND) as caught:
+                store.lookup(lp.ProfileKey(lens="Planar 1.4/50"))
+            self.assertEqual(caught.exception.lookup.nearest, ("Planar 50 mm",))
 
     def test_merge(self):
         self.make(sample_profile("a"), sample_profile("b"))

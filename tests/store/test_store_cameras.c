@@ -66,7 +66,7 @@ static void test_names(void **state) {
         if (names[i].found) {
             if (status != LENSPROF_OK) fail_msg("%s: %s", names[i].model, error.text);
             assert_string_equal(found.model, names[i].found);
-            assert_ok(lensprof_camera_model_validate(&found));
+            assert_ok(lp_camera_model_validate(&found));
         } else {
             if (status != LENSPROF_ERROR_NOT_FOUND) fail_msg("%s is found as %s", names[i].model, found.model);
             assert_int_equal(found.model[0], 0x5A);

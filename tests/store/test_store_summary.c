@@ -34,20 +34,18 @@ static lensprof_store *make_database(const place *here) {
     return store;
 }
 
-typedef lensprof_status (*list_function)(lensprof_store *, const char *, lensprof_store_summary *, uint32_t, uint32_t *,
-                                         lensprof_error *);
-
-static uint32_t list(lensprof_store *store, list_function function, const char *part, lensprof_store_summary *found) {
+static uint32_t list(lensprof_store *store, uint32_t which, const char *part, lensprof_store_summary *found) {
     uint32_t count = 99;
     lensprof_error error;
-    if (function(store, part, found, 20, &count, &error) != LENSPROF_OK) fail_msg("%s", error.text);
+    if (lensprof_store_list_names(store, which, part, found, 20, &count, &error) != LENSPROF_OK)
+        fail_msg("%s", error.text);
     return count;
 }
 
 static void test_lenses(void **state) {
     lensprof_store *store = make_database(*state);
     lensprof_store_summary found[20];
-    assert_int_equal(list(store, lensprof_store_list_lenses, NULL, found), 4);
+    assert_int_equal(list(store, LENSPROF_NAMES_LENSES, NULL, found), 4);
     assert_string_equal(found[0].lens, "AF-S DX 35mm f/1.8G");
     assert_string_equal(found[1].lens, "Canon EF 24-70mm f/2.8L II USM");
     const lensprof_store_summary *one = &found[2];
@@ -85,20 +83,20 @@ static void test_parts(void **state) {
         {"100%", 0, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        assert_int_equal(list(store, lensprof_store_list_lenses, cases[i].part, found), cases[i].lenses);
-        assert_int_equal(list(store, lensprof_store_list_cameras, cases[i].part, found), cases[i].cameras);
+        assert_int_equal(list(store, LENSPROF_NAMES_LENSES, cases[i].part, found), cases[i].lenses);
+        assert_int_equal(list(store, LENSPROF_NAMES_CAMERAS, cases[i].part, found), cases[i].cameras);
     }
     char longest[1000];
     memset(longest, 'x', sizeof longest - 1);
     longest[sizeof longest - 1] = 0;
-    assert_int_equal(list(store, lensprof_store_list_lenses, longest, found), 0);
+    assert_int_equal(list(store, LENSPROF_NAMES_LENSES, longest, found), 0);
     lensprof_store_close(store);
 }
 
 static void test_cameras(void **state) {
     lensprof_store *store = make_database(*state);
     lensprof_store_summary found[20];
-    assert_int_equal(list(store, lensprof_store_list_cameras, NULL, found), 2);
+    assert_int_equal(list(store, LENSPROF_NAMES_CAMERAS, NULL, found), 2);
     assert_string_equal(found[0].camera_model, "Canon EOS 6D");
     assert_string_equal(found[1].camera_maker, "NIKON CORPORATION");
     assert_int_equal(found[1].profiles, 2);
@@ -113,14 +111,20 @@ static void test_capacity(void **state) {
     uint32_t count = 0;
     lensprof_error error;
     memset(found, 7, sizeof found);
-    assert_int_equal(lensprof_store_list_lenses(store, NULL, NULL, 0, &count, &error), LENSPROF_OK);
+    assert_int_equal(lensprof_store_list_names(store, LENSPROF_NAMES_LENSES, NULL, NULL, 0, &count, &error),
+                     LENSPROF_OK);
     assert_int_equal(count, 4);
-    assert_int_equal(lensprof_store_list_lenses(store, NULL, found, 3, &count, &error), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_store_list_names(store, LENSPROF_NAMES_LENSES, NULL, found, 3, &count, &error),
+                     LENSPROF_ERROR_CAPACITY);
     assert_int_equal(count, 4);
     assert_int_equal(((unsigned char *)found)[0], 7);
-    assert_int_equal(lensprof_store_list_lenses(NULL, NULL, found, 3, &count, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_store_list_cameras(store, NULL, NULL, 3, &count, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_store_list_cameras(store, NULL, found, 3, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_list_names(store, 2, NULL, found, 3, &count, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_list_names(NULL, LENSPROF_NAMES_LENSES, NULL, found, 3, &count, &error),
+                     LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_list_names(store, LENSPROF_NAMES_CAMERAS, NULL, NULL, 3, &count, &error),
+                     LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_list_names(store, LENSPROF_NAMES_CAMERAS, NULL, found, 3, NULL, &error),
+                     LENSPROF_ERROR_ARGUMENT);
     lensprof_store_close(store);
 }
 

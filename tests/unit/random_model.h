@@ -86,7 +86,8 @@ static double reference(const model *m, double value, uint32_t c, uint32_t x, ui
     if (o->grid) falloff *= lensprof_gain_grid_eval(o->grid, o->frame_width, o->frame_height, x, y, c);
     falloff = 1.0 + o->strength * (falloff - 1.0);
     if (o->gain_cap > 0.0) falloff = fmax(falloff, 1.0 / o->gain_cap);
-    double ratio = lensprof_exposure_factor(&o->target, c) / lensprof_exposure_factor(&o->source, c);
+    double ratio =
+        (exp2(o->target.ev) * o->target.white_balance[c]) / (exp2(o->source.ev) * o->source.white_balance[c]);
     double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
     light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
     return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(out, light, NULL);

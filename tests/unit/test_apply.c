@@ -1,4 +1,5 @@
 /* Applying a model to pixels, compared with the formula in double precision. */
+#include "core/exposure.h"
 #include "support.h"
 
 #include "campaign.h"
@@ -74,8 +75,7 @@ static double reference(const fixture *f, double value, int channel, double x, d
     double m = lensprof_vignetting_eval(&f->vignetting[one_v],
                                         lensprof_vignetting_r2(&f->vignetting[one_v], W, H, x, y, NULL), NULL);
     if (o->grid) m *= lensprof_gain_grid_eval(o->grid, W, H, x, y, (uint32_t)c);
-    double ratio =
-        lensprof_exposure_factor(&o->target, (uint32_t)c) / lensprof_exposure_factor(&o->source, (uint32_t)c);
+    double ratio = lp_exposure_factor(&o->target, (uint32_t)c) / lp_exposure_factor(&o->source, (uint32_t)c);
     double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
     light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / m : m / ratio;
     return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(out, light, NULL);

@@ -52,8 +52,7 @@ BYTES(profile_pack, (snprintf(error->text, sizeof error->text, "-"),
                      lensprof_profile_pack(&here.profile, 0, b, capacity, count))) /* reports no text */
 ELEMENTS(points_read, lensprof_points_read(point_lines, sizeof point_lines - 1, b, capacity, count, error))
 ELEMENTS(store_list, lensprof_store_list(store, NULL, b, capacity, count, error))
-ELEMENTS(store_list_lenses, lensprof_store_list_lenses(store, NULL, b, capacity, count, error))
-ELEMENTS(store_list_cameras, lensprof_store_list_cameras(store, NULL, b, capacity, count, error))
+ELEMENTS(store_list_names, lensprof_store_list_names(store, LENSPROF_NAMES_LENSES, NULL, b, capacity, count, error))
 ELEMENTS(store_list_camera_models, lensprof_store_list_camera_models(store, b, capacity, count, error))
 ELEMENTS(sample_overlap, lensprof_sample_overlap(&here.sample, here.samples, 2, b, capacity, count, error))
 ELEMENTS(sample_matches,
@@ -89,8 +88,7 @@ static const struct {
     ROW(profile_pack, 1, OTHERS),
     ROW(points_read, sizeof(lensprof_pair), OTHERS),
     ROW(store_list, sizeof(lensprof_store_row), OTHERS),
-    ROW(store_list_lenses, sizeof(lensprof_store_summary), OTHERS),
-    ROW(store_list_cameras, sizeof(lensprof_store_summary), OTHERS),
+    ROW(store_list_names, sizeof(lensprof_store_summary), OTHERS),
     ROW(store_list_camera_models, sizeof(lensprof_camera_model), OTHERS),
     ROW(sample_overlap, sizeof(lensprof_pair), UP_TO),
     ROW(sample_matches, sizeof(lensprof_pair), UP_TO),

@@ -1,4 +1,5 @@
 /* Radial falloff and exposure. */
+#include "core/exposure.h"
 #include "support.h"
 
 #include <lensprof/model.h>
@@ -80,10 +81,10 @@ static void test_exposure(void **state) {
     lensprof_exposure e;
     lensprof_exposure_init(&e);
     assert_ok(lensprof_exposure_validate(&e));
-    assert_close(lensprof_exposure_factor(&e, 0), 1.0, 0.0);
+    assert_close(lp_exposure_factor(&e, 0), 1.0, 0.0);
     e.ev = -1.5;
     e.white_balance[2] = 1.25;
-    assert_close(lensprof_exposure_factor(&e, 2), exp2(-1.5) * 1.25, 1e-15); /* larger ev = more light */
+    assert_close(lp_exposure_factor(&e, 2), exp2(-1.5) * 1.25, 1e-15); /* larger ev = more light */
     e.white_balance[2] = 0.0;
     assert_int_equal(lensprof_exposure_validate(&e), LENSPROF_ERROR_EXPOSURE);
     e.white_balance[2] = 1.0, e.ev = NAN;

@@ -27,7 +27,9 @@ FLAT_SPOTS = 32
 LOOKUP_ROWS = 24
 LOOKUP_REASONS = 8
 LOOKUP_RESPONSES = 8
+LOOKUP_NEAREST = 3
 STATS_GROUPS = 8
+DOUBT_RESPONSE = "response not shown by the pictures: typical of the kind"
 
 
 class Status(IntEnum):
@@ -418,6 +420,12 @@ class ResponseFrom(IntEnum):
     CAMERA = 1
     KIND = 2
     RAW = 3
+
+
+class StoreNames(IntEnum):
+    """lensprof_store_names; see lensprof/store.h."""
+    LENSES = 0
+    CAMERAS = 1
 
 
 class Free(IntFlag):
@@ -1070,6 +1078,7 @@ class Lookup(Structure):
         ("reserved2", c_uint32),
         ("response_id", c_int64 * 8),
         ("response_weight", c_double * 8),
+        ("nearest", c_char * 128 * 3),
     ]
 
 
@@ -1139,13 +1148,6 @@ class StoreSummary(Structure):
     ]
 
 
-class StoreName(Structure):
-    _fields_ = [
-        ("lens", c_char * 128),
-        ("score", c_double),
-    ]
-
-
 # Prefix in C of the members of each enumeration.
 ENUMS = {
     "LENSPROF_": Status,
@@ -1179,6 +1181,7 @@ ENUMS = {
     "LENSPROF_STORE_": StoreMode,
     "LENSPROF_DISTANCE_": DistanceRule,
     "LENSPROF_RESPONSE_FROM_": ResponseFrom,
+    "LENSPROF_NAMES_": StoreNames,
     "LENSPROF_FREE_": Free,
 }
 
@@ -1225,7 +1228,6 @@ STRUCTS = {
     "lensprof_store_group": StoreGroup,
     "lensprof_store_stats": StoreStats,
     "lensprof_store_summary": StoreSummary,
-    "lensprof_store_name": StoreName,
 }
 
 OPAQUE = {
@@ -1255,25 +1257,26 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
     FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
-    FitImageQuality: ("lensprof_fit_image_quality_init_sized", [FitImageQuality]),
-    FitResult: ("lensprof_fit_result_init_sized", [FitResult]),
-    FitCamera: ("lensprof_fit_camera_init_sized", [FitCamera]),
+    FitImageQuality: ("lensprof_init_sized", [FitImageQuality]),
+    FitResult: ("lensprof_init_sized", [FitResult]),
+    FitCamera: ("lensprof_init_sized", [FitCamera]),
     FlatImage: ("lensprof_flat_image_init_sized", [FlatImage]),
     FlatOptions: ("lensprof_flat_options_init_sized", [FlatOptions]),
-    FlatImageQuality: ("lensprof_flat_image_quality_init_sized", [FlatImageQuality]),
-    FlatResult: ("lensprof_flat_result_init_sized", [FlatResult]),
-    PtoImage: ("lensprof_pto_image_init_sized", [PtoImage]),
+    FlatImageQuality: ("lensprof_init_sized", [FlatImageQuality]),
+    FlatResult: ("lensprof_init_sized", [FlatResult]),
+    PtoImage: ("lensprof_init_sized", [PtoImage]),
     ImportOptions: ("lensprof_import_options_init_sized", [ImportOptions]),
     ExportOptions: ("lensprof_export_options_init_sized", [ExportOptions]),
     LookupOptions: ("lensprof_lookup_options_init_sized", [LookupOptions]),
-    Lookup: ("lensprof_lookup_init_sized", [Lookup]),
-    StoreStats: ("lensprof_store_stats_init_sized", [StoreStats]),
+    Lookup: ("lensprof_init_sized", [Lookup]),
+    StoreStats: ("lensprof_init_sized", [StoreStats]),
 }
 
 # name: (restype, argtypes)
 FUNCTIONS = {
     # base.h
     "lensprof_status_name": (c_char_p, [c_int]),
+    "lensprof_init_sized": (None, [c_void_p, c_size_t]),
     "lensprof_version": (c_char_p, []),
     # model.h
     "lensprof_response_set_linear": (None, [POINTER(Response)]),
@@ -1294,22 +1297,18 @@ FUNCTIONS = {
     "lensprof_gain_grid_validate": (c_int, [POINTER(GainGrid)]),
     "lensprof_gain_grid_eval": (c_double, [POINTER(GainGrid), c_uint32, c_uint32, c_double, c_double, c_uint32]),
     "lensprof_exposure_init": (None, [POINTER(Exposure)]),
-    "lensprof_exposure_factor": (c_double, [POINTER(Exposure), c_uint32]),
     "lensprof_exposure_validate": (c_int, [POINTER(Exposure)]),
     # profile.h
     "lensprof_profile_key_init": (None, [POINTER(ProfileKey)]),
     "lensprof_profile_key_validate": (c_int, [POINTER(ProfileKey)]),
     "lensprof_camera_kind_of": (c_uint32, [POINTER(ProfileKey)]),
     "lensprof_camera_model_init": (None, [POINTER(CameraModel)]),
-    "lensprof_camera_model_validate": (c_int, [POINTER(CameraModel)]),
     "lensprof_profile_init_sized": (None, [POINTER(Profile), c_size_t]),
     "lensprof_profile_copy": (c_int, [POINTER(Profile), POINTER(Profile)]),
     "lensprof_profile_validate": (c_int, [POINTER(Profile)]),
-    "lensprof_provenance_doubts_response": (c_int, [POINTER(Provenance)]),
     "lensprof_profile_falloff": (c_double, [POINTER(Profile), c_uint32, c_uint32, c_uint32, c_double, c_double,
                                             POINTER(c_double)]),
     "lensprof_profile_radial_falloff": (c_double, [POINTER(Profile), c_uint32, c_double, POINTER(c_double)]),
-    "lensprof_profile_corner_falloff": (c_double, [POINTER(Profile), c_uint32, POINTER(c_double)]),
     "lensprof_profile_pack": (c_int, [POINTER(Profile), c_uint32, c_void_p, c_size_t, POINTER(c_size_t)]),
     "lensprof_profile_unpack": (c_int, [c_void_p, c_size_t, POINTER(Profile)]),
     # apply.h
@@ -1343,9 +1342,6 @@ FUNCTIONS = {
     # fit.h
     "lensprof_fit_image_init_sized": (None, [POINTER(FitImage), c_size_t, c_uint32, c_uint32, c_uint32]),
     "lensprof_fit_options_init_sized": (None, [POINTER(FitOptions), c_size_t]),
-    "lensprof_fit_image_quality_init_sized": (None, [POINTER(FitImageQuality), c_size_t]),
-    "lensprof_fit_result_init_sized": (None, [POINTER(FitResult), c_size_t]),
-    "lensprof_fit_camera_init_sized": (None, [POINTER(FitCamera), c_size_t]),
     "lensprof_fit_bytes": (c_size_t, [POINTER(FitImage), c_uint32]),
     "lensprof_fit_overlap": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Pair), c_uint32,
                                      c_void_p, c_size_t, POINTER(Exposure), POINTER(POINTER(Fit)), POINTER(ErrorText)]),
@@ -1368,8 +1364,6 @@ FUNCTIONS = {
     # flat.h
     "lensprof_flat_image_init_sized": (None, [POINTER(FlatImage), c_size_t]),
     "lensprof_flat_options_init_sized": (None, [POINTER(FlatOptions), c_size_t]),
-    "lensprof_flat_image_quality_init_sized": (None, [POINTER(FlatImageQuality), c_size_t]),
-    "lensprof_flat_result_init_sized": (None, [POINTER(FlatResult), c_size_t]),
     "lensprof_flat_bytes": (c_size_t, [c_uint32]),
     "lensprof_fit_flat": (c_int, [POINTER(FlatOptions), POINTER(FlatImage), c_uint32, c_void_p, c_size_t,
                                   POINTER(POINTER(Flat)), POINTER(ErrorText)]),
@@ -1378,7 +1372,6 @@ FUNCTIONS = {
     "lensprof_flat_image_at": (c_int, [POINTER(Flat), c_uint32, POINTER(FlatImageQuality), POINTER(ErrorText)]),
     "lensprof_flat_profile": (c_int, [POINTER(Flat), POINTER(Profile), POINTER(ErrorText)]),
     # hugin.h
-    "lensprof_pto_image_init_sized": (None, [POINTER(PtoImage), c_size_t]),
     "lensprof_pto_read": (c_int, [c_void_p, c_size_t, POINTER(POINTER(Pto)), POINTER(ErrorText)]),
     "lensprof_pto_destroy": (None, [POINTER(Pto)]),
     "lensprof_pto_image_count": (c_uint32, [POINTER(Pto)]),
@@ -1420,7 +1413,6 @@ FUNCTIONS = {
     "lensprof_store_find": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(Profile), POINTER(c_int64),
                                     POINTER(ErrorText)]),
     "lensprof_lookup_options_init_sized": (None, [POINTER(LookupOptions), c_size_t]),
-    "lensprof_lookup_init_sized": (None, [POINTER(Lookup), c_size_t]),
     "lensprof_store_lookup": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(LookupOptions), POINTER(Profile),
                                       POINTER(Lookup), POINTER(ErrorText)]),
     "lensprof_store_lookup_in": (c_int, [POINTER(POINTER(Store)), c_uint32, POINTER(ProfileKey), POINTER(LookupOptions),
@@ -1441,15 +1433,10 @@ FUNCTIONS = {
                                                   POINTER(ErrorText)]),
     "lensprof_store_check": (c_int, [POINTER(Store), FaultVisitor, c_void_p, POINTER(c_uint32), POINTER(c_uint32),
                                      POINTER(ErrorText)]),
-    "lensprof_store_stats_init_sized": (None, [POINTER(StoreStats), c_size_t]),
     "lensprof_store_get_stats": (c_int, [POINTER(Store), POINTER(StoreStats), POINTER(ErrorText)]),
     "lensprof_store_remove": (c_int, [POINTER(Store), c_int64, POINTER(ErrorText)]),
     "lensprof_store_set_key": (c_int, [POINTER(Store), c_int64, POINTER(ProfileKey), POINTER(ErrorText)]),
-    "lensprof_store_list_lenses": (c_int, [POINTER(Store), c_char_p, POINTER(StoreSummary), c_uint32, POINTER(c_uint32),
-                                           POINTER(ErrorText)]),
-    "lensprof_store_list_cameras": (c_int, [POINTER(Store), c_char_p, POINTER(StoreSummary), c_uint32,
-                                            POINTER(c_uint32), POINTER(ErrorText)]),
-    "lensprof_store_nearest_lenses": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(StoreName), c_uint32,
-                                              POINTER(c_uint32), POINTER(ErrorText)]),
+    "lensprof_store_list_names": (c_int, [POINTER(Store), c_uint32, c_char_p, POINTER(StoreSummary), c_uint32,
+                                          POINTER(c_uint32), POINTER(ErrorText)]),
     "lensprof_correct": (c_int, [POINTER(Profile), POINTER(Exposure), POINTER(Image), POINTER(ErrorText)]),
 }

@@ -260,4 +260,4 @@ class Exposure(Value, _abi.Exposure):
         """2^ev times the white balance of channel 0, 1 or 2."""
         if channel not in (0, 1, 2):
             raise Error(Status.ERROR_ARGUMENT, f"channel {channel}: give 0, 1 or 2")
-        return lib.lensprof_exposure_factor(byref(self), channel)
+        return 2.0 ** self.ev * float(self.white_balance[channel])

@@ -75,7 +75,7 @@ class Provenance(Value, _abi.Provenance):
     @property
     def doubts_response(self) -> bool:
         """Whether the doubt concerns the response alone, which the pictures of the fit did not show."""
-        return bool(lib.lensprof_provenance_doubts_response(byref(self)))
+        return self.doubt == _abi.DOUBT_RESPONSE
 
 
 class CameraModel(Value, _abi.CameraModel):
@@ -96,10 +96,6 @@ class CameraModel(Value, _abi.CameraModel):
 
     def _set_defaults(self) -> None:
         lib.lensprof_camera_model_init(byref(self))
-
-    def validate(self) -> None:
-        """Raises lensprof.Error unless it has a model, numbers in range and texts without control characters."""
-        check(lib.lensprof_camera_model_validate(byref(self)), f"{self}: no valid camera")
 
 
 def channel_number(channel: int) -> int:
@@ -175,8 +171,7 @@ class Profile(Value, _abi.Profile):
 
     def corner_falloff(self, channel: int = 0) -> tuple[float, float | None]:
         """The same in the corner, r = 1."""
-        return self._with_sigma(lambda this, sigma: lib.lensprof_profile_corner_falloff(
-            this, channel_number(channel), sigma))
+        return self.radial_falloff(1.0, channel)
 
     def _with_sigma(self, call: Any) -> tuple[float, float | None]:
         self.validate()

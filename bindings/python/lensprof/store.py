@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from typing import Any, Iterator, List, Optional, Sequence, Union
 
 from . import _abi
-from ._abi import CameraKind, DistanceRule, Reason, ResponseFrom, Status, StoreMode
+from ._abi import CameraKind, DistanceRule, Reason, ResponseFrom, Status, StoreMode, StoreNames
 from ._library import Error, Handle, check, lib
 from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, integer
 from .profile import CameraModel, Profile, ProfileKey, Provenance
@@ -45,7 +45,7 @@ class Lookup(Value, _abi.Lookup):
     response_weight[:response_rows] the profiles used; camera_kind is the kind of camera. Standard errors: sigma of M in
     the corner, with the parts falloff_sigma, distance_sigma and sensor_sigma, and response_sigma, of ln gamma.
     falloff_store and response_store: indices of the databases in lookup_in. reason: warnings; their codes are
-    `reasons`.
+    `reasons`. nearest: if no lens has the name, the lenses with the most similar names.
     """
 
     exact: int
@@ -72,6 +72,11 @@ class Lookup(Value, _abi.Lookup):
         """The Reason of each sentence in `reason`."""
         return tuple(Reason(code) for code in self.reason_code.tolist() if code != Reason.NONE)
 
+    @property
+    def nearest(self) -> tuple[str, ...]:
+        names = (bytes(name).split(b"\0")[0].decode("utf-8", "surrogateescape") for name in _abi.Lookup.nearest.__get__(self))
+        return tuple(name for name in names if name)
+
 
 class StoreFault(Value, _abi.StoreFault):
     """A fault found by Store.check: id of the profile, 0 for the file as a whole, and the reason."""
@@ -94,12 +99,6 @@ class StoreSummary(Value, _abi.StoreSummary):
     aperture = Vector(writable=False)
     distance_m = Vector(writable=False)
 
-
-class StoreName(Value, _abi.StoreName):
-    """The name of a stored lens, and its similarity (0..1) to a requested one."""
-
-    lens = Text()
-    score: float
 
 
 def _bytes_of(text: Optional[str]) -> Optional[bytes]:
@@ -262,19 +261,11 @@ class Store(Handle):
 
     def lenses(self, part: Optional[str] = None) -> List[StoreSummary]:
         """The lenses of the stored profiles by name; with `part` those with that name, or with all its words."""
-        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_lenses, _bytes_of(part))
+        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_names, int(StoreNames.LENSES), _bytes_of(part))
 
     def cameras(self, part: Optional[str] = None) -> List[StoreSummary]:
         """The cameras of the stored profiles, as for lenses()."""
-        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_cameras, _bytes_of(part))
-
-    def nearest_lenses(self, key: ProfileKey, count: int = 3) -> List[StoreName]:
-        """The stored lenses with names nearest to that of the key, nearest first, for a lens that lookup() did not
-        find."""
-        rows, found = (_abi.StoreName * integer(count, "count"))(), c_uint32()
-        self._call(lib.lensprof_store_nearest_lenses, byref(key), rows, len(rows), byref(found))
-        size = ctypes.sizeof(_abi.StoreName)
-        return [StoreName.from_buffer(rows, i * size) for i in range(found.value)]
+        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_names, int(StoreNames.CAMERAS), _bytes_of(part))
 
     def put_camera(self, camera: CameraModel) -> None:
         """Stores a camera, replacing the one with the same maker, model and variant."""

@@ -91,6 +91,7 @@ class Interface:
         self.types: list = []  # ("struct", C name, [(field, type)]), ("opaque", C name), ("callback", C name, type)
         self.functions: dict = {}  # name -> (type of result, types of parameters)
         self.headers: dict = {}  # name of any of these -> name of its header
+        self.texts: dict = {}  # of macros, quoted
         self.inits: dict = {}  # C name of a structure -> (function that sets defaults, C types whose sizes it takes)
         self._known = dict(SCALARS)  # C type -> ctypes expression
         self._values: dict = {}  # enumerators
@@ -158,6 +159,9 @@ class Interface:
         raise Refused(f"{node.coord}: not the size of a type or of what a parameter points to")
 
     def _read_macro(self, name: str, node: c_ast.Node) -> None:
+        if isinstance(node, c_ast.Constant) and node.type == "string":
+            self.texts[name] = node.value
+            return
         value = number(node, self._values)
         if isinstance(node, c_ast.Constant) and node.value.startswith("0x") and bin(value).count("1") == 1:
             prefix = "_".join(name.split("_")[:2])
@@ -261,6 +265,8 @@ def python_text(interface: Interface) -> str:
     for name, value in interface.constants.items():
         if "_VERSION_" not in name:
             body += f"{name[len('LENSPROF_'):]} = {value}\n"
+    for name, text in interface.texts.items():
+        body += f"{name[len('LENSPROF_'):]} = {text}\n"
     for name, members in all_enums.items():
         header = interface.headers[name if name in interface.enums else next(iter(members))]
         body += python_enum(name, members, name in interface.flags or name in FLAGS, header)

@@ -27,8 +27,8 @@ PairEnd end_of(const Fitted &fitted, const Project &project, const lensprof_pair
         lensprof_vignetting_r2(&falloff, frame.width, frame.height, pair.xy[side][0], pair.xy[side][1], nullptr);
     end.r = std::sqrt(r2);
     end.across = (pair.xy[side][0] + 0.5) / frame.width, end.down = (pair.xy[side][1] + 0.5) / frame.height;
-    end.attenuation =
-        lensprof_vignetting_eval(&falloff, r2, nullptr) * lensprof_exposure_factor(&fitted.exposures[end.image], 1);
+    end.attenuation = lensprof_vignetting_eval(&falloff, r2, nullptr) * std::exp2(fitted.exposures[end.image].ev)
+                      * fitted.exposures[end.image].white_balance[1];
     end.light = lensprof_response_invert(&fitted.response_of(end.image), end.value, nullptr) / end.attenuation;
     return end;
 }
@@ -85,8 +85,8 @@ private:
 
 // The value that an end has at the mean exposure, without falloff.
 double corrected(const Fitted &fitted, const lensprof_exposure &mean, const PairEnd &end) {
-    return lensprof_response_eval(&fitted.response_of(fitted.reference), end.light * lensprof_exposure_factor(&mean, 1),
-                                  nullptr);
+    return lensprof_response_eval(&fitted.response_of(fitted.reference),
+                                  end.light * std::exp2(mean.ev) * mean.white_balance[1], nullptr);
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ Json falloff_points(const std::vector<PairEnds> &all, const Fitted &best) {
         const bool is_of_reference =
             best.settings.empty() || best.setting_of[far.image] == best.setting_of[best.reference];
         if (!is_of_reference || far.r - near.r < min_radius_difference) continue;
-        const double exposure = lensprof_exposure_factor(&best.exposures[far.image], 1);
+        const double exposure = std::exp2(best.exposures[far.image].ev) * best.exposures[far.image].white_balance[1];
         bins[bin_of(far.r, radius_bins)].push_back(far.light / near.light * far.attenuation / exposure);
     }
     Json json = Json::array();

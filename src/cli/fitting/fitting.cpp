@@ -262,6 +262,7 @@ BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure
     report.exposures.resize(names.size());
     for (auto &e : report.exposures) lensprof_exposure_init(&e);
     lensprof_fit_result_init(&report.fit);
+    lensprof_response_set_linear(&report.fit.response);
     report.fit.heldout_rms = report.fit.heldout_median = report.fit.before_rms = LENSPROF_UNKNOWN;
     report.fit.gamma_from = LENSPROF_GAMMA_NONE;
     report.fit.gamma_sigma = LENSPROF_UNKNOWN;

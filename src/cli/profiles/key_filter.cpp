@@ -16,11 +16,11 @@ namespace {
 
 // The lenses or cameras that match a name or a part of one; without a name, one that matches any profile.
 std::vector<lensprof_store_summary> named(lensprof_store *store, const std::string &db, const std::string &name,
-                                          decltype(&lensprof_store_list_lenses) list) {
+                                          lensprof_store_names which) {
     if (name.empty()) return std::vector<lensprof_store_summary>(1);
     return listed<lensprof_store_summary>(
         db, [&](lensprof_store_summary *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
-            return list(store, name.c_str(), buffer, capacity, count, error);
+            return lensprof_store_list_names(store, which, name.c_str(), buffer, capacity, count, error);
         });
 }
 
@@ -102,8 +102,8 @@ std::vector<lensprof_store_row> KeyFilter::matching_rows(lensprof_store *store, 
     std::vector<lensprof_store_row> all;
     std::set<int64_t> seen;
     lensprof_profile_key filter = key(LENSPROF_PROCESSING_JPEG);
-    const auto cameras = named(store, db, camera_, lensprof_store_list_cameras);
-    const auto lenses = named(store, db, lens_, lensprof_store_list_lenses);
+    const auto cameras = named(store, db, camera_, LENSPROF_NAMES_CAMERAS);
+    const auto lenses = named(store, db, lens_, LENSPROF_NAMES_LENSES);
     for (const lensprof_store_summary &camera : cameras)
         for (const lensprof_store_summary &lens : lenses) {
             if (maker_.empty()) std::copy_n(camera.camera_maker, sizeof filter.camera_maker, filter.camera_maker);

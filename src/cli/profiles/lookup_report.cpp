@@ -171,7 +171,8 @@ static std::vector<std::string> nearest_cameras(const Databases &databases, cons
         for (const auto &row : listed<lensprof_store_summary>(
                  databases.file(i),
                  [&](lensprof_store_summary *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
-                     return lensprof_store_list_cameras(databases.store(i), "", buffer, capacity, count, error);
+                     return lensprof_store_list_names(databases.store(i), LENSPROF_NAMES_CAMERAS, "", buffer, capacity,
+                                                      count, error);
                  })) {
             const std::string given = without_maker(key.camera_model, row.camera_maker);
             const size_t changes = letters_changed(given, without_maker(row.camera_model, row.camera_maker));
@@ -194,18 +195,9 @@ std::vector<std::string> nearest_names(const Databases &databases, const lenspro
     };
     if (has_reason(LENSPROF_REASON_LOOKUP_NO_CAMERA) && *key.camera_model) return nearest_cameras(databases, key);
     if (!has_reason(LENSPROF_REASON_LOOKUP_NO_LENS)) return {};
-    std::vector<lensprof_store_name> all;
-    for (size_t i = 0; i < databases.size(); i++) {
-        lensprof_store_name names[kMaxNames];
-        uint32_t count = 0;
-        if (lensprof_store_nearest_lenses(databases.store(i), &key, names, kMaxNames, &count, nullptr) == LENSPROF_OK)
-            all.insert(all.end(), names, names + count);
-    }
-    std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.score > b.score; });
     std::vector<std::string> lenses;
-    for (const lensprof_store_name &name : all)
-        if (lenses.size() < kMaxNames && std::find(lenses.begin(), lenses.end(), name.lens) == lenses.end())
-            lenses.emplace_back(name.lens);
+    for (const char *name : lookup.nearest)
+        if (*name) lenses.emplace_back(name);
     return lenses;
 }
 

@@ -79,14 +79,14 @@ int run(const NamesOptions &o, bool of_lenses, Streams &streams) {
     std::string part;
     for (const std::string &word : o.part) part += (part.empty() ? "" : " ") + word;
     const Databases databases(databases_of(o.dbs));
-    const auto list = of_lenses ? lensprof_store_list_lenses : lensprof_store_list_cameras;
+    const uint32_t which = of_lenses ? LENSPROF_NAMES_LENSES : LENSPROF_NAMES_CAMERAS;
     std::vector<Summaries> all;
     for (size_t i = 0; i < databases.size(); i++)
-        all.push_back(listed<lensprof_store_summary>(
-            databases.file(i),
-            [&](lensprof_store_summary *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
-                return list(databases.store(i), part.c_str(), buffer, capacity, count, error);
-            }));
+        all.push_back(listed<lensprof_store_summary>(databases.file(i), [&](lensprof_store_summary *buffer,
+                                                                            uint32_t capacity, uint32_t *count,
+                                                                            lensprof_error *error) {
+            return lensprof_store_list_names(databases.store(i), which, part.c_str(), buffer, capacity, count, error);
+        }));
     if (o.json)
         print_json(names_json(databases, all, of_lenses), streams.out);
     else

@@ -51,7 +51,7 @@ void keep_same_sensor(double crop_factor, std::vector<lensprof_store_row> &rows)
 // As in lookups.
 void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
     const auto has_doubt = [](const lensprof_store_row &row) {
-        return *row.provenance.doubt != 0 && !lensprof_provenance_doubts_response(&row.provenance);
+        return *row.provenance.doubt != 0 && std::strcmp(row.provenance.doubt, LENSPROF_DOUBT_RESPONSE) != 0;
     };
     rows.erase(std::remove_if(rows.begin(), rows.end(), has_doubt), rows.end());
 }

@@ -20,7 +20,7 @@ void irradiance_of(const Truth &truth, uint32_t index, double x, double y, const
     double r2 = lensprof_vignetting_r2(&truth.vignetting[0], camera.width, camera.height, x, y, nullptr);
     for (uint32_t c = 0; c < 3; c++) {
         double m = lensprof_vignetting_eval(&truth.vignetting[truth.vignettings == 3 ? c : 0], r2, nullptr);
-        irradiance[c] = rgb[c] * m * lensprof_exposure_factor(&truth.exposures[index], c);
+        irradiance[c] = rgb[c] * m * std::exp2(truth.exposures[index].ev) * truth.exposures[index].white_balance[c];
     }
 }
 

@@ -97,7 +97,7 @@ void put_fit(const lensprof_fit &fit, uint32_t setting, lensprof_profile &target
     provenance.heldout_rms = result.heldout_rms;
     provenance.gamma_sigma = std::max(result.gamma_sigma, 0.0);
     const bool is_shown = result.response_from != LENSPROF_FIT_RESPONSE_KIND;
-    std::snprintf(provenance.doubt, sizeof provenance.doubt, "%s", is_shown ? "" : LP_DOUBT_RESPONSE);
+    std::snprintf(provenance.doubt, sizeof provenance.doubt, "%s", is_shown ? "" : LENSPROF_DOUBT_RESPONSE);
     if (setting != fit.reference_setting) return;
     provenance.images = sum_of(result.images, fit.prior_images);
     provenance.pairs = sum_of(result.setting_pairs, fit.prior_pairs);
@@ -173,18 +173,6 @@ lensprof_fit *make_fit(const FitCall &call, const lensprof_exposure *exposures, 
 using namespace lensprof;
 
 extern "C" {
-
-void lensprof_fit_image_quality_init_sized(lensprof_fit_image_quality *quality, size_t size) {
-    lp_sized_begin(quality, size, sizeof *quality);
-}
-
-void lensprof_fit_result_init_sized(lensprof_fit_result *result, size_t size) {
-    if (lp_sized_begin(result, size, sizeof *result)) lensprof_response_set_linear(&result->response);
-}
-
-void lensprof_fit_camera_init_sized(lensprof_fit_camera *camera, size_t size) {
-    lp_sized_begin(camera, size, sizeof *camera);
-}
 
 size_t lensprof_fit_bytes(const lensprof_fit_image *images, uint32_t image_count) {
     try {

@@ -166,14 +166,6 @@ void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t siz
     options->prior_weight = 1.0;
 }
 
-void lensprof_flat_image_quality_init_sized(lensprof_flat_image_quality *quality, size_t size) {
-    lp_sized_begin(quality, size, sizeof *quality);
-}
-
-void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size) {
-    lp_sized_begin(result, size, sizeof *result);
-}
-
 size_t lensprof_flat_bytes(uint32_t image_count) {
     if (image_count == 0 || image_count > LENSPROF_FLAT_IMAGES) return 0;
     return sizeof(lensprof_flat) + sizeof(lensprof_flat_result) + 3 * sizeof(lensprof_response)

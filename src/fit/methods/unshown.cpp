@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/covariance.h"
+#include "core/profile.h"
 #include "fit/base/constants.hpp"
 #include "fit/verdict/reason.hpp"
 
@@ -43,7 +44,7 @@ void state_errors(const double *covariance, const FitResult &r, Part &part) {
 bool holds_response(const lensprof_profile &profile, const FitResult &r) {
     const bool is_kept =
         r.profile_prior == LENSPROF_PROFILE_PRIOR_USED || r.profile_prior == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED;
-    return is_kept && !lensprof_provenance_doubts_response(&profile.provenance)
+    return is_kept && !lp_provenance_doubts_response(&profile.provenance)
            && (lp_covariance_modes(profile.response, profile.responses) > 0 || profile.provenance.gamma_sigma > 0.0);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/covariance.h"
+#include "core/profile.h"
 #include "core/response.h"
 #include "falloff/dense.hpp"
 #include "fit/prior/gauge.hpp"
@@ -79,7 +80,7 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
         return all;
     };
     const Eigen::MatrixXd scatter = scatter_of_all();
-    const bool is_of_kind = lensprof_provenance_doubts_response(&profile.provenance);  // and known without the profile
+    const bool is_of_kind = lp_provenance_doubts_response(&profile.provenance);  // and known without the profile
     if (is_emor && (is_of_kind || !is_known(0, modes_))) modes_ = 0;
     std::vector<int> from, to;  // row of the profile's covariance, column of the full shared vector
     for (int l = 0; l < modes_ && is_emor; l++) from.push_back(l), to.push_back(l);

@@ -41,6 +41,7 @@ struct FitResult : lensprof_fit_result {
 inline FitResult empty_result() {
     FitResult result;
     lensprof_fit_result_init(&result);
+    lensprof_response_set_linear(&result.response);
     return result;
 }
 

@@ -361,10 +361,6 @@ lensprof_status lensprof_pto_read(const void *data, size_t size, lensprof_pto **
 
 void lensprof_pto_destroy(lensprof_pto *pto) { delete pto; }
 
-void lensprof_pto_image_init_sized(lensprof_pto_image *image, size_t size) {
-    lp_sized_begin(image, size, kFirstPtoImage);
-}
-
 uint32_t lensprof_pto_image_count(const lensprof_pto *pto) {
     return pto ? static_cast<uint32_t>(pto->images.size()) : 0;
 }

@@ -7,16 +7,13 @@
 #include "core/covariance.h"
 #include "store/lookup/lookup_falloff.h"
 #include "store/lookup/lookup_response.h"
+#include "store/lookup/nearest.h"
 
 #define FIRST_OPTIONS LP_END_OF(lensprof_lookup_options, any_processing)
 #define FIRST_LOOKUP LP_END_OF(lensprof_lookup, reason)
 
 void lensprof_lookup_options_init_sized(lensprof_lookup_options *options, size_t size) {
     if (lp_sized_begin(options, size, FIRST_OPTIONS)) options->distance_rule = LENSPROF_DISTANCE_USUAL;
-}
-
-void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size) {
-    (void)lp_sized_begin(lookup, size, FIRST_LOOKUP);
 }
 
 /* What a call works on. */
@@ -208,6 +205,19 @@ static lensprof_status answer_exact(work *w, lensprof_error *error) {
     return LENSPROF_OK;
 }
 
+/* For a lens whose name no store has. */
+static lensprof_status add_nearest(work *w, lensprof_error *error) {
+    lp_nearest nearest = {0};
+    lensprof_error own;
+    lensprof_status status = LENSPROF_OK;
+    if (w->lookup.reason_code[0] != LENSPROF_REASON_LOOKUP_NO_LENS) return LENSPROF_OK;
+    for (uint32_t i = 0; i < w->count && status == LENSPROF_OK; i++)
+        status = lp_add_nearest(w->stores[i], w->key, &nearest, &own);
+    if (status != LENSPROF_OK && error) *error = own;
+    memcpy(w->lookup.nearest, nearest.lens, sizeof nearest.lens);
+    return status;
+}
+
 /* One transaction a store, so that an answer is of one state of each. */
 static lensprof_status look_up(work *w, lensprof_error *error) {
     lensprof_status status = LENSPROF_OK;
@@ -217,6 +227,10 @@ static lensprof_status look_up(work *w, lensprof_error *error) {
         if (status == LENSPROF_OK) begun++;
     }
     if (status == LENSPROF_OK) status = find_falloff(w, error);
+    if (status == LENSPROF_ERROR_NOT_FOUND) {
+        const lensprof_status added = add_nearest(w, error);
+        if (added != LENSPROF_OK) status = added;
+    }
     if (status == LENSPROF_OK)
         status = w->lookup.exact ? answer_exact(w, error) : compose(w, error);
     else if (status == LENSPROF_ERROR_NOT_FOUND && w->options.response_alone)

@@ -155,7 +155,7 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     lp_bind_integer(&binder, o->any_processing);
     lp_bind_integer(&binder, key->processing == LENSPROF_PROCESSING_CORRECTED && !o->force_falloff);
     lp_bind_integer(&binder, asks_for_camera(key));
-    lp_bind_text(&binder, LP_DOUBT_RESPONSE);
+    lp_bind_text(&binder, LENSPROF_DOUBT_RESPONSE);
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
     row r = {.processing = ""};
     lensprof_profile_key_init(&r.key);

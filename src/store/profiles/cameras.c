@@ -36,7 +36,7 @@ static const char *read_camera(sqlite3_stmt *statement, lensprof_camera_model *c
     camera->crop_factor = lp_read_known(&reader);
     camera->fixed_lens = (uint32_t)lp_read_integer(&reader, 0, 1);
     lp_read_text(&reader, camera->source, sizeof camera->source);
-    return !reader.bad && lensprof_camera_model_validate(camera) != LENSPROF_OK ? "value" : reader.bad;
+    return !reader.bad && lp_camera_model_validate(camera) != LENSPROF_OK ? "value" : reader.bad;
 }
 
 typedef lensprof_status (*camera_visitor)(void *user, int64_t id, const lensprof_camera_model *camera,
@@ -100,8 +100,8 @@ lensprof_status lensprof_store_put_camera(lensprof_store *store, const lensprof_
                                           lensprof_error *error) {
     lp_store_clear(error);
     if (!store || !camera) return lp_store_fail_argument("store or camera is NULL", error);
-    if (lensprof_camera_model_validate(camera) != LENSPROF_OK)
-        return lp_store_fail_argument("the camera is invalid; see lensprof_camera_model_validate", error);
+    if (lp_camera_model_validate(camera) != LENSPROF_OK)
+        return lp_store_fail_argument("the camera is invalid; see lensprof_camera_model", error);
     lensprof_status status = lp_store_begin(store, true, error);
     if (status != LENSPROF_OK) return status;
     status = put(store, "INSERT OR REPLACE " INTO, camera, error);

@@ -93,10 +93,6 @@ static lensprof_status read_all(lensprof_store *store, lensprof_store_stats *sta
 
 #define FIRST_STATS LP_END_OF(lensprof_store_stats, bytes)
 
-void lensprof_store_stats_init_sized(lensprof_store_stats *stats, size_t size) {
-    (void)lp_sized_begin(stats, size, FIRST_STATS);
-}
-
 lensprof_status lensprof_store_get_stats(lensprof_store *store, lensprof_store_stats *stats, lensprof_error *error) {
     lensprof_store_stats found;
     lp_store_clear(error);

@@ -151,12 +151,11 @@ static lensprof_status list(lensprof_store *store, const char *sql, const char *
     return status;
 }
 
-lensprof_status lensprof_store_list_lenses(lensprof_store *store, const char *part, lensprof_store_summary *rows,
-                                           uint32_t capacity, uint32_t *count, lensprof_error *error) {
-    return list(store, lenses_sql, part, rows, capacity, count, error);
-}
-
-lensprof_status lensprof_store_list_cameras(lensprof_store *store, const char *part, lensprof_store_summary *rows,
-                                            uint32_t capacity, uint32_t *count, lensprof_error *error) {
-    return list(store, cameras_sql, part, rows, capacity, count, error);
+lensprof_status lensprof_store_list_names(lensprof_store *store, uint32_t which, const char *part,
+                                          lensprof_store_summary *rows, uint32_t capacity, uint32_t *count,
+                                          lensprof_error *error) {
+    if (which > LENSPROF_NAMES_CAMERAS)
+        return lp_store_fail_argument("unknown kind of names; see lensprof_store_names", error);
+    const char *const sql = which == LENSPROF_NAMES_LENSES ? lenses_sql : cameras_sql;
+    return list(store, sql, part, rows, capacity, count, error);
 }

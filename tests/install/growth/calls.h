@@ -395,6 +395,10 @@ static lensprof_status call_import_options(void *given, lensprof_error *error) {
 
 /* ---- all of them ---- */
 
+static void init_zero(void *given, size_t size, uint32_t i) {
+    (void)i;
+    lensprof_init_sized(given, size);
+}
 #define INIT(x)                                                  \
     static void init_##x(void *given, size_t size, uint32_t i) { \
         (void)i;                                                 \
@@ -408,14 +412,6 @@ INIT(sample_image)
 INIT(apply_options)
 INIT(profile)
 INIT(lookup_options)
-INIT(fit_result)
-INIT(fit_image_quality)
-INIT(fit_camera)
-INIT(flat_result)
-INIT(flat_image_quality)
-INIT(lookup)
-INIT(store_stats)
-INIT(pto_image)
 INIT(import_options)
 INIT(export_options)
 
@@ -435,24 +431,22 @@ typedef struct growing {
 static const growing structs[] = {
     {"fit_options", sizeof(lensprof_fit_options), 160, 1, init_fit_options, call_fit_options, 1, 0},
     {"fit_image", sizeof(lensprof_fit_image), 104, IMAGES, init_fit_image, call_fit_images, 1, 0},
-    {"fit_result", sizeof(lensprof_fit_result), 19752, 1, init_fit_result, call_fit_result, 1, 1},
-    {"fit_image_quality", sizeof(lensprof_fit_image_quality), 96, 1, init_fit_image_quality, call_fit_image_quality, 1,
-     1},
-    {"fit_camera", sizeof(lensprof_fit_camera), 64, 1, init_fit_camera, call_fit_camera, 1, 1},
+    {"fit_result", sizeof(lensprof_fit_result), 19752, 1, init_zero, call_fit_result, 1, 1},
+    {"fit_image_quality", sizeof(lensprof_fit_image_quality), 96, 1, init_zero, call_fit_image_quality, 1, 1},
+    {"fit_camera", sizeof(lensprof_fit_camera), 64, 1, init_zero, call_fit_camera, 1, 1},
     {"flat_options", sizeof(lensprof_flat_options), 128, 1, init_flat_options, call_flat_options, 1, 0},
     {"flat_image", sizeof(lensprof_flat_image), 104, 1, init_flat_image, call_flat_image, 1, 0},
-    {"flat_result", sizeof(lensprof_flat_result), 24488, 1, init_flat_result, call_flat_result, 1, 1},
-    {"flat_image_quality", sizeof(lensprof_flat_image_quality), 88, 1, init_flat_image_quality, call_flat_image_quality,
-     1, 1},
+    {"flat_result", sizeof(lensprof_flat_result), 24488, 1, init_zero, call_flat_result, 1, 1},
+    {"flat_image_quality", sizeof(lensprof_flat_image_quality), 88, 1, init_zero, call_flat_image_quality, 1, 1},
     {"sample_options", sizeof(lensprof_sample_options), 40, 1, init_sample_options, call_sample_options, 1, 0},
     {"sample_image", sizeof(lensprof_sample_image), 224, 2, init_sample_image, call_sample_images, 1, 0},
     {"apply_options", sizeof(lensprof_apply_options), 176, 1, init_apply_options, call_apply_options, 1, 0},
     {"profile as input", sizeof(lensprof_profile), 49312, 1, init_profile, call_profile_in, 1, 0},
     {"profile as output", sizeof(lensprof_profile), 49312, 1, init_profile, call_profile_out, 1, 1},
     {"lookup_options", sizeof(lensprof_lookup_options), 16, 1, init_lookup_options, call_lookup_options, 1, 0},
-    {"lookup", sizeof(lensprof_lookup), 680, 1, init_lookup, call_lookup, 1, 1},
-    {"store_stats", sizeof(lensprof_store_stats), 4336, 1, init_store_stats, call_stats, 1, 1},
-    {"pto_image", sizeof(lensprof_pto_image), 312, 1, init_pto_image, call_pto_image, 1, 1},
+    {"lookup", sizeof(lensprof_lookup), 680, 1, init_zero, call_lookup, 1, 1},
+    {"store_stats", sizeof(lensprof_store_stats), 4336, 1, init_zero, call_stats, 1, 1},
+    {"pto_image", sizeof(lensprof_pto_image), 312, 1, init_zero, call_pto_image, 1, 1},
     {"import_options", sizeof(lensprof_import_options), 64, 1, init_import_options, call_import_options, 1, 0},
     {"export_options", sizeof(lensprof_export_options), 56, 1, init_export_options, call_export_options, 1, 0},
 };

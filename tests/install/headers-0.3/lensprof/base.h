@@ -111,6 +111,9 @@ typedef int (*lensprof_progress)(double done, void *user);
 /* Name of a status, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other values. Static storage. */
 LENSPROF_API const char *lensprof_status_name(lensprof_status status);
 
+/* Sets a struct of `size` bytes to zero, and its struct_size: what the _init functions of results call. */
+LENSPROF_API void lensprof_init_sized(void *given, size_t size);
+
 /* "0.3.0". Static storage. */
 LENSPROF_API const char *lensprof_version(void);
 

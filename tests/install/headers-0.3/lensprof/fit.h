@@ -201,9 +201,8 @@ typedef struct lensprof_fit_image_quality {
 } lensprof_fit_image_quality;
 
 /* No pairs, left out. */
-LENSPROF_API void lensprof_fit_image_quality_init_sized(lensprof_fit_image_quality *quality, size_t size);
 static inline void lensprof_fit_image_quality_init(lensprof_fit_image_quality *quality) {
-    lensprof_fit_image_quality_init_sized(quality, sizeof *quality);
+    lensprof_init_sized(quality, sizeof *quality);
 }
 
 #define LENSPROF_COVERAGE_BINS 10
@@ -275,10 +274,9 @@ typedef struct lensprof_fit_result {
     double seconds;         /* time taken by the solver */
 } lensprof_fit_result;
 
-/* No images, a linear response. */
-LENSPROF_API void lensprof_fit_result_init_sized(lensprof_fit_result *result, size_t size);
+/* No images. */
 static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
-    lensprof_fit_result_init_sized(result, sizeof *result);
+    lensprof_init_sized(result, sizeof *result);
 }
 
 /* How one of several cameras joins the others. Each has a fit of its own, on the pairs between its own images. Pairs
@@ -303,9 +301,8 @@ typedef struct lensprof_fit_camera {
 } lensprof_fit_camera;
 
 /* No images. */
-LENSPROF_API void lensprof_fit_camera_init_sized(lensprof_fit_camera *camera, size_t size);
 static inline void lensprof_fit_camera_init(lensprof_fit_camera *camera) {
-    lensprof_fit_camera_init_sized(camera, sizeof *camera);
+    lensprof_init_sized(camera, sizeof *camera);
 }
 
 /* Bytes of memory that a fit of these images takes; 0 for NULL or a setting or camera out of range. */

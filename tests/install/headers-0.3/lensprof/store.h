@@ -85,6 +85,7 @@ static inline void lensprof_lookup_options_init(lensprof_lookup_options *options
 #define LENSPROF_LOOKUP_ROWS 24
 #define LENSPROF_LOOKUP_REASONS 8
 #define LENSPROF_LOOKUP_RESPONSES 8
+#define LENSPROF_LOOKUP_NEAREST 3
 
 /* Origin of the response in the answer of a lookup. */
 typedef enum lensprof_response_from {
@@ -128,11 +129,12 @@ typedef struct lensprof_lookup {
     uint32_t reserved2;      /* 0 */
     int64_t response_id[LENSPROF_LOOKUP_RESPONSES];
     double response_weight[LENSPROF_LOOKUP_RESPONSES]; /* their weights; they sum to 1 */
+    char nearest[LENSPROF_LOOKUP_NEAREST][128]; /* if no lens has the name: the lenses with the most similar names,
+                                                   nearest first; empty after the last */
 } lensprof_lookup;
 
 /* All zero. */
-LENSPROF_API void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size);
-static inline void lensprof_lookup_init(lensprof_lookup *lookup) { lensprof_lookup_init_sized(lookup, sizeof *lookup); }
+static inline void lensprof_lookup_init(lensprof_lookup *lookup) { lensprof_init_sized(lookup, sizeof *lookup); }
 
 /* Composes the profile for a setting from a falloff and a response (docs/database.md has the details).
  * The falloff depends on the lens: it is that of a stored profile, or is predicted from profiles of the same lens at
@@ -213,7 +215,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_sto
                                                                     lensprof_error *error);
 
 /* Stores a camera. It replaces the one with exactly the same maker, model and variant, if there is one.
- * Errors: ARGUMENT if lensprof_camera_model_validate refuses it; those of the store. */
+ * Errors: ARGUMENT if it has no model, a text is not terminated or has control characters, or a number is out of range;
+ * those of the store. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_put_camera(lensprof_store *store,
                                                                          const lensprof_camera_model *camera,
                                                                          lensprof_error *error);
@@ -278,10 +281,7 @@ typedef struct lensprof_store_stats {
 } lensprof_store_stats;
 
 /* All zero. */
-LENSPROF_API void lensprof_store_stats_init_sized(lensprof_store_stats *stats, size_t size);
-static inline void lensprof_store_stats_init(lensprof_store_stats *stats) {
-    lensprof_store_stats_init_sized(stats, sizeof *stats);
-}
+static inline void lensprof_store_stats_init(lensprof_store_stats *stats) { lensprof_init_sized(stats, sizeof *stats); }
 
 /* Fills an initialised *stats. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get_stats(lensprof_store *store,
@@ -312,31 +312,18 @@ typedef struct lensprof_store_summary {
     double distance_m[2];
 } lensprof_store_summary;
 
-/* Lists the lenses, or the cameras, of the stored profiles, ordered by name. `part` (NULL or blanks: all) is a name as
- * in lookups. If no name matches, its words are searched, each anywhere in maker and name, ignoring ASCII case, blanks
- * and signs. rows[capacity] and *count as in base.h. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_lenses(lensprof_store *store, const char *part,
-                                                                          lensprof_store_summary *rows,
-                                                                          uint32_t capacity, uint32_t *count,
-                                                                          lensprof_error *error);
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_cameras(lensprof_store *store, const char *part,
-                                                                           lensprof_store_summary *rows,
-                                                                           uint32_t capacity, uint32_t *count,
-                                                                           lensprof_error *error);
+typedef enum lensprof_store_names {
+    LENSPROF_NAMES_LENSES = 0,
+    LENSPROF_NAMES_CAMERAS = 1
+} lensprof_store_names;
 
-/* The name of a lens, and its similarity to a requested one. Frozen value struct. */
-typedef struct lensprof_store_name {
-    char lens[128]; /* as stored */
-    double score;   /* 0..1: share of words common to both names, with focal lengths and f-numbers weighted most */
-} lensprof_store_name;
-
-/* The stored lenses with names nearest to key->lens, nearest first, for a lens that a lookup did not find. If key->lens
- * names no maker, key->camera_maker is used. names[most]; *count receives the number written, which is smaller if no
- * more names are similar. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_nearest_lenses(lensprof_store *store,
-                                                                             const lensprof_profile_key *key,
-                                                                             lensprof_store_name *names, uint32_t most,
-                                                                             uint32_t *count, lensprof_error *error);
+/* Lists the lenses, or the cameras (`which`, lensprof_store_names), of the stored profiles, ordered by name. `part`
+ * (NULL or blanks: all) is a name as in lookups. If no name matches, its words are searched, each anywhere in maker and
+ * name, ignoring ASCII case, blanks and signs. rows[capacity] and *count as in base.h. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_names(lensprof_store *store, uint32_t which,
+                                                                         const char *part, lensprof_store_summary *rows,
+                                                                         uint32_t capacity, uint32_t *count,
+                                                                         lensprof_error *error);
 
 /* Removes the falloff (and gain grid) of a profile from a whole picture, in place. Samples are encoded by the response
  * of the profile, before and after. exposure: exposure and white balance of the picture, which become 0 EV and 1, 1, 1;
