@@ -15,7 +15,7 @@ rm -rf "$work"
 mkdir -p "$work"
 if [[ -z $pictures ]]; then
     pictures=$work/pictures
-    run simulate -o "$pictures" --mean-ev -0.8 --format jpeg --size 1200x800
+    run simulate -o "$pictures" --set mean-ev=-0.8 --format jpeg --size 1200x800
 fi
 run calibrate "$pictures" -o "$work/corrected" --db "$work/lenses.db" --report "$work/report.html"
 printf '\nOpen %s in a browser: the pictures before and after, and the lens.\n' "$work/report.html"

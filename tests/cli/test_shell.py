@@ -25,7 +25,7 @@ complete_words() {
 complete_words lensprof bu
 complete_words lensprof profile sh
 complete_words lensprof build --repo
-complete_words lensprof build --loss ''
+complete_words lensprof build --fit lo
 complete_words lensprof build --report pi
 complete_words lensprof build pi
 complete_words lensprof profile show --cha
@@ -33,15 +33,17 @@ complete_words lensprof --ver
 complete_words lensprof completion ''
 complete_words lensprof man bui
 complete_words lensprof apply my
-complete_words lensprof build --loss = ro
-complete_words lensprof build --loss =
+complete_words lensprof build --fit loss = ro
+complete_words lensprof build --fit loss =
+complete_words lensprof build --fit seed=1,loss =
 complete_words lensprof build --report = pi
 complete_words lensprof help profile sho
 complete_words lensprof man profile mer
 complete_words lensprof build -- -da
 """
-WANTED = ["build", "show", "--report", "robust huber squared", "pictures", "pictures", "--chart --chart-out --channel", "--version",
-          "bash zsh fish", "build", "my photo.jpg", "robust", "robust huber squared", "pictures", "show", "merge", "-dash.jpg"]
+WANTED = ["build", "show", "--report", "loss=", "pictures", "pictures", "--chart --chart-out --channel", "--version",
+          "bash zsh fish", "build", "my photo.jpg", "robust", "robust huber squared", "robust huber squared",
+          "pictures", "show", "merge", "-dash.jpg"]
 
 
 def output_of(*words, cwd=None):
@@ -56,15 +58,20 @@ def is_there(program):
 
 
 def check_pages(lensprof, folder):
-    """Every command and verb has a page without warnings, and the page has every option of the help."""
+    """Every command and verb has a page without warnings, and the page has every option of the help, those of experts
+    in a section of their own."""
     output_of(lensprof, "man", "-o", folder)
     pages = sorted(folder.glob("*.1"))
     commands = re.findall(r"^  (\w+) ", output_of(lensprof, "help").partition("Commands:")[2], re.MULTILINE)
     assert len(commands) > 14 and len(pages) > len(commands) + 10, (commands, pages)
     for command in commands:
         text = (folder / f"lensprof-{command}.1").read_text().replace("\\-", "-")
-        for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", output_of(lensprof, "help", command), re.MULTILINE):
+        for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", output_of(lensprof, command, "--help-all"), re.MULTILINE):
             assert option in text, f"lensprof-{command}.1 lacks {option}"
+        everyday, _, expert = text.partition(".SH EXPERT OPTIONS")
+        assert "--verbose" in expert or command in ("profile",), f"lensprof-{command}.1 lacks expert options"
+        for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", output_of(lensprof, "help", command), re.MULTILINE):
+            assert option in everyday, f"lensprof-{command}.1 has {option} among those of experts"
     if is_there("mandoc"):
         warnings = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", *pages], stdout=subprocess.PIPE, text=True, check=False)
         assert warnings.returncode == 0, warnings.stdout
@@ -107,7 +114,7 @@ def on_terminal(environment, *words):
 def check_colour(lensprof, folder):
     """Warnings have a colour on a terminal, and on no other."""
     output_of(lensprof, "simulate", "-o", folder / "row", "--images", "4", "--size", "320x240")
-    build = [lensprof, "build", folder / "row" / "pano.pto", "--no-store", "--gamma-from", "exif"]
+    build = [lensprof, "build", folder / "row" / "pano.pto", "--no-store", "--fit", "gamma-from=exif"]
     assert b"\033[1;33mwarning:\033[0m " in on_terminal({"NO_COLOR": ""}, *build)
     for plain in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
         assert b" warning: " in on_terminal(plain, *build)

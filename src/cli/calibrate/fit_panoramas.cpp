@@ -53,7 +53,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     options.one_lens = o.one_lens;
     if (panorama.summary["camera"] == camera_stationary)
         throw Failure(ExitCode::not_usable, panorama.name + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
-    check_pictures(project, options.max_side);
+    check_pictures(project, options.pixels.max_side);
     const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
     const lensprof_profile_key &exif = metadata[project.reference].key;
     panorama.summary["not_stored"] = nullptr;

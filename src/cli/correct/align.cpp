@@ -45,7 +45,7 @@ struct Options {
 
     std::string folder() const { return output.empty() ? "aligned" : output; }
     CorrectionKind kind;
-    uint32_t seed = 1, pairs = 0, max_side = 800;
+    SamplingOptions pixels;
     bool json = false, progress = false;
     std::vector<std::string> files;
 };
@@ -63,12 +63,8 @@ void declare(Command &command, Options &o) {
     command.file("--project", o.pto,
                  "Hugin project with the orientations of the camera; the falloff is then estimated and corrected too; "
                  "default none: a stationary camera");
-    declare_fit(command, o.fit, {false, false});
-    command.count("--pairs", o.pairs, 0, 1 << 24,
-                  "number of pairs; default 0 = 10000 per frame; with --project 300 per frame, at least 2000");
-    command.count("--seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");
-    command.count("--max-side", o.max_side, 0, UINT32_MAX,
-                  "sample frames reduced to at least this many pixels on the longer side; default 800; 0 = full size");
+    Keys keys = declare_fit(command, o.fit, {false, false});
+    declare_sampling(keys, o.pixels, "10000 per frame; with --project 300 per frame, at least 2000");
     declare_writing(command, o.kind);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -115,12 +111,12 @@ Fitted fit_sequence(const Options &o, const Project &project, std::vector<double
     input.options = fit_options(o.fit);
     input.options.free &= project.images[0].free;
     input.options.reference = project.reference;
-    auto pictures = read_pictures(project, o.max_side, progress);
+    auto pictures = read_pictures(project, o.pixels.max_side, progress);
     input.options.channels = channel_count(pictures);
     lensprof_sample_options sampling;
     lensprof_sample_options_init(&sampling);
-    sampling.pairs = o.pairs;
-    sampling.seed = o.seed;
+    sampling.pairs = o.pixels.pairs;
+    sampling.seed = o.pixels.seed;
     std::vector<lensprof_link> links;
     input.pairs = project.pto ? sample_pairs(project, pictures, sampling, {}, progress, &links)
                               : sample_still(project, pictures, sampling, 0.0, progress);
@@ -242,7 +238,7 @@ int align(const Options &o, Streams &streams) {
     Project project = sequence(o);
     std::vector<uint32_t> frames = frames_of(o, project);
     std::vector<Correction> jobs = make_jobs(o, project, frames);
-    check_pictures(project, o.max_side);
+    check_pictures(project, o.pixels.max_side);
     if (o.merge.empty()) check_output_folder(o.folder());
     Progress progress(streams, o.progress);
     std::vector<double> white_shares;  // number of the project's pictures
@@ -283,7 +279,7 @@ int align(const Options &o, Streams &streams) {
 
 int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
-    check_max_side(o.max_side);
+    check_max_side(o.pixels.max_side);
     if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; give at least two");
     if (!o.merge.empty() && !o.output.empty())
         throw Failure(ExitCode::usage,

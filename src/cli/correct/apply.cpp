@@ -98,7 +98,7 @@ void encode_alike(const ApplySource &source, std::vector<Correction> &jobs, Stre
     for (Correction &job : jobs) job.encoding = encoding;
     note(streams, source.project->path + ": has several cameras; all outputs are encoded with the response of "
                       + (source.has_model ? std::string("the reference") : jobs[0].source)
-                      + " (use --output-exposure keep to encode each with its own)");
+                      + " (use --set exposure=keep to encode each with its own)");
 }
 
 // Whether a file is a picture that a camera took.
@@ -161,7 +161,7 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
 int run(ApplyOptions &o, Streams &streams) {
     check_project_options(o);
     if (!o.linear_end.empty() && !o.kind.linear)
-        throw Failure(ExitCode::usage, "--linear-output: needs --linear; give both or neither");
+        throw Failure(ExitCode::usage, "--encoding linear: needs --linear; give both or neither");
     if (!o.sheet.empty() && format_of_name(o.sheet) == FileFormat::exr)
         throw Failure(
             ExitCode::usage,

@@ -28,7 +28,7 @@ enum class RawOutput {
 struct ApplyOptions {
     ModelOptions model;
     RawOutput raw_output = RawOutput::by_default;
-    std::string linear_end;  // of --linear-output; empty: not given
+    std::string linear_end;  // of --encoding linear; empty: not given
     std::string pto, exposures, images, shard, output, sheet;
     OutputExposure exposure = OutputExposure::by_default;
     CorrectionKind kind;

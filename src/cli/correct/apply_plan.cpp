@@ -30,12 +30,12 @@ bool becomes_dng(const ApplyOptions &o, const std::string &raw) {
     const bool is_plain = !kind.linear && !kind.simulate && kind.strength == 1.0 && kind.gain_cap == 0.0
                           && o.project().empty() && o.sheet.empty();
     if (o.raw_output == RawOutput::dng && raw != "DNG")
-        throw Failure(ExitCode::usage, "--raw-output dng: needs DNG files, but one is a " + raw
+        throw Failure(ExitCode::usage, "--encoding raw=dng: needs DNG files, but one is a " + raw
                                            + "; convert it to DNG first, or omit the option");
     if (o.raw_output == RawOutput::dng && !is_plain)
         throw Failure(ExitCode::usage,
-                      "--raw-output dng: an opcode stores only the falloff; omit --linear, --simulate, --strength, "
-                      "--gain-cap, --pto and --contact-sheet, or use --raw-output tif");
+                      "--encoding raw=dng: an opcode stores only the falloff; omit --linear, --set simulate, "
+                      "strength and gain-cap, --pto and --contact-sheet, or use raw=tif");
     return raw == "DNG" && is_plain && o.raw_output != RawOutput::tif;
 }
 
@@ -74,7 +74,7 @@ void check_has_result(const Project &project) {
     }
     throw Failure(
         ExitCode::usage,
-        project.path + ": has neither response nor falloff; give the project that `lensprof build --pto-out` wrote");
+        project.path + ": has neither response nor falloff; give the project that `lensprof build --write pto=FILE` wrote");
 }
 
 // If no profile is looked up, an error in the metadata is ignored here: reading the pixels reports it.
@@ -93,7 +93,7 @@ void check_mark(const ApplyOptions &o, const std::string &file, const PictureMet
     if (o.model.force_falloff || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
     throw NotThisOne(ExitCode::not_found,
                      file + ": already corrected, " + metadata.corrected_by
-                         + "; give the original, or use --force-falloff to correct it again",
+                         + "; give the original, or use --set force-falloff=yes to correct it again",
                      true);
 }
 
@@ -109,7 +109,7 @@ void check_several(const std::string &file) {
 void check_opcodes(const ApplyOptions &o, const std::string &file) {
     if (o.model.force_falloff || !has_falloff_opcode(file)) return;
     throw NotThisOne(ExitCode::not_found,
-                     file + ": its opcodes already correct the falloff; use --raw-output tif, which ignores them",
+                     file + ": its opcodes already correct the falloff; use --encoding raw=tif, which ignores them",
                      true);
 }
 
@@ -281,7 +281,7 @@ ApplySource open_source(const ApplyOptions &o) {
         source.exposures = relative_to_joined(*source.project);
         source.has_model = !from_store;
     } else if (o.exposure == OutputExposure::mean || o.exposure == OutputExposure::reference) {
-        throw Failure(ExitCode::usage, std::string("--output-exposure ")
+        throw Failure(ExitCode::usage, std::string("--set exposure=")
                                            + (o.exposure == OutputExposure::mean ? "mean" : "reference")
                                            + " needs the exposures of a project; give the project with --pto or "
                                              "--model");

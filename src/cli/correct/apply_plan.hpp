@@ -13,7 +13,7 @@
 
 namespace lensprof {
 
-// The project and, without --profile and --from-db, its model.
+// The project and, without --profile, its model.
 struct ApplySource {
     std::unique_ptr<Project> project;
     std::unique_ptr<ImagesByFile> images;
@@ -33,7 +33,7 @@ struct ApplyWork {
     std::vector<LeftOut> left_out;
     std::vector<LeftOut> unjoined;      // missing from the result of the project
     std::vector<PlacedCorrection> lit;  // of --merge: all images that contribute
-    lensprof_exposure mean{};           // the target of --output-exposure mean
+    lensprof_exposure mean{};           // the target of --set exposure=mean
 };
 
 ApplySource open_source(const ApplyOptions &o);

@@ -69,7 +69,7 @@ std::vector<std::string> CopyLosses::warnings() const {
         lines.push_back(with_others(lifted_.job->source, lifted_.count)
                         + format(": lifted by %s%.1f EV, which shows the noise; use ",
                                  lifted_.count > 1 ? "up to " : "", lifted_.value)
-                        + command_with(*lifted_.job, "--output-exposure keep") + ", or pictures of 16 bits");
+                        + command_with(*lifted_.job, "--set exposure=keep") + ", or pictures of 16 bits");
     if (clipped_.count)
         lines.push_back(with_others(clipped_.job->source, clipped_.count)
                         + format(": the correction clips %s%.1f %% more of the pixels; use ",

@@ -16,34 +16,35 @@
 namespace lensprof {
 
 void ModelOptions::add_options(Command &command) {
-    command.profile_id("--profile", profile, "use the profile with this id");
-    command.flag("--from-db", from_db,
-                 "look up the profile of each picture by its EXIF (default if nothing else is given and a database "
-                 "exists); between stored settings the falloff is predicted, as by `lensprof query`");
-    declare_databases(command, dbs, "; --profile refers to the first");
-    command.group("Instead of EXIF");
-    key.add_options(command);
-    lookup.add_options(command);
-    command.group("Response of the pictures");
     command.word(
-        "--response", "RESPONSE",
+        "--profile", "ID|auto",
+        [this](const std::string &word) {
+            from_db = word == "auto";
+            profile = from_db ? 0 : profile_id_of(word);
+        },
+        "use the profile with this id, or look up the profile of each picture by its EXIF (auto; default if nothing "
+        "else is given and a database exists); between stored settings the falloff is predicted, as by `lensprof "
+        "query`");
+    declare_databases(command, dbs, "; --profile refers to the first");
+    lookup.add_keys(key.add_options(command));
+}
+
+void ModelOptions::add_keys(Keys &keys) {
+    keys.word(
+        "response", "RESPONSE",
         [this](const std::string &word) {
             response.reset();
             if (word != "auto") response = response_of_word(word);
         },
         "response of the pictures: auto (default: that of the profile), srgb, gamma:G, linear, film, or emor:a,b,... "
         "(EMoR coefficients)");
-    command.flag(
-        "--force-falloff", force_falloff,
-        "correct the falloff even if the metadata state that it was corrected before, by lensprof (mark in the XMP), "
-        "the camera (maker notes; phones) or a raw converter");
-    command.group("Options");
+    keys.flag("force-falloff", force_falloff,
+              "correct the falloff even if the metadata state that it was corrected before, by lensprof (mark in the "
+              "XMP), the camera (maker notes; phones) or a raw converter");
 }
 
 PictureModels::PictureModels(const ModelOptions &options, bool by_default) : options_(options) {
     options.key.check_names();
-    if (options.profile && options.from_db)
-        throw Failure(ExitCode::usage, "--profile and --from-db exclude each other; give one of them");
     const auto files =
         options.profile && options.dbs.empty() ? std::vector<std::string>{store_path("")} : databases_of(options.dbs);
     const bool has_database = by_default && (!options.dbs.empty() || path_exists(files[0]));
@@ -64,7 +65,7 @@ lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) cons
 [[noreturn]] static void fail_corrected(const std::string &file, const PictureMetadata &metadata) {
     throw NotThisOne(ExitCode::not_found,
                      file + ": its falloff was already corrected, " + metadata.corrected_by
-                         + "; use --force-falloff to correct it anyway",
+                         + "; use --set force-falloff=yes to correct it anyway",
                      true);
 }
 
@@ -87,8 +88,8 @@ void PictureModels::take_profile(const PictureMetadata &metadata, Correction &jo
     const std::string processing_text = processing_name(processing), profile_text = processing_name(profile_processing);
     throw NotThisOne(ExitCode::usage, job.source + ": is treated as " + processing_text + ", but profile "
                                           + std::to_string(options_.profile) + " is for " + profile_text
-                                          + " pictures; give --processing " + profile_text + " if this picture is "
-                                          + profile_text + ", or its response, such as --response srgb");
+                                          + " pictures; give --key processing=" + profile_text + " if this picture is "
+                                          + profile_text + ", or its response, such as --set response=srgb");
 }
 
 // What is missing, in EXIF or in the databases: camera, lens or setting.
@@ -160,10 +161,10 @@ static std::string crop_note(const PictureSize &size) {
     if (size.shown_diagonal == 1.0) return "";
     if (std::isnan(size.shown_diagonal))
         return "EXIF states another shape: it was cropped, perhaps resized, so the size of its part of the sensor is "
-               "unknown; give --crop-factor";
+               "unknown; give --key crop-factor=NUMBER";
     return format(
         "EXIF states a larger frame: it was cropped to %.0f %% of the diagonal; the falloff is scaled to "
-        "that, around the middle of the picture (--crop-factor changes the scale)",
+        "that, around the middle of the picture (--key crop-factor changes the scale)",
         100.0 * size.shown_diagonal);
 }
 
@@ -171,15 +172,15 @@ static std::string crop_note(const PictureSize &size) {
 static void check_error(const lensprof_lookup &lookup, const lensprof_profile_key &key, const std::string &file) {
     constexpr double largest_sigma = 0.1;  // of M in the corner
     if (lookup.sigma == LENSPROF_UNKNOWN || lookup.sigma <= largest_sigma) return;
-    std::string step = "make a profile of this setting with `lensprof build`, or use `lensprof apply --doubtful`";
+    std::string step = "make a profile of this setting with `lensprof build`, or use `lensprof apply --key doubtful=yes`";
     if (std::hypot(lookup.falloff_sigma, lookup.distance_sigma) <= largest_sigma && lookup.sensor_sigma > largest_sigma)
         step = std::string(*key.camera_model ? "the size of the camera's sensor is unknown" : "EXIF names no camera")
-               + "; give --crop-factor, or the camera with --maker and --camera";
+               + "; give --key crop-factor=NUMBER, or the camera with --camera and --key maker=TEXT";
     throw NotThisOne(ExitCode::not_found, file + ": the falloff is too uncertain, " + describe_error(lookup)
                                               + format(", above %.1f; ", largest_sigma) + step);
 }
 
-// A falloff that no lens has is applied only if asked for by the number of the profile or by --doubtful.
+// A falloff that no lens has is applied only if asked for by the number of the profile or by --key doubtful=yes.
 void PictureModels::check_possible(const PictureMetadata &metadata, Correction &job,
                                    const lensprof_profile &profile) const {
     const std::string doubt = impossible_falloff(profile, metadata.size.width, metadata.size.height);
@@ -187,7 +188,7 @@ void PictureModels::check_possible(const PictureMetadata &metadata, Correction &
     if (!options_.profile)
         throw NotThisOne(ExitCode::not_found, job.source + ": " + doubt
                                                   + ", as with no lens; make a profile with `lensprof build`, or use "
-                                                    "`lensprof apply --doubtful`");
+                                                    "`lensprof apply --key doubtful=yes`");
     job.note = doubt + ", as with no lens";
 }
 
@@ -206,7 +207,7 @@ void PictureModels::choose(const PictureMetadata &metadata, Correction &job) con
     }
     if (metadata.may_be_linear && !options_.response && !options_.key.has_processing())
         job.note =
-            "this 16 bit TIFF is not marked as linear; it is treated as rendered (give --processing raw or jpeg to "
+            "this 16 bit TIFF is not marked as linear; it is treated as rendered (give --key processing=raw or jpeg to "
             "state it)";
     if (options_.force_falloff && !options_.puts_in && !metadata.corrected_by.empty())
         job.note = "its falloff was already corrected, " + metadata.corrected_by + ", and is corrected again";

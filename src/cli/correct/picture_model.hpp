@@ -32,12 +32,13 @@ struct ModelOptions {
     std::optional<lensprof_response> response;  // overrides the profile
 
     void add_options(Command &command);
+    void add_keys(Keys &keys);  // of --set
 };
 
 // The databases of the models.
 class PictureModels {
 public:
-    // Failure (usage) for conflicting options. Without --profile and --from-db, existing databases are used if
+    // Failure (usage) for conflicting options. Without --profile, existing databases are used if
     // `by_default`.
     PictureModels(const ModelOptions &options, bool by_default);
 

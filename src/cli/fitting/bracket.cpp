@@ -30,8 +30,22 @@ struct BracketOptions {
     std::string reference, report;
     double ev_sigma = 0.05, black = 0.0;
     bool free_balance = true, modes_only = false, json = false, progress = false;
-    uint32_t seed = 1, pairs = 0, max_side = 1600;
+    SamplingOptions pixels{1, 0, 1600};
 };
+
+void declare_bracket_fit(Command &command, BracketOptions &o) {
+    Keys keys = declare_fit(command, o.fit, {true, false});
+    keys.flag("modes-only", o.modes_only, "restrict the response to EMoR modes even if a free curve fits better");
+    keys.number("ev-sigma", o.ev_sigma, {0.001, 10.0},
+                "standard error of the exposures given by --ev or --times, EV; default 0.05");
+    keys.choice("white-balance", o.free_balance, {{"free", true}, {"fixed", false}},
+                "white balance of the pictures: free (default: estimated per picture) or fixed (the same in all)");
+    keys.text("reference", o.reference,
+              "picture (number or name) whose exposure is 0 EV; default the first usable one");
+    keys.number("black", o.black, {0.0, 200.0},
+                "ignore grey values up to this, levels of 255, if black is not 0, as in scanned film; default 0");
+    declare_sampling(keys, o.pixels, "10000 per picture");
+}
 
 void declare(Command &command, BracketOptions &o) {
     command.files("FILE", o.files, "pictures of one scene from a stationary camera");
@@ -41,24 +55,9 @@ void declare(Command &command, BracketOptions &o) {
                     "unknown");
     command.numbers("--times", o.times_s, {1e-9, 1e9, Unit::time_s},
                     "exposure times instead of --ev, seconds, such as 1/8,1,8 or 1/8s,1s,8s");
-    command.number("--ev-sigma", o.ev_sigma, {0.001, 10.0},
-                   "standard error of the exposures given by --ev or "
-                   "--times, EV; default 0.05");
-    command.choice("--white-balance", o.free_balance, {{"free", true}, {"fixed", false}},
-                   "white balance of the pictures: free (default: estimated per picture) or fixed (the same in all)");
-    declare_fit(command, o.fit, {true, false});
-    command.flag("--modes-only", o.modes_only, "restrict the response to EMoR modes even if a free curve fits better");
-    command.text("--reference", o.reference,
-                 "picture (number or name) whose exposure is 0 EV; default the first usable one");
-    command.number("--black", o.black, {0.0, 200.0},
-                   "ignore grey values up to this, levels of 255, if black is not 0, as in scanned film; default 0");
-    command.count("--pairs", o.pairs, 0, 1 << 24, "number of pairs; default 0 = 10000 per picture");
-    command.count("--seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");
-    command.count("--max-side", o.max_side, 0, UINT32_MAX,
-                  "sample pictures reduced to at least this many pixels on the longer side; default 1600; 0 = full "
-                  "size");
     command.file("--report", o.report, "write a report with charts as one .html file");
     declare_store(command, o.store);
+    declare_bracket_fit(command, o);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }
@@ -76,13 +75,13 @@ std::vector<double> given_exposures(const BracketOptions &o) {
 std::vector<lensprof_pair> get_pairs(const BracketOptions &o, const Project &project, Progress &progress,
                                      BuildReport &report, uint32_t &channels) {
     auto clock = std::chrono::steady_clock::now();
-    auto pictures = read_pictures(project, o.max_side, progress);
+    auto pictures = read_pictures(project, o.pixels.max_side, progress);
     channels = channel_count(pictures);
     report.load_s = lap(clock);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
-    options.pairs = o.pairs;
-    options.seed = o.seed;
+    options.pairs = o.pixels.pairs;
+    options.seed = o.pixels.seed;
     auto pairs = sample_still(project, pictures, options, o.black, progress);
     report.sample_s = lap(clock);
     return pairs;
@@ -163,8 +162,7 @@ Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uin
     case LENSPROF_REASON_STILL_IMAGE_DISAGREES:
     case LENSPROF_REASON_STILL_IMAGE_ODD:
         verdict.text +=
-            "; use --black to exclude grey values of a raised black "
-            "level";
+            "; use --fit black=NUMBER to exclude grey values of a raised black level";
         break;
     default: break;
     }
@@ -175,13 +173,13 @@ bool is_debevec(const BracketOptions &o) { return o.fit.method == LENSPROF_METHO
 
 // Failure (usage) for options without meaning for the method debevec.
 void check_debevec_options(const BracketOptions &o) {
-    const std::pair<bool, const char *> without[] = {{o.fit.modes != LENSPROF_MODES_AUTO, "--modes"},
-                                                     {o.modes_only, "--modes-only"},
-                                                     {o.fit.loss != LENSPROF_LOSS_ROBUST, "--loss"},
-                                                     {o.fit.gamma_from == LENSPROF_GAMMA_PRIOR, "--gamma-from prior"}};
+    const std::pair<bool, const char *> without[] = {{o.fit.modes != LENSPROF_MODES_AUTO, "modes"},
+                                                     {o.modes_only, "modes-only"},
+                                                     {o.fit.loss != LENSPROF_LOSS_ROBUST, "loss"},
+                                                     {o.fit.gamma_from == LENSPROF_GAMMA_PRIOR, "gamma-from=prior"}};
     for (const auto &[is_given, option] : without)
         if (is_given && is_debevec(o))
-            throw Failure(ExitCode::usage, std::string("--method debevec and ") + option
+            throw Failure(ExitCode::usage, std::string("--fit method=debevec and ") + option
                                                + " exclude each other: debevec estimates the response at every grey "
                                                  "level by least squares, with known exposures; omit one of them");
 }
@@ -190,8 +188,8 @@ void check_debevec_options(const BracketOptions &o) {
 void check_exposures_known(const BracketOptions &o, const std::vector<lensprof_fit_image> &images) {
     for (size_t i = 0; i < images.size() && is_debevec(o); i++)
         if (!(images[i].known_ev_sigma > 0.0))
-            throw Failure(ExitCode::usage, o.files[i] + ": EXIF does not state the exposure, which --method debevec "
-                                                        "needs; give --ev or --times, or use --method transfer");
+            throw Failure(ExitCode::usage, o.files[i] + ": EXIF does not state the exposure, which --fit method=debevec "
+                                                        "needs; give --ev or --times, or use method=transfer");
 }
 
 FitInput fit_input(const BracketOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
@@ -252,7 +250,7 @@ BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::ve
 int bracket_and_store(const BracketOptions &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
     Project project = static_project(o.files, o.free_balance);
-    check_pictures(project, o.max_side);
+    check_pictures(project, o.pixels.max_side);
     note_several(project.files, streams);
     require_one_kind(project.files);
     std::vector<PictureMetadata> metadata;
@@ -273,7 +271,7 @@ int bracket_and_store(const BracketOptions &o, Streams &streams) {
 }
 
 int run(const BracketOptions &o, Streams &streams) {
-    check_max_side(o.max_side);
+    check_max_side(o.pixels.max_side);
     check_fit_options(o.fit);
     check_debevec_options(o);
     check_store_options(o.store);

@@ -41,7 +41,7 @@ struct BuildOptions : ProjectFitOptions {
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
 constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | balance_flags;
 
-void declare_points(Command &command, BuildOptions &o) {
+void declare_input(Command &command, BuildOptions &o) {
     command.files(
         "FILE", o.inputs,
         "overlapping pictures and folders of them; or one Hugin project, whose v lines choose what is estimated; or "
@@ -49,67 +49,69 @@ void declare_points(Command &command, BuildOptions &o) {
         ".out, AliceVision .sfm, OpenMVG sfm_data.json, or a folder with one of them)");
     command.require("FILE");
     command.folder("--images", o.images, "folder of the reconstruction's pictures; default next to the reconstruction");
-    command.file("--image-list", o.image_list,
-                 "use only the images of the reconstruction that this file lists, one name per line; default all");
-    command.word(
-        "--shard", "INDEX/COUNT", [&o](const std::string &word) { o.shard = word; },
-        "use only a part of the reconstruction's images, to distribute the work: 2/5 is the second of five "
-        "parts; give each part its own --db and join them with `profile merge`; default all");
-    command.flag("--track-colors", o.track_colours,
-                 "use the colours in tracks.csv instead of reading the pictures; default if there are no pictures");
-    command.file("--project-out", o.project_out,
-                 "write the project found for the pictures, before the fit, for inspection and correction in Hugin");
-    command.file("--points", o.points,
-                 "use the pairs of this point file instead of the pictures and their EXIF exposures");
-    command.file("--points-out", o.points_out,
-                 "write the pairs used (Hugin's 16 columns), even if the fit is not usable");
-    command.file("--preview", o.preview,
-                 "write a mosaic of the pictures before and, below, after correction, as .jpg, .png or .tif");
+    command.expert().file("--points", o.points,
+                          "use the pairs of this point file instead of the pictures and their EXIF exposures");
+    Keys keys = command.expert().keys("--reconstruction", "what is used of a reconstruction");
+    keys.file("list", o.image_list, "use only the images that this file lists, one name per line; default all");
+    keys.word(
+        "shard", "INDEX/COUNT", [&o](const std::string &word) { o.shard = word; },
+        "use only a part of the images, to distribute the work: 2/5 is the second of five parts; give each part its "
+        "own --db and join them with `profile merge`; default all");
+    keys.flag("track-colors", o.track_colours,
+              "use the colours in tracks.csv instead of reading the pictures, also done if there are no pictures");
+}
+
+void declare_outputs(Command &command, BuildOptions &o) {
     command.file("--report", o.report,
                  "write a report with charts and the pictures before and after, as one .html file");
-    command.file("--exposures-out", o.exposures_out,
-                 "write exposures and white balances with standard errors, response and falloff as JSON, for `apply "
-                 "--model` and other programs");
-    command.file("--gain-chart", o.gain_chart,
-                 "write a chart of the improvement by the correction, as .svg or .png; needs a reconstruction");
-    command.file("--pto-out", o.pto_out, "write the project with the result, for Hugin, nona and `apply --pto`");
+    Keys keys = command.keys("--write", "further files to write", "KEY=FILE,...");
+    keys.file("preview", o.preview,
+              "a mosaic of the pictures before and, below, after correction, as .jpg, .png or .tif");
+    keys.file("pto", o.pto_out, "the project with the result, for Hugin, nona and `apply --pto`");
+    keys.file("exposures", o.exposures_out,
+              "exposures and white balances with standard errors, response and falloff as JSON, for `apply --model` "
+              "and other programs");
+    keys.file("project", o.project_out,
+              "the project found for the pictures, before the fit, for inspection and correction in Hugin");
+    keys.file("points", o.points_out, "the pairs used (Hugin's 16 columns), even if the fit is not usable");
+    keys.file("gain-chart", o.gain_chart,
+              "a chart of the improvement by the correction, as .svg or .png; needs a reconstruction");
+}
+
+void declare_build_fit(Command &command, BuildOptions &o) {
+    FitChoices choices;
+    choices.stored_prior = true;
+    Keys keys = declare_fit(command, o.fit, choices);
+    keys.choice("falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
+                "number of falloff curves: 1, 3 (one per channel) or auto (default: chosen by held-out error)");
+    keys.list("free", o.free,
+              {{"response", LENSPROF_FREE_RESPONSE},
+               {"falloff", falloff_flags},
+               {"center", LENSPROF_FREE_CENTER},
+               {"ev", LENSPROF_FREE_EV},
+               {"wb", balance_flags},
+               {"all", all_flags}},
+              "parameters to estimate for every image; default according to the v lines, or all if there are no "
+              "photometric v lines");
+    keys.text("reference", o.reference,
+              "image (number or name) whose exposure is 0 EV; default the first whose exposure is fixed, else the "
+              "first");
+    keys.choice("sampling", o.sampling,
+                {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
+                "selection of the pairs: balanced (default) or paper (d'Angelo 5.1)");
+    declare_sampling(keys, o.pixels, "300 per image, at least 2000 (radiance: number of points, 150 per image)");
+    keys.file("truth", o.compare, "print estimated next to true values of this truth.json of `simulate`");
 }
 
 void declare(Command &command, BuildOptions &o) {
-    declare_points(command, o);
-    FitChoices choices;
-    choices.stored_prior = true;
-    declare_fit(command, o.fit, choices);
-    command.choice("--falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
-                   "number of falloff curves: 1, 3 (one per channel) or auto (default: chosen by held-out error)");
-    command.list("--free", o.free,
-                 {{"response", LENSPROF_FREE_RESPONSE},
-                  {"falloff", falloff_flags},
-                  {"center", LENSPROF_FREE_CENTER},
-                  {"ev", LENSPROF_FREE_EV},
-                  {"wb", balance_flags},
-                  {"all", all_flags}},
-                 "parameters to estimate for every image, separated by commas; default according to the v lines, or "
-                 "all if there are no photometric v lines");
-    command.text("--reference", o.reference,
-                 "image (number or name) whose exposure is 0 EV; default the first whose exposure is fixed, else the "
-                 "first");
+    declare_input(command, o);
+    declare_outputs(command, o);
+    declare_store(command, o.store);
     command.flag(
         "--one-lens", o.one_lens,
         "estimate one response and one falloff for all pictures, regardless of the stated camera, lens, focal length, "
         "aperture and focus");
-    command.choice("--sampling", o.sampling,
-                   {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
-                   "selection of the pairs: balanced (default) or paper (d'Angelo 5.1)");
-    command.count("--pairs", o.pairs, 0, 1 << 24,
-                  "number of pairs; default 0 = 300 per image, at least 2000 (radiance: number of points, 150 per "
-                  "image)");
-    command.count("--seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");
-    command.count(
-        "--max-side", o.max_side, 0, UINT32_MAX,
-        "sample pictures reduced to at least this many pixels on the longer side; default 800; 0 = full size");
-    declare_store(command, o.store);
-    command.file("--compare", o.compare, "print estimated next to true values of this truth.json of `simulate`");
+    declare_build_fit(command, o);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }
@@ -212,22 +214,22 @@ void check_photographs(const BuildOptions &o, const Photographs &list) {
 
 // Refuses options that need a project with cameras.
 Project open_reconstruction(const BuildOptions &o, Streams &streams) {
-    for (const auto &[option, value] : {std::pair("--points", o.points), std::pair("--preview", o.preview),
-                                        std::pair("--project-out", o.project_out)})
+    for (const auto &[option, value] : {std::pair("--points", o.points), std::pair("--write preview", o.preview),
+                                        std::pair("--write project", o.project_out)})
         if (!value.empty())
             throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, but " + o.inputs[0]
                                                + " is a reconstruction; omit the option");
     return project_of_reconstruction(
-        o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pairs, o.seed}, streams);
+        o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pixels.pairs, o.pixels.seed}, streams);
 }
 
 // The project, or the pictures instead.
 Project open_project(const BuildOptions &o, Streams &streams) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
     for (const auto &[option, is_given] :
-         {std::pair("--images", !o.images.empty()), std::pair("--image-list", !o.image_list.empty()),
-          std::pair("--shard", !o.shard.empty()), std::pair("--track-colors", o.track_colours),
-          std::pair("--gain-chart", !o.gain_chart.empty())})
+         {std::pair("--images", !o.images.empty()), std::pair("--reconstruction list", !o.image_list.empty()),
+          std::pair("--reconstruction shard", !o.shard.empty()), std::pair("--reconstruction track-colors", o.track_colours),
+          std::pair("--write gain-chart", !o.gain_chart.empty())})
         if (is_given)
             throw Failure(ExitCode::usage,
                           std::string(option) + ": is for reconstructions, but " + o.inputs[0]
@@ -239,12 +241,12 @@ Project open_project(const BuildOptions &o, Streams &streams) {
             throw Failure(ExitCode::usage, input + ": is neither a picture (.jpg, .png, .tif) nor a folder; give a "
                                                    "single project, or pictures and folders");
     if (is_project && !o.project_out.empty())
-        throw Failure(ExitCode::usage, "--project-out: needs pictures, but " + o.inputs[0]
-                                           + " is a project; omit the option, or use --pto-out");
+        throw Failure(ExitCode::usage, "--write project: needs pictures, but " + o.inputs[0]
+                                           + " is a project; omit the option, or use --write pto=FILE");
     if (is_project) {
         reject_reconstruction_part(o.inputs[0]);
         Project project = read_project(o.inputs[0]);
-        for (const auto &[option, value] : {std::pair("--preview", o.preview), std::pair("--report", o.report)})
+        for (const auto &[option, value] : {std::pair("--write preview", o.preview), std::pair("--report", o.report)})
             if (!value.empty()) refuse_crops(project, option);
         if (o.points.empty()) note_several(project.files, streams);
         return project;
@@ -258,7 +260,7 @@ Project open_project(const BuildOptions &o, Streams &streams) {
     return project_of_pictures(list, o.one_lens, progress, streams);
 }
 
-// The free parameters: by --free, else by the v lines; all if these have nothing photometric, as in a project that was
+// The free parameters: by --fit free, else by the v lines; all if these have nothing photometric, as in a project that was
 // only aligned.
 void choose_unknowns(const BuildOptions &o, Project &project, Streams &streams) {
     uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), free_in_project = 0;
@@ -266,7 +268,7 @@ void choose_unknowns(const BuildOptions &o, Project &project, Streams &streams) 
     if (!free && !free_in_project) {
         note(streams, project.path
                           + ": no photometric v lines; estimating response, falloff, exposures and white balances "
-                            "(use --free to change this)");
+                            "(use --fit free=... to change this)");
         free = all_flags;
     }
     for (auto &image : project.images) image.free = free ? free : image.free;
@@ -285,7 +287,7 @@ int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Stre
     check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);
-    if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.max_side);
+    if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.pixels.max_side);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;
@@ -312,17 +314,16 @@ int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Stre
 }
 
 int run(const BuildOptions &o, Streams &streams) {
-    check_max_side(o.max_side);
+    check_max_side(o.pixels.max_side);
     check_fit_options(o.fit);
     if (!o.preview.empty()) check_preview(o.preview);
     if (!o.gain_chart.empty()) check_chart_name(o.gain_chart);
     if (!o.report.empty()) check_page_name(o.report);
     if (!o.preview.empty() && !o.points.empty())
-        throw Failure(ExitCode::usage, "--preview: needs the pictures, which --points does not read; give one of them");
+        throw Failure(ExitCode::usage, "--write preview: needs the pictures, which --points does not read; give one of them");
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage,
-                      "--compare and --json exclude each other: --compare prints a table; give one "
-                      "of them");
+                      "--fit truth prints a table, and --json prints JSON; give one of them");
     check_store_options(o.store, uses_stored_prior(o.fit), !o.pto_out.empty() || !o.exposures_out.empty());
 
     std::vector<std::string> names;

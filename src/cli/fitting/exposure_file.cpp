@@ -76,7 +76,7 @@ public:
 
     [[noreturn]] void fail(const std::string &what) const {
         throw Failure(ExitCode::unreadable,
-                      path_ + ": " + what + "; give the file that `lensprof build --exposures-out` wrote");
+                      path_ + ": " + what + "; give the file that `lensprof build --write exposures=FILE` wrote");
     }
     const Json &member(const Json &object, const char *name) const {
         if (!object.is_object() || !object.contains(name)) fail(std::string("has no ") + name);

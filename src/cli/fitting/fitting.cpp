@@ -31,20 +31,20 @@ const char *method_name(uint32_t method) {
 
 namespace {
 
-void declare_method(Command &command, FitOptions &o, const FitChoices &choices) {
+void declare_method(Keys &keys, FitOptions &o, const FitChoices &choices) {
     Choices<uint32_t> methods = {{"transfer", LENSPROF_METHOD_TRANSFER},
                                  {"radiance", LENSPROF_METHOD_RADIANCE},
                                  {"transfer-function", LENSPROF_METHOD_TRANSFER_FUNCTION}};
     std::string about =
-        "estimation method: transfer (d'Angelo 2007, default), radiance (Goldman & Chen 2005: one radiance per scene "
-        "point, seen by any number of pictures, saturated ones included) or transfer-function (Kim & Pollefeys 2004)";
+        "transfer (d'Angelo 2007, default), radiance (Goldman & Chen 2005: one radiance per scene point, seen by any "
+        "number of pictures, saturated ones included) or transfer-function (Kim & Pollefeys 2004)";
     if (choices.debevec) {
         methods.emplace_back("debevec", LENSPROF_METHOD_DEBEVEC);
         about +=
             "; debevec (Debevec & Malik 1997), for comparison: takes known exposures as exact and fixes white "
             "balances";
     }
-    command.choice("--method", o.method, methods, about);
+    keys.choice("method", o.method, methods, about);
 }
 
 Choices<std::optional<uint32_t>> camera_kind_choices() {
@@ -54,21 +54,13 @@ Choices<std::optional<uint32_t>> camera_kind_choices() {
     return choices;
 }
 
-void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
-    command.word(
-        "--prior", "WEIGHT",
-        [&o, may_be_stored](const std::string &word) {
-            if (word == "auto" && may_be_stored)
-                throw std::invalid_argument(
-                    "auto: use --stored auto (the default) to take stored profiles as the "
-                    "prior");
-            o.prior_weight = number_of(word, {0.0, 1e6});
-        },
-        std::string("weight of the priors") + (may_be_stored ? ", stored ones included" : "")
-            + "; default 1; 0 = none, as in the paper");
+void declare_prior(Keys &keys, FitOptions &o, bool may_be_stored) {
+    keys.number("prior", o.prior_weight, {0.0, 1e6},
+                std::string("weight of the priors") + (may_be_stored ? ", stored ones included" : "")
+                    + "; default 1; 0 = none, as in the paper");
     if (!may_be_stored) return;
-    command.word(
-        "--stored", "auto|none|ID",
+    keys.word(
+        "stored", "auto|none|ID",
         [&o](const std::string &word) {
             o.stored = word != "none";
             o.stored_is_requested = o.stored;
@@ -78,7 +70,7 @@ void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
         "falloff of the lens and response of the camera; ID, a profile; none");
 }
 
-void declare_gamma(Command &command, FitOptions &o, bool known_response) {
+void declare_gamma(Keys &keys, FitOptions &o, bool known_response) {
     Choices<uint32_t> gamma = {
         {"auto", LENSPROF_GAMMA_AUTO}, {"exif", LENSPROF_GAMMA_EXPOSURES}, {"prior", LENSPROF_GAMMA_PRIOR}};
     std::string about =
@@ -88,32 +80,45 @@ void declare_gamma(Command &command, FitOptions &o, bool known_response) {
         gamma.emplace_back("known", LENSPROF_GAMMA_KNOWN);
         about += ", known (the project's response)";
     }
-    command.choice("--gamma-from", o.gamma_from, gamma, about);
+    keys.choice("gamma-from", o.gamma_from, gamma, about);
 }
 
 }  // namespace
 
-void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
-    declare_method(command, o, choices);
+Keys declare_fit(Command &command, FitOptions &o, FitChoices choices) {
+    Keys keys = command.expert().keys("--fit", "how the pictures are fitted");
+    declare_method(keys, o, choices);
     const auto read_modes = [&o](const std::string &word) {
         o.modes = word == "auto" ? LENSPROF_MODES_AUTO : count_of(word, 0, LENSPROF_EMOR_MODES);
     };
-    command.word("--modes", "COUNT|auto", read_modes,
-                 "number of EMoR modes of the response, 0 to 25, or auto (default: chosen by held-out error)");
-    command.choice(
-        "--loss", o.loss,
-        {{"robust", LENSPROF_LOSS_ROBUST}, {"huber", LENSPROF_LOSS_HUBER}, {"squared", LENSPROF_LOSS_SQUARED}},
-        "loss function: robust (default), huber (as in the paper) or squared");
-    command.number("--huber", o.huber, {0.01, 255.0}, "sigma of the Huber loss, levels of 255; default 5");
-    declare_prior(command, o, choices.stored_prior);
-    declare_gamma(command, o, choices.known_response);
-    command.number("--exif-sigma", o.exif_sigma, {0.0, 10.0},
-                   "standard error of EXIF exposures, EV; default 0.1, or 0.03 for pictures at one manual exposure; 0 "
-                   "= ignore EXIF exposures");
-    command.choice("--camera-kind", o.camera_kind, camera_kind_choices(),
-                   "kind of camera that the prior describes: camera or phone (today's JPEG), digital (of the 1990s), "
-                   "film (scanned), linear (the response is fixed as linear), any, or auto (default: according to "
-                   "EXIF)");
+    keys.word("modes", "COUNT|auto", read_modes,
+              "number of EMoR modes of the response, 0 to 25, or auto (default: chosen by held-out error)");
+    keys.choice("loss", o.loss,
+                {{"robust", LENSPROF_LOSS_ROBUST}, {"huber", LENSPROF_LOSS_HUBER}, {"squared", LENSPROF_LOSS_SQUARED}},
+                "loss function: robust (default), huber (as in the paper) or squared");
+    keys.number("huber", o.huber, {0.01, 255.0}, "sigma of the Huber loss, levels of 255; default 5");
+    declare_prior(keys, o, choices.stored_prior);
+    declare_gamma(keys, o, choices.known_response);
+    keys.number("exif-sigma", o.exif_sigma, {0.0, 10.0},
+                "standard error of EXIF exposures, EV; default 0.1, or 0.03 for pictures at one manual exposure; 0 = "
+                "ignore EXIF exposures");
+    keys.choice("camera-kind", o.camera_kind, camera_kind_choices(),
+                "kind of camera that the prior describes: camera or phone (today's JPEG), digital (of the 1990s), film "
+                "(scanned), linear (the response is fixed as linear), any, or auto (default: according to EXIF)");
+    return keys;
+}
+
+void declare_sampling(Keys &keys, SamplingOptions &o, const std::string &default_pairs) {
+    keys.count("pairs", o.pairs, 0, 1 << 24, "number of pairs; default 0 = " + default_pairs);
+    keys.count("seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");
+    declare_max_side(keys, o.max_side);
+}
+
+void declare_max_side(Keys &keys, uint32_t &max_side) {
+    keys.count("max-side", max_side, 0, UINT32_MAX,
+               format("read pictures reduced to at least this many pixels on the longer side; default %u; 0 = full "
+                      "size",
+                      max_side));
 }
 
 bool uses_stored_prior(const FitOptions &o) {
@@ -123,10 +128,10 @@ bool uses_stored_prior(const FitOptions &o) {
 
 void check_fit_options(const FitOptions &o) {
     if (o.stored_is_requested && !uses_stored_prior(o))
-        throw Failure(ExitCode::usage, "--stored: needs --method transfer or radiance, and a --prior above 0");
+        throw Failure(ExitCode::usage, "--fit stored: needs --fit method=transfer or radiance, and a prior above 0");
     if (o.gamma_from == LENSPROF_GAMMA_EXPOSURES && o.exif_sigma == 0.0)
         throw Failure(ExitCode::usage,
-                      "--gamma-from exif and --exif-sigma 0 (ignore EXIF) exclude each other; omit one of them");
+                      "--fit gamma-from=exif and exif-sigma=0 (ignore EXIF) exclude each other; omit one of them");
 }
 
 lensprof_fit_options fit_options(const FitOptions &o) {
@@ -248,7 +253,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     fitted.held = {held, lensprof_fit_destroy};
     stop_if_interrupted();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
-        throw Failure(ExitCode::usage, item + ": no parameter is estimated; give --free all");
+        throw Failure(ExitCode::usage, item + ": no parameter is estimated; give --fit free=all");
     check(status, item, &error);
     ask(*held, input.images, fitted, quality);
     fitted.reference = std::isnan(fitted.exposures[reference].ev) ? fitted.result.reference : reference;
@@ -408,7 +413,7 @@ void warn_of_misfit(const BuildReport &report, const std::string &source, Stream
     warn(streams,
          source
              + format(": %.0f %% of the pairs disagree with the result, and the residual is %.1f levels RMS, because "
-                      "of parallax or moving objects; check the seams with --preview",
+                      "of parallax or moving objects; check the seams with --write preview=FILE",
                       100.0 * outliers, rms));
 }
 
@@ -463,7 +468,7 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
 void check_max_side(uint32_t max_side) {
     if (max_side != 0 && max_side < 64)
         throw Failure(ExitCode::usage,
-                      "--max-side: fewer than 64 pixels give too few samples; give more, or 0 for full size");
+                      "--fit max-side: fewer than 64 pixels give too few samples; give more, or 0 for full size");
 }
 
 double lap(std::chrono::steady_clock::time_point &since) {

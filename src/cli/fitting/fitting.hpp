@@ -38,7 +38,16 @@ struct FitChoices {
     bool known_response = true;  // a project has a response that may be fixed
     bool stored_prior = false;   // a stored profile can be the prior
 };
-void declare_fit(Command &command, FitOptions &o, FitChoices choices = {});
+// Declares --fit, whose further keys are declared with what this returns.
+Keys declare_fit(Command &command, FitOptions &o, FitChoices choices = {});
+
+// Which pixels are compared.
+struct SamplingOptions {
+    uint32_t seed = 1, pairs = 0, max_side = 800;
+};
+void declare_sampling(Keys &keys, SamplingOptions &o, const std::string &default_pairs);
+void declare_max_side(Keys &keys, uint32_t &max_side);
+
 
 // Whether stored profiles are the prior of this fit: the method must support it and the prior weight be above 0.
 bool uses_stored_prior(const FitOptions &o);
@@ -129,7 +138,7 @@ std::string not_usable_text(const std::string &source, const Verdict &verdict, c
 int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
                Streams &streams);
 
-// Failure (usage) for a --max-side that gives too few samples.
+// Failure (usage) for a max-side that gives too few samples.
 void check_max_side(uint32_t max_side);
 
 // Seconds since `since`, which becomes now.

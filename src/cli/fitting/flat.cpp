@@ -22,31 +22,37 @@ namespace {
 
 std::array<double, 4> card_of(const std::string &word) {
     const std::vector<std::string> sides = split(word);
-    if (sides.size() != 4) throw std::invalid_argument(word + ": not a rectangle X,Y,WIDTH,HEIGHT");
+    if (sides.size() != 4) throw std::invalid_argument(word + ": not a rectangle X,Y,WIDTH,HEIGHT or find");
     std::array<double, 4> card;
     for (size_t i = 0; i < 4; i++) card[i] = number_of(sides[i], {0.0, 1e6});
     return card;
 }
 
-void declare_card(Command &command, FlatCommand &o) {
-    command.flag("--several", o.several,
-                 "the pictures show one card at several places of the frame, with constant "
-                 "brightness");
-    command.number("--ev-sigma", o.ev_sigma, {0.001, 1.0},
-                   "standard error of an exposure, EV, with --several; "
-                   "default 0.02");
-    command.flag("--find-card", o.find_card, "the card covers only a part of the frame: find it");
-    command.words(
-        "--card", "X,Y,WIDTH,HEIGHT", [&o](const std::string &word) { o.cards.push_back(card_of(word)); },
-        "rectangle of the card, px of the frame: give once for all, or once per picture; default the whole frame");
-    command.choice("--light", o.light,
-                   {{"auto", LENSPROF_FLAT_LIGHT_AUTO},
-                    {"even", LENSPROF_FLAT_LIGHT_EVEN},
-                    {"plane", LENSPROF_FLAT_LIGHT_PLANE},
-                    {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
-                   "model of the light on the card: even, plane, quadratic or auto (default: plane, or even with "
-                   "--several)");
-    command.flag("--own-light", o.own_light, "estimate the light per shot; default one for all shots");
+void declare_flat_fit(Command &command, FlatCommand &o) {
+    Keys keys = command.expert().keys("--fit", "how the falloff is measured");
+    keys.number("gamma", o.gamma, {0.1, 10.0}, "use the response x^(1/gamma)");
+    keys.profile_id("profile", o.profile, "use the response of this profile of the database");
+    keys.number("ev-sigma", o.ev_sigma, {0.001, 1.0},
+                "standard error of an exposure, EV, with --several; default 0.02");
+    keys.choice("light", o.light,
+                {{"auto", LENSPROF_FLAT_LIGHT_AUTO},
+                 {"even", LENSPROF_FLAT_LIGHT_EVEN},
+                 {"plane", LENSPROF_FLAT_LIGHT_PLANE},
+                 {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
+                "model of the light on the card: even, plane, quadratic or auto (default: plane, or even with "
+                "--several)");
+    keys.flag("own-light", o.own_light, "estimate the light per shot, instead of one for all shots");
+    keys.choice("falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
+                "number of falloff curves: 1, 3 (one per channel) or auto (default: 3 if they clearly differ)");
+    keys.choice("center", o.free_center, {{"free", true}, {"fixed", false}},
+                "centre of the falloff: free (default) or fixed at the centre of the frame");
+    keys.choice(
+        "grid", o.grid,
+        {{"auto", LENSPROF_FLAT_GRID_AUTO}, {"none", LENSPROF_FLAT_GRID_NONE}, {"always", LENSPROF_FLAT_GRID_ALWAYS}},
+        "gain grid for the non-radial part: auto (default: if 0.3 % or more remain), none or always");
+    keys.number("black", o.black, {0.0, 1.0}, "ignore grey values below this, 0 to 1; default 2/255");
+    keys.number("white", o.white, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
+    declare_max_side(keys, o.max_side);
 }
 
 void declare(Command &command, FlatCommand &o) {
@@ -56,30 +62,29 @@ void declare(Command &command, FlatCommand &o) {
         "--linear", o.linear,
         "the pictures are linear (developed from raw files without a tone curve); not needed for float TIFF or a "
         "colour profile with a linear tone curve");
-    command.number("--gamma", o.gamma, {0.1, 10.0}, "use the response x^(1/gamma)");
-    command.profile_id("--profile", o.profile, "use the response of this profile of the database");
-    command.counts("--shots", o.shots, 0, 1000000,
-                   "shot number per picture, such as 1,1,1,2,2,2: exposures of one shot are merged; default one shot "
-                   "per picture");
-    command.numbers("--ev", o.ev, any_number, "exposure per picture, EV, separated by commas; default from EXIF");
     command.numbers("--turned", o.turned_deg, {-360.0, 360.0},
                     "rotation of the camera about its optical axis per shot, degrees, clockwise seen from the back of "
                     "the camera; separates the light from the lens; default 0");
-    declare_card(command, o);
-    command.choice("--falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
-                   "number of falloff curves: 1, 3 (one per channel) or auto (default: 3 if they clearly differ)");
-    command.choice("--center", o.free_center, {{"free", true}, {"fixed", false}},
-                   "centre of the falloff: free (default) or fixed at the centre of the frame");
-    command.choice(
-        "--grid", o.grid,
-        {{"auto", LENSPROF_FLAT_GRID_AUTO}, {"none", LENSPROF_FLAT_GRID_NONE}, {"always", LENSPROF_FLAT_GRID_ALWAYS}},
-        "gain grid for the non-radial part: auto (default: if 0.3 % or more remain), none or always");
-    command.number("--black", o.black, {0.0, 1.0}, "ignore grey values below this, 0 to 1; default 2/255");
-    command.number("--white", o.white, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
-    command.count("--max-side", o.max_side, 0, UINT32_MAX,
-                  "read pictures reduced to at least this many pixels on the longer side; default 1600; 0 = full size");
     command.file("--report", o.report, "write a report with charts as one .html file");
+    Command expert = command.expert();
+    expert.counts("--shots", o.shots, 0, 1000000,
+                  "shot number per picture, such as 1,1,1,2,2,2: exposures of one shot are merged; default one shot "
+                  "per picture");
+    expert.numbers("--ev", o.ev, any_number, "exposure per picture, EV, separated by commas; default from EXIF");
+    expert.flag("--several", o.several,
+                "the pictures show one card at several places of the frame, with constant brightness");
+    expert.words(
+        "--card", "X,Y,WIDTH,HEIGHT|find",
+        [&o](const std::string &word) {
+            if (word == "find")
+                o.find_card = true;
+            else
+                o.cards.push_back(card_of(word));
+        },
+        "rectangle of the card, px of the frame: give once for all, or once per picture; find: find the card, which "
+        "covers only a part of the frame; default the whole frame");
     declare_store(command, o.store);
+    declare_flat_fit(command, o);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }

@@ -81,7 +81,7 @@ bool are_linear(const FlatCommand &o, const std::vector<PictureMetadata> &metada
     for (size_t i = 0; i < metadata.size(); i++)
         if (metadata[i].processing_before != LENSPROF_PROCESSING_RAW)
             throw Failure(ExitCode::usage, o.files[i] + ": is not marked as linear; give the response of the pictures "
-                                                        "with --linear, --gamma G or --profile ID");
+                                                        "with --linear, --fit gamma=G or --fit profile=ID");
     return true;
 }
 
@@ -92,13 +92,13 @@ void note_linear(const PictureMetadata &first, const std::string &file, Streams 
                       + (first.may_be_linear
                              ? ": is not marked as linear"
                              : ": is linear according to --linear, but not according to its colour profile or format")
-                      + "; correct such pictures with `lensprof apply --processing raw`");
+                      + "; correct such pictures with `lensprof apply --key processing=raw`");
 }
 
 std::vector<lensprof_response> response_of(const FlatCommand &o) {
     std::vector<lensprof_response> response(1);
     lensprof_response_set_linear(response.data());
-    if (o.gamma) check(lensprof_response_set_gamma(response.data(), *o.gamma), "--gamma");
+    if (o.gamma) check(lensprof_response_set_gamma(response.data(), *o.gamma), "--fit gamma");
     if (o.profile) {
         Store store = open_store(o.store.db, LENSPROF_STORE_READ);
         auto profile = new_profile();
@@ -154,7 +154,7 @@ void check_flat_options(const FlatCommand &o) {
     check_store_options(o.store);
     if (o.linear + o.gamma.has_value() + (o.profile != 0) > 1)
         throw Failure(ExitCode::usage,
-                      "give the response of the pictures with one of --linear, --gamma G, --profile ID");
+                      "give the response of the pictures with one of --linear, --fit gamma=G, --fit profile=ID");
     if (o.files.size() > LENSPROF_FLAT_IMAGES)
         throw Failure(ExitCode::usage, std::to_string(o.files.size()) + " pictures; give at most "
                                            + std::to_string(LENSPROF_FLAT_IMAGES));
@@ -163,16 +163,15 @@ void check_flat_options(const FlatCommand &o) {
             if (is_same_file(o.files[i], o.files[j]))
                 throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
     if (!(o.black < o.white))
-        throw Failure(ExitCode::usage, "--black: must be less than --white; give a smaller value");
+        throw Failure(ExitCode::usage, "--fit black: must be less than white; give a smaller value");
     if (o.max_side != 0 && o.max_side < min_side)
         throw Failure(ExitCode::usage,
-                      "--max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
+                      "--fit max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
     if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
-        throw Failure(ExitCode::usage, "--several: assumes even light on the card; omit --light");
+        throw Failure(ExitCode::usage, "--several: assumes even light on the card; omit --fit light");
     if (o.find_card && !o.cards.empty())
         throw Failure(ExitCode::usage,
-                      "--card and --find-card exclude each other; "
-                      "give one of them");
+                      "--card find and a rectangle exclude each other; give one of them");
     if (o.cards.size() > 1 && o.cards.size() != o.files.size())
         throw Failure(ExitCode::usage, std::to_string(o.cards.size()) + " --card for "
                                            + counted(o.files.size(), "picture")
@@ -229,7 +228,7 @@ void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input) {
     });
     input.options.channels = common_channels(o, input.pictures);
     if (input.options.channels == 1 && input.options.vignettings == 3)
-        throw Failure(ExitCode::usage, "--falloff-curves 3: the pictures are grey; use 1");
+        throw Failure(ExitCode::usage, "--fit falloff-curves=3: the pictures are grey; use 1");
     for (size_t i = 0; i < count; i++) {
         Picture &picture = input.pictures[i];
         if (!o.cards.empty())

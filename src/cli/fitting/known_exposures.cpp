@@ -159,7 +159,7 @@ ExifUse add_known_exposures(const FitOptions &o, const Project &project, const s
         images[i].known_ev_sigma = std::max(o.exif_sigma.value_or(is_repeated ? kRepeatedSigma : kRoundedSigma), 1e-3);
     }
     const ExifUse use = exif_use(exposures, metadata, project.names);
-    if (!use.note.empty()) note(streams, project.path + ": " + use.note + " (--exif-sigma 0 ignores EXIF)");
+    if (!use.note.empty()) note(streams, project.path + ": " + use.note + " (--fit exif-sigma=0 ignores EXIF)");
     return use;
 }
 

@@ -35,7 +35,7 @@ Project project_of_words(const std::vector<std::string> &words, const std::strin
 
 DrawnPairs draw_pairs(const Project &project, Progress &progress) {
     const ProjectFitOptions options;
-    if (!project.is_reconstruction) check_pictures(project, options.max_side);
+    if (!project.is_reconstruction) check_pictures(project, options.pixels.max_side);
     return first_pairs(options, project, progress);
 }
 

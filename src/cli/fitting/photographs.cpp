@@ -85,7 +85,7 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
     note(streams,
          label
              + format(": %zu pictures overlap (%s%s; alignment residual %.2f %% of the longer side; %s); estimating "
-                      "response, falloff, exposures and white balances (use --free to change this)",
+                      "response, falloff, exposures and white balances (use --fit free=... to change this)",
                       project.pictures.size(), counted(project.links - project.unfit, "link").c_str(), unfit.c_str(),
                       100.0 * project.residual,
                       project.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "

@@ -31,23 +31,23 @@ void declare_store(Command &command, StoreOptions &o) {
         "profile database; repeat to read several, the profile is stored in the first; default lensprof/profiles.db "
         "in $XDG_DATA_HOME or ~/.local/share");
     command.flag("--no-store", o.no_store, "do not store the profile");
-    command.flag("--force", o.force, "store the result even if it is not usable");
-    command.text("--maker", o.maker, "camera maker; default from EXIF");
     command.text("--camera", o.camera, "camera model; default from EXIF");
     command.text("--lens", o.lens, "lens model; default from EXIF");
-    command.text("--unit", o.unit,
-                 "serial numbers of camera and lens, for a profile of this single unit; exif takes those of the "
-                 "picture; default none");
-    command.number("--crop-factor", o.crop_factor, crop_factors,
-                   "crop factor: 43.27 mm divided by the sensor "
-                   "diagonal; default from EXIF or the table of cameras");
     command.number("--focal", o.focal, focal_lengths, "focal length, mm, such as 50 or 50mm; default from EXIF");
     command.number("--aperture", o.aperture, f_numbers, "f-number, such as 4 or f/4; default from EXIF");
-    command.number("--distance", o.distance, distances, "focus distance, m, such as 3 or 3m; default from EXIF");
-    command.choice("--processing", o.processing, processing_choices(),
-                   "processing of the pictures: raw, jpeg or corrected (falloff corrected in camera); default from "
-                   "EXIF");
-    command.text("--style", o.style, "picture style, by the camera's name for it; default from EXIF");
+    Command expert = command.expert();
+    expert.flag("--force", o.force, "store the result even if it is not usable");
+    Keys keys = expert.keys("--key", "what else the profile is for, instead of EXIF");
+    keys.text("maker", o.maker, "camera maker");
+    keys.text("unit", o.unit,
+              "serial numbers of camera and lens, for a profile of this single unit; exif takes those of the picture; "
+              "default none");
+    keys.number("crop-factor", o.crop_factor, crop_factors,
+                "43.27 mm divided by the sensor diagonal; default from EXIF or the table of cameras");
+    keys.number("distance", o.distance, distances, "focus distance, m, such as 3 or 3m");
+    keys.choice("processing", o.processing, processing_choices(),
+                "processing of the pictures: raw, jpeg or corrected (falloff corrected in camera)");
+    keys.text("style", o.style, "picture style, by the camera's name for it");
 }
 
 void check_store_options(const StoreOptions &o, bool reads_db, bool writes_other_files) {
@@ -62,11 +62,11 @@ void check_store_options(const StoreOptions &o, bool reads_db, bool writes_other
 
 void warn_of_truncation(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file,
                         Streams &streams) {
-    const std::pair<const char *, bool> used[] = {{"--maker", o.maker.empty()},
+    const std::pair<const char *, bool> used[] = {{"--key maker", o.maker.empty()},
                                                   {"--camera", o.camera.empty()},
                                                   {"--lens", o.lens.empty()},
-                                                  {"--unit", o.unit == "exif"},
-                                                  {"--style", o.style.empty()}};
+                                                  {"--key unit", o.unit == "exif"},
+                                                  {"--key style", o.style.empty()}};
     for (const std::string &option : metadata.cut)
         for (const auto &entry : used)
             if (option == entry.first && entry.second && !o.no_store)
@@ -80,7 +80,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
     if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
     if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
     if (o.unit == "exif" && !*key.unit)
-        throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --unit");
+        throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --key unit=TEXT");
     if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit);  // any unit of the model, unless given
     const bool is_given = o.crop_factor != LENSPROF_UNKNOWN;
     const double crop = is_given ? o.crop_factor : crop_factor_in_files(o.dbs, key, size);

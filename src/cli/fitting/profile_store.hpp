@@ -25,7 +25,7 @@ struct StoreOptions {
 
 void declare_store(Command &command, StoreOptions &o);
 
-// The choices of --processing.
+// The choices of --key processing.
 Choices<std::optional<uint32_t>> processing_choices();
 
 // Failure (usage) for conflicting options. `reads_db`: --db is allowed with --no-store; `writes_other_files`: --force

@@ -170,7 +170,7 @@ void check_pictures(const Project &project, uint32_t max_side) {
         throw Failure(ExitCode::unreadable,
                       project.path
                           + format(": its %zu pictures need %.1f GiB of memory, but at most %.1f are available; give "
-                                   "a smaller --max-side or fewer pictures",
+                                   "a smaller --fit max-side or fewer pictures",
                                    project.files.size(), double(needed) / (1 << 30), double(bound) / (1 << 30)));
 }
 
@@ -397,7 +397,7 @@ void check_first_points(const std::string &path) {
 }  // namespace
 
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
-    // The maximum number of pairs of --pairs, with 17 digits.
+    // The maximum number of pairs of --fit pairs, with 17 digits.
     constexpr uint64_t max_points_bytes = uint64_t(1 << 24) * 256;
     check_first_points(path);
     std::string text = read_text(path, max_points_bytes);

@@ -40,7 +40,7 @@ void check_unknowns(const ProjectFitOptions &o, const Project &project, const le
     if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
         throw Failure(ExitCode::usage, project.path
                                            + ": neither response nor falloff is estimated, so there is nothing to "
-                                             "store; give --no-store, or --free all");
+                                             "store; give --no-store, or --fit free=all");
 }
 
 bool is_grey(const std::vector<lensprof_pair> &pairs) {
@@ -56,8 +56,8 @@ lensprof_sample_options sample_options(const ProjectFitOptions &o) {
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     options.sampling = o.sampling;
-    options.pairs = o.pairs;
-    options.seed = o.seed;
+    options.pairs = o.pixels.pairs;
+    options.seed = o.pixels.seed;
     return options;
 }
 
@@ -107,13 +107,13 @@ Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectF
     if (project.is_reconstruction) {
         lensprof_sample_options options = sample_options(o);
         options.pairs = 0;  // as many as there are matches, which were selected for this
-        state.input.pairs = sample_in_blocks(project, options, o.max_side, default_block_bytes, state.progress,
+        state.input.pairs = sample_in_blocks(project, options, o.pixels.max_side, default_block_bytes, state.progress,
                                              state.report.links, state.points, &channels);
         set_links(state);
         state.report.sample_s = lap(clock);
         return {};
     }
-    Pictures pictures = read_pictures(project, o.max_side, state.progress);
+    Pictures pictures = read_pictures(project, o.pixels.max_side, state.progress);
     channels = channel_count(pictures);
     state.report.load_s = lap(clock);
     draw_points(o, project, pictures, nullptr, state);
@@ -189,7 +189,7 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &state, Streams &stream
     LensSettings &settings = state.settings;
     const bool has_one_falloff = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // with one falloff per camera
     if (has_one_falloff && settings.first.size() > settings.first_of_camera.size()) {
-        warn(streams, "--method transfer-function: estimates one falloff, but these pictures have "
+        warn(streams, "--fit method=transfer-function: estimates one falloff, but these pictures have "
                           + counted(settings.first.size(), "lens setting")
                           + "; use transfer or radiance to estimate one per setting");
         settings.of_image = settings.camera_of_image, settings.first = settings.first_of_camera;
@@ -317,7 +317,7 @@ void check_light(const LightGroups &groups, const Project &project) {
     throw Failure(ExitCode::not_usable,
                   project.path + ": " + listed(groups.second, project.names)
                       + format(" show the scene in other light than the rest (colours differ %.0f times as much "
-                               "between these groups as within); fit each visit separately, with --image-list",
+                               "between these groups as within); fit each visit separately, with --reconstruction list=FILE",
                                groups.ratio),
                   LENSPROF_REASON_IMAGE_GROUPS);
 }
@@ -491,7 +491,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     Pictures pictures = get_points(o, project, state);
     stop_if_interrupted();
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
-        warn(streams, "--sampling paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
+        warn(streams, "--fit sampling=paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
     input.images = fit_images(project);
     state.item = o.points.empty() ? project.path : o.points;
     set_settings(o, state, streams);
@@ -513,7 +513,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     report.verdict = verdict_of(state.best.result);
     warn_of_few_images(o, project, state.best, streams);
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
-        report.verdict.text += " (Er and Eb on the v lines, or --free all)";
+        report.verdict.text += " (Er and Eb on the v lines, or --fit free=all)";
     name_image(project.names, report.verdict);
     report_settings(o, project, metadata, state);
     report_cameras(project, metadata, state);

@@ -21,7 +21,7 @@ struct ProjectFitOptions {
     StoreOptions store;
     std::string points, reference;
     uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: chosen by held-out error
-    uint32_t seed = 1, pairs = 0, max_side = 800;
+    SamplingOptions pixels;
     bool one_lens = false;  // all images are treated as one lens setting
 };
 

@@ -143,7 +143,7 @@ void keep_shard(const Shard &shard, Reconstruction &r, std::vector<std::string> 
                end = static_cast<std::ptrdiff_t>(shard.end(count));
     const std::string part = format("%u/%u", shard.number, shard.count);
     if (end - first < 2)
-        throw Failure(ExitCode::usage, "--shard " + part + ": contains fewer than two of the " + counted(count, "image")
+        throw Failure(ExitCode::usage, "--reconstruction shard=" + part + ": contains fewer than two of the " + counted(count, "image")
                                            + "; use fewer parts");
     std::vector<uint32_t> kept(order.begin() + first, order.begin() + end);
     std::sort(kept.begin(), kept.end());
@@ -172,7 +172,7 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     auto clock = std::chrono::steady_clock::now();
     Reconstruction r = read_reconstruction(path, streams);
     if (options.is_by_colours && !r.has_colours)
-        throw Failure(ExitCode::usage, "--track-colors: needs OpenSfM's tracks.csv, but " + path + " is a " + r.kind
+        throw Failure(ExitCode::usage, "--reconstruction track-colors: needs OpenSfM's tracks.csv, but " + path + " is a " + r.kind
                                            + "; omit the option");
     Project project;
     project.path = path;

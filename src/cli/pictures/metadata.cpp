@@ -336,7 +336,7 @@ PictureMetadata read_metadata(const std::string &path) {
     repair_maker_note(*image);
     const Exiv2::ExifData &exif = image->exifData();
     try {
-        store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker, "--maker", metadata);
+        store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker, "--key maker", metadata);
         store_text(read_text(exif, "Exif.Image.Model"), metadata.key.camera_model, "--camera", metadata);
         metadata.software = read_text(exif, "Exif.Image.Software");
         const LensName lens = read_lens(exif, image->xmpData());
@@ -349,8 +349,8 @@ PictureMetadata read_metadata(const std::string &path) {
         metadata.key.distance_m = read_distance(exif);
         metadata.size = {static_cast<uint32_t>(image->pixelWidth()), static_cast<uint32_t>(image->pixelHeight())};
         read_sensor(exif, raw_kind(path).has_value(), metadata);
-        store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
-        store_text(read_style(exif), metadata.key.style, "--style", metadata);
+        store_text(read_unit(exif), metadata.key.unit, "--key unit", metadata);
+        store_text(read_style(exif), metadata.key.style, "--key style", metadata);
         read_processing(path, *image, metadata);
         metadata.is_of_camera = is_of_camera(*image) && !is_of_converter(*image);
         metadata.mark = correction_mark_of(image->xmpData());

@@ -51,7 +51,7 @@ struct PictureMetadata {
     uint32_t processing_before = LENSPROF_PROCESSING_JPEG;  // processing of the key if it had not been corrected
 
     std::vector<std::string>
-        cut;  // options that override texts too long for their fields: --maker, --camera, --lens, --unit, --style
+        cut;  // options that override texts too long for their fields: --camera, --lens, "--key maker", ...
 
     std::optional<double> exposure_time_s;
     std::optional<double> iso;

@@ -6,8 +6,8 @@
 
 namespace lensprof {
 
-// `options` must outlive the parsing.
-void declare_foreign(Command &command, ForeignOptions &options, bool is_output);
+// Declares --encoding, whose further keys are declared with what this returns.
+Keys declare_foreign(Command &command, ForeignOptions &options, bool is_output);
 
 // The choices of --format.
 Choices<std::string> format_choices(bool written_only);

@@ -73,7 +73,7 @@ void import(const std::string &path, const std::string &bytes, const lensprof_im
 // Width and height of the frame, which some files do not state.
 void require_frame(const std::string &path, const ForeignOptions &o) {
     if (!o.width || !o.height)
-        throw Failure(ExitCode::usage, path + ": does not state the size of the pictures; give --frame WIDTHxHEIGHT");
+        throw Failure(ExitCode::usage, path + ": does not state the size of the pictures; give --encoding frame=WIDTHxHEIGHT");
 }
 
 // A picture's values as floats, without alpha.
@@ -110,7 +110,7 @@ void read_map(const std::string &path, const ForeignOptions &o, lensprof_import_
                  frame_shape = o.width ? double(o.width) / o.height : shape;
     if (std::fabs(shape / frame_shape - 1.0) > 0.01)
         throw Failure(ExitCode::usage,
-                      path + ": its aspect ratio differs from that of --frame; give the size of the pictures that it "
+                      path + ": its aspect ratio differs from that of --encoding frame; give the size of the pictures that it "
                              "is for");
     const lensprof_map map = {picture.width, picture.height, channels,
                               is_gain ? LENSPROF_MAP_GAIN : LENSPROF_MAP_ATTENUATION, values.data()};

@@ -22,7 +22,7 @@ void require_single_profile(const std::string &path, const ForeignRule &rule, si
 void require_frame(const std::string &path, const ForeignRule &rule, const ForeignOptions &o) {
     if (!o.width || !o.height)
         throw Failure(ExitCode::usage,
-                      path + ": " + rule.name + " is for pictures of one size; give --frame WIDTHxHEIGHT");
+                      path + ": " + rule.name + " is for pictures of one size; give --encoding frame=WIDTHxHEIGHT");
 }
 
 // A map as a picture: attenuation of the mean of the channels as PNG (DSO's vignette.png), gains per channel as float
@@ -39,7 +39,7 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     const uint32_t columns = o.columns ? o.columns : o.width, rows = o.rows ? o.rows : o.height;
     if (uint64_t(columns) * rows * channels > max_map_values)
         throw Failure(ExitCode::usage,
-                      path + ": the map would have more than 80 million values; give a smaller --grid");
+                      path + ": the map would have more than 80 million values; give a smaller --encoding grid");
     std::vector<float> values(size_t(columns) * rows * channels);
     lensprof_error error{};
     check(lensprof_map_write(&profile, o.width, o.height, columns, rows, channels,

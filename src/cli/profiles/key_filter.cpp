@@ -26,18 +26,19 @@ std::vector<lensprof_store_summary> named(lensprof_store *store, const std::stri
 
 }  // namespace
 
-void KeyFilter::add_options(Command &command) {
+Keys KeyFilter::add_options(Command &command) {
     command.text("--camera", camera_, "camera model");
-    command.text("--maker", maker_, "camera maker");
     command.text("--lens", lens_, "lens model");
-    command.text("--unit", unit_, "serial numbers of camera and lens, for profiles of a single unit");
     command.number("--focal", focal_, focal_lengths, "focal length, mm, such as 50 or 50mm");
     command.number("--aperture", aperture_, f_numbers, "f-number, such as 4 or f/4");
-    command.number("--distance", distance_, distances, "focus distance, m, such as 3 or 3m");
-    command.choice("--processing", processing_, processing_choices(),
-                   "processing of the pictures: raw, jpeg or "
-                   "corrected (falloff corrected in camera)");
-    command.text("--style", style_, "picture style, by the camera's name for it");
+    Keys keys = command.expert().keys("--key", "more about camera, lens and setting");
+    keys.text("maker", maker_, "camera maker");
+    keys.text("unit", unit_, "serial numbers of camera and lens, for profiles of a single unit");
+    keys.number("distance", distance_, distances, "focus distance, m, such as 3 or 3m");
+    keys.choice("processing", processing_, processing_choices(),
+                "processing of the pictures: raw, jpeg or corrected (falloff corrected in camera)");
+    keys.text("style", style_, "picture style, by the camera's name for it");
+    return keys;
 }
 
 bool KeyFilter::is_empty() const {

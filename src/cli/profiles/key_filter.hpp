@@ -34,7 +34,8 @@ std::vector<Row> listed(const std::string &db, const List &list) {
 // Camera, lens and setting from the command line; fields not given match anything.
 class KeyFilter {
 public:
-    void add_options(Command &command);
+    // Declares --camera and others, and --key, whose further keys are declared with what this returns.
+    Keys add_options(Command &command);
 
     bool is_empty() const;
 

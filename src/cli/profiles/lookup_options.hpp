@@ -12,7 +12,7 @@ struct LookupOptions {
     double crop_factor = LENSPROF_UNKNOWN;
     bool doubtful = false;
 
-    void add_options(Command &command);
+    void add_keys(Keys keys);  // of --key
     lensprof_lookup_options options() const;
 };
 

@@ -210,11 +210,12 @@ void declare_show(Command &profile) {
     declare_listed_databases(command, o->dbs, "; ids refer to the first");
     declare_json(command, o->json);
     command.flag("--chart", o->chart, "print the relative illuminance M over r as a chart and a table instead");
-    command.file("--chart-out", o->chart_out, "write this chart as .svg or .png");
-    command.choice("--channel", o->channel, {{"red", 0}, {"green", 1}, {"blue", 2}, {"all", -1}},
-                   "channel of charts, for profiles with a falloff per channel: red, green, blue or all; default all "
-                   "for one profile, green for several");
-    command.file("--blob", o->blob, "read this blob (docs/blob.md) instead of the database");
+    Command expert = command.expert();
+    expert.file("--chart-out", o->chart_out, "write this chart as .svg or .png");
+    expert.choice("--channel", o->channel, {{"red", 0}, {"green", 1}, {"blue", 2}, {"all", -1}},
+                  "channel of charts, for profiles with a falloff per channel: red, green, blue or all; default all "
+                  "for one profile, green for several");
+    expert.file("--blob", o->blob, "read this blob (docs/blob.md) instead of the database");
     command.group("Filters, instead of ids");
     o->filter.add_options(command);
     command.example("lensprof profile show 3 --chart");

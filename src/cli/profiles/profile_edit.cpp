@@ -86,28 +86,31 @@ struct SetOptions {
     std::vector<int64_t> ids;
     KeyFilter key;
     double crop_factor = LENSPROF_UNKNOWN;
-    std::vector<double lensprof_profile_key::*> unknown;
-    bool any_unit = false;
+    std::vector<double lensprof_profile_key::*> unknown;  // null: the unit
     std::string db;
     bool json = false;
 };
 
-// Refuses a number that is both given and cleared, and --unit with --any-unit.
+const Choices<double lensprof_profile_key::*> clearable = {{"crop-factor", &lensprof_profile_key::crop_factor},
+                                                           {"focal", &lensprof_profile_key::focal_mm},
+                                                           {"aperture", &lensprof_profile_key::aperture},
+                                                           {"distance", &lensprof_profile_key::distance_m},
+                                                           {"unit", nullptr}};
+
+// Refuses what is both given and cleared.
 void check_contradictions(const SetOptions &o) {
     lensprof_profile_key given = o.key.key(LENSPROF_PROCESSING_JPEG);
     given.crop_factor = o.crop_factor;
     for (double lensprof_profile_key::*number : o.unknown)
-        if (given.*number != LENSPROF_UNKNOWN)
+        if (number ? given.*number != LENSPROF_UNKNOWN : *given.unit != 0)
             throw Failure(ExitCode::usage,
                           "profile set: --clear and the option of the same name exclude each other; omit one of them");
-    if (o.any_unit && *given.unit)
-        throw Failure(ExitCode::usage, "profile set: --unit and --any-unit exclude each other; omit one of them");
 }
 
 int set(SetOptions &o, Streams &streams) {
     if (o.ids.empty())
         throw Failure(ExitCode::usage, "profile set: give the ids of profiles; see `lensprof profile list`");
-    if (o.key.is_empty() && o.crop_factor == LENSPROF_UNKNOWN && o.unknown.empty() && !o.any_unit)
+    if (o.key.is_empty() && o.crop_factor == LENSPROF_UNKNOWN && o.unknown.empty())
         throw Failure(ExitCode::usage,
                       "profile set: nothing to change; give for example --lens NAME or --clear "
                       "distance");
@@ -120,8 +123,12 @@ int set(SetOptions &o, Streams &streams) {
         const lensprof_status status = lensprof_store_get(db, id, profile.get(), error);
         if (status != LENSPROF_OK) return status;
         lensprof_profile_key key = profile->key;
-        for (double lensprof_profile_key::*number : o.unknown) key.*number = LENSPROF_UNKNOWN;
-        if (o.any_unit) set_text(key.unit, sizeof key.unit, "");
+        for (double lensprof_profile_key::*number : o.unknown) {
+            if (number)
+                key.*number = LENSPROF_UNKNOWN;
+            else
+                set_text(key.unit, sizeof key.unit, "");
+        }
         if (o.crop_factor != LENSPROF_UNKNOWN) key.crop_factor = o.crop_factor;
         o.key.put_into(key);
         return lensprof_store_set_key(db, id, &key, error);
@@ -139,19 +146,11 @@ void declare_set(Command &profile) {
     declare_db(command, o->db);
     declare_json(command, o->json);
     command.group("New camera, lens and setting; default unchanged");
-    o->key.add_options(command);
-    command.number("--crop-factor", o->crop_factor, crop_factors,
-                   "crop factor: 43.27 mm divided by the sensor "
-                   "diagonal");
-    command.list("--clear", o->unknown,
-                 {{"crop-factor", &lensprof_profile_key::crop_factor},
-                  {"focal", &lensprof_profile_key::focal_mm},
-                  {"aperture", &lensprof_profile_key::aperture},
-                  {"distance", &lensprof_profile_key::distance_m}},
-                 "set these numbers to unknown, separated by commas: crop-factor, focal, aperture, distance");
-    command.flag("--any-unit", o->any_unit,
-                 "make the profile valid for all units of the model, no longer for a "
-                 "single one");
+    Keys keys = o->key.add_options(command);
+    keys.number("crop-factor", o->crop_factor, crop_factors, "43.27 mm divided by the sensor diagonal");
+    command.list("--clear", o->unknown, clearable,
+                 "set these to unknown, separated by commas: crop-factor, focal, aperture, distance; unit makes the "
+                 "profile valid for all units of the model");
     command.example("lensprof profile set 3 --lens \"EF 50mm f/1.8 STM\"");
     command.run([o](Streams &streams) { return set(*o, streams); });
 }

@@ -27,7 +27,7 @@ struct ExportOptions {
     KeyFilter filter;
     ForeignOptions foreign;
     std::vector<std::string> dbs;
-    std::string output, blob, format;
+    std::string output, format;
     double crop_factor = LENSPROF_UNKNOWN;
     bool covariance = false, all = false, json = false, split = false;
 };
@@ -37,36 +37,23 @@ void declare(Command &command, ExportOptions &o) {
     command.file("-o,--output", o.output,
                  "output file; its name chooses the format; DNG opcodes are written into an existing file");
     command.choice("--format", o.format, format_choices(true), "format of the output; default chosen by the file name");
-    command.file("--blob", o.blob,
-                 "write a blob for firmware to read in place (docs/blob.md); the same as --format "
-                 "blob -o FILE");
-    command.flag("--covariance", o.covariance, "write the covariance into the blob too, which cameras do not need");
     command.flag("--all", o.all, "export all profiles of the database");
-    command.flag("--split", o.split,
-                 "write one file per lens, or per profile if the format holds only one, into the folder -o; needs "
-                 "--format");
-    declare_foreign(command, o.foreign, true);
-    command.number("--crop-factor", o.crop_factor, crop_factors,
-                   "crop factor (43.27 mm divided by the sensor diagonal) for profiles without one; needed by lensfun "
-                   "and lcp");
+    command.expert().flag(
+        "--split", o.split,
+        "write one file per lens, or per profile if the format holds only one, into the folder -o; needs --format");
+    declare_foreign(command, o.foreign, true)
+        .flag("covariance", o.covariance, "write the covariance into a blob too, which cameras do not need");
     declare_listed_databases(command, o.dbs, "; ids and --all refer to the first, filters to the first with a match");
     declare_json(command, o.json);
     command.group("Filters, instead of ids");
-    o.filter.add_options(command);
+    o.filter.add_options(command)
+        .number("crop-factor", o.crop_factor, crop_factors,
+                "43.27 mm divided by the sensor diagonal, for profiles without one; needed by lensfun and lcp");
     command.footer(about_foreign(true));
 }
 
-void check_options(ExportOptions &o) {
-    if (!o.blob.empty() && !o.output.empty())
-        throw Failure(
-            ExitCode::usage,
-            "profile export: -o and --blob both name the output file; give one of them (-o FILE --format blob equals "
-            "--blob FILE)");
-    if (o.blob.empty() && o.output.empty())
-        throw Failure(ExitCode::usage, "profile export: no output file; give it with -o (or --blob)");
-    if (!o.blob.empty() && !o.format.empty() && o.format != "blob")
-        throw Failure(ExitCode::usage, "profile export: --blob and --format exclude each other; use -o");
-    if (!o.blob.empty()) o.output = o.blob, o.format = "blob";
+void check_options(const ExportOptions &o) {
+    if (o.output.empty()) throw Failure(ExitCode::usage, "profile export: no output file; give it with -o");
     if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(o.all) != 1)
         throw Failure(ExitCode::usage,
                       "profile export: give ids (see `lensprof profile list`), or --camera, --lens or other filters, "
@@ -74,9 +61,7 @@ void check_options(ExportOptions &o) {
     if (o.split && o.format.empty())
         throw Failure(ExitCode::usage, "profile export: --split needs --format, because -o is a folder; add --format");
     if (o.split && o.covariance)
-        throw Failure(ExitCode::usage, "profile export: --covariance needs a single blob; omit --split");
-    if (o.split && !o.blob.empty())
-        throw Failure(ExitCode::usage, "profile export: --split and --blob exclude each other; use --format blob");
+        throw Failure(ExitCode::usage, "profile export: --encoding covariance=yes needs a single blob; omit --split");
     if (o.split && path_exists(o.output) && !is_folder(o.output))
         throw Failure(ExitCode::usage, o.output + ": is a file; --split needs a folder");
     for (const std::string &file : databases_of(o.dbs))
@@ -121,7 +106,7 @@ void complete_crop_factors(const ExportOptions &o, const ForeignRule &rule, cons
         if (crop == LENSPROF_UNKNOWN) crop = o.crop_factor;
         if (needs_crop && crop == LENSPROF_UNKNOWN)
             throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(stored.id)
-                                               + " is unknown; give --crop-factor");
+                                               + " is unknown; give --key crop-factor=NUMBER");
     }
 }
 
@@ -168,7 +153,7 @@ int run(ExportOptions &o, Streams &streams) {
     const ForeignRule &rule = format_to_write(o.output, o.format);
     if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
         throw Failure(ExitCode::usage,
-                      "profile export: --covariance needs --format blob; add it, or omit --covariance");
+                      "profile export: --encoding covariance=yes needs --format blob; add it, or omit the covariance");
     std::vector<std::string> files = databases_of(o.dbs);
     if (o.all) files.resize(1);
     const std::vector<StoredProfile> chosen = o.filter.profiles(Databases(files), o.ids, true);
@@ -196,7 +181,7 @@ void declare_profile_export(Command &profile) {
                                   "file is written.");
     auto o = std::make_shared<ExportOptions>();
     declare(command, *o);
-    command.example("lensprof profile export 1 -o vignette.png --frame 1280x1024");
+    command.example("lensprof profile export 1 -o vignette.png --encoding frame=1280x1024");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

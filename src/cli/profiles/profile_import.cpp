@@ -241,7 +241,7 @@ void print_import(const Import &import, const PartProfiles &parts, size_t files,
                     << format(
                            ", of which %zu are physically impossible and were not imported; %zu are stored with the ",
                            refused, import.flagged.size() - refused)
-                    << "reason and used only with --doubtful; --json lists them\n";
+                    << "reason and used only with --key doubtful=yes; --json lists them\n";
 }
 
 int run(const ImportOptions &o, Streams &streams) {

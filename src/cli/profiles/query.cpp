@@ -27,8 +27,7 @@ struct QueryOptions {
 };
 
 void declare(Command &command, QueryOptions &o) {
-    o.filter.add_options(command);
-    o.lookup.add_options(command);
+    o.lookup.add_keys(o.filter.add_options(command));
     declare_databases(command, o.dbs);
     declare_json(command, o.json);
     command.footer(

@@ -69,17 +69,30 @@ std::string bash_cases(const CommandDescription &program) {
     return lines;
 }
 
+// The words that a value may be: of KEY=VALUE pairs, the keys.
+std::vector<std::string> values_of(const OptionDescription &option) {
+    std::vector<std::string> values = option.choices;
+    for (const OptionDescription &key : option.keys) values.push_back(key.names[0] + "=");
+    return values;
+}
+
+// What completes the value after `word`.
+std::string bash_value(const std::string &word, const OptionDescription &option) {
+    return "    " + shell_quoted(word) + ") "
+           + (is_path(option) ? std::string("files=1")
+                              : "values=" + shell_quoted(joined(values_of(option), " ")) + "; files=")
+           + "; takes=1 ;;\n";
+}
+
 std::string bash_values(const CommandDescription &program) {
     std::string lines;
     for (const CommandDescription *command : all_of(program))
-        for (const OptionDescription &option : command->options)
-            for (const std::string &name : option.names) {
-                if (option.is_positional || option.type.empty()) continue;
-                lines += "    " + shell_quoted(words_of(*command) + " " + name) + ") "
-                         + (is_path(option) ? std::string("files=1")
-                                            : "values=" + shell_quoted(joined(option.choices, " ")) + "; files=")
-                         + "; takes=1 ;;\n";
-            }
+        for (const OptionDescription &option : command->options) {
+            const std::string path = words_of(*command) + " ";
+            for (const std::string &name : option.names)
+                if (!option.is_positional && !option.type.empty()) lines += bash_value(path + name, option);
+            for (const OptionDescription &key : option.keys) lines += bash_value(path + key.names[0] + "=", key);
+        }
     return lines;
 }
 
@@ -95,8 +108,10 @@ std::string bash_completion(const CommandDescription &program) {
              "_lensprof() {\n"
              "  local command='' topic='' word i words='' values='' files='' takes=''\n"
              "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"
-             "  if [[ $current == = ]]; then current=\n"  // bash splits --option=value
-             "  elif [[ $previous == = ]]; then previous=${COMP_WORDS[COMP_CWORD-2]}; fi\n"
+             "  if [[ $current == = ]]; then current= takes=1\n"  // bash splits --option=value and key=value
+             "  elif [[ $previous == = ]]; then previous=${COMP_WORDS[COMP_CWORD-2]} takes=1; fi\n"
+             "  [[ $takes && $previous != -* ]] && previous=${previous##*,}=\n"
+             "  takes=\n"
              "  _lensprof_words ''\n"
              "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
              "    word=${COMP_WORDS[i]}\n"
@@ -114,6 +129,8 @@ std::string bash_completion(const CommandDescription &program) {
              "  [[ $current == -* && ! $takes ]] && files=\n"
              "  [[ $current != -* && ! $takes ]] && words=$(printf '%s\\n' $words | grep -v '^-')\n"
              "  mapfile -t COMPREPLY < <(compgen ${files:+-f} -W \"$words\" -- \"$current\")\n"
+             "  [[ ${COMPREPLY[0]} == *= ]] && compopt -o nospace 2> /dev/null\n"
+             "  return 0\n"
              "}\n"
              "complete -o filenames -F _lensprof lensprof\n";
 }
@@ -153,8 +170,8 @@ std::string zsh_completion(const CommandDescription &program) {
                 entry += "[" + zsh_text(first_line(option.about)) + "]";
                 if (!option.type.empty())
                     entry += is_path(option)          ? ":file:_files"
-                             : option.choices.empty() ? ":value:"
-                                                      : ":value:(" + joined(option.choices, " ") + ")";
+                             : values_of(option).empty() ? ":value:"
+                                                         : ":value:(" + joined(values_of(option), " ") + ")";
                 text += " \\\n        " + shell_quoted(entry);
             }
         }
@@ -194,7 +211,7 @@ std::string fish_completion(const CommandDescription &program) {
             for (const std::string &name : option.names)
                 text += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
             if (!option.type.empty()) text += is_path(option) ? " -r -F" : " -x";
-            if (!option.choices.empty()) text += " -a " + shell_quoted(joined(option.choices, " "));
+            if (!values_of(option).empty()) text += " -a " + shell_quoted(joined(values_of(option), " "));
             text += " -d " + shell_quoted(first_line(option.about)) + "\n";
         }
     }

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/program/help_text.hpp"
 #include "cli/program/options.hpp"
 
 namespace lensprof {
@@ -29,10 +30,20 @@ OptionDescription describe_option(const CLI::Option &option) {
     described.choices = choices_of(described.type);
     described.is_repeated = option.get_items_expected_max() > 1;
     described.is_required = option.get_required();
+    described.is_expert = option.get_group() == expert_group;
     return described;
 }
 
-CommandDescription describe_command(const CLI::App &app, const std::string &above) {
+OptionDescription describe_key(const KeyTable::Key &key) {
+    OptionDescription described;
+    described.names = {key.name};
+    described.type = key.type;
+    described.about = key.about;
+    described.choices = choices_of(key.type);
+    return described;
+}
+
+CommandDescription describe_command(const Program &program, const CLI::App &app, const std::string &above) {
     CommandDescription described;
     described.path = above.empty() ? app.get_name() : above + " " + app.get_name();
     const std::string about = app.get_description();
@@ -40,14 +51,18 @@ CommandDescription describe_command(const CLI::App &app, const std::string &abov
     described.brief = about.substr(0, line);
     if (line != std::string::npos) described.about = about.substr(line + 1);
     described.footer = app.get_footer();
-    for (const CLI::Option *option : app.get_options()) described.options.push_back(describe_option(*option));
+    for (const CLI::Option *option : app.get_options()) {
+        described.options.push_back(describe_option(*option));
+        if (const KeyTable *table = program.keys_of(*option))
+            for (const KeyTable::Key &key : table->keys) described.options.back().keys.push_back(describe_key(key));
+    }
     for (const CLI::App *command : app.get_subcommands({}))
-        described.commands.push_back(describe_command(*command, described.path));
+        described.commands.push_back(describe_command(program, *command, described.path));
     return described;
 }
 
 }  // namespace
 
-CommandDescription Program::describe() const { return describe_command(*app_, ""); }
+CommandDescription Program::describe() const { return describe_command(*this, *app_, ""); }
 
 }  // namespace lensprof

@@ -10,8 +10,9 @@ struct OptionDescription {
     std::vector<std::string> names;  // "-o", "--output"; a positional has one name without dashes
     std::string type;                // "FILE", "NUMBER", "auto|1|3"; empty for a flag
     std::string about;
-    std::vector<std::string> choices;  // of "auto|1|3"
-    bool is_positional = false, is_repeated = false, is_required = false;
+    std::vector<std::string> choices;     // of "auto|1|3"
+    std::vector<OptionDescription> keys;  // of "KEY=VALUE,..."; each with one name
+    bool is_positional = false, is_repeated = false, is_required = false, is_expert = false;
 };
 
 struct CommandDescription {

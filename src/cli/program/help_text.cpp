@@ -40,15 +40,23 @@ namespace {
 // Wraps descriptions. A list of commands shows only the first line of each description.
 class HelpText : public CLI::Formatter {
 public:
-    HelpText() { label("SUBCOMMAND", "VERB"); }
+    explicit HelpText(bool with_expert) : with_expert_(with_expert) { label("SUBCOMMAND", "VERB"); }
+    std::string make_group(std::string group, bool is_positional,
+                           std::vector<const CLI::Option *> options) const override {
+        if (group == expert_group && !with_expert_) return "";
+        return CLI::Formatter::make_group(group, is_positional, options);
+    }
     std::string make_option_opts(const CLI::Option *option) const override {
         if (option->get_items_expected_max() == 0) return "";
-        const bool is_positional = option->get_positional();
-        return (is_positional || option->get_type_name().empty() ? "" : " " + option->get_type_name())
-               + (option->get_items_expected_max() > 1 ? " ..." : "");
+        const std::string type = option->get_type_name();
+        const bool is_list = type.size() > 4 && type.compare(type.size() - 4, 4, ",...") == 0;
+        return (option->get_positional() || type.empty() ? "" : " " + type)
+               + (option->get_items_expected_max() > 1 && !is_list ? " ..." : "");
     }
     std::string make_option_desc(const CLI::Option *option) const override {
-        return wrapped(CLI::Formatter::make_option_desc(option), help_columns - get_column_width());
+        const std::string about = CLI::Formatter::make_option_desc(option);
+        const std::string shown = with_expert_ ? about : about.substr(0, about.find('\n'));  // without tables of keys
+        return wrapped(shown, help_columns - get_column_width());
     }
     std::string make_description(const CLI::App *app) const override {
         const std::string about = CLI::Formatter::make_description(app);
@@ -64,10 +72,15 @@ public:
         CLI::detail::format_help(line, command->get_name(), about.substr(0, about.find('\n')), get_column_width());
         return line.str();
     }
+
+private:
+    bool with_expert_;
 };
 
 }  // namespace
 
-std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpText>(); }
+std::shared_ptr<CLI::FormatterBase> help_formatter(bool with_expert) {
+    return std::make_shared<HelpText>(with_expert);
+}
 
 }  // namespace lensprof

@@ -133,11 +133,11 @@ void require_text_sizes(const std::string &maker, const std::string &camera, con
         const char *option;
         const std::string &text;
         size_t size;
-    } fields[] = {{"--maker", maker, sizeof Key::camera_maker},
+    } fields[] = {{"--key maker", maker, sizeof Key::camera_maker},
                   {"--camera", camera, sizeof Key::camera_model},
                   {"--lens", lens, sizeof Key::lens},
-                  {"--unit", unit, sizeof Key::unit},
-                  {"--style", style, sizeof Key::style}};
+                  {"--key unit", unit, sizeof Key::unit},
+                  {"--key style", style, sizeof Key::style}};
     for (const auto &field : fields)
         if (field.text.size() >= field.size)
             throw Failure(ExitCode::usage, std::string(field.option) + ": is " + std::to_string(field.text.size())

@@ -70,7 +70,7 @@ std::string pto_text(const lensprof_pto &pto);
 // become blanks, and in text that is not UTF-8 all non-ASCII bytes become question marks.
 void set_text(char *field, size_t size, const std::string &text);
 
-// Failure (usage) if the text of --maker, --camera, --lens, --unit or --style is too long for its field of the key.
+// Failure (usage) if the text of --camera, --lens or of a key of --key is too long for its field of the key.
 void require_text_sizes(const std::string &maker, const std::string &camera, const std::string &lens,
                         const std::string &unit, const std::string &style);
 

@@ -34,15 +34,30 @@ std::string heading_of(const OptionDescription &option) {
     for (const std::string &name : option.names)
         heading += (heading.empty() ? "" : ", ") + (option.is_positional ? italic(name) : bold(name));
     if (!option.is_positional && !option.type.empty()) heading += " " + italic(option.type);
-    return heading + (option.is_repeated ? " ..." : "");
+    return heading + (option.is_repeated && option.type.find(",...") == std::string::npos ? " ..." : "");
 }
 
-std::string options_section(const CommandDescription &command, bool positionals) {
+// Text of several lines, such as a table of keys.
+std::string lines_of(const std::string &text) {
+    std::string lines;
+    for (const char c : roff_text(text)) lines += c == '\n' ? std::string("\n.br\n") : std::string(1, c);
+    return lines;
+}
+
+template <class IsIn>
+std::string options_section(const CommandDescription &command, const std::string &title, const IsIn &is_in) {
     std::string text;
     for (const OptionDescription &option : command.options)
-        if (option.is_positional == positionals)
-            text += ".TP\n" + heading_of(option) + "\n" + roff_text(option.about) + "\n";
-    return text.empty() ? text : std::string(".SH ") + (positionals ? "ARGUMENTS" : "OPTIONS") + "\n" + text;
+        if (is_in(option)) text += ".TP\n" + heading_of(option) + "\n" + lines_of(option.about) + "\n";
+    return text.empty() ? text : ".SH " + title + "\n" + text;
+}
+
+std::string options_sections(const CommandDescription &command) {
+    using Option = OptionDescription;
+    return options_section(command, "ARGUMENTS", [](const Option &option) { return option.is_positional; })
+           + options_section(command, "OPTIONS",
+                             [](const Option &option) { return !option.is_positional && !option.is_expert; })
+           + options_section(command, "EXPERT OPTIONS", [](const Option &option) { return option.is_expert; });
 }
 
 std::string synopsis(const CommandDescription &command) {
@@ -75,7 +90,7 @@ std::string man_page(const CommandDescription &command, const std::string &versi
         for (const CommandDescription &verb : command.commands)
             page += ".TP\n" + bold(verb.name()) + "\n" + roff_text(verb.brief) + "\n";
     }
-    page += options_section(command, true) + options_section(command, false);
+    page += options_sections(command);
     if (!command.footer.empty()) page += ".SH NOTES\n.nf\n" + roff_text(command.footer) + "\n.fi\n";
     page += ".SH SEE ALSO\n";
     if (command.name() == "lensprof")

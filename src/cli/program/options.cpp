@@ -1,9 +1,7 @@
 #include "cli/program/options.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <map>
 #include <stdexcept>
 
@@ -16,11 +14,15 @@
 #include "cli/program/help_text.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/nearest.hpp"
+#include "cli/program/renamed_options.hpp"
 
 namespace lensprof {
 
+using KeyTables = std::map<const CLI::Option *, std::shared_ptr<KeyTable>>;
+
 struct Program::Actions {
     std::map<const CLI::App *, std::function<int(Streams &)>> of;
+    KeyTables keys;
 };
 
 namespace {
@@ -31,8 +33,10 @@ std::string path_of(const CLI::App &app) {
 }
 
 // App::help would print the help of the parsed command.
-std::string help_of(const CLI::App &app) {
-    return app.get_formatter()->make_help(&app, path_of(app), CLI::AppFormatMode::Normal);
+std::string help_of(const CLI::App &app, bool with_expert) {
+    std::string text = help_formatter(with_expert)->make_help(&app, path_of(app), CLI::AppFormatMode::Normal);
+    for (size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);  // of an omitted group
+    return text.back() == '\n' ? text : text + "\n";
 }
 
 std::vector<std::string> names_of_commands(const CLI::App &app) {
@@ -83,6 +87,30 @@ std::string empty_text(const CLI::Option &option) {
            + (option.get_required() || option.get_positional() ? "" : ", or omit the option");
 }
 
+// The options and keys in a form such as "--fit huber=" or "-o FILE --format blob" are those of the command.
+bool has_form(const CLI::App &app, const KeyTables &tables, const std::string &form) {
+    const KeyTable *table = nullptr;
+    for (const std::string &word : split(form, ' ')) {
+        const size_t equal = word.find('=');
+        if (word[0] == '-') {
+            const CLI::Option *option = app.get_option_no_throw(word);
+            if (!option) return false;
+            const auto found = tables.find(option);
+            table = found == tables.end() ? nullptr : found->second.get();
+        } else if (table && equal != std::string::npos && !table->find(word.substr(0, equal))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// What an option of an earlier version is called in this command; empty if it had none of this name.
+std::string form_now(const CLI::App &app, const KeyTables &tables, const std::string &name) {
+    for (const RenamedOption &renamed : renamed_options)
+        if (name == renamed.before && has_form(app, tables, renamed.now)) return renamed.now;
+    return "";
+}
+
 bool is_flag(const CLI::Option &option) { return option.get_items_expected_max() == 0; }
 
 // "-o", "--output" and "-1.db" look like options; "-", a file by convention, and numbers such as "-1.5" or "-1/8,1e-3"
@@ -103,10 +131,12 @@ constexpr char text_prefix = '=';
 // of the command. Failure (usage) for the first word that does not fit.
 class SortedWords {
 public:
-    SortedWords(const CLI::App &root, const std::vector<std::string> &words) : app_(&root), words_(words) {
+    SortedWords(const CLI::App &root, const KeyTables &tables, const std::vector<std::string> &words)
+        : app_(&root), tables_(tables), words_(words) {
         const auto end = std::find(words.begin(), words.end(), "--");
-        wants_help_ =
-            std::any_of(words.begin(), end, [](const auto &word) { return word == "-h" || word == "--help"; });
+        wants_all_ = std::find(words.begin(), end, "--help-all") != end;
+        wants_help_ = wants_all_ || std::find(words.begin(), end, "-h") != end
+                      || std::find(words.begin(), end, "--help") != end;
         bool only_positionals = false;
         while (position_ < words_.size() && !is_done_) {
             const std::string &word = words_[position_++];
@@ -122,6 +152,7 @@ public:
 
     const CLI::App &command() const { return *app_; }
     bool wants_help() const { return wants_help_; }
+    bool wants_all() const { return wants_all_; }  // of it, also the options of experts
 
     // In reverse order, as CLI11 expects.
     std::vector<std::string> reversed() const {
@@ -169,6 +200,8 @@ private:
 
     // A word with one dash may be a file name, even if an option is similar.
     [[noreturn]] void fail_no_option(const std::string &name, bool is_long) const {
+        const std::string now = form_now(*app_, tables_, name);
+        if (!now.empty()) throw Failure(ExitCode::usage, name + " is now " + now + "; see " + all_help_command());
         const std::string nearest = did_you_mean(name, names_of_options(*app_)),
                           hint = "put -- before names that start with -";
         throw Failure(ExitCode::usage,
@@ -210,11 +243,13 @@ private:
     }
 
     std::string help_command() const { return "`" + path_of(*app_) + " --help`"; }
+    std::string all_help_command() const { return "`" + path_of(*app_) + " --help-all`"; }
 
     const CLI::App *app_;
+    const KeyTables &tables_;
     const std::vector<std::string> &words_;
     size_t position_ = 0;
-    bool wants_help_ = false, is_done_ = false;
+    bool wants_help_ = false, wants_all_ = false, is_done_ = false;
     std::map<const CLI::Option *, uint32_t> counts_;
     std::vector<std::string> commands_, options_, positionals_;
 };
@@ -240,9 +275,24 @@ Command Command::add(const char *name, const std::string &brief, const std::stri
 void Command::run(std::function<int(Streams &)> action) {
     program_->actions_->of[app_] = std::move(action);
     if (app_ == program_->app_.get()) return;
-    group("Messages");
-    flag("-q,--quiet", program_->quiet_, "print errors and results only: no progress, notes or warnings");
-    flag("-v,--verbose", program_->verbose_, "also print the time of each step and the memory used");
+    Command messages = expert();
+    messages.flag("-q,--quiet", program_->quiet_, "print errors and results only: no progress, notes or warnings");
+    messages.flag("-v,--verbose", program_->verbose_, "also print the time of each step and the memory used");
+}
+
+Command Command::expert() const {
+    Command command = *this;
+    command.group_ = expert_group;
+    return command;
+}
+
+Keys Command::keys(const char *name, const std::string &about, const char *type) {
+    auto table = std::make_shared<KeyTable>(KeyTable{name, about, path_of(*app_) + " --help-all", {}});
+    words(
+        name, type, [table](const std::string &pairs) { table->read(pairs); }, about);
+    CLI::Option *option = app_->get_option(name);
+    program_->actions_->keys[option] = table;
+    return {table, [option](const std::string &text) { option->description(text); }};
 }
 
 CLI::Option *Command::add_option(const char *names, const std::string &type, const Read &read,
@@ -258,149 +308,45 @@ CLI::Option *Command::add_option(const char *names, const std::string &type, con
             }
         return true;
     };
-    return app_->add_option(names, CLI::callback_t(parse), about)->type_name(type);
-}
-
-void Command::flag(const char *names, bool &value, const std::string &about) { app_->add_flag(names, value, about); }
-
-void Command::text(const char *names, std::string &value, const std::string &about) {
-    add_option(
-        names, "TEXT", [&value](const std::string &word) { value = word; }, about);
-}
-
-void Command::file(const char *names, std::string &value, const std::string &about) {
-    add_option(
-        names, "FILE", [&value](const std::string &word) { value = word; }, about);
-}
-
-void Command::folder(const char *names, std::string &value, const std::string &about) {
-    add_option(
-        names, "FOLDER", [&value](const std::string &word) { value = word; }, about);
-}
-
-void Command::files(const char *name, std::vector<std::string> &values, const std::string &about) {
-    add_option(
-        name, "FILE", [&values](const std::string &word) { values.push_back(word); }, about)
-        ->expected(1, CLI::detail::expected_max_vector_size)
-        ->allow_extra_args();
-}
-
-void Command::texts(const char *name, std::vector<std::string> &values, const std::string &about) {
-    add_option(
-        name, "", [&values](const std::string &word) { values.push_back(word); }, about)
-        ->expected(1, CLI::detail::expected_max_vector_size)
-        ->allow_extra_args();
-}
-
-void Command::number(const char *names, double &value, const Quantity &quantity, const std::string &about) {
-    add_option(
-        names, "NUMBER", [&value, quantity](const std::string &word) { value = number_of(word, quantity); }, about);
-}
-
-void Command::number(const char *names, std::optional<double> &value, const Quantity &quantity,
-                     const std::string &about) {
-    add_option(
-        names, "NUMBER", [&value, quantity](const std::string &word) { value = number_of(word, quantity); }, about);
-}
-
-void Command::count(const char *names, uint32_t &value, uint32_t low, uint32_t high, const std::string &about) {
-    add_option(
-        names, "COUNT", [&value, low, high](const std::string &word) { value = count_of(word, low, high); }, about);
-}
-
-void Command::numbers(const char *names, std::vector<double> &values, const Quantity &quantity,
-                      const std::string &about) {
-    const auto read = [&values, quantity](const std::string &list) {
-        values.clear();
-        for (const std::string &word : elements(list)) values.push_back(number_of(word, quantity));
-    };
-    add_option(names, "NUMBER,...", read, about);
-}
-
-void Command::counts(const char *names, std::vector<uint32_t> &values, uint32_t low, uint32_t high,
-                     const std::string &about) {
-    const auto read = [&values, low, high](const std::string &list) {
-        values.clear();
-        for (const std::string &word : elements(list)) values.push_back(count_of(word, low, high));
-    };
-    add_option(names, "COUNT,...", read, about);
-}
-
-void Command::size(const char *names, uint32_t &width, uint32_t &height, std::pair<uint32_t, uint32_t> ends,
-                   const std::string &about) {
-    const auto read = [&width, &height, ends](const std::string &word) {
-        const std::vector<std::string> sides = split(word, 'x');
-        if (sides.size() != 2) throw std::invalid_argument(word + ": give WIDTHxHEIGHT");
-        const uint32_t w = count_of(sides[0], ends.first, ends.second), h = count_of(sides[1], ends.first, ends.second);
-        width = w, height = h;
-    };
-    add_option(names, "WIDTHxHEIGHT", read, about);
-}
-
-int64_t profile_id_of(const std::string &word) {
-    const bool has_only_digits = word.find_first_not_of("0123456789") == std::string::npos;
-    errno = 0;
-    const unsigned long long id = has_only_digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
-    if (id == 0 || errno != 0 || id > INT64_MAX)
-        throw std::invalid_argument(word + " is not a profile id; see `lensprof profile list`");
-    return static_cast<int64_t>(id);
-}
-
-void Command::profile_id(const char *names, int64_t &value, const std::string &about) {
-    add_option(
-        names, "ID", [&value](const std::string &word) { value = profile_id_of(word); }, about);
-}
-
-void Command::profile_ids(const char *name, std::vector<int64_t> &values, const std::string &about) {
-    add_option(
-        name, "", [&values](const std::string &word) { values.push_back(profile_id_of(word)); }, about)
-        ->expected(1, CLI::detail::expected_max_vector_size)
-        ->allow_extra_args();
+    CLI::Option *option = app_->add_option(names, CLI::callback_t(parse), about)->type_name(type);
+    option->group(group_);
+    return option;
 }
 
 void Command::word(const char *names, const std::string &type, const Read &read, const std::string &about) {
     add_option(names, type, read, about);
 }
 
+void Command::flag(const char *names, bool &value, const std::string &about) {
+    app_->add_flag(names, value, about)->group(group_);
+}
+
 void Command::words(const char *names, const std::string &type, const Read &read, const std::string &about) {
     add_option(names, type, read, about)->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
 }
 
-namespace {
-
-size_t index_of(const std::string &word, const std::vector<std::string> &words) {
-    const auto found = std::find(words.begin(), words.end(), word);
-    if (found == words.end())
-        throw std::invalid_argument(word + ": use " + joined(words, ", ") + did_you_mean(word, words));
-    return static_cast<size_t>(found - words.begin());
+void Command::add_positionals(const char *name, const std::string &type, const Read &read, const std::string &about) {
+    add_option(name, type, read, about)->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
 }
 
-std::string type_of(const std::vector<std::string> &words) {
-    std::string type;
-    for (const std::string &word : words) type += (type.empty() ? "" : "|") + word;
-    return type;
+void Command::files(const char *name, std::vector<std::string> &values, const std::string &about) {
+    add_positionals(
+        name, "FILE", [&values](const std::string &given) { values.push_back(given); }, about);
 }
 
-}  // namespace
-
-void Command::choice_of(const char *names, const std::vector<std::string> &words,
-                        const std::function<void(size_t)> &choose, const std::string &about) {
-    add_option(
-        names, type_of(words), [words, choose](const std::string &word) { choose(index_of(word, words)); }, about);
+void Command::texts(const char *name, std::vector<std::string> &values, const std::string &about) {
+    add_positionals(
+        name, "", [&values](const std::string &given) { values.push_back(given); }, about);
 }
 
-void Command::list_of(const char *names, const std::vector<std::string> &words, const std::function<void()> &clear,
-                      const std::function<void(size_t)> &choose, const std::string &about) {
-    const auto read = [words, clear, choose](const std::string &list) {
-        clear();
-        for (const std::string &word : elements(list)) choose(index_of(word, words));
-    };
-    add_option(names, type_of(words) + ",...", read, about);
+void Command::profile_ids(const char *name, std::vector<int64_t> &values, const std::string &about) {
+    add_positionals(
+        name, "", [&values](const std::string &given) { values.push_back(profile_id_of(given)); }, about);
 }
 
 void Command::require(const char *name) { app_->get_option(name)->required(); }
 
-void Command::group(const std::string &title) { app_->option_defaults()->group(title); }
+void Command::group(const std::string &title) { group_ = title; }
 
 void Command::footer(const std::string &text) { app_->footer(text); }
 
@@ -411,11 +357,16 @@ void Command::example(const std::string &command_line) {
 
 Program::Program(const std::string &name, const std::string &about)
     : app_(std::make_unique<CLI::App>(about, name)), actions_(std::make_unique<Actions>()) {
-    app_->formatter(help_formatter());
     app_->set_help_flag("-h,--help", "print this help");
+    app_->set_help_all_flag("--help-all", "print this help with the options of experts");
 }
 
 Program::~Program() = default;
+
+const KeyTable *Program::keys_of(const CLI::Option &option) const {
+    const auto found = actions_->keys.find(&option);
+    return found == actions_->keys.end() ? nullptr : found->second.get();
+}
 
 Command Program::root() { return {*app_, *this}; }
 
@@ -426,7 +377,7 @@ std::string Program::help(const std::vector<std::string> &words) const {
         if (!command) fail_no_command(*app, word);
         app = command;
     }
-    return help_of(*app);
+    return help_of(*app, false);
 }
 
 namespace {
@@ -441,10 +392,10 @@ double peak_megabytes() {
 }  // namespace
 
 int Program::run(const std::vector<std::string> &words, Streams &streams) {
-    const SortedWords sorted(*app_, words);
+    const SortedWords sorted(*app_, actions_->keys, words);
     const CLI::App &command = sorted.command();
     if (sorted.wants_help()) {
-        streams.out << help_of(command);
+        streams.out << help_of(command, sorted.wants_all());
         return static_cast<int>(ExitCode::done);
     }
     try {
@@ -476,7 +427,7 @@ void declare_db(Command &command, std::string &path, const std::string &more) {
 void declare_json(Command &command, bool &json) { command.flag("--json", json, "print the result as one JSON object"); }
 
 void declare_progress(Command &command, bool &progress) {
-    command.flag("--progress", progress, "show progress even if standard error is not a terminal");
+    command.expert().flag("--progress", progress, "show progress even if standard error is not a terminal");
 }
 
 }  // namespace lensprof

@@ -5,13 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "cli/program/declarations.hpp"
 #include "cli/program/description.hpp"
-#include "cli/program/numbers.hpp"
+#include "cli/program/keys.hpp"
 #include "cli/program/run.hpp"
 
 namespace CLI {
@@ -21,16 +20,11 @@ class Option;
 
 namespace lensprof {
 
-// The value of each word of an option.
-template <class Value>
-using Choices = std::vector<std::pair<const char *, Value>>;
-
 class Program;
 
 // A command, or a verb of one (`profile list`). Options are named "--seed" or "-o,--output", positionals "FILE". By
-// default a value may be given once and must not be empty, as an unset shell variable would be. The variables must live
-// until the program ends: declare_... functions keep theirs in the action.
-class Command {
+// default a value may be given once and must not be empty, as an unset shell variable would be.
+class Command : public Declarations {
 public:
     Command(CLI::App &app, Program &program) : app_(&app), program_(&program) {}
 
@@ -41,42 +35,20 @@ public:
     // action needs one of its verbs.
     void run(std::function<int(Streams &)> action);
 
-    void flag(const char *names, bool &value, const std::string &about);
-    void text(const char *names, std::string &value, const std::string &about);
-    void file(const char *names, std::string &value, const std::string &about);
-    void folder(const char *names, std::string &value, const std::string &about);
-    void files(const char *name, std::vector<std::string> &values, const std::string &about);  // positional
-    void texts(const char *name, std::vector<std::string> &values, const std::string &about);  // positional
-    void number(const char *names, double &value, const Quantity &quantity, const std::string &about);
-    void number(const char *names, std::optional<double> &value, const Quantity &quantity, const std::string &about);
-    void count(const char *names, uint32_t &value, uint32_t low, uint32_t high, const std::string &about);
-    void numbers(const char *names, std::vector<double> &values, const Quantity &quantity, const std::string &about);
-    void counts(const char *names, std::vector<uint32_t> &values, uint32_t low, uint32_t high,
-                const std::string &about);
-    void size(const char *names, uint32_t &width, uint32_t &height, std::pair<uint32_t, uint32_t> ends,
-              const std::string &about);
-    void profile_id(const char *names, int64_t &value, const std::string &about);
-    void profile_ids(const char *name, std::vector<int64_t> &values, const std::string &about);  // positional
+    // The same command, declaring options that only --help-all and the second section of man pages show.
+    Command expert() const;
 
-    // One of these words.
-    template <class Value>
-    void choice(const char *names, Value &value, const Choices<Value> &choices, const std::string &about) {
-        choice_of(
-            names, words_of(choices), [&value, choices](size_t i) { value = choices[i].second; }, about);
-    }
-    // Several words, separated by commas.
-    template <class Value>
-    void list(const char *names, std::vector<Value> &values, const Choices<Value> &choices, const std::string &about) {
-        list_of(
-            names, words_of(choices), [&values] { values.clear(); },
-            [&values, choices](size_t i) { values.push_back(choices[i].second); }, about);
-    }
+    // An option of KEY=VALUE pairs; its keys are declared with what this returns.
+    Keys keys(const char *name, const std::string &about, const char *type = "KEY=VALUE,...");
 
-    // For values with their own syntax: `read` sets the value, or throws std::invalid_argument with the reason. `words`
-    // may be repeated any number of times.
-    using Read = std::function<void(const std::string &)>;
-    void word(const char *names, const std::string &type, const Read &read, const std::string &about);
+    void word(const char *names, const std::string &type, const Read &read, const std::string &about) override;
+    void flag(const char *names, bool &value, const std::string &about) override;
+    // May be repeated any number of times.
     void words(const char *names, const std::string &type, const Read &read, const std::string &about);
+    // Positionals.
+    void files(const char *name, std::vector<std::string> &values, const std::string &about);
+    void texts(const char *name, std::vector<std::string> &values, const std::string &about);
+    void profile_ids(const char *name, std::vector<int64_t> &values, const std::string &about);
 
     void require(const char *name);                 // a declared option or positional
     void group(const std::string &title);           // heading of the following options in the help
@@ -84,20 +56,12 @@ public:
     void example(const std::string &command_line);  // after the footer, if there is one
 
 private:
-    template <class Value>
-    static std::vector<std::string> words_of(const Choices<Value> &choices) {
-        std::vector<std::string> words;
-        for (const auto &choice : choices) words.emplace_back(choice.first);
-        return words;
-    }
-    void choice_of(const char *names, const std::vector<std::string> &words, const std::function<void(size_t)> &choose,
-                   const std::string &about);
-    void list_of(const char *names, const std::vector<std::string> &words, const std::function<void()> &clear,
-                 const std::function<void(size_t)> &choose, const std::string &about);
     CLI::Option *add_option(const char *names, const std::string &type, const Read &read, const std::string &about);
+    void add_positionals(const char *name, const std::string &type, const Read &read, const std::string &about);
 
     CLI::App *app_;
     Program *program_;
+    std::string group_ = "Options";
 };
 
 // All commands: parses the command line and runs the chosen command.
@@ -113,11 +77,15 @@ public:
     // Prints help on request. Words that do not fit cause a Failure (usage) that suggests the nearest valid word.
     int run(const std::vector<std::string> &words, Streams &streams);
 
-    // Help of the command and verbs in `words`, or of the program for an empty list; Failure (usage).
+    // Help of the command and verbs in `words`, or of the program for an empty list, without the options of experts;
+    // Failure (usage).
     std::string help(const std::vector<std::string> &words) const;
 
     // All commands with their options.
     CommandDescription describe() const;
+
+    // The keys of an option of KEY=VALUE pairs; null for others.
+    const KeyTable *keys_of(const CLI::Option &option) const;
 
 private:
     friend class Command;
@@ -130,10 +98,7 @@ private:
 // Declares --db FILE, a profile database; `more` is added to its description.
 void declare_db(Command &command, std::string &path, const std::string &more = "");
 
-// Parses a profile id; throws std::invalid_argument.
-int64_t profile_id_of(const std::string &word);
-
-// Declare --json and --progress.
+// Declare --json, and --progress for experts.
 void declare_json(Command &command, bool &json);
 void declare_progress(Command &command, bool &progress);
 

@@ -141,7 +141,7 @@ std::vector<std::string> find_pictures(const Reconstruction &r, const std::strin
         r.path + counts + missing + ", are not in "
             + (max_count || !folder.empty() ? best : std::string("its folder or the images folder next to it"))
             + (folder.empty() ? "; give their folder with --images" : "; give the folder that contains all")
-            + (max_count ? ", or list the images to use with --image-list" : ""));
+            + (max_count ? ", or list the images to use with --reconstruction list=FILE" : ""));
 }
 
 void convert_coordinates(Reconstruction &r, const std::vector<std::string> &files) {

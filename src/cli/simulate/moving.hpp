@@ -1,4 +1,4 @@
-// A 3D scene for a moving camera (`simulate --moving`). The z axis points up.
+// A 3D scene for a moving camera (`simulate --set moving`). The z axis points up.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// `simulate --moving`: the requested sequence, with automatic exposure and white balance.
+// `simulate --set moving`: the requested sequence, with automatic exposure and white balance.
 #include <algorithm>
 #include <cmath>
 
@@ -44,7 +44,7 @@ void place_moving_cameras(const SimulateOptions &o, Truth &truth) {
     camera.width = o.width;
     camera.height = o.height;
     camera.hfov_deg = o.hfov;
-    check(lensprof_camera_validate(&camera), "--hfov");
+    check(lensprof_camera_validate(&camera), "--set hfov");
     truth.cameras.assign(o.images, camera);
 }
 

@@ -183,7 +183,7 @@ void declare_simulate(Command &program) {
         "Renders overlapping pictures of a procedural scene and writes the true camera parameters to truth.json.");
     auto o = std::make_shared<SimulateOptions>();
     declare_simulate_options(command, *o);
-    command.example("lensprof simulate -o pictures --mean-ev -0.8");
+    command.example("lensprof simulate -o pictures --set mean-ev=-0.8");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

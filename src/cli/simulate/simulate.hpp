@@ -59,7 +59,7 @@ struct Truth {
     std::vector<ToneMap> tone;                // per image; empty = no local tone mapping
     std::vector<Settings> settings;           // per image; empty = not written
     bool is_manual = false;                   // marked as set manually
-    // only with --moving:
+    // only of a moving camera:
     std::shared_ptr<const MovingWorld> world;  // instead of the scene
     const char *world_word = nullptr;          // its name
     double gloss = 1.0;                        // strength of highlights; 0 = matte surfaces
@@ -103,18 +103,18 @@ bool object_radiance(const Truth &truth, const Scene &scene, uint32_t index, dou
 // Radiance that image `index` sees at a pixel: of an object, else of the scene; 0 outside the lens's field.
 void seen_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]);
 
-// --parallax: cameras that also move; then the scene direction of what is seen in a direction.
+// --set parallax: cameras that also move; then the scene direction of what is seen in a direction.
 void move_cameras(double parallax, Random &random, Truth &truth);
 void moved_direction(const Truth &truth, const Scene &scene, uint32_t index, double direction[2]);
 
-// --moving: the scene, cameras and poses; then automatic exposures and white balances.
+// --set moving: the scene, cameras and poses; then automatic exposures and white balances.
 void place_moving_cameras(const SimulateOptions &options, Truth &truth);
 void expose_automatically(const SimulateOptions &options, Truth &truth);
 
-// --clip: shifts all exposures equally until this share of the pixels is white in a channel.
+// --set clip: shifts all exposures equally until this share of the pixels is white in a channel.
 void clip_lights(double share, const Scene &scene, Truth &truth);
 
-// --sharpen: unsharp mask (Gaussian, sigma 1.5 px) of float RGB, clipped to 0..1.
+// --set sharpen: unsharp mask (Gaussian, sigma 1.5 px) of float RGB, clipped to 0..1.
 void sharpen(double gain, Picture &picture);
 
 // Local tone mapping after the response: a pixel is raised by truth.local_tone EV if its surroundings (Gaussian mean of

@@ -36,7 +36,7 @@ struct SimulateOptions {
 };
 
 constexpr double kRandomEv = 1.0, kRandomWb = 0.15;         // camera that turns
-constexpr double kAutomaticEv = 0.75, kAutomaticWb = 0.06;  // --moving
+constexpr double kAutomaticEv = 0.75, kAutomaticWb = 0.06;  // moving
 
 void declare_simulate_options(Command &command, SimulateOptions &options);
 

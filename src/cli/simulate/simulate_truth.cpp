@@ -10,7 +10,7 @@
 namespace lensprof {
 namespace {
 
-// Exposure time and ISO that give the exposure of every image, apart from --exif-rounding.
+// Exposure time and ISO that give the exposure of every image, apart from --set exif-rounding.
 std::vector<Settings> exposure_settings(const SimulateOptions &o, const Truth &truth) {
     Random random(truth.seed * 104729ull + 11);
     std::vector<Settings> settings;
@@ -31,7 +31,7 @@ void add_settings(const SimulateOptions &o, Truth &truth) {
     for (auto &e : truth.exposures) e.ev += o.exif_scatter * random.normal();
 }
 
-// Parts for --objects, --parallax, --clip, --local-tone and --exif; with separate random numbers, so that the rest
+// Parts for the keys objects, parallax, clip and local-tone, and --exif; with separate random numbers, so that the rest
 // stays the same.
 void add_disturbances(const SimulateOptions &o, const Scene &scene, Truth &truth) {
     Random random(o.seed * 15485863ull + 3);
@@ -62,7 +62,7 @@ void place_cameras(const SimulateOptions &o, Random &random, Truth &truth) {
         camera.yaw_deg = std::remainder(yaw + o.jitter * random.normal(), 360.0);
         camera.pitch_deg = (row - (o.rows - 1) / 2.0) * vfov * (1.0 - o.overlap) + o.jitter * random.normal();
         camera.roll_deg = o.jitter * random.normal();
-        check(lensprof_camera_validate(&camera), "--hfov");
+        check(lensprof_camera_validate(&camera), "--set hfov");
         truth.cameras.push_back(camera);
     }
 }
@@ -89,7 +89,7 @@ void check_falloff(lensprof_vignetting falloff) {
         throw Failure(ExitCode::usage,
                       "--vignetting: the falloff must stay positive up to the corner; give smaller numbers");
     throw Failure(ExitCode::usage,
-                  "--center: the falloff must stay positive up to the farthest corner; give a centre closer to 0,0");
+                  "--set center: the falloff must stay positive up to the farthest corner; give a centre closer to 0,0");
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ Truth make_truth(const SimulateOptions &o, const Scene &scene) {
     truth.outlier_share = o.outliers;
     if (o.vignetting.size() != 3 && o.vignetting.size() != 9)
         throw Failure(ExitCode::usage, "--vignetting: give three numbers, or nine");
-    if (o.center.size() != 2) throw Failure(ExitCode::usage, "--center: give two numbers, x,y");
+    if (o.center.size() != 2) throw Failure(ExitCode::usage, "--set center: give two numbers, x,y");
     truth.vignettings = static_cast<uint32_t>(o.vignetting.size() / 3);
     for (uint32_t c = 0; c < 3; c++) {
         for (uint32_t n = 0; n < 3; n++)

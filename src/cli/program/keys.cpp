@@ -1,0 +1,72 @@
+#include "cli/program/keys.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "cli/program/error.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/nearest.hpp"
+
+namespace lensprof {
+
+const KeyTable::Key *KeyTable::find(const std::string &name) const {
+    const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key &key) { return key.name == name; });
+    return found == keys.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> KeyTable::names() const {
+    std::vector<std::string> all;
+    for (const Key &key : keys) all.push_back(key.name);
+    return all;
+}
+
+std::string KeyTable::about() const {
+    std::string text = intro + ": " + joined(names(), ", ");
+    for (const Key &key : keys) text += "\n" + key.name + "=" + key.type + ": " + key.about;
+    return text;
+}
+
+void KeyTable::read(const std::string &word) {
+    std::vector<std::string> pairs;
+    for (const std::string &part : split(word)) {
+        if (pairs.empty() || part.find('=') != std::string::npos)
+            pairs.push_back(part);
+        else
+            pairs.back() += "," + part;
+    }
+    for (const std::string &pair : pairs) set(pair);
+}
+
+void KeyTable::set(const std::string &pair) {
+    const size_t equal = pair.find('=');
+    const std::string name = pair.substr(0, equal), key_name = option + " " + name;
+    const Key *key = find(name);
+    if (!key) {
+        const std::string nearest = did_you_mean(name, names());
+        throw Failure(ExitCode::usage, option + ": " + (name.empty() ? "''" : name) + " is not a key" + nearest
+                                           + (nearest.empty() ? "; keys: " : " Keys: ") + joined(names(), ", ") + "; `"
+                                           + help + "` explains them");
+    }
+    if (equal == std::string::npos)
+        throw Failure(ExitCode::usage, key_name + ": needs a value; give " + key_name + "=" + key->type);
+    if (!given.insert(name).second)
+        throw Failure(ExitCode::usage, key_name + ": given more than once; give it once");
+    const std::string value = pair.substr(equal + 1);
+    try {
+        if (value.empty()) throw std::invalid_argument("empty value; give " + key->type + ", or omit the key");
+        key->read(value);
+    } catch (const std::invalid_argument &error) {
+        throw Failure(ExitCode::usage, key_name + ": " + error.what());
+    }
+}
+
+void Keys::word(const char *name, const std::string &type, const Read &read, const std::string &about) {
+    table_->keys.push_back({name, type, about, read});
+    describe_(table_->about());
+}
+
+void Keys::flag(const char *name, bool &value, const std::string &about) {
+    choice<bool>(name, value, {{"yes", true}, {"no", false}}, about + "; default no");
+}
+
+}  // namespace lensprof
