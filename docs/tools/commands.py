@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/reference/commands.md: what `lensprof help` prints, of every command and verb.
+"""Writes docs/reference/commands.md: what `lensprof COMMAND --help-all` prints, of every command and verb.
 
 usage: commands.py SOURCE_DIR LENSPROF            write the page
        commands.py SOURCE_DIR LENSPROF --check    exit 1 if the page is out of date
@@ -21,7 +21,8 @@ HEAD = """# Commands
 
 <!-- Made by docs/tools/commands.py from the program's help; `make docs-update` makes it again. -->
 
-This page is what `lensprof help` and `lensprof help COMMAND` print, with long lines wrapped.
+This page is what `lensprof COMMAND --help-all` prints, with long lines wrapped. `lensprof help COMMAND` leaves out the
+expert options.
 
 """
 
@@ -36,7 +37,7 @@ def wrapped(line):
 
 
 def help_of(program, *names):
-    done = subprocess.run([program, "help", *names], capture_output=True, text=True, check=True)
+    done = subprocess.run([program, *names, "--help-all"], capture_output=True, text=True, check=True)
     lines = [part for line in done.stdout.splitlines() for part in wrapped(line.rstrip())]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
 

@@ -32,7 +32,7 @@ inline const std::string &database() {
 }
 
 inline Words corrected_into(const std::string &out, const Words &more) {
-    return Words{"apply", "--profile", "1", "--processing", "jpeg", "--db", database(), "-o", work(out)} + more;
+    return Words{"apply", "--profile", "1", "--key", "processing=jpeg", "--db", database(), "-o", work(out)} + more;
 }
 
 }  // namespace batch_runs

@@ -86,7 +86,7 @@ inline void state_exposure(const std::string &path, double ev, bool camera = tru
     assert_true(write_metadata(path, metadata));
 }
 
-inline const Words no_store = {"--no-store", "--json", "--pairs", "4000"};
+inline const Words no_store = {"--no-store", "--json", "--fit", "pairs=4000"};
 
 inline Words bracket(const Words &files, const Words &more = no_store) { return Words{"bracket"} + files + more; }
 

@@ -9,7 +9,7 @@ namespace calibrate_runs {
 using namespace cli_runs;
 
 inline void simulate(const std::string &name, const Words &more) {
-    render(name, Words{"--noise", "1", "--size", "480x360", "--exif"} + more);
+    render(name, Words{"--set", "noise=1", "--size", "480x360", "--exif"} + more);
 }
 
 inline bool is_missing() {

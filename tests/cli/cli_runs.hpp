@@ -112,7 +112,7 @@ std::string copy_of(const std::string &from, const std::string &to = "copy");
 void render(const std::string &name, const Words &words);
 
 // Enough for tests that are not about accuracy.
-inline const Words quick = {"--pairs", "600", "--modes", "3"};
+inline const Words quick = {"--fit", "pairs=600,modes=3"};
 
 int make_scene(void **state);
 

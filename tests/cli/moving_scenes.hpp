@@ -1,4 +1,4 @@
-// Pictures of `simulate --moving` with the output that structure from motion would give for them: points computed from
+// Pictures of `simulate --set moving` with the output that structure from motion would give for them: points computed from
 // the scene itself.
 #pragma once
 
@@ -64,8 +64,8 @@ public:
     MovingScene(const std::string &name, MovingKind kind, uint32_t images, const Words &more = {})
         : name_(name), width_(400), height_(300) {
         const std::string kind_name = kind == MovingKind::room ? "room" : "terrain";
-        must_exit(done, Words{"simulate", "-o", work(name), "--moving", kind_name, "--size", "400x300", "--images",
-                              std::to_string(images), "--gloss", "0", "--noise", "1", "--format", "png"}
+        must_exit(done, Words{"simulate", "-o", work(name), "--set", std::string("moving=") + kind_name, "--size", "400x300", "--images",
+                              std::to_string(images), "--set", "gloss=0,noise=1", "--format", "png"}
                             + more);
         truth = parsed(text_of(work(name + "/truth.json")));
         const auto world = make_moving_world(kind, {1, images, width_, height_, 50, 1, 0});

@@ -18,7 +18,7 @@ inline void needs_libraw() {
 // Overlapping pictures as rendered by simulate, linear, converted to mosaics.
 inline void make_mosaics(const std::string &folder) {
     must_exit(done, {"simulate", "-o", folder, "--images", "6", "--size", "480x360", "--response", "linear",
-                     "--vignetting", "-0.4,0.1,-0.05", "--format", "png16", "--test-points", "2000"});
+                     "--vignetting", "-0.4,0.1,-0.05", "--format", "png16", "--set", "test-points=2000"});
     for (const auto &entry : fs::directory_iterator(folder)) {
         if (entry.path().extension() != ".png") continue;
         const Picture picture = read_picture(entry.path().string());

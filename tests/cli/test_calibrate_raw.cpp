@@ -46,7 +46,7 @@ void test_one_lens(void **) {
     if (is_missing()) return;
     const std::string folder = work("pictures");
     must_exit(done, {"simulate", "-o", work("rendered"), "--images", "6", "--size", "480x360", "--vignetting",
-                     "-0.4,0.1,-0.05", "--noise", "1", "--test-points", "2000"});
+                     "-0.4,0.1,-0.05", "--set", "noise=1,test-points=2000"});
     make_mosaics(folder);
     for (const char *name : {"3", "4", "5"}) {
         fs::remove(folder + "/img00" + name + ".dng");

@@ -120,12 +120,12 @@ void test_build_finds_the_truth(void **) {
 void test_build_is_repeatable(void **) {
     const std::string once = must_exit(done, build_scene({}));
     assert_string_equal(timeless(once).c_str(), timeless(must_exit(done, build_scene({}))).c_str());
-    assert_string_not_equal(timeless(once).c_str(), timeless(must_exit(done, build_scene({"--seed", "2"}))).c_str());
+    assert_string_not_equal(timeless(once).c_str(), timeless(must_exit(done, build_scene({"--fit", "seed=2"}))).c_str());
 }
 
 void test_build_table(void **) {
     const std::string table =
-        must_exit(done, Words{"build", scene("pano.pto"), "--no-store", "--compare", scene("truth.json")} + quick);
+        must_exit(done, Words{"build", scene("pano.pto"), "--no-store", "--fit", "truth=" + scene("truth.json")} + quick);
     for (const char *part :
          {"img000.png", "img003.png", "reference", "falloff", "response", "residual", "largest error"})
         assert_true(contains(table, part));
@@ -135,16 +135,16 @@ void test_build_table(void **) {
 
 void test_points_replace_pictures(void **) {
     const std::string copy = copy_of("scene", "mit Leer \xc3\xa4"), points = work("points.txt");
-    const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--json", "--exif-sigma", "0"} + quick;
+    const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--json", "--fit", "exif-sigma=0"} + quick;
     // A point file does not record the links of the pictures.
-    const auto fitted = [&](const char *option) {
-        const std::string json = timeless(must_exit(done, words + Words{option, points}));
+    const auto fitted = [&](const Words &more) {
+        const std::string json = timeless(must_exit(done, words + more));
         return replaced(json, "\"links\":\\[[^;]*\\],\"components\"", "\"components\"");
     };
-    const std::string first = fitted("--points-out");
-    assert_string_equal(fitted("--points").c_str(), first.c_str());
+    const std::string first = fitted({"--write", "points=" + points});
+    assert_string_equal(fitted({"--points", points}).c_str(), first.c_str());
     for (int i = 0; i < 4; ++i) fs::remove(copy + "/img00" + std::to_string(i) + ".png");
-    assert_string_equal(fitted("--points").c_str(), first.c_str());
+    assert_string_equal(fitted({"--points", points}).c_str(), first.c_str());
 
     std::istringstream lines(text_of(points));
     std::string line;
@@ -180,7 +180,7 @@ void test_project_with_the_result(void **) {
     const std::string copy = copy_of("scene"), pto = copy + "/out.pto";
     edit(copy + "/pano.pto", "Eev0( .*img000)", "Eev7.5$1");  // Hugin counts from an absolute exposure value
     const Json json = json_of(
-        Words{"build", copy + "/pano.pto", "--no-store", "--json", "--modes", "5", "--pairs", "600", "--pto-out", pto});
+        Words{"build", copy + "/pano.pto", "--no-store", "--json", "--fit", "modes=5,pairs=600", "--write", std::string("pto=") + pto});
     const std::string text = text_of(pto);
     for (int i = 0; i < 4; ++i) {
         const Json &image = json["images"][size_t(i)];
@@ -209,7 +209,7 @@ void test_project_in_another_folder(void **) {
     const std::string copy = copy_of("scene", "pictures");
     fs::create_directories(work("projects/mine"));
     must_exit(done,
-              Words{"build", copy + "/pano.pto", "--no-store", "--pto-out", work("projects/mine/out.pto")} + quick);
+              Words{"build", copy + "/pano.pto", "--no-store", "--write", "pto=" + work("projects/mine/out.pto")} + quick);
     assert_true(contains(text_of(work("projects/mine/out.pto")), "n\"../../pictures/img000.png\""));
     must_exit(done, {"apply", "--pto", work("projects/mine/out.pto"), "-o", work("corrected")});
     assert_true(fs::exists(work("corrected/img003.png")));
@@ -219,7 +219,7 @@ void test_project_in_another_folder(void **) {
 void test_reference(void **) {
     const Json plain = json_of(build_scene({}));
     for (const char *wanted : {"2", "img002.png"}) {
-        const Json json = json_of(build_scene({"--reference", wanted}));
+        const Json json = json_of(build_scene({"--fit", std::string("reference=") + wanted}));
         for (size_t i = 0; i < 4; ++i) {
             const Json &image = json["images"][i], &same = plain["images"][i], &zero = plain["images"][2];
             assert_close(image["ev"].get<double>(), same["ev"].get<double>() - zero["ev"].get<double>(), 0.01);
@@ -231,7 +231,7 @@ void test_reference(void **) {
 
 void test_what_is_free(void **) {
     // Exposures alone cannot explain this camera: the program reports that, together with the result.
-    const Outcome poor = run_words(build_scene({"--free", "ev"}));
+    const Outcome poor = run_words(build_scene({"--fit", "free=ev"}));
     assert_int_equal(poor.code, not_usable);
     assert_true(contains(poor.err, "pano.pto: not usable: the pairs deviate by"));
     const Json ev = parsed(poor.out);
@@ -240,7 +240,7 @@ void test_what_is_free(void **) {
     assert_close(ev["images"][1]["white_balance"][0].get<double>(), 1, 0);
     assert_true(std::fabs(ev["images"][1]["ev"].get<double>()) > 0.1);
     const Json falloff =
-        json_of(build_scene({"--free", "falloff,ev,wb"}));  // not a profile, but usable to even out the pictures
+        json_of(build_scene({"--fit", "free=falloff,ev,wb"}));  // not a profile, but usable to even out the pictures
     assert_true(falloff["usable"] == false && falloff["evens"] == true);
     assert_close(falloff["vignetting"]["center"][0].get<double>(), 0, 0);
     assert_true(falloff["response"]["values"] == ev["response"]["values"]);
@@ -251,14 +251,14 @@ void test_what_is_free(void **) {
 // A project that was only aligned.
 void test_no_photometric_lines(void **) {
     const std::string copy = copy_of("scene");
-    const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--stored", "none", "--json"} + quick;
-    const std::string all = timeless(must_exit(done, words + Words{"--free", "all"}));
+    const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--fit", "stored=none", "--json"} + quick;
+    const std::string all = timeless(must_exit(done, words + Words{"--fit", "free=all"}));
     edit(copy + "/pano.pto", "\nv [^\n]*", "\nv y1 p1 r1");
     const Outcome found = run_words(words);
     assert_int_equal(found.code, done);
     assert_string_equal(timeless(found.out).c_str(), all.c_str());
     assert_true(contains(found.err, "no photometric v lines"));
-    assert_false(contains(run_words(words + Words{"--free", "ev,falloff"}).err, "photometric"));
+    assert_false(contains(run_words(words + Words{"--fit", "free=ev,falloff"}).err, "photometric"));
 }
 
 void test_one_lens(void **) {
@@ -271,23 +271,23 @@ void test_one_lens(void **) {
 
 void test_variants_of_the_fit(void **) {
     const std::string points = work("points.txt");
-    must_exit(done, build_scene({"--points-out", points}));
+    must_exit(done, build_scene({"--write", std::string("points=") + points}));
     for (const Words &words :
-         {Words{"--loss", "huber"}, Words{"--loss", "huber", "--huber", "2"}, Words{"--loss", "squared"},
-          Words{"--prior", "0.5"}, Words{"--method", "transfer"}, Words{"--method", "radiance"}})
+         {Words{"--fit", "loss=huber"}, Words{"--fit", "loss=huber,huber=2"}, Words{"--fit", "loss=squared"},
+          Words{"--fit", "prior=0.5"}, Words{"--fit", "method=transfer"}, Words{"--fit", "method=radiance"}})
         json_of(build_scene(words + Words{"--points", points}));
-    json_of(build_scene({"--sampling", "paper"}));
-    json_of(build_scene({"--method", "radiance", "--sampling", "paper"}));
-    json_of(build_scene({"--max-side", "160"}));
-    json_of(build_scene({"--max-side", "0"}));
+    json_of(build_scene({"--fit", "sampling=paper"}));
+    json_of(build_scene({"--fit", "method=radiance,sampling=paper"}));
+    json_of(build_scene({"--fit", "max-side=160"}));
+    json_of(build_scene({"--fit", "max-side=0"}));
 }
 
-// Tracks instead of pairs: as accurate, the profile records the method, and the output of --points-out gives the same
+// Tracks instead of pairs: as accurate, the profile records the method, and the points written give the same
 // tracks again except for saturated observations.
 void test_method_radiance(void **) {
     const std::string points = work("tracks.txt"), db = work("tracks.db");
-    const Words words = Words{"build", scene("pano.pto"), "--json", "--method", "radiance", "--db",
-                              db,      "--points-out",    points,   "--pairs",  "800"};
+    const Words words = Words{"build", scene("pano.pto"), "--json", "--fit", "method=radiance", "--db",
+                              db,      "--write", std::string("points=") + points,   "--fit", "pairs=800"};
     const Json built = json_of(words), transfer = json_of(build_scene({}));
     assert_true(built["usable"].get<bool>());
     for (size_t i = 0; i < 4; ++i)
@@ -296,10 +296,10 @@ void test_method_radiance(void **) {
     const Json shown = json_of({"profile", "show", "1", "--json", "--db", db});
     assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "radiance");
     const Json again =
-        json_of({"build", scene("pano.pto"), "--json", "--no-store", "--method", "radiance", "--points", points});
+        json_of({"build", scene("pano.pto"), "--json", "--no-store", "--fit", "method=radiance", "--points", points});
     assert_close(again["residual"]["heldout_median"].get<double>(), built["residual"]["heldout_median"].get<double>(),
                  0.3);
-    const Words tracks = {"--method", "radiance"};
+    const Words tracks = {"--fit", "method=radiance"};
     assert_string_equal(timeless(must_exit(done, build_scene(tracks))).c_str(),
                         timeless(must_exit(done, build_scene(tracks))).c_str());
 }
@@ -321,7 +321,7 @@ void test_store_query_show_remove(void **) {
     assert_int_equal(shown["provenance"]["pairs"].get<int>(), 600);
 
     must_exit(done, Words{"build", scene("pano.pto"), "--aperture", "8"} + quick + db);
-    must_exit(done, Words{"build", scene("pano.pto"), "--seed", "2"} + quick + db);
+    must_exit(done, Words{"build", scene("pano.pto"), "--fit", "seed=2"} + quick + db);
     const Words query = Words{"query", "--json"} + db;
     const Json open = json_of(query + Words{"--camera", "simulated camera"});  // stored at two apertures: ambiguous
     assert_true(open["id"].is_null() && open["found"].get<bool>());
@@ -332,20 +332,19 @@ void test_store_query_show_remove(void **) {
     assert_int_equal(newest["matches"].get<int>(), 2);
     assert_int_equal(json_of(query + Words{"--lens", "Simulated Lens", "--aperture", "8"})["id"].get<int>(), 2);
     assert_int_equal(json_of(query
-                             + Words{"--lens", "Simulated Lens", "--aperture", "2.8", "--focal", "38.6", "--maker",
-                                     "lensprof", "--processing", "jpeg"})["matches"]
+                             + Words{"--lens", "Simulated Lens", "--aperture", "2.8", "--focal", "38.6", "--key", "maker=lensprof,processing=jpeg"})["matches"]
                          .get<int>(),
                      2);
     for (const Words &other :
          {Words{"--camera", "Simulated"}, Words{"--camera", "Simulated Camera", "--aperture", "32"},
-          Words{"--camera", "Simulated Camera", "--processing", "corrected"}}) {
+          Words{"--camera", "Simulated Camera", "--key", "processing=corrected"}}) {
         const Json none = json_of(query + other, not_found);
         assert_true(none["id"].is_null() && !none["found"].get<bool>() && !none["reason_codes"].empty());
         const Outcome outcome = run_words(query + other);
         assert_true(contains(outcome.err, "lensprof: no profile for") && contains(outcome.err, work("profiles.db")));
         assert_true(contains(outcome.err, none["reason"].get<std::string>()));
     }
-    const Json raw = json_of(query + Words{"--camera", "Simulated Camera", "--aperture", "2.8", "--processing", "raw"});
+    const Json raw = json_of(query + Words{"--camera", "Simulated Camera", "--aperture", "2.8", "--key", "processing=raw"});
     assert_true(raw["id"].is_null() && raw["lookup"]["response"]["from"] == "raw");  // its falloff, from other pictures
     assert_true(raw["response"]["kind"] == "linear");
 
@@ -364,8 +363,8 @@ void test_store_query_show_remove(void **) {
 void test_key_from_the_command_line(void **) {
     const Words words = Words{"build", scene("pano.pto"), "--db", work("p.db")} + quick;
     must_exit(done, words
-                        + Words{"--maker", "Maker", "--camera", "C\xc3\xa4mera", "--lens", "Lens", "--focal", "24",
-                                "--aperture", "1.4", "--distance", "2.5", "--processing", "raw", "--style", "Velvia"});
+                        + Words{"--key", "maker=Maker", "--camera", "C\xc3\xa4mera", "--lens", "Lens", "--focal", "24",
+                                "--aperture", "1.4", "--key", "distance=2.5,processing=raw,style=Velvia"});
     const Json key = json_of({"profile", "show", "1", "--json", "--db", work("p.db")})["key"];
     assert_true(
         key
@@ -378,7 +377,7 @@ void test_own_database(void **) {
     must_exit(done, Words{"build", scene("pano.pto")} + quick);
     assert_true(fs::exists(work("data/lensprof/profiles.db")));
     assert_int_equal(json_of({"query", "--camera", "Simulated Camera", "--json"})["id"].get<int>(), 1);
-    must_exit(done, {"apply", "--from-db", scene("img001.png"), "-o", work("out")});
+    must_exit(done, {"apply", "--profile", "auto", scene("img001.png"), "-o", work("out")});
     assert_true(fs::exists(work("out/img001.png")));
 }
 
@@ -408,8 +407,7 @@ void test_forced(void **) {
 
 void test_simulate_is_repeatable(void **) {
     const Words words = {"simulate", "--images",        "3",        "--size", "64x48",
-                         "--format", "png,tiff16,jpeg", "--points", "200",    "--test-points",
-                         "100",      "--outliers",      "0.02",     "-o"};
+                         "--format", "png,tiff16,jpeg", "--set", "points=200",    "--set", "test-points=100",      "--set", "outliers=0.02",     "-o"};
     must_exit(done, words + Words{work("a")});
     must_exit(done, words + Words{work("b")});
     must_exit(done, Words{"simulate", "--seed", "2"} + Words(words.begin() + 1, words.end()) + Words{work("c")});

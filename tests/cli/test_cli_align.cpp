@@ -68,7 +68,7 @@ void test_static_sequence(void **) {
     const Words frames = make_frames();
     for (const char *method : {"transfer", "transfer-function"}) {
         const std::string out = work(method);
-        const Words words = Words{"align", "--method", method} + frames;
+        const Words words = Words{"align", "--fit", std::string("method=") + method} + frames;
         must_exit(done, words + Words{"--to", "first", "-o", out + "-first"});
         check_alike(out + "-first", 0);
         must_exit(done, words + Words{"--to", "last", "-o", out + "-last"});
@@ -101,13 +101,12 @@ void test_mean_and_json(void **) {
 
 // A rendered panorama: the camera moves and has a falloff, which the result does not have.
 void test_moving_camera(void **) {
-    must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--ev",
-                     "1", "--noise", "1"});
+    must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--set", "ev=1,noise=1"});
     const std::string pto = work("pano/pano.pto");
     for (const char *method : {"transfer", "transfer-function"}) {
         const std::string out = work(std::string("aligned-") + method);
         const Json json =
-            json_of({"align", "--method", method, "--project", pto, "--to", "first", "-o", out, "--json"});
+            json_of({"align", "--fit", std::string("method=") + method, "--project", pto, "--to", "first", "-o", out, "--json"});
         assert_int_equal(json["frames"].size(), 5);
         assert_true(json["residual"]["heldout_median"].get<double>() < 2.0);
         // A fit of the aligned frames finds no falloff and equal exposures: nothing that is better than no correction.
@@ -158,9 +157,9 @@ void test_refusals(void **) {
     refuse(usage, two + Words{"-o", work("in")}, "overwritten");
     refuse(usage, Words{frames[0], frames[0]} + out, "twice");
     refuse(usage, two + out + Words{"--to", "darkest"}, "--to");
-    refuse(usage, two + out + Words{"--method", "magic"}, "--method");
-    refuse(usage, two + out + Words{"--gamma-from", "known"}, "--gamma-from");
-    refuse(usage, two + out + Words{"--max-side", "32"}, "--max-side");
+    refuse(usage, two + out + Words{"--fit", "method=magic"}, "--fit method");
+    refuse(usage, two + out + Words{"--fit", "gamma-from=known"}, "--fit gamma-from");
+    refuse(usage, two + out + Words{"--fit", "max-side=32"}, "--fit max-side");
     refuse(unreadable, Words{"--project", work("in/none.pto")} + out, "none.pto");
     refuse(usage, two + Words{"-o", work("in/text.png")}, "text.png is not a folder");
     refuse(usage, two + Words{"-o", work("in/text.png/deeper")}, "text.png is not a folder");
@@ -204,9 +203,9 @@ void test_inputs_stay(void **) {
 
 void test_build_by_transfer_functions(void **) {
     must_exit(done,
-              {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--ev", "1"});
+              {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--set", "ev=1"});
     const Json json =
-        json_of({"build", work("pano/pano.pto"), "--db", work("p.db"), "--method", "transfer-function", "--json"});
+        json_of({"build", work("pano/pano.pto"), "--db", work("p.db"), "--fit", "method=transfer-function", "--json"});
     assert_true(json["usable"].get<bool>());
     assert_true(json["residual"]["heldout_median"].get<double>() < 2.0);
     const Json profile = json_of({"profile", "show", "1", "--db", work("p.db"), "--json"});

@@ -81,12 +81,12 @@ double mean_exposure(size_t, size_t channel) {
 }
 
 void test_output_exposures(void **) {
-    const Words words = {"apply", "--pto", make_project(), "--output-exposure"};
-    must_exit(done, words + Words{"mean", "-o", work("mean")});
+    const Words words = {"apply", "--pto", make_project(), "--set"};
+    must_exit(done, words + Words{"exposure=mean", "-o", work("mean")});
     check_pixels(work("mean"), LENSPROF_SAMPLE_U16, mean_exposure);
-    must_exit(done, words + Words{"reference", "-o", work("reference")});
+    must_exit(done, words + Words{"exposure=reference", "-o", work("reference")});
     check_pixels(work("reference"), LENSPROF_SAMPLE_U16, [](size_t, size_t) { return 1.0; });
-    must_exit(done, words + Words{"keep", "-o", work("keep")});
+    must_exit(done, words + Words{"exposure=keep", "-o", work("keep")});
     check_pixels(work("keep"), LENSPROF_SAMPLE_U16, exposure);
     must_exit(done, {"apply", "--pto", work("in/pano.pto"), "-o", work("default")});
     check_pixels(work("default"), LENSPROF_SAMPLE_U16, mean_exposure);
@@ -94,7 +94,7 @@ void test_output_exposures(void **) {
 
 void test_linear_is_float(void **) {
     must_exit(done,
-              {"apply", "--pto", make_project(), "--linear", "--output-exposure", "reference", "-o", work("linear")});
+              {"apply", "--pto", make_project(), "--linear", "--set", "exposure=reference", "-o", work("linear")});
     check_pixels(work("linear"), LENSPROF_SAMPLE_F32, [](size_t, size_t) { return 1.0; });
     write_picture(work("in/p0.png"), make_picture(0));
     edit(work("in/pano.pto"), "p0\\.tif", "p0.png");
@@ -103,9 +103,9 @@ void test_linear_is_float(void **) {
 }
 
 void test_simulate_undoes_correct(void **) {
-    must_exit(done, {"apply", "--pto", make_project(), "--output-exposure", "keep", "-o", work("once")});
+    must_exit(done, {"apply", "--pto", make_project(), "--set", "exposure=keep", "-o", work("once")});
     fs::copy(work("in/pano.pto"), work("once/pano.pto"));
-    must_exit(done, {"apply", "--pto", work("once/pano.pto"), "--output-exposure", "keep", "--simulate", "-o",
+    must_exit(done, {"apply", "--pto", work("once/pano.pto"), "--set", "exposure=keep,simulate=yes", "-o",
                      work("twice")});
     for (size_t i = 0; i < 3; ++i) {
         const Picture before = read_picture(picture_name(i)),
@@ -137,7 +137,7 @@ void test_folder(void **) {
         contains(run_words(words + Words{work("empty")}).err, work("empty") + ": is a folder without pictures"));
 }
 
-// --strength and --gain-cap limit the effect of the falloff; --dither preserves the mean that rounding would change.
+// The keys strength and gain-cap limit the effect of the falloff; dither preserves the mean that rounding would change.
 void test_strength_cap_and_dither(void **) {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());
@@ -150,9 +150,9 @@ void test_strength_cap_and_dither(void **) {
     std::fill(flat.pixels.begin(), flat.pixels.end(), uint8_t(40));
     write_picture(work("flat.png"), flat);
     const Words words = {"apply", "--profile", "1", "--db", work("p.db"), work("flat.png")};
-    must_exit(done, words + Words{"--strength", "0.5", "-o", work("half")});
-    must_exit(done, words + Words{"--gain-cap", "1.25", "-o", work("capped")});
-    must_exit(done, words + Words{"--dither", "-o", work("dithered")});
+    must_exit(done, words + Words{"--set", "strength=0.5", "-o", work("half")});
+    must_exit(done, words + Words{"--set", "gain-cap=1.25", "-o", work("capped")});
+    must_exit(done, words + Words{"--encoding", "dither=yes", "-o", work("dithered")});
     const Picture half = read_picture(work("half/flat.png")), capped = read_picture(work("capped/flat.png")),
                   dithered = read_picture(work("dithered/flat.png"));
     double sum[2] = {0, 0};
@@ -167,7 +167,7 @@ void test_strength_cap_and_dither(void **) {
             if (x < 8 && y < 8) sum[0] += dithered.pixels[at], sum[1] += 40 / m;
         }
     assert_close(sum[0] / 64, sum[1] / 64, 0.1);
-    for (const Words &wrong : {Words{"--strength", "1.5"}, Words{"--gain-cap", "0.5"}, Words{"--strength", "nan"}})
+    for (const Words &wrong : {Words{"--set", "strength=1.5"}, Words{"--set", "gain-cap=0.5"}, Words{"--set", "strength=nan"}})
         must_exit(usage, words + wrong + Words{"-o", work("none")});
     assert_false(fs::exists(work("none")));
 }
@@ -206,9 +206,9 @@ double disagreement(const std::string &pictures) {
 
 void test_overlaps_agree_better(void **) {
     const std::string copy = copy_of("scene");
-    must_exit(done, {"build", copy + "/pano.pto", "--no-store", "--pto-out", copy + "/out.pto"});
+    must_exit(done, {"build", copy + "/pano.pto", "--no-store", "--write", std::string("pto=") + copy + "/out.pto"});
     for (const char *exposure : {"mean", "reference"}) {
-        must_exit(done, {"apply", "--pto", copy + "/out.pto", "--output-exposure", exposure, "-o", work(exposure)});
+        must_exit(done, {"apply", "--pto", copy + "/out.pto", "--set", std::string("exposure=") + exposure, "-o", work(exposure)});
         const double before = disagreement(in_folder("scene")), after = disagreement(work(exposure));
         if (!(before > 10 && after < 3.5))
             fail_msg("%s: median difference: %.1f levels before, %.1f after", exposure, before, after);
@@ -246,7 +246,7 @@ void test_pictures_keep_their_nature(void **) {
     }
     const Disk before = disk();
     must_exit(done, Words{"build", copy + "/pano.pto", "--db", work("p.db")} + quick);
-    must_exit(done, {"apply", "--pto", copy + "/pano.pto", "--profile", "1", "--processing", "jpeg", "--db",
+    must_exit(done, {"apply", "--pto", copy + "/pano.pto", "--profile", "1", "--key", "processing=jpeg", "--db",
                      work("p.db"), "-o", work("out")});
     for (const char *name : mixed_names) {
         check_kept(copy + "/" + name, work("out/") + name);
@@ -262,8 +262,8 @@ void test_pictures_keep_their_nature(void **) {
 void test_profile_by_id_or_exif(void **) {
     const Words db = {"--db", work("p.db")};
     must_exit(done, Words{"build", scene("pano.pto")} + quick + db);
-    must_exit(done, Words{"build", scene("pano.pto"), "--seed", "2"} + quick + db);
-    const Json by_exif = json_of(Words{"apply", "--from-db", "--json", "-o", work("exif"), scene("img001.png")} + db);
+    must_exit(done, Words{"build", scene("pano.pto"), "--fit", "seed=2"} + quick + db);
+    const Json by_exif = json_of(Words{"apply", "--profile", "auto", "--json", "-o", work("exif"), scene("img001.png")} + db);
     assert_int_equal(by_exif["pictures"][0]["profile"].get<int>(), 2);  // the newest
     must_exit(done, Words{"apply", "--profile", "2", "-o", work("two"), scene("img001.png")} + db);
     must_exit(done, Words{"apply", "--profile", "1", "-o", work("one"), scene("img001.png")} + db);
@@ -299,7 +299,7 @@ void test_gain_grid_of_a_profile(void **) {
     write_picture(work("flat.png"), picture);
     const Words words = {"apply", "--profile", "1", "--db", work("p.db"), work("flat.png")};
     must_exit(done, words + Words{"-o", work("corrected")});
-    must_exit(done, words + Words{"--simulate", "-o", work("simulated")});
+    must_exit(done, words + Words{"--set", "simulate=yes", "-o", work("simulated")});
     const Picture corrected = read_picture(work("corrected/flat.png")),
                   simulated = read_picture(work("simulated/flat.png"));
     for (uint32_t y = 0; y < 45; y++)
@@ -388,8 +388,8 @@ void test_two_circles(void **) {
     }
     const Words on = {"apply", "--pto", work("in/pair.pto"), "-o", work("more")};
     assert_refused(usage, on + Words{"--linear", "--merge"}, {"--merge", "crops of one file"});
-    assert_refused(usage, {"build", work("in/pair.pto"), "--no-store", "--preview", work("p.jpg")},
-                   {"--preview", "crops"});
+    assert_refused(usage, {"build", work("in/pair.pto"), "--no-store", "--write", "preview=" + work("p.jpg")},
+                   {"--write preview", "crops"});
     assert_refused(usage, {"align", "--project", work("in/pair.pto"), "-o", work("more")}, {"align", "crops"});
 }
 

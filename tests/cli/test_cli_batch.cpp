@@ -319,7 +319,7 @@ void test_losses_name_a_command(void **) {
     assert_int_equal(lines.size(), 2);
     assert_string_equal(lines[0].c_str(),
                         "1.jpg: lifted by 3.0 EV, which shows the noise; use `lensprof apply --pto 'the "
-                        "folder/panorama_a.pto' --output-exposure keep -o FOLDER`, or pictures of 16 bits");
+                        "folder/panorama_a.pto' --set exposure=keep -o FOLDER`, or pictures of 16 bits");
     assert_string_equal(lines[1].c_str(),
                         "1.jpg and 1 more: the correction clips up to 9.0 % more of the pixels; use `lensprof apply "
                         "--pto 'the folder/panorama_a.pto' --linear -o FOLDER`, which clips none");

@@ -62,7 +62,7 @@ void test_export_is_what_the_library_packs(void **) {
                                             expected.data(), expected.size(), &bytes));
             expected.resize(bytes);
             Words words = export_of(work("camera.blob"), id);
-            if (with_covariance) words.push_back("--covariance");
+            if (with_covariance) words.push_back("--encoding", "covariance=yes");
             const std::string text = must_exit(done, words);
             assert_true(load(work("camera.blob")) == expected);
             for (const std::string &part : {work("camera.blob"), "profile " + std::string(id),
@@ -79,7 +79,7 @@ void test_export_is_what_the_library_packs(void **) {
 }
 
 void test_show_is_that_of_the_database(void **) {
-    must_exit(done, export_of(work("camera.blob")) + Words{"--covariance"});
+    must_exit(done, export_of(work("camera.blob")) + Words{"--encoding", "covariance=yes"});
     Json shown = json_of({"profile", "show", "--blob", work("camera.blob"), "--json"}),
          stored = json_of({"profile", "show", "1", "--db", work("p.db"), "--json"});
     assert_true(shown["id"].is_null());
@@ -101,7 +101,7 @@ void test_show_is_that_of_the_database(void **) {
 }
 
 void test_chart_of_a_blob(void **) {
-    must_exit(done, export_of(work("camera.blob")) + Words{"--covariance"});
+    must_exit(done, export_of(work("camera.blob")) + Words{"--encoding", "covariance=yes"});
     const Words show = {"profile", "show", "--blob", work("camera.blob")};
     Json of_blob = json_of(show + Words{"--chart", "--json"}),
          stored = json_of({"profile", "show", "1", "--db", work("p.db"), "--chart", "--json"});
@@ -199,15 +199,15 @@ void test_options_that_do_not_fit(void **) {
                            {"profile", "export", "1", "--blob", blob, "--camera", "Camera"},
                            {"profile", "export", "1", "--blob", blob, "--format", "json"},
                            {"profile", "export", "1", "--blob", blob, "-o", work("other.json")},
-                           {"profile", "export", "1", "-o", work("other.json"), "--covariance"},
+                           {"profile", "export", "1", "-o", work("other.json"), "--encoding", "covariance=yes"},
                            {"profile", "export", "1", "-o", work("other.unknown")},
                            {"profile", "export", "1", "-o", work("other.xmp")},
                            {"profile", "export", "1", "--all", "-o", work("other.json")},
                            {"profile", "list", "--blob", blob},
                            {"profile", "remove", "1", "--blob", blob},
-                           {"profile", "list", "--covariance"},
-                           {"profile", "show", "1", "--covariance"},
-                           {"profile", "remove", "1", "--covariance"},
+                           {"profile", "list", "--encoding", "covariance=yes"},
+                           {"profile", "show", "1", "--encoding", "covariance=yes"},
+                           {"profile", "remove", "1", "--encoding", "covariance=yes"},
                            {"profile", "show", "1", "--blob", blob},
                            {"profile", "show", "--lens", "Lens", "--blob", blob},
                            {"profile", "show", "--blob", blob}};

@@ -29,7 +29,7 @@ void test_object(void **) {
         for (const char *field : {"ev", "ev_sigma", "white_balance", "median_residual", "known_ev_residual", "pairs"})
             assert_true(json["images"][i].contains(field));
     }
-    const Outcome words = run_words({"bracket", files[0], files[1], files[2], "--no-store", "--pairs", "4000"});
+    const Outcome words = run_words({"bracket", files[0], files[1], files[2], "--no-store", "--fit", "pairs=4000"});
     assert_int_equal(words.code, done);
     assert_true(contains(words.out, "response "));
     assert_false(contains(words.out, "falloff"));
@@ -40,13 +40,13 @@ void test_reference(void **) {
     const Words known = no_store + Words{"--ev", "2,0,-2"};
     const Json first = json_of(bracket(files, known));
     for (const std::string &word : {std::string("2"), files[2]}) {
-        const Json json = json_of(bracket(files, known + Words{"--reference", word}));
+        const Json json = json_of(bracket(files, known + Words{"--fit", std::string("reference=") + word}));
         assert_int_equal(json["reference"].get<int>(), 2);
         assert_close(found_ev(json, 2), 0.0, 0.0);
         assert_close(found_ev(json, 0), found_ev(first, 0) - found_ev(first, 2), 0.01);
     }
-    assert_refused(usage, bracket(files, no_store + Words{"--reference", "3"}), {"3"});
-    assert_refused(usage, bracket(files, no_store + Words{"--reference", "other.png"}), {"other.png"});
+    assert_refused(usage, bracket(files, no_store + Words{"--fit", "reference=3"}), {"3"});
+    assert_refused(usage, bracket(files, no_store + Words{"--fit", "reference=other.png"}), {"other.png"});
 }
 
 void test_an_overexposed_picture_is_left_out(void **) {
@@ -65,10 +65,10 @@ void test_an_overexposed_picture_is_left_out(void **) {
         else
             assert_close(found_ev(json, 3), 18.0, 1e-9);
     }
-    const Outcome odd = run_words(bracket(files, no_store + Words{"--reference", "3"}));
+    const Outcome odd = run_words(bracket(files, no_store + Words{"--fit", "reference=3"}));
     assert_int_equal(odd.code, not_usable);
     assert_true(contains(odd.err, files[3]) && contains(odd.out, "\"reason_code\":\"image_groups\""));
-    const Outcome words = run_words(bracket(files, {"--no-store", "--pairs", "4000"}));
+    const Outcome words = run_words(bracket(files, {"--no-store", "--fit", "pairs=4000"}));
     assert_true(contains(words.out, "unknown"));
 }
 
@@ -76,10 +76,10 @@ void test_an_overexposed_picture_is_left_out(void **) {
 void test_an_exposure_of_minus_one(void **) {
     const std::vector<double> evs = {0.0, -1.0, 1.0};
     const Words files = shots(evs);
-    const Json json = json_of(bracket(files, no_store + Words{"--ev", "0,-1,1", "--method", "debevec"}));
+    const Json json = json_of(bracket(files, no_store + Words{"--ev", "0,-1,1", "--fit", "method=debevec"}));
     assert_close(found_ev(json, 1), -1.0, 0.0);
     const Outcome text =
-        run_words(bracket(files, {"--no-store", "--pairs", "4000", "--method", "debevec", "--ev", "0,-1,1"}));
+        run_words(bracket(files, {"--no-store", "--fit", "pairs=4000,method=debevec", "--ev", "0,-1,1"}));
     assert_true(contains(text.out, "-1.000") && !contains(text.out, "unknown"));
 }
 
@@ -96,8 +96,7 @@ void test_names_that_look_like_numbers(void **) {
 // A forced result is marked as forced, however long the method's name is.
 void test_forced(void **) {
     const Words files = shots(five);
-    must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--pairs", "4000", "--method",
-                                          "debevec", "--force", "--ev", "-3,-1.5,0,1.5,3"}));
+    must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--fit", "pairs=4000,method=debevec", "--force", "--ev", "-3,-1.5,0,1.5,3"}));
     const Json shown = json_of({"profile", "show", "1", "--db", work("p.db"), "--json"});
     assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "bracket debevec");
     assert_true(shown["provenance"]["forced"].get<bool>());
@@ -107,7 +106,7 @@ void test_profile_of_the_camera_alone(void **) {
     const Words files = shots(three);
     for (size_t i = 0; i < 3; ++i) state_exposure(files[i], three[i] - 5.0);
     const std::string db = work("p.db");
-    const Json json = json_of(bracket(files, {"--db", db, "--json", "--pairs", "4000"}));
+    const Json json = json_of(bracket(files, {"--db", db, "--json", "--fit", "pairs=4000"}));
     const Json stored = json_of({"profile", "show", std::to_string(json["profile"].get<int>()), "--db", db, "--json"});
     assert_string_equal(stored["key"]["camera_model"].get<std::string>().c_str(), "Camera");
     assert_string_equal(stored["key"]["lens"].get<std::string>().c_str(), "");
@@ -124,7 +123,7 @@ void test_profile_of_the_camera_alone(void **) {
 // The reference method uses known exposures only, and takes them as exact.
 void test_debevec(void **) {
     const Words files = shots(five);
-    const Words debevec = no_store + Words{"--method", "debevec"};
+    const Words debevec = no_store + Words{"--fit", "method=debevec"};
     const Json json = json_of(bracket(files, debevec + Words{"--ev", list_of(five)}));
     assert_close(assert_recovered(json, five, 1.5), 1.0, 1e-9);
     assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "known");
@@ -133,17 +132,17 @@ void test_debevec(void **) {
     assert_true(contains(reversed.err, "falls"));
     assert_refused(usage, bracket(files, debevec), {files[0], "--ev", "--times"});
     for (const Words &wrong :
-         {Words{"--modes", "5"}, Words{"--modes-only"}, Words{"--loss", "huber"}, Words{"--gamma-from", "prior"}})
+         {Words{"--fit", "modes=5"}, Words{"--fit", "modes-only=yes"}, Words{"--fit", "loss=huber"}, Words{"--fit", "gamma-from=prior"}})
         assert_refused(usage, bracket(files, debevec + Words{"--ev", list_of(five)} + wrong), {wrong[0], "debevec"});
     for (size_t i = 0; i + 1 < files.size(); ++i) state_exposure(files[i], five[i]);
     assert_refused(usage, bracket(files, debevec), {files[4]});
     state_exposure(files[4], five[4]);
     const std::string db = work("p.db");
-    const Json stored = json_of(bracket(files, {"--db", db, "--json", "--pairs", "4000", "--method", "debevec"}));
+    const Json stored = json_of(bracket(files, {"--db", db, "--json", "--fit", "pairs=4000,method=debevec"}));
     const Json shown = json_of({"profile", "show", std::to_string(stored["profile"].get<int>()), "--db", db, "--json"});
     assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "bracket debevec");
     for (const char *command : {"build", "align"})
-        assert_refused(usage, Words{command, files[0], "--method", "debevec"}, {"--method", "debevec"});
+        assert_refused(usage, Words{command, files[0], "--fit", "method=debevec"}, {"--fit method", "debevec"});
 }
 
 void test_runs_repeat(void **) {
@@ -153,12 +152,12 @@ void test_runs_repeat(void **) {
     };
     const std::string first = text({});
     assert_string_equal(first.c_str(), text({}).c_str());
-    assert_true(first != text({"--seed", "2"}));
+    assert_true(first != text({"--fit", "seed=2"}));
 }
 
 Bytes stored_database() {
     const Words files = shots(three);
-    must_exit(done, bracket(files, {"--db", work("p.db"), "--camera", "X", "--pairs", "4000"}));
+    must_exit(done, bracket(files, {"--db", work("p.db"), "--camera", "X", "--fit", "pairs=4000"}));
     return load(work("p.db"));
 }
 
@@ -175,13 +174,13 @@ void test_refused_options(void **) {
                                Words{"--times", "1,2,-1"},    Words{"--times", "1,2,1/0"},
                                Words{"--times", "1,2,1/-8"},  Words{"--times", "1,2,1/"},
                                Words{"--times", "1,2,1e-10"}, Words{"--times", ""},
-                               Words{"--ev-sigma", "0"},      Words{"--ev-sigma", "nan"},
-                               Words{"--max-side", "10"},     Words{"--black", "-1"},
-                               Words{"--black", "255"},       Words{"--white-balance", "warm"},
-                               Words{"--modes", "26"},        Words{"--modes", "x"},
-                               Words{"--pairs", "-1"},        Words{"--seed", "x"},
-                               Words{"--method", "guess"},    Words{"--gamma-from", "guess"},
-                               Words{"--gamma-from", "known"}})
+                               Words{"--fit", "ev-sigma=0"},      Words{"--fit", "ev-sigma=nan"},
+                               Words{"--fit", "max-side=10"},     Words{"--fit", "black=-1"},
+                               Words{"--fit", "black=255"},       Words{"--fit", "white-balance=warm"},
+                               Words{"--fit", "modes=26"},        Words{"--fit", "modes=x"},
+                               Words{"--fit", "pairs=-1"},        Words{"--fit", "seed=x"},
+                               Words{"--fit", "method=guess"},    Words{"--fit", "gamma-from=guess"},
+                               Words{"--fit", "gamma-from=known"}})
         assert_refused(usage, bracket(files, Words{"--db", work("p.db"), "--camera", "X"} + wrong), {wrong[0]});
     assert_refused(usage, bracket(files, {"--ev", "1,2,3", "--times", "1,2,3", "--no-store"}), {"--ev", "--times"});
     assert_refused(usage, bracket(files, {"--db", work("p.db"), "--no-store"}), {"--db", "--no-store"});
@@ -214,7 +213,7 @@ void test_refused_pictures(void **) {
 
 // Pictures that show no response: the reason is printed, as text and in the object, and nothing is stored.
 void assert_shows_nothing(const Words &files, const Words &more = {}) {
-    const Words stored = Words{"--db", work("p.db"), "--camera", "X", "--pairs", "4000"} + more;
+    const Words stored = Words{"--db", work("p.db"), "--camera", "X", "--fit", "pairs=4000"} + more;
     assert_refused(not_usable, bracket(files, stored), {});
     const Json json = json_of(bracket(files, stored + Words{"--json"}), not_usable);
     assert_false(json["usable"].get<bool>());
@@ -243,12 +242,11 @@ void test_pictures_that_show_no_response(void **) {
 
 // Hand-held plain pictures of one view: what `build` advises works.
 void test_one_view(void **) {
-    must_exit(done, {"simulate", "-o", work("plain"), "--images", "2", "--overlap", "0.99", "--jitter", "0", "--noise",
-                     "1", "--size", "320x240", "--ev", "1.5", "--seed", "1"});
+    must_exit(done, {"simulate", "-o", work("plain"), "--images", "2", "--set", "overlap=0.99,jitter=0,noise=1", "--size", "320x240", "--set", "ev=1.5", "--seed", "1"});
     const Outcome built = run_words({"build", work("plain/pano.pto"), "--no-store"});
     assert_int_equal(built.code, not_usable);
     assert_true(contains(built.err, "use bracket or align for plain exposures (no HDR) from a tripod"));
-    const Words two = {"--pairs", "4000", work("plain/img000.png"), work("plain/img001.png")};
+    const Words two = {"--fit", "pairs=4000", work("plain/img000.png"), work("plain/img001.png")};
     must_exit(done, Words{"bracket", "--no-store"} + two);
     must_exit(done, Words{"align", "-o", work("plain/out")} + two);
 }

@@ -17,14 +17,14 @@ void test_exposures_of_exif(void **) {
     const Json json = json_of(bracket(files));
     assert_close(assert_recovered(json, five, 1.5), 1.0, 0.03);
     assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "exif");
-    const Json without = json_of(bracket(files, no_store + Words{"--exif-sigma", "0"}));
+    const Json without = json_of(bracket(files, no_store + Words{"--fit", "exif-sigma=0"}));
     assert_string_equal(without["gamma_from"].get<std::string>().c_str(), "prior");
 }
 
 void test_white_balance_that_is_free_or_not(void **) {
     const Words files = shots(three);
-    const Json fixed = json_of(bracket(files, no_store + Words{"--white-balance", "fixed"}));
-    const Json free = json_of(bracket(files, no_store + Words{"--white-balance", "free"}));
+    const Json fixed = json_of(bracket(files, no_store + Words{"--fit", "white-balance=fixed"}));
+    const Json free = json_of(bracket(files, no_store + Words{"--fit", "white-balance=free"}));
     for (size_t i = 0; i < 3; ++i)
         for (size_t c = 0; c < 3; ++c) {
             assert_close(fixed["images"][i]["white_balance"][c].get<double>(), 1.0, 0.0);
@@ -54,7 +54,7 @@ void test_other_responses(void **) {
     const Json refined = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five)}));
     assert_recovered(refined, five, 1.5, kink);
     assert_string_equal(refined["response"]["kind"].get<std::string>().c_str(), "table");
-    const Json modes = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five), "--modes-only"}));
+    const Json modes = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five), "--fit", "modes-only=yes"}));
     assert_string_equal(modes["response"]["kind"].get<std::string>().c_str(), "emor");
     assert_true(heldout(refined) < heldout(modes));
 }
@@ -100,7 +100,7 @@ void test_other_wrong_metadata(void **) {
         for (const char *method : {"transfer", "radiance", "transfer-function"}) {
             const Words files = shots(one.truth);
             const Words words =
-                bracket(files, no_store + Words{"--method", method, "--ev-sigma", "0.1", "--ev", list_of(one.stated)});
+                bracket(files, no_store + Words{"--fit", std::string("method=") + method, "--fit", "ev-sigma=0.1", "--ev", list_of(one.stated)});
             const std::string reason = json_of(words)["reason"].get<std::string>();
             if (!contains(reason, one.word) || (one.named != none && !contains(reason, files[one.named])))
                 fail_msg("%s of %s: %s", method, list_of(one.stated).c_str(), reason.c_str());
@@ -122,7 +122,7 @@ void test_known_exposures_hold_gamma(void **) {
         like.response = response;
         const Words files = shots(evs, like);
         for (const char *method : {"transfer", "radiance", "transfer-function"}) {
-            const Json json = json_of(bracket(files, no_store + Words{"--method", method, "--ev", list_of(evs)}));
+            const Json json = json_of(bracket(files, no_store + Words{"--fit", std::string("method=") + method, "--ev", list_of(evs)}));
             for (size_t i = 0; i < evs.size(); ++i) {
                 const double off = std::fabs(found_ev(json, i) - found_ev(json, 0) - (evs[i] - evs[0]));
                 const double sigma = json["images"][i]["ev_sigma"].get<double>();
@@ -130,7 +130,7 @@ void test_known_exposures_hold_gamma(void **) {
                     fail_msg("%s: picture %zu is %.3f EV off, stated %.3f", method, i, off, sigma);
             }
         }
-        const Json modes = json_of(bracket(files, no_store + Words{"--modes-only", "--ev", list_of(evs)}));
+        const Json modes = json_of(bracket(files, no_store + Words{"--fit", "modes-only=yes", "--ev", list_of(evs)}));
         if (std::fabs(found_ev(modes, 4) - found_ev(modes, 0) - 6.0) > 0.6)
             assert_true(contains(modes["reason"].get<std::string>(), "modes of the response do not allow"));
     }
@@ -165,7 +165,7 @@ void test_changed_light_is_refused(void **) {
 void test_one_exposure_is_refused(void **) {
     const Words files = shots({0.0, 0.02, -0.02});
     for (const char *method : {"transfer", "radiance", "transfer-function"}) {
-        const Json json = json_of(bracket(files, no_store + Words{"--method", method}), not_usable);
+        const Json json = json_of(bracket(files, no_store + Words{"--fit", std::string("method=") + method}), not_usable);
         assert_string_equal(json["reason_code"].get<std::string>().c_str(), "exposures_alike");
     }
     must_exit(not_usable, bracket(files, no_store + Words{"--ev", "0,2,-2"}));
@@ -178,7 +178,7 @@ void test_black_that_is_not_0(void **) {
     like.response = [&](double x) { return std::max(film(x), 20.0 / 255.0); };
     const std::vector<double> evs = {3.0, 1.5, 0.0, -1.5, -3.0, -12.0};
     const Words files = shots(evs, like);
-    const Outcome outcome = run_words(bracket(files, no_store + Words{"--black", "24", "--ev", list_of(evs)}));
+    const Outcome outcome = run_words(bracket(files, no_store + Words{"--fit", "black=24", "--ev", list_of(evs)}));
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, files[5]) && contains(outcome.err, "left out"));
     const Json json = parsed(outcome.out);

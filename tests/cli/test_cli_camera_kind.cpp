@@ -31,7 +31,7 @@ void set_camera(const std::string &folder, const Case &camera) {
 }
 
 Json fitted(const std::string &path, const Words &more) {
-    return json_of(Words{"build", path + "/pano.pto", "--no-store", "--json", "--pairs", "2000", "--stored", "none"}
+    return json_of(Words{"build", path + "/pano.pto", "--no-store", "--json", "--fit", "pairs=2000,stored=none"}
                    + more);
 }
 
@@ -50,7 +50,7 @@ void test_jpeg_files(void **) {
     std::map<std::string, double> sigma;
     for (const Case &one : cases) {
         set_camera(path, one);
-        const Json json = fitted(path, {"--exif-sigma", "0"});
+        const Json json = fitted(path, {"--fit", "exif-sigma=0"});
         assert_string_equal(json["gamma"]["camera_kind"].get<std::string>().c_str(), one.kind);
         assert_string_equal(json["gamma"]["camera_kind_from"].get<std::string>().c_str(), one.from);
         sigma[one.kind] = json["gamma"]["sigma"].get<double>();
@@ -62,7 +62,7 @@ void test_jpeg_files(void **) {
 void test_option(void **) {
     const std::string path = jpeg_files();
     set_camera(path, {"Apple", "iPhone 12", "", ""});
-    const Json json = fitted(path, {"--camera-kind", "film"});
+    const Json json = fitted(path, {"--fit", "camera-kind=film"});
     assert_string_equal(json["gamma"]["camera_kind"].get<std::string>().c_str(), "film");
     assert_string_equal(json["gamma"]["camera_kind_from"].get<std::string>().c_str(), "option");
 }

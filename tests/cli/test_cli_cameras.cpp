@@ -10,7 +10,7 @@ using namespace cli_runs;
 
 constexpr size_t kImages = 12;
 const std::vector<double> kFalloff{-0.45, 0.12, -0.10}, kOtherFalloff{-0.15, 0.03, -0.05};
-const Words quietly{"--no-store", "--stored", "none", "--json"};
+const Words quietly{"--no-store", "--fit", "stored=none", "--json"};
 
 std::string numbered(size_t i) { return (i < 10 ? "img00" : "img0") + std::to_string(i) + ".png"; }
 
@@ -28,11 +28,7 @@ int make_pictures(void **state) {
     if (make_folder(state) != 0) return -1;
     const Words same{"--images", std::to_string(kImages),
                      "--seed",   "12",
-                     "--exif",   "--overlap",
-                     "0.72",     "--noise",
-                     "1",        "--mean-ev",
-                     "-1",       "--jitter",
-                     "1"};
+                     "--exif",   "--set", "overlap=0.72",     "--set", "noise=1",        "--set", "mean-ev=-1",       "--set", "jitter=1"};
     must_exit(
         done,
         Words{"simulate", "-o", two_cameras(), "--response", "emor:1.2,-0.3", "--vignetting=-0.45,0.12,-0.1"} + same);
@@ -84,11 +80,11 @@ void assert_both_found(const Json &json, double tolerance) {
 
 void test_project(void **) {
     assert_both_found(json_of(Words{"build", project()} + quietly), 0.02);
-    assert_both_found(json_of(Words{"build", project(), "--method", "radiance"} + quietly), 0.02);
+    assert_both_found(json_of(Words{"build", project(), "--fit", "method=radiance"} + quietly), 0.02);
     const std::string text = must_exit(done, {"build", project(), "--no-store"});
     assert_true(contains(text, "camera    Other X100, 6 pictures; the light of "));
     assert_true(contains(text, "setting   Other X100, "));
-    assert_int_equal(json_of(Words{"build", project(), "--method", "transfer-function"} + quietly)["cameras"].size(),
+    assert_int_equal(json_of(Words{"build", project(), "--fit", "method=transfer-function"} + quietly)["cameras"].size(),
                      2);
 }
 
@@ -100,7 +96,7 @@ void test_one_lens_takes_all_as_one(void **) {
     assert_true(json["residual"]["heldout_median"].get<double>()
                 > 2.0 * each["residual"]["heldout_median"].get<double>());
     // Linear pictures have one response, and a falloff per setting of each camera.
-    const Json linear = parsed(run_words(Words{"build", project(), "--camera-kind", "linear"} + quietly).out);
+    const Json linear = parsed(run_words(Words{"build", project(), "--fit", "camera-kind=linear"} + quietly).out);
     assert_true(linear["cameras"].empty());
     assert_int_equal(linear["settings"].size(), 2);
     // Values on the command line hold for all pictures.
@@ -118,7 +114,7 @@ void test_one_lens_takes_all_as_one(void **) {
 void test_folder(void **) {
     if (!can_register()) return skip();  // built without OpenCV, which finds overlaps
     const std::string folder = pictures("folder"), found = work("found.pto");
-    const Outcome outcome = run_words(Words{"build", folder, "--project-out", found} + quietly);
+    const Outcome outcome = run_words(Words{"build", folder, "--write", std::string("project=") + found} + quietly);
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, "from 2 cameras, sizes or processings"));
     const Json json = parsed(outcome.out);
@@ -143,8 +139,8 @@ void test_profiles(void **) {
 }
 
 double seams(const std::string &folder) {
-    Words words{"build",      project(),  "--points-out", work("seams.txt"), "--json",
-                "--no-store", "--stored", "none",         "--one-lens"};
+    Words words{"build",      project(),  "--write", "points=" + work("seams.txt"), "--json",
+                "--no-store", "--fit", "stored=none",         "--one-lens"};
     fs::remove(work("seams.txt"));
     const std::string copy = work("seams");
     fs::remove_all(copy);
@@ -158,7 +154,7 @@ double seams(const std::string &folder) {
 // One response encodes all pictures, and the seams disappear; if pictures keep their exposure, each uses its own.
 void test_apply(void **) {
     const std::string result = two_cameras() + "/result.pto", out = work("even"), kept = work("kept");
-    must_exit(done, Words{"build", project(), "--pto-out", result} + quietly);
+    must_exit(done, Words{"build", project(), "--write", std::string("pto=") + result} + quietly);
     const std::string text = text_of(result);
     for (const char *part : {" Ra=0 Rb=0 Rc=0", " Ra=1 Rb=1 Rc=1"}) {
         size_t count = 0;
@@ -172,15 +168,15 @@ void test_apply(void **) {
     print_message("before %.2f, after %.2f levels\n", before, after);
     assert_true(after < 0.15 * before);
     assert_false(
-        contains(run_words({"apply", "--pto", result, "--output-exposure", "keep", "-o", kept}).err, "several"));
+        contains(run_words({"apply", "--pto", result, "--set", "exposure=keep", "-o", kept}).err, "several"));
     assert_true(seams(kept) > 2.0 * after);
     // The same with profiles from a database, which has both.
     const std::string db = work("both.db"), by_db = work("by_db");
     must_exit(done, {"build", project(), "--db", db});
-    must_exit(done, {"apply", "--pto", result, "--from-db", "--db", db, "-o", by_db});
+    must_exit(done, {"apply", "--pto", result, "--profile", "auto", "--db", db, "-o", by_db});
     assert_true(seams(by_db) < 0.15 * before);
     // A preview shows both, too.
-    must_exit(done, Words{"build", project(), "--preview", work("preview.png")} + quietly);
+    must_exit(done, Words{"build", project(), "--write", "preview=" + work("preview.png")} + quietly);
     assert_true(fs::exists(work("preview.png")));
 }
 
@@ -201,7 +197,7 @@ void test_calibrate(void **) {
 // The light is the same, whichever camera saw it.
 void test_light(void **) {
     const std::string result = two_cameras() + "/result.pto";
-    must_exit(done, Words{"build", project(), "--pto-out", result} + quietly);
+    must_exit(done, Words{"build", project(), "--write", std::string("pto=") + result} + quietly);
     const Json json = json_of({"apply", "--pto", result, "--linear", "--merge", "-o", work("light"), "--json"});
     for (const Json &picture : json["pictures"]) assert_true(picture["agreement"].get<double>() > 0.85);
 }
@@ -275,8 +271,8 @@ void test_cameras_that_share_nothing(void **) {
 
 void test_what_is_refused(void **) {
     const std::string folder = pictures("refused"), pto = folder + "/pano.pto", result = two_cameras() + "/result.pto";
-    must_exit(done, Words{"build", project(), "--pto-out", result} + quietly);
-    assert_refused(usage, {"build", result, "--gamma-from", "known", "--no-store"},
+    must_exit(done, Words{"build", project(), "--write", std::string("pto=") + result} + quietly);
+    assert_refused(usage, {"build", result, "--fit", "gamma-from=known", "--no-store"},
                    {"2 cameras", "is fixed while others are estimated"});
     fs::copy_file(project(), pto);
     for (size_t i = 0; i < kImages; i++)

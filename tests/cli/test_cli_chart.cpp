@@ -281,7 +281,7 @@ void test_usage(void **) {
     assert_refused(usage, show + Words{"x"}, {});
     assert_refused(usage, show + Words{"1", "--channel", "green"}, {"--channel", "--chart"});
     assert_refused(usage, show + Words{"1", "--chart", "--channel", "ultraviolet"}, {"ultraviolet"});
-    assert_refused(usage, show + Words{"--camera", "A", "--processing", "cooked"}, {"cooked"});
+    assert_refused(usage, show + Words{"--camera", "A", "--key", "processing=cooked"}, {"cooked"});
     for (const char *name : {"chart.jpg", "chart", ".png", "svg"})
         assert_refused(usage, show + Words{"1", "--chart-out", work(name)}, {name, ".svg or .png"});
     assert_refused(usage, {"profile", "list", "--chart", "--db", db}, {"--chart"});

@@ -23,7 +23,7 @@ Json measured(const std::string &ids, const std::string &pictures, int code = do
 std::string pictures(const std::string &name, const char *seed, const char *falloff, const Words &more = {},
                      const char *size = "360x240") {
     must_exit(done, Words{"simulate", "-o", in_folder(name), "--images", "5", "--size", size, "--seed", seed,
-                          "--vignetting", falloff, "--center", "0,0"}
+                          "--vignetting", falloff, "--set", "center=0,0"}
                         + more);
     return in_folder(name + "/pano.pto");
 }
@@ -47,13 +47,13 @@ void store_changed(int id, const std::string &name, const std::function<void(Jso
 // falloff.
 int make_profiles(void **state) {
     if (make_scene(state) != 0) return -1;
-    must_exit(done, {"build", pictures("one", "1", kFalloff), "--db", db(), "--stored", "none"});
+    must_exit(done, {"build", pictures("one", "1", kFalloff), "--db", db(), "--fit", "stored=none"});
     store_changed(1, "half", [](Json &json) {
         for (Json &k : json["vignetting"]["k"][0]) k = 0.5 * k.get<double>();
     });
     const std::string curve = in_folder("curve.csv"), map = in_folder("map.tif");
-    must_exit(done, {"profile", "export", "1", "-o", curve, "--db", db(), "--grid", "2x1024"});
-    must_exit(done, {"profile", "export", "1", "-o", map, "--frame", "360x240", "--db", db()});
+    must_exit(done, {"profile", "export", "1", "-o", curve, "--db", db(), "--encoding", "grid=2x1024"});
+    must_exit(done, {"profile", "export", "1", "-o", map, "--encoding", "frame=360x240", "--db", db()});
     must_exit(done, {"profile", "import", curve, map, "--camera", "a", "--lens", "table", "--db", db()});
     must_exit(done, {"profile", "import", map, "--camera", "a", "--lens", "map", "--db", db()});
     store_changed(1, "none", [](Json &json) { json["vignetting"]["k"] = Json::array({{0.0, 0.0, 0.0}}); });
@@ -137,8 +137,7 @@ void test_parts(void **) {
 // Each channel has its own curve: a single falloff is worse than three.
 void test_three_channels(void **) {
     const char *falloffs = "-0.3,0,0,-0.4,0.1,-0.1,-0.5,0.1,0";
-    must_exit(done, {"build", pictures("colours1", "4", falloffs), "--falloff-curves", "3", "--db", db(), "--stored",
-                     "none", "--lens", "colours"});
+    must_exit(done, {"build", pictures("colours1", "4", falloffs), "--fit", "falloff-curves=3", "--db", db(), "--fit", "stored=none", "--lens", "colours"});
     const std::string colours = pictures("colours", "5", falloffs);
     const Json json = measured("1 8", colours);
     assert_int_equal(json["best"], 8);
@@ -159,7 +158,7 @@ void test_linear_pictures(void **) {
 
 // Moving objects are not part of any model: they are counted, and the right profile is still found.
 void test_moving_objects(void **) {
-    const Json json = measured("1 2", pictures("objects", "7", kFalloff, {"--objects", "0.1", "--outliers", "0.05"}));
+    const Json json = measured("1 2", pictures("objects", "7", kFalloff, {"--set", "objects=0.1,outliers=0.05"}));
     assert_int_equal(json["best"], 1);
     assert_true(json["is_decided"].get<bool>());
     assert_true(json["unexplained"] > 0);

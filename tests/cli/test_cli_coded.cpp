@@ -177,7 +177,7 @@ void test_flat(void **) {
         coding.write(work(std::string("card") + coding.end), card, {make_exif(1), {}, {}, 1});
         write_picture(work("card.png"), card);
         const auto falloff = [](const std::string &name) {
-            return json_of({"flat", "--linear", "--no-store", "--falloff-curves", "1", "--json", work(name)})
+            return json_of({"flat", "--linear", "--no-store", "--fit", "falloff-curves=1", "--json", work(name)})
                 .at("vignetting")
                 .dump();
         };

@@ -24,8 +24,7 @@ int prepare(void **state) {
 
 // A build with every option that writes files.
 Words build_of(const std::string &pto) {
-    return Words{"build",          pto,         "--db",          work("p.db"), "--camera", "X", "--points-out",
-                 work("left.txt"), "--pto-out", work("left.pto")}
+    return Words{"build",          pto,         "--db",          work("p.db"), "--camera", "X", "--write", "points=" + work("left.txt"), "--write", "pto=" + work("left.pto")}
            + quick;
 }
 
@@ -45,7 +44,7 @@ void test_missing_picture(void **) {
         assert_refused(unreadable, build_of(copy + "/pano.pto"), {copy + "/" + name});
         assert_refused(unreadable, {"apply", "--profile", "1", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
                        {copy + "/" + name});
-        assert_refused(unreadable, {"apply", "--from-db", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
+        assert_refused(unreadable, {"apply", "--profile", "auto", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
                        {copy + "/" + name});
     }
 }
@@ -58,7 +57,7 @@ void test_truncated_picture(void **) {
             assert_refused(unreadable, build_of(copy + "/pano.pto"), {path});
             assert_refused(
                 unreadable,
-                {"apply", "--profile", "1", "--processing", "jpeg", "--db", work("p.db"), "-o", work(""), path},
+                {"apply", "--profile", "1", "--key", "processing=jpeg", "--db", work("p.db"), "-o", work(""), path},
                 {path});
             fs::remove_all(copy);
         }
@@ -125,7 +124,7 @@ void test_pictures_apart(void **) {
 void test_pictures_in_the_wrong_place(void **) {
     const std::string pto = copy_of("scene") + "/pano.pto";
     edit(pto, " y[-.0-9]+( .*img00[23])", " y180$1");
-    const Words words = Words{"build", pto, "--db", work("p.db"), "--pto-out", work("left.pto")} + quick;
+    const Words words = Words{"build", pto, "--db", work("p.db"), "--write", "pto=" + work("left.pto")} + quick;
     assert_refused(not_usable, words, {pto, "3 groups", "nothing was stored"});
 }
 
@@ -221,16 +220,16 @@ void test_reason_in_json(void **) {
 void test_outputs_that_meet(void **) {
     const std::string copy = copy_of("scene"), pto = copy + "/pano.pto", db = work("p.db");
     const Words build = Words{"build", pto, "--db", db, "--camera", "X"} + quick;
-    assert_refused(usage, build + Words{"--pto-out", pto}, {pto});
-    assert_refused(usage, build + Words{"--pto-out", db}, {db});
-    assert_refused(usage, build + Words{"--points-out", copy + "/img001.png"}, {"img001.png"});
-    assert_refused(usage, build + Words{"--points-out", work("same"), "--pto-out", work("same")}, {"same"});
+    assert_refused(usage, build + Words{"--write", std::string("pto=") + pto}, {pto});
+    assert_refused(usage, build + Words{"--write", std::string("pto=") + db}, {db});
+    assert_refused(usage, build + Words{"--write", std::string("points=") + copy + "/img001.png"}, {"img001.png"});
+    assert_refused(usage, build + Words{"--write", "points=" + work("same"), "--write", "pto=" + work("same")}, {"same"});
 }
 
 // Bytes that are not UTF-8 in names and options: stored as question marks, printed as U+FFFD.
 void test_text_that_is_not_utf8(void **) {
     const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json",
-                               "--pairs", "600", "--modes", "3"});
+                               "--fit", "pairs=600,modes=3"});
     assert_true(json["profile"].is_number());
     const Json list = json_of({"profile", "list", "--db", work("p.db"), "--json"});
     assert_true(contains(list.dump(), "X?"));
@@ -238,9 +237,9 @@ void test_text_that_is_not_utf8(void **) {
 
 // A project not written by build contains no result to apply.
 void test_apply_without_a_result(void **) {
-    assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--pto-out"});
+    assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--write pto"});
     assert_refused(usage,
-                   {"apply", "--profile", "1", "--db", work("p.db"), "--output-exposure", "mean", "-o",
+                   {"apply", "--profile", "1", "--db", work("p.db"), "--set", "exposure=mean", "-o",
                     work("corrected"), scene("img000.png")},
                    {"--pto"});
 }
@@ -248,9 +247,9 @@ void test_apply_without_a_result(void **) {
 // Invalid truth files.
 
 void test_bad_truth(void **) {
-    const Words words = build_of(scene("pano.pto")) + Words{"--compare", work("truth.json")};
+    const Words words = build_of(scene("pano.pto")) + Words{"--fit", "truth=" + work("truth.json")};
     assert_refused(unreadable, words, {work("truth.json")});
-    assert_refused(usage, words + Words{"--json"}, {"--compare", "--json"});
+    assert_refused(usage, words + Words{"--json"}, {"--fit truth", "--json"});
     for (const char *text : {"{", "hello"}) {
         save_text(work("truth.json"), text);
         assert_refused(unreadable, words, {work("truth.json")});
@@ -299,9 +298,9 @@ void test_no_database(void **) {
     assert_refused(not_found, Words{"query", "--camera", "x"} + db, {work("none.db")});
     assert_refused(not_found, Words{"profile", "list"} + db, {work("none.db")});
     assert_refused(not_found, Words{"profile", "remove", "1"} + db, {work("none.db")});
-    assert_refused(usage, {"apply", "--from-db", "-o", work(""), scene("img000.png"), "--db", ""},
+    assert_refused(usage, {"apply", "--profile", "auto", "-o", work(""), scene("img000.png"), "--db", ""},
                    {"--db", "empty file name"});
-    assert_refused(not_found, Words{"apply", "--from-db", "-o", work(""), scene("img000.png")} + db, {work("none.db")});
+    assert_refused(not_found, Words{"apply", "--profile", "auto", "-o", work(""), scene("img000.png")} + db, {work("none.db")});
 }
 
 void test_no_such_profile(void **) {
@@ -312,7 +311,7 @@ void test_no_such_profile(void **) {
                    {work("p.db"), "7"});
     assert_refused(not_found, Words{"query", "--camera", "Other Camera"} + db, {work("p.db"), "Other Camera"});
     write_picture(work("bare.png"), make_smooth(40, 30, LENSPROF_LAYOUT_RGB));
-    assert_refused(not_found, Words{"apply", "--from-db", "-o", in_folder("work/out/../.."), work("bare.png")} + db,
+    assert_refused(not_found, Words{"apply", "--profile", "auto", "-o", in_folder("work/out/../.."), work("bare.png")} + db,
                    {work("bare.png")});
 }
 
@@ -325,9 +324,9 @@ void test_output_is_a_file(void **) {
         assert_refused(usage, {"simulate", "--images", "2", "--size", "40x30", "-o", out}, {out});
     }
     const Words build = Words{"build", scene("pano.pto"), "--no-store"} + quick;
-    for (const char *option : {"--pto-out", "--points-out"})
+    for (const char *key : {"pto=", "points="})
         for (const std::string &out : {work(""), work("file/x"), work("no such folder/x")})
-            assert_refused(out == work("") ? usage : failed, build + Words{option, out}, {out});
+            assert_refused(out == work("") ? usage : failed, build + Words{"--write", key + out}, {out});
 }
 
 void test_output_would_replace_input(void **) {

@@ -120,18 +120,18 @@ void test_the_card_is_corrected(void **) {
             const Outcome outcome = run_words(measure);
             assert_int_equal(outcome.code, done);
             assert_false(contains(outcome.err, "note:"));
-            assert_int_equal(json_of(Words{"profile", "list", "--json", "--processing", "raw"} + db)["profiles"].size(),
+            assert_int_equal(json_of(Words{"profile", "list", "--json", "--key", "processing=raw"} + db)["profiles"].size(),
                              1);
             must_exit(done, Words{"apply"} + setting + db + out);
         } else {
             assert_refused(usage, measure, {file, "is not marked as linear", "--linear"});
             const Outcome outcome = run_words(measure + Words{"--linear"});
             assert_int_equal(outcome.code, done);
-            assert_true(contains(outcome.err, "lensprof apply --processing raw"));
+            assert_true(contains(outcome.err, "lensprof apply --key processing=raw"));
             const Outcome guessed = run_words(Words{"apply"} + setting + db + out);
             assert_int_equal(guessed.code, done);
             assert_true(contains(guessed.err, "this 16 bit TIFF is not marked as linear"));
-            must_exit(done, Words{"apply", "--processing", "raw"} + setting + db + out);
+            must_exit(done, Words{"apply", "--key", "processing=raw"} + setting + db + out);
         }
         assert_close(evenness(in_folder(name + "-out/" + name + ".tif")), 1.0, 0.01);
     }
@@ -163,7 +163,7 @@ void test_portrait_cards(void **) {
     const Json stored = json_of(Words{"profile", "show", "1", "--json"} + db)["vignetting"];
     assert_true(stored["center"] == Json({0.0, 0.0}));
     for (const std::string &file : {lying, standing}) {
-        must_exit(done, Words{"apply", "-o", in_folder("even"), file, "--processing", "raw"} + setting + db);
+        must_exit(done, Words{"apply", "-o", in_folder("even"), file, "--key", "processing=raw"} + setting + db);
         const Picture even = read_picture(in_folder("even/" + std::filesystem::path(file).filename().string()));
         const auto mean = [&](uint32_t left, uint32_t top) {
             double sum = 0.0;
@@ -186,7 +186,7 @@ void test_exposures_come_from_exif_or_the_command_line(void **) {
         card.ev = ev;
         files.push_back(shoot("ev" + std::to_string(files.size()) + ".tif", card));
     }
-    const Words words = flat(files) + Words{"--gamma", "2.2", "--shots", "1,1,1", "--no-store", "--json"};
+    const Words words = flat(files) + Words{"--fit", "gamma=2.2", "--shots", "1,1,1", "--no-store", "--json"};
     const Json json = json_of(words);
     assert_int_equal(json["shots"].get<int>(), 1);
     assert_close(corner_error(json), 0.0, 0.004);
@@ -211,7 +211,7 @@ void test_a_card_at_several_places(void **) {
         files.push_back(shoot("place" + std::to_string(i) + ".tif", card));
     }
     const Words words = flat(files) + Words{"--linear", "--several", "--ev", "0,0,0", "--no-store", "--json"};
-    const Json found = json_of(words + Words{"--find-card"});
+    const Json found = json_of(words + Words{"--card", "find"});
     assert_close(corner_error(found), 0.0, 0.01);
     assert_close(found["images"][1]["card"][0].get<double>(), 120, 12);
     const Json given =
@@ -223,9 +223,9 @@ void test_the_response_of_a_profile(void **) {
     Card card;
     const std::string linear = shoot("first.tif", card), db = in_folder("response.db");
     must_exit(done, flat({linear, "--linear", "--camera", "Box", "--db", db}));
-    const Json json = json_of(flat({linear, "--profile", "1", "--camera", "Box", "--db", db, "--json"}));
+    const Json json = json_of(flat({linear, "--fit", "profile=1", "--camera", "Box", "--db", db, "--json"}));
     assert_string_equal(json["response"]["kind"].get<std::string>().c_str(), "linear");
-    assert_refused(not_found, flat({linear, "--profile", "99", "--camera", "Box", "--db", db}), {"99"});
+    assert_refused(not_found, flat({linear, "--fit", "profile=99", "--camera", "Box", "--db", db}), {"99"});
 }
 
 void test_what_is_not_usable_is_not_stored(void **) {
@@ -247,7 +247,7 @@ void test_grey_pictures_and_the_grid(void **) {
     card.layout = LENSPROF_LAYOUT_GREY;
     const std::string path = shoot("grey.png", card);
     const Json json =
-        json_of(flat({path, "--linear", "--no-store", "--json", "--grid", "always", "--center", "fixed"}));
+        json_of(flat({path, "--linear", "--no-store", "--json", "--fit", "grid=always,center=fixed"}));
     assert_int_equal(json["vignetting"]["k"].size(), 1);
     assert_true(json["gain_grid"]["columns"].get<int>() > 4);
     assert_int_equal(json["gain_grid"]["attenuation"].size(), 1);
@@ -270,10 +270,10 @@ void test_refused(void **) {
     };
     const Case cases[] = {
         {usage, {}, {"FILE"}},
-        {usage, {path}, {"--linear", "--gamma", "--profile"}},
-        {usage, {path, "--linear", "--gamma", "2"}, {"one of"}},
-        {usage, {path, "--gamma", "11", "--no-store"}, {"--gamma"}},
-        {usage, {path, "--gamma", "nan", "--no-store"}, {"--gamma"}},
+        {usage, {path}, {"--linear", "--fit", "gamma=--profile"}},
+        {usage, {path, "--linear", "--fit", "gamma=2"}, {"one of"}},
+        {usage, {path, "--fit", "gamma=11", "--no-store"}, {"--fit gamma"}},
+        {usage, {path, "--fit", "gamma=nan", "--no-store"}, {"--fit gamma"}},
         {usage, {path, "--linear"}, {"card.tif", "--camera"}},
         {usage, Words{path, other, "--shots", "1,1"} + good, {"card.tif", "--ev"}},
         {usage, Words{path, other, "--several"} + good, {"card.tif", "--ev"}},
@@ -284,23 +284,23 @@ void test_refused(void **) {
         {usage, Words{path, other, "--ev", "1,99"} + good, {"card2.tif", "64 EV"}},
         {usage, Words{path, other, "--turned", "0"} + good, {"--turned"}},
         {usage, Words{path, other, "--turned", "0,400"} + good, {"--turned"}},
-        {usage, Words{path, "--light", "bright"} + good, {"--light"}},
-        {usage, Words{path, "--light", "plane", "--several"} + good, {"--several"}},
+        {usage, Words{path, "--fit", "light=bright"} + good, {"--fit light"}},
+        {usage, Words{path, "--fit", "light=plane", "--several"} + good, {"--several"}},
         {usage, Words{path, "--card", "1,2,3"} + good, {"--card"}},
         {usage, Words{path, "--card", "0,0,361,270"} + good, {"--card", "360 x 270", "card.tif"}},
-        {usage, Words{path, "--card", "0,0,10,10", "--find-card"} + good, {"--find-card"}},
+        {usage, Words{path, "--card", "0,0,10,10", "--card", "find"} + good, {"--card", "find"}},
         {usage, Words{path, other, grey, "--card", "0,0,9,9", "--card", "0,0,9,9"} + good, {"2 --card"}},
         {usage, Words{path, grey} + good, {"grey.tif"}},
-        {usage, Words{grey, "--falloff-curves", "3"} + good, {"grey"}},
+        {usage, Words{grey, "--fit", "falloff-curves=3"} + good, {"grey"}},
         {unreadable, Words{path, in_folder("wide.png")} + good, {"wide.png", "400 x 90"}},
         {usage, Words{path, other, path} + good, {"card.tif", "twice"}},
-        {usage, Words{path, "--black", "0.9", "--white", "0.5"} + good, {"--black"}},
-        {usage, Words{path, "--max-side", "10"} + good, {"--max-side"}},
+        {usage, Words{path, "--fit", "black=0.9,white=0.5"} + good, {"--fit black"}},
+        {usage, Words{path, "--fit", "max-side=10"} + good, {"--fit max-side"}},
         {usage, Words{path, "--no-store"} + good, {"--no-store"}},
         {unreadable, Words{in_folder("nothing.tif")} + good, {"nothing.tif"}},
         {unreadable, Words{text} + good, {"text.tif"}},
         {not_usable, Words{in_folder("tiny.png")} + good, {"tiny.png"}},
-        {not_usable, Words{path, "--white", "0.02"} + good, {"black and white"}},
+        {not_usable, Words{path, "--fit", "white=0.02"} + good, {"black and white"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", text}, {"text.tif"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", in_folder("no/such.db")}, {"no/such.db"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", "/proc/lensprof/p.db"}, {"/proc/lensprof"}},

@@ -32,7 +32,7 @@ std::string lens_database() {
     return work("lens.db");
 }
 
-Words by_exif(const std::string &out) { return {"apply", "--from-db", "--db", work("lens.db"), "-o", work(out)}; }
+Words by_exif(const std::string &out) { return {"apply", "--profile", "auto", "--db", work("lens.db"), "-o", work(out)}; }
 
 // Files below a folder, without hidden ones.
 Words files_below(const std::string &place) {
@@ -146,20 +146,20 @@ void test_settings_that_no_lens_has(void **) {
     lensprof_store_close(store);
     const std::string zoom = make_picture("in/a.jpg", "Zoom 24-70mm"), none = make_picture("in/b.jpg", "");
     const auto at = [&](const char *focal, const char *aperture) {
-        return by_exif("out") + Words{"--focal", focal, "--aperture", aperture, "--distance", "inf"};
+        return by_exif("out") + Words{"--focal", focal, "--aperture", aperture, "--key", "distance=inf"};
     };
     assert_refused(not_found, at("300", "4") + Words{zoom}, {"the setting is missing", "check the lens and the focal"});
     assert_refused(not_found, at("50", "32") + Words{zoom}, {"the setting is missing", "check the lens and the aper"});
     assert_refused(not_found, by_exif("out") + Words{"--camera", "Other", none},
                    {"(EXIF does not name the lens); make one", "the lens with --lens"});
-    must_exit(done, at("50", "4") + Words{"--crop-factor", "1", "--doubtful", zoom});
+    must_exit(done, at("50", "4") + Words{"--key", "crop-factor=1,doubtful=yes", zoom});
 }
 
 // Without -o, outputs go to a folder in the current directory, where only files written by lensprof are replaced.
 void test_output_by_default(void **) {
     lens_database();
     const std::string file = make_picture("a.jpg", "Good 35mm"), here = fs::current_path().string();
-    const Words apply = {"apply", "--from-db", "--db", work("lens.db"), file};
+    const Words apply = {"apply", "--profile", "auto", "--db", work("lens.db"), file};
     fs::current_path(work(""));
     const Outcome first = run_words(apply), again = run_words(apply);
     make_picture("corrected/a.jpg", "Good 35mm");
@@ -243,8 +243,8 @@ void test_corrected_once(void **) {
         assert_int_equal(metadata.key.processing, LENSPROF_PROCESSING_CORRECTED);
         assert_string_equal(metadata.key.lens, "Good 35mm");
         assert_refused(not_found, corrected_into("twice", {once}),
-                       {once, "already corrected, by lensprof", "--force-falloff"});
-        must_exit(done, corrected_into("twice", {"--force-falloff", once}));
+                       {once, "already corrected, by lensprof", "--set force-falloff=yes"});
+        must_exit(done, corrected_into("twice", {"--set", "force-falloff=yes", once}));
     }
     // In a folder they are left out, without a failure.
     fs::copy(work("in/a.png"), work("once/new.png"));
@@ -256,21 +256,21 @@ void test_corrected_once(void **) {
 
 void test_simulated_may_be_corrected(void **) {
     const std::string file = make_picture("in/a.png", "Good 35mm");
-    must_exit(done, corrected_into("added", {"--simulate", file}));
+    must_exit(done, corrected_into("added", {"--set", "simulate=yes", file}));
     assert_true(read_metadata(work("added/a.png")).mark->falloff == CorrectionMark::Falloff::added);
     must_exit(done, corrected_into("removed", {work("added/a.png")}));
-    must_exit(done, corrected_into("again", {"--simulate", work("removed/a.png")}));
+    must_exit(done, corrected_into("again", {"--set", "simulate=yes", work("removed/a.png")}));
     assert_true(read_metadata(work("again/a.png")).mark->falloff == CorrectionMark::Falloff::added);
 }
 
 // A change of exposure alone does not mark the falloff as corrected, nor does it remove an existing mark.
 void test_kept_falloff(void **) {
     const std::string file = make_picture("in/a.png", "Good 35mm");
-    must_exit(done, corrected_into("none", {"--strength", "0", file}));
+    must_exit(done, corrected_into("none", {"--set", "strength=0", file}));
     assert_true(read_metadata(work("none/a.png")).mark->falloff == CorrectionMark::Falloff::kept);
     must_exit(done, corrected_into("removed", {work("none/a.png")}));
     must_exit(done,
-              corrected_into("linear", {"--force-falloff", "--strength", "0", "--linear", work("removed/a.png")}));
+              corrected_into("linear", {"--set", "force-falloff=yes,strength=0", "--linear", work("removed/a.png")}));
     const auto mark = read_metadata(work("linear/a.tif")).mark;
     assert_true(mark->falloff == CorrectionMark::Falloff::removed && mark->linear);
 }
@@ -280,7 +280,7 @@ void test_kept_falloff(void **) {
 void test_outputs_of_other_pictures(void **) {
     const std::string one = make_picture("1/a.jpg", "Good 35mm", 60), two = make_picture("2/a.jpg", "Good 35mm", 62);
     must_exit(done, corrected_into("out", {one}));
-    must_exit(done, corrected_into("out", {"--strength", "0.5", one}));
+    must_exit(done, corrected_into("out", {"--set", "strength=0.5", one}));
     assert_refused(usage, corrected_into("out", {two}), {work("out/a.jpg"), "another picture (a.jpg)", "--overwrite"});
     must_exit(done, corrected_into("out", {"--overwrite", two}));
     assert_int_equal(read_size(work("out/a.jpg")).width, 62);

@@ -35,7 +35,7 @@ Words export_to(const std::string &file, const Words &more = {}) {
 
 // Arguments that select a file's format, then what is read back from it.
 void test_round_trips(void **) {
-    const Words frame = {"--frame", "600x400"}, camera = {"--camera", "Other"};
+    const Words frame = {"--encoding", "frame=600x400"}, camera = {"--camera", "Other"};
     const struct {
         const char *file;
         Words written, read;
@@ -47,13 +47,13 @@ void test_round_trips(void **) {
         {"a.blob", {}, {}, true, true},
         {"pcalib.txt", {}, camera, false, true},
         {"a.csv", {}, camera, false, true},
-        {"log.csv", {"--curve", "log"}, camera + Words{"--curve", "log"}, false, true},
+        {"log.csv", {"--encoding", "curve=log"}, camera + Words{"--encoding", "curve=log"}, false, true},
         {"a.crf", {}, camera, false, true},
         {"a.vgn", frame, camera, true, false},
         {"vignette.png", frame, camera, true, false},
-        {"eight.png", frame + Words{"--depth", "8"}, camera, true, false},
+        {"eight.png", frame + Words{"--encoding", "depth=8"}, camera, true, false},
         {"gain.tif", frame, camera, true, false},
-        {"small.tif", frame + Words{"--grid", "60x40"}, camera + frame, true, false},
+        {"small.tif", frame + Words{"--encoding", "grid=60x40"}, camera + frame, true, false},
         {"alsc.json", frame + Words{"--format", "alsc"}, camera + frame, true, false},
     };
     make_db();
@@ -69,7 +69,7 @@ void test_round_trips(void **) {
 void test_two_files_one_profile(void **) {
     make_db();
     must_exit(done, export_to(work("pcalib.txt")));
-    must_exit(done, export_to(work("vignette.png"), {"--frame", "640x480"}));
+    must_exit(done, export_to(work("vignette.png"), {"--encoding", "frame=640x480"}));
     must_exit(done, {"profile", "import", work("pcalib.txt"), work("vignette.png"), "--camera", "Odometer", "--lens",
                      "Wide", "--focal", "8", "--db", work("q.db")});
     const Json json = show("q.db");
@@ -98,7 +98,7 @@ void test_opcodes(void **) {
     const Picture picture = make_smooth(300, 200, LENSPROF_LAYOUT_RGB);
     for (const char *form : {"auto", "radial", "map"}) {
         write_picture(work("raw.tif"), picture);
-        must_exit(done, export_to(work("raw.tif"), {"--format", "opcodes", "--opcode", form}));
+        must_exit(done, export_to(work("raw.tif"), {"--format", "opcodes", "--encoding", std::string("opcode=") + form}));
         assert_false(lensprof::read_opcode_lists(work("raw.tif")).list3.empty());
         assert_near_pixels(picture, read_picture(work("raw.tif")), 0);
         fs::remove(work("q.db"));
@@ -146,8 +146,8 @@ void test_opcodes_of_others_stay(void **) {
 // A gain read as an attenuation is marked doubtful, and lookups skip it.
 void test_wrong_sense_is_doubted(void **) {
     make_db();
-    must_exit(done, export_to(work("gain.tif"), {"--frame", "60x40"}));
-    const Json json = json_of({"profile", "import", work("gain.tif"), "--sense", "attenuation", "--camera", "C",
+    must_exit(done, export_to(work("gain.tif"), {"--encoding", "frame=60x40"}));
+    const Json json = json_of({"profile", "import", work("gain.tif"), "--encoding", "sense=attenuation", "--camera", "C",
                                "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db"), "--json"});
     assert_true(contains(json["flagged"][0]["doubt"].get<std::string>(), "is it a gain?"));
     assert_refused(not_found, {"query", "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db")},
@@ -173,8 +173,7 @@ void test_too_large_maps(void **) {
     must_exit(done, {"profile", "import", work("three.json"), "--db", work("three.db")});
     for (const char *grid : {"5000x6000", "30000x889"})
         assert_refused(usage,
-                       {"profile", "export", "1", "--db", work("three.db"), "-o", work("large.tif"), "--frame",
-                        "6000x4000", "--grid", grid},
+                       {"profile", "export", "1", "--db", work("three.db"), "-o", work("large.tif"), "--encoding", "frame=6000x4000", "--encoding", std::string("grid=") + grid},
                        {"large.tif", "more than 80 million values", "give a smaller --grid"});
     assert_false(fs::exists(work("large.tif")));
 }
@@ -196,10 +195,10 @@ void test_refused(void **) {
     assert_refused(unreadable, import({work("none.csv"), "--camera", "C"}), {"none.csv"});
     assert_refused(unreadable, import({"/dev/zero", "--format", "json"}), {"/dev/zero", "not a regular file"});
     assert_refused(usage, export_to(work("a.m")), {"a.m", ".csv"});
-    assert_refused(usage, export_to(work("q.jpg"), {"--frame", "60x40", "--format", "map"}), {"q.jpg", "JPEG"});
-    assert_refused(usage, export_to(work("q.tif"), {"--frame", "60000x60000"}), {"q.tif", "--grid"});
+    assert_refused(usage, export_to(work("q.jpg"), {"--encoding", "frame=60x40", "--format", "map"}), {"q.jpg", "JPEG"});
+    assert_refused(usage, export_to(work("q.tif"), {"--encoding", "frame=60000x60000"}), {"q.tif", "--encoding grid"});
     save_text(work("falling.csv"), "0,0\n1,0.5\n2,0.4\n3,1\n");
-    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C", "--strict"}), {"falling.csv", "line"});
+    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C", "--encoding", "strict=yes"}), {"falling.csv", "line"});
     save_text(work("falling.csv"), "0,1\n1,0.5\n2,0.4\n3,0\n");
     assert_refused(unreadable, import({work("falling.csv"), "--camera", "C"}), {"falling.csv", "not a response"});
     save_text(work("cut.json"), text_of(work("one.json")).substr(0, 100));
@@ -207,16 +206,16 @@ void test_refused(void **) {
     save_text(work("nan.lcp"), "<x><CameraProfiles");
     assert_refused(unreadable, import({work("nan.lcp")}), {"nan.lcp"});
     save_text(work("tuning.json"), "{\"rpi.alsc\":{\"luminance_lut\":[1,1,1,1]}}");
-    assert_refused(usage, import({work("tuning.json"), "--camera", "C"}), {"tuning.json", "--frame"});
-    assert_refused(unreadable, import({work("tuning.json"), "--camera", "C", "--frame", "60x40"}), {"tuning.json"});
-    assert_refused(usage, import({work("one.json"), "--frame", "60"}), {"--frame", "WIDTHxHEIGHT"});
-    assert_refused(usage, export_to(work("v.png")), {"v.png", "--frame"});
-    assert_refused(usage, export_to(work("v.png"), {"--frame", "60x40", "--sense", "gain"}), {"v.png", ".tif"});
+    assert_refused(usage, import({work("tuning.json"), "--camera", "C"}), {"tuning.json", "--encoding frame"});
+    assert_refused(unreadable, import({work("tuning.json"), "--camera", "C", "--encoding", "frame=60x40"}), {"tuning.json"});
+    assert_refused(usage, import({work("one.json"), "--encoding", "frame=60"}), {"--encoding frame", "WIDTHxHEIGHT"});
+    assert_refused(usage, export_to(work("v.png")), {"v.png", "--encoding frame"});
+    assert_refused(usage, export_to(work("v.png"), {"--encoding", "frame=60x40,sense=gain"}), {"v.png", ".tif"});
     assert_refused(unreadable, export_to(work("none.dng")), {"none.dng"});
     assert_refused(unreadable, export_to(work("one.json"), {"--format", "opcodes"}), {"one.json"});
     assert_refused(failed, export_to(work("none/a.json")), {"none/a.json"});
     assert_refused(usage, export_to("/dev/full", {"--format", "blob"}), {"/dev/full: ", "give the name of a file"});
-    assert_refused(usage, export_to(work("v.vgn"), {"--frame", "1000000x2"}), {"--frame: 1000000 is not"});
+    assert_refused(usage, export_to(work("v.vgn"), {"--encoding", "frame=1000000x2"}), {"--encoding frame: 1000000 is not"});
     assert_refused(usage, export_to(work("v.vgn"), {"--blob", work("b")}), {"-o and --blob both name"});
 }
 
@@ -248,14 +247,14 @@ void test_tuning_files(void **) {
               "{\"version\": 2.0, \"target\": \"bcm2835\", \"algorithms\": [{\"rpi.awb\": {}}, {" + alsc + "}, ]}");
     save_text(work("imx2.json"), "{\"rpi.awb\": {}, " + alsc + "}");
     save_text(work("imx3.json"), "{\"version\": 2.0, \"algorithms\": [{\"rpi.awb\": {}}]}");
-    const Words files = {work("imx1.json"), work("imx2.json"), work("imx3.json"), "--frame", "1640x1232"};
+    const Words files = {work("imx1.json"), work("imx2.json"), work("imx3.json"), "--encoding", "frame=1640x1232"};
     const Json json = json_of(import_words() + files + Words{"--json"});
     assert_int_equal(json["stored"], 2);
     assert_int_equal(json["without_table"].size(), 1);
     assert_true(contains(json["without_table"][0]["file"].get<std::string>(), "imx3.json"));
     const Json list = json_of({"profile", "list", "--db", work("new.db"), "--json"})["profiles"];
     assert_true(list[0]["key"]["camera_model"] == "imx1" && list[1]["key"]["camera_model"] == "imx2");
-    assert_refused(not_found, import_words() + Words{work("imx3.json"), "--frame", "1640x1232"},
+    assert_refused(not_found, import_words() + Words{work("imx3.json"), "--encoding", "frame=1640x1232"},
                    {"imx3.json", "no table"});
     assert_refused(usage, import_words() + files + Words{"--camera", "C"}, {"imx2.json", "one after the other"});
 }

@@ -39,8 +39,8 @@ void test_import(void **) {
 
 void test_query_between(void **) {
     must_exit(done, import_words() + Words{make_file()});
-    const Words query = {"query", "--db", work("l.db"), "--lens", "example 24-70MM F2.8", "--crop-factor", "1.5"};
-    const Json json = json_of(query + Words{"--focal", "35", "--aperture", "3.4", "--distance", "inf", "--json"});
+    const Words query = {"query", "--db", work("l.db"), "--lens", "example 24-70MM F2.8", "--key", "crop-factor=1.5"};
+    const Json json = json_of(query + Words{"--focal", "35", "--aperture", "3.4", "--key", "distance=inf", "--json"});
     const double k1 = json["vignetting"]["k"][0][0].get<double>();
     assert_true(k1 < -0.25 && k1 > -0.6);
     assert_false(json["lookup"]["exact"].get<bool>());
@@ -56,7 +56,7 @@ void test_query_between(void **) {
     assert_refused(not_found, query + Words{"--focal", "35", "--aperture", "32"}, {"aperture is beyond"});
     assert_refused(not_found,
                    {"query", "--db", work("l.db"), "--lens", "example 24-70MM F2.8", "--focal", "35", "--aperture",
-                    "3.4", "--crop-factor", "1"},
+                    "3.4", "--key", "crop-factor=1"},
                    {"smaller sensors only"});
     const std::string range = must_exit(done, query + Words{"--focal", "35"});
     assert_true(contains(range, "profiles match: the aperture is unknown, and the lens has several; specify it"));
@@ -67,7 +67,7 @@ void test_query_between(void **) {
     assert_refused(not_found,
                    {"query", "--db", work("l.db"), "--lens", "Nothing 50mm", "--focal", "50", "--aperture", "2"},
                    {"no profile of a lens with this name"});
-    assert_refused(usage, query + Words{"--unknown-distance", "nearest"}, {"--unknown-distance"});
+    assert_refused(usage, query + Words{"--key", "unknown-distance=nearest"}, {"--key unknown-distance"});
 }
 
 // Samples rounded in the file; several profiles of one key; none is stored twice.
@@ -107,7 +107,7 @@ void test_units_and_settings(void **) {
     const Words query = {"query", "--db", work("l.db"), "--lens", "one", "--focal", "50"};
     assert_true(contains(must_exit(done, query + Words{"--aperture", "2"}), "unit      SN1"));
     assert_true(
-        contains(must_exit(done, query + Words{"--aperture", "2.8", "--unit", "sn1"}), "predicted from 2 profiles"));
+        contains(must_exit(done, query + Words{"--aperture", "2.8", "--key", "unit=sn1"}), "predicted from 2 profiles"));
     assert_refused(not_found, query + Words{"--aperture", "2.8"}, {"single units"});
     assert_refused(not_found, query, {"single units"});
     assert_refused(usage, {"profile", "show", "abc", "--db", work("l.db")}, {"abc is not a profile id"});
@@ -115,7 +115,7 @@ void test_units_and_settings(void **) {
     assert_int_equal(written.code, done);
     assert_true(contains(written.err, "profile 2: its falloff differs per channel; lensfun stores the mean"));
     assert_refused(usage, {"profile", "export", "2", "-o", work("one.lcp"), "--db", work("l.db"), "--all"}, {"--all"});
-    must_exit(done, {"profile", "export", "2", "-o", work("one.csv"), "--grid", "2x1024", "--db", work("l.db")});
+    must_exit(done, {"profile", "export", "2", "-o", work("one.csv"), "--encoding", "grid=2x1024", "--db", work("l.db")});
 }
 
 // All files are imported, or none.

@@ -58,7 +58,7 @@ void test_long_names(void **) {
     for (const Words &words :
          {build(name), Words{"apply", "--pto", name, "-o", work("out")},
           Words{"apply", "--profile", "1", "-o", work("out"), name}, Words{"profile", "list", "--db", name},
-          Words{"profile", "import", name}, build(scene("pano.pto"), {"--points-out", name}),
+          Words{"profile", "import", name}, build(scene("pano.pto"), {"--write", std::string("points=") + name}),
           Words{"bracket", name, name + "y", "--no-store"}, Words{"flat", name, "--linear", "--no-store"},
           Words{"simulate", "-o", name}, Words{"profile", "show", "1", "--blob", name}}) {
         const Outcome outcome = run_words(words);
@@ -73,7 +73,7 @@ void test_what_is_no_file(void **) {
     for (const std::string &name : {std::string("/dev/zero"), work("fifo"), work("folder")}) {
         if (name != work("folder")) assert_refused_in_bounds(build(name), name);  // a folder may hold pictures
         assert_refused_in_bounds(build(scene("pano.pto"), {"--points", name}), name);
-        assert_refused_in_bounds(build(scene("pano.pto"), {"--compare", name}), name);
+        assert_refused_in_bounds(build(scene("pano.pto"), {"--fit", std::string("truth=") + name}), name);
         assert_refused_in_bounds({"apply", "--pto", name, "-o", work("out")}, name);
         assert_refused_in_bounds({"align", "--project", name, "-o", work("out")}, name);
         assert_refused_in_bounds({"profile", "import", name}, name);
@@ -92,7 +92,7 @@ void test_files_that_are_too_large(void **) {
     const std::string pto = sparse(work("65.pto"), uint64_t(65) << 20), json = work("65.json");
     fs::copy(pto, json);
     for (const Words &words :
-         {build(pto), build(scene("pano.pto"), {"--compare", pto}), Words{"profile", "import", json}}) {
+         {build(pto), build(scene("pano.pto"), {"--fit", std::string("truth=") + pto}), Words{"profile", "import", json}}) {
         const Outcome outcome = run_child(words);
         assert_int_equal(outcome.code, unreadable);
         assert_true(contains(outcome.err, "exceeds the maximum size of such a file"));
@@ -136,8 +136,8 @@ void test_pictures_are_checked_first(void **) {
         assert_refused(unreadable, build(many_pictures(work(""), last, 1000, "w1500 h1500"), {"--one-lens"}), {last});
     assert_true(seconds_now() - start < 20.0);  // loading them takes minutes
     const std::string pto = many_pictures(work(""), "one.png", 2000, "w1500 h1500");
-    assert_refused(unreadable, build(pto, {"--one-lens", "--max-side", "0"}),
-                   {pto, "2000 pictures need 16.8 GiB of memory", "--max-side"});
+    assert_refused(unreadable, build(pto, {"--one-lens", "--fit", "max-side=0"}),
+                   {pto, "2000 pictures need 16.8 GiB of memory", "--fit max-side"});
 }
 
 // A file is recognised among thousands, under any name.
@@ -196,7 +196,7 @@ void test_files_in_place_of_folders(void **) {
     for (const std::string &name : {file + "/x.db", file + "/deeper/x.db"})
         assert_refused(store_failed, {"build", pto, "--db", name}, {name + ": " + file + " is not a folder"});
     for (const std::string &name : {std::string("/dev/full"), scene("")})
-        assert_refused(usage, build(pto, {"--points-out", name}), {name + ": ", "give the name of a file"});
+        assert_refused(usage, build(pto, {"--write", std::string("points=") + name}), {name + ": ", "give the name of a file"});
 }
 
 // Values that a profile cannot hold are not truncated silently.

@@ -131,18 +131,18 @@ void test_openexr(void **) {
     must_exit(done, {"bracket", frames[0], frames[1], "--ev", "0,-2", "--camera", "C", "--db", work("c.db")});
     const Words linear = {"apply", "--profile", "1", "--db", work("c.db"), "--linear", frames[0], "-o", work("light")};
     must_exit(done, linear);
-    must_exit(done, linear + Words{"--linear-output", "exr"});
+    must_exit(done, linear + Words{"--encoding", "linear=exr"});
     assert_refused(usage, {"align", "--merge", work("y.png"), frames[0], frames[1]}, {"y.png"});
-    assert_refused(usage, {"apply", "--profile", "1", "--db", work("c.db"), "--linear-output", "exr", frames[0]},
+    assert_refused(usage, {"apply", "--profile", "1", "--db", work("c.db"), "--encoding", "linear=exr", frames[0]},
                    {"--linear"});
     // A light file of other pictures is not replaced, one of the same pictures is.
     must_exit(done, to_exr);
-    must_exit(done, linear + Words{"--linear-output", "exr"});
+    must_exit(done, linear + Words{"--encoding", "linear=exr"});
     const std::string other = work("other/h0.png");
     fs::create_directories(work("other"));
     fs::copy_file(frames[1], other);
     assert_refused(usage,
-                   {"apply", "--profile", "1", "--db", work("c.db"), "--linear", "--linear-output", "exr", other, "-o",
+                   {"apply", "--profile", "1", "--db", work("c.db"), "--linear", "--encoding", "linear=exr", other, "-o",
                     work("light")},
                    {"light/h0.exr", "made from another picture (h0.png)", "--overwrite"});
     assert_refused(usage, {"align", "--merge", work("hdr.exr"), other, frames[0]}, {"hdr.exr", "--overwrite"});

@@ -113,7 +113,7 @@ void test_words_in_place_of_exif(void **) {
     must_exit(done, {"apply", "-o", work("out"), raw});
     assert_corner(work("out/b.tif"), by_linear);
     must_exit(done,
-              {"apply", "-o", work("word"), "--processing", "raw", "--camera", "Camera", "--lens", "Lens 50mm", file});
+              {"apply", "-o", work("word"), "--key", "processing=raw", "--camera", "Camera", "--lens", "Lens 50mm", file});
     assert_corner(work("word/a.png"), by_linear);
 }
 
@@ -122,17 +122,17 @@ void test_response_in_place_of_the_profiles(void **) {
     make_database();
     const std::string file = make_picture("a.png", "Camera", "Lens 50mm");
     for (const Words &how : {Words{}, Words{"--profile", "1"}}) {
-        must_exit(done, Words{"apply", "--response", "gamma:2", "-o", work("gamma"), file} + how);
+        must_exit(done, Words{"apply", "--set", "response=gamma:2", "-o", work("gamma"), file} + how);
         assert_corner(work("gamma/a.png"), grey / std::sqrt(corner_falloff(-0.4)));
-        must_exit(done, Words{"apply", "--response", "linear", "-o", work("linear"), file} + how);
+        must_exit(done, Words{"apply", "--set", "response=linear", "-o", work("linear"), file} + how);
         assert_corner(work("linear/a.png"), by_linear);
         const double light = std::pow((grey / 255.0 + 0.055) / 1.055, 2.4) / corner_falloff(-0.4);
-        must_exit(done, Words{"apply", "--response", "srgb", "-o", work("srgb"), file} + how);
+        must_exit(done, Words{"apply", "--set", "response=srgb", "-o", work("srgb"), file} + how);
         assert_corner(work("srgb/a.png"), 255 * (1.055 * std::pow(light, 1 / 2.4) - 0.055));
     }
-    must_exit(done, {"apply", "--response", "auto", "--profile", "2", "-o", work("auto"), file});
+    must_exit(done, {"apply", "--set", "response=auto", "--profile", "2", "-o", work("auto"), file});
     assert_corner(work("auto/a.png"), by_gamma_2);
-    assert_refused(usage, {"apply", "--response", "log", "-o", work("none"), file}, {"--response", "srgb"});
+    assert_refused(usage, {"apply", "--set", "response=log", "-o", work("none"), file}, {"--set response", "srgb"});
 }
 
 void test_profile_of_another_processing(void **) {
@@ -140,11 +140,11 @@ void test_profile_of_another_processing(void **) {
     const std::string file = make_picture("a.png", "Camera", "Lens 50mm"),
                       raw = make_picture("b.tif", "Camera", "Lens 50mm", LENSPROF_SAMPLE_F32);
     assert_refused(usage, {"apply", "--profile", "1", "-o", work("out"), file},
-                   {file, "is treated as jpeg", "profile 1 is for raw", "--processing raw", "--response"});
+                   {file, "is treated as jpeg", "profile 1 is for raw", "--key processing=raw", "--set response"});
     assert_refused(usage, {"apply", "--profile", "2", "-o", work("out"), raw}, {raw, "is treated as raw", "for jpeg"});
-    must_exit(done, {"apply", "--profile", "1", "--processing", "raw", "-o", work("out"), file});
+    must_exit(done, {"apply", "--profile", "1", "--key", "processing=raw", "-o", work("out"), file});
     assert_corner(work("out/a.png"), by_linear);
-    must_exit(done, {"apply", "--profile", "2", "--processing", "jpeg", "-o", work("out"), raw});
+    must_exit(done, {"apply", "--profile", "2", "--key", "processing=jpeg", "-o", work("out"), raw});
     assert_corner(work("out/b.tif"), by_gamma_2);
 }
 
@@ -154,18 +154,18 @@ void test_corrected_in_camera(void **) {
     const std::string file = make_corrected("in/a.jpg");
     const Words words = {"apply", "--lens", "JPEG 35mm"};
     const char *by = "its falloff was already corrected, in camera (Panasonic: shading compensation)";
-    assert_refused(not_found, words + Words{"-o", work("out"), file}, {file, by, "--force-falloff"});
+    assert_refused(not_found, words + Words{"-o", work("out"), file}, {file, by, "--set force-falloff=yes"});
     assert_refused(not_found, {"apply", "--profile", "2", "-o", work("out"), file}, {by});
-    assert_refused(not_found, words + Words{"--response", "srgb", "-o", work("out"), file}, {by});
+    assert_refused(not_found, words + Words{"--set", "response=srgb", "-o", work("out"), file}, {by});
     for (const Words &how : {Words{"--lens", "JPEG 35mm"}, Words{"--profile", "2"}}) {
-        const Outcome forced = run_words(Words{"apply", "--force-falloff", "-o", work("forced"), file} + how);
+        const Outcome forced = run_words(Words{"apply", "--set", "force-falloff=yes", "-o", work("forced"), file} + how);
         assert_int_equal(forced.code, done);
         assert_true(contains(forced.err, std::string("note: ") + file + ": " + by + ", and is corrected again"));
         assert_corner(work("forced/a.jpg"), by_gamma_2);
     }
-    must_exit(done, words + Words{"--processing", "jpeg", "-o", work("jpeg"), file});
+    must_exit(done, words + Words{"--key", "processing=jpeg", "-o", work("jpeg"), file});
     assert_corner(work("jpeg/a.jpg"), by_gamma_2);
-    must_exit(done, words + Words{"--simulate", "-o", work("simulated"), file});
+    must_exit(done, words + Words{"--set", "simulate=yes", "-o", work("simulated"), file});
     assert_corner(work("simulated/a.jpg"), grey * std::sqrt(corner_falloff(-0.2)));
     make_picture("in/b.jpg", "Camera", "JPEG 35mm");
     const Json json = json_of({"apply", "--json", "-o", work("folder"), work("in")});  // left out, without a failure
@@ -200,8 +200,7 @@ double corrected_by(const std::string &file) {
 // others.
 void test_several_databases(void **) {
     const std::string picture = make_picture("p.png", "Camera", "Lens 50mm");
-    const Words apply = {"apply", "--overwrite", "--response", "srgb", "--crop-factor",
-                         "1",     "-o",          work("out"),  picture};
+    const Words apply = {"apply", "--overwrite", "--set", "response=srgb", "--key", "crop-factor=1",     "-o",          work("out"),  picture};
     assert_refused(usage, apply, {"--pto", "no database found"});
     make_lens("share/lensprof/lensfun.db", "Lens 50mm", -0.4);
     const std::string out = work("out/p.png");
@@ -221,14 +220,14 @@ void test_several_databases(void **) {
     const std::string a = make_lens("a.db", "Lens 85mm", -0.5), b = make_lens("b.db", "Lens 50mm", -0.3);
     must_exit(done, apply + Words{"--db", a, "--db", b, "--db", a});
     assert_close(corrected_by(out), corner_falloff(-0.3), 0.02);
-    const Json exact = json_of(apply + Words{"--json", "--processing", "raw", "--db", a, "--db", b});
+    const Json exact = json_of(apply + Words{"--json", "--key", "processing=raw", "--db", a, "--db", b});
     assert_true(exact["pictures"][0]["lookup"]["exact"].get<bool>());
     assert_true(exact["pictures"][0]["lookup"]["sigma"].is_null());  // the profile states none
     assert_refused(not_found, apply + Words{"--db", a}, {a, "no profile of a lens with this name"});
     assert_refused(not_found, apply + Words{"--db", a, "--db", work("none.db")}, {"none.db"});
     assert_refused(usage, apply + Words{"--db", ""}, {"--db"});
     const std::string said = must_exit(done, {"query", "--lens", "Lens 50mm", "--focal", "50", "--aperture", "2.1",
-                                              "--distance", "inf", "--db", a, "--db", b});
+                                              "--key", "distance=inf", "--db", a, "--db", b});
     assert_true(contains(said, "of this lens in " + b));
     const Json range = json_of({"query", "--lens", "Lens 50mm", "--json"});
     assert_int_equal(range["matches"], 2);                    // of both
@@ -244,7 +243,7 @@ void test_unknown_error(void **) {
     assert_false(contains(said, "+-"));
     make_lens("raw.db", "Lens 50mm", -0.4), make_lens("raw.db", "Lens 50mm", -0.3);
     const std::string newest = must_exit(done, {"query", "--lens", "Lens 50mm", "--focal", "50", "--aperture", "2",
-                                                "--crop-factor", "1", "--db", work("raw.db")});
+                                                "--key", "crop-factor=1", "--db", work("raw.db")});
     assert_true(contains(newest, "error unknown\n"));
     for (const char *label : {"\nfalloff ", "\nresponse ", "\nlookup ", "\nsigma "}) {
         const size_t at = newest.find(label);
@@ -268,7 +267,7 @@ std::string make_bad(const char *db, double k1, double k2, double k3) {
     return make_picture("bad.png", "Camera", "Bad 50mm");
 }
 
-// Falloffs that no lens has: refused, unless asked for by --doubtful or by number.
+// Falloffs that no lens has: refused, unless asked for by --key doubtful=yes or by number.
 void test_impossible_falloffs(void **) {
     const struct {
         double k[3];
@@ -289,7 +288,7 @@ void test_impossible_falloffs(void **) {
         assert_int_equal(run.code, one.said ? not_found : done);
         if (one.said && !contains(run.err, one.said)) fail_msg("%s", run.err.c_str());
         assert_true(fs::exists(work(db + "_out/bad.png")) == !one.said);
-        must_exit(done, words + Words{"--doubtful"});
+        must_exit(done, words + Words{"--key", "doubtful=yes"});
         must_exit(done, words + Words{"--profile", "1"});
     }
 }
@@ -310,15 +309,15 @@ void test_uncertain_prediction(void **) {
     }
     lensprof_store_close(store);
     const std::string picture = make_picture("far.png", "Camera", "Zoom");
-    const Words words{"apply", picture, "--db", work("far.db"), "-o", work("far_out"), "--crop-factor", "1"};
+    const Words words{"apply", picture, "--db", work("far.db"), "-o", work("far_out"), "--key", "crop-factor=1"};
     const Json found = json_of(Words{"query", "--db", work("far.db"), "--camera", "Camera", "--lens", "Zoom", "--focal",
-                                     "50", "--aperture", "2", "--crop-factor", "1", "--json"});
+                                     "50", "--aperture", "2", "--key", "crop-factor=1", "--json"});
     const double sigma = found["lookup"]["sigma"].is_number() ? found["lookup"]["sigma"].get<double>() : 0.0;
     const Outcome run = run_words(words);
     if (run.code != (sigma > 0.1 ? not_found : done) || sigma <= 0.1) fail_msg("%g: %s", sigma, run.err.c_str());
-    assert_true(contains(run.err, "too uncertain") && contains(run.err, "--doubtful"));
+    assert_true(contains(run.err, "too uncertain") && contains(run.err, "--key", "doubtful=yes"));
     assert_false(fs::exists(work("far_out/far.png")));
-    must_exit(done, words + Words{"--doubtful"});
+    must_exit(done, words + Words{"--key", "doubtful=yes"});
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ void test_filters_take_parts_of_names(void **) {
 // As text and as JSON; not if the lens is stored and only the setting is missing.
 void test_nearest_names(void **) {
     make_db();
-    const Words query = Words{"query", "--maker", "Canon"} + db_words();
+    const Words query = Words{"query", "--key", "maker=Canon"} + db_words();
     const Words other = {"--lens", "EF24-70mm f/4L IS USM", "--aperture", "4", "--focal", "24"};
     const std::string nearest = "; nearest names: EF24-70mm f/2.8L USM";
     assert_refused(not_found, query + other, {nearest});
@@ -102,8 +102,7 @@ void test_set(void **) {
     make_db();
     const Words set = Words{"profile", "set"} + db_words();
     assert_true(contains(must_exit(done, set
-                                             + Words{"1", "2", "--lens", "My Lens", "--distance", "3m", "--crop-factor",
-                                                     "1.5", "--clear", "aperture"}),
+                                             + Words{"1", "2", "--lens", "My Lens", "--key", "distance=3m,crop-factor=1.5", "--clear", "aperture"}),
                          "changed 2 profiles"));
     const Json key = json_of(Words{"profile", "show", "2", "--json"} + db_words())["key"];
     assert_true(key["lens"] == "My Lens" && key["camera_model"] == "Canon EOS 6D" && key["aperture"].is_null());
@@ -133,12 +132,12 @@ void test_each_once(void **) {
     lensprof_store_close(store);
     const Words at = {"--db", db};
     assert_int_equal(json_of(Words{"profile", "list", "--camera", "EOS 5D", "--json"} + at)["profiles"].size(), 2);
-    must_exit(done, Words{"profile", "set", "1", "1", "--style", "Vivid"} + at);
+    must_exit(done, Words{"profile", "set", "1", "1", "--key", "style=Vivid"} + at);
     assert_true(json_of(Words{"profile", "show", "1", "--json"} + at)["key"]["style"] == "Vivid");
     assert_refused(usage, Words{"profile", "set", "1", "--focal", "60", "--clear", "focal"} + at, {"--clear"});
-    assert_refused(usage, Words{"profile", "set", "1", "--crop-factor", "2", "--clear", "crop-factor"} + at,
+    assert_refused(usage, Words{"profile", "set", "1", "--key", "crop-factor=2", "--clear", "crop-factor"} + at,
                    {"--clear"});
-    assert_refused(usage, Words{"profile", "set", "1", "--unit", "7", "--any-unit"} + at, {"--any-unit"});
+    assert_refused(usage, Words{"profile", "set", "1", "--key", "unit=7", "--clear", "unit"} + at, {"--clear", "unit"});
     must_exit(done, Words{"profile", "remove", "1", "1"} + at);
     must_exit(done, Words{"profile", "remove", "--camera", "EOS 5D", "--yes"} + at);
 }

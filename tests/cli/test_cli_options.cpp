@@ -1,52 +1,17 @@
 // Every option of every command, as listed by `lensprof help`; misspelled words; numbers with units.
-#include "cli_runs.hpp"
+#include "help_runs.hpp"
 
-using namespace cli_runs;
+using namespace help_runs;
 
 namespace {
-
-// The first words of the lines of a section of a help text, "  WORD  about".
-Words section_of(const std::string &help, const std::string &title) {
-    std::istringstream lines(help);
-    Words words;
-    bool inside = false;
-    for (std::string line; std::getline(lines, line);) {
-        if (!line.empty() && line[0] != ' ') inside = line == title + ":";
-        if (inside && line.size() > 2 && line[0] == ' ' && line[2] != ' ')
-            words.push_back(line.substr(2, line.find(' ', 2) - 2));
-    }
-    return words;
-}
-
-// All commands and verbs, as words.
-std::vector<Words> all_commands() {
-    std::vector<Words> commands;
-    for (const std::string &name : section_of(must_exit(done, {"help"}), "Commands")) {
-        const Words verbs = section_of(must_exit(done, {"help", name}), "Commands");
-        if (verbs.empty()) commands.push_back({name});
-        for (const std::string &verb : verbs) commands.push_back({name, verb});
-    }
-    return commands;
-}
-
-// "--seed" from "  --seed COUNT   about", "--output" from "  -o,--output FILE   about", for options that take a value.
-Words options_with_values(const std::string &help) {
-    std::istringstream lines(help);
-    Words options;
-    for (std::string line; std::getline(lines, line);) {
-        const auto match = find_pattern("^  (-[a-z],)?(--[a-z-]+) [^ ]", line);
-        if (!match.empty()) options.push_back(line.substr(match[2].first, match[2].second));
-    }
-    return options;
-}
 
 void test_all_commands_are_walked(void **) {
     const std::vector<Words> commands = all_commands();
     assert_int_equal(commands.size(), 15 + 11);
     size_t options = 0;
     for (const Words &command : commands)
-        options += options_with_values(must_exit(done, Words{"help"} + command)).size();
-    assert_true(options > 150);
+        options += options_with_values(must_exit(done, command + Words{"--help-all"})).size();
+    assert_true(options > 100);
 }
 
 void assert_wrong_usage(const Words &words, const std::string &named) {
@@ -58,11 +23,13 @@ void assert_wrong_usage(const Words &words, const std::string &named) {
 // The shell turns an unset variable into an empty value.
 void test_no_value_may_be_empty(void **) {
     for (const Words &command : all_commands()) {
-        const std::string help = must_exit(done, Words{"help"} + command);
+        const std::string help = must_exit(done, command + Words{"--help-all"});
         for (const std::string &option : options_with_values(help)) {
             assert_wrong_usage(command + Words{option, ""}, option + ": ");
             assert_wrong_usage(command + Words{option + "="}, option + ": ");
         }
+        for (const auto &[option, key] : keys_of(help))
+            assert_wrong_usage(command + Words{option, key + "="}, option + " " + key + ": empty value");
         for (const std::string &name : section_of(help, "Positionals"))
             assert_wrong_usage(command + Words{""}, name + ": ");
     }
@@ -74,8 +41,8 @@ void test_the_nearest_is_named(void **) {
         Words words;
         const char *said;
     } cases[] = {
-        {{"build", scene("pano.pto"), "--prioor", "1"}, "--prioor: no such option; did you mean --prior?"},
-        {{"build", scene("pano.pto"), "--max-sied=800"}, "--max-sied: no such option; did you mean --max-side?"},
+        {{"build", scene("pano.pto"), "--aprture", "1"}, "--aprture: no such option; did you mean --aperture?"},
+        {{"build", scene("pano.pto"), "--fit", "max-sied=800"}, "--fit: max-sied is not a key; did you mean max-side?"},
         {{"apply", "--outptu", "x"}, "--outptu: no such option; did you mean --output?"},
         {{"profile", "list", "--cmaera", "x"}, "--cmaera: no such option; did you mean --camera?"},
         {{"profile", "lsit"}, "profile lsit: no such verb; did you mean list?"},
@@ -132,7 +99,7 @@ void test_words_within_brackets(void **) {
     const std::string copy = copy_of("scene"), before = fs::current_path().string();
     fs::rename(copy + "/img000.png", copy + "/[x]");
     fs::current_path(copy);
-    const Outcome outcome = run_words({"bracket", "[x]", "img001.png", "--no-store", "--json", "--pairs", "300"});
+    const Outcome outcome = run_words({"bracket", "[x]", "img001.png", "--no-store", "--json", "--fit", "pairs=300"});
     fs::current_path(before);
     if (!contains(outcome.out, "\"file\":\"[x]\"")) fail_msg("%s%s", outcome.out.c_str(), outcome.err.c_str());
 }
@@ -163,26 +130,11 @@ void test_two_dashes_end_options(void **) {
 
 // Descriptions are wrapped, and footers are written to fit.
 void test_help_fits_100_columns(void **) {
-    const std::vector<Words> commands = {{},
-                                         {"calibrate"},
-                                         {"build"},
-                                         {"bracket"},
-                                         {"response"},
-                                         {"flat"},
-                                         {"apply"},
-                                         {"align"},
-                                         {"query"},
-                                         {"simulate"},
-                                         {"profile"},
-                                         {"profile", "list"},
-                                         {"profile", "show"},
-                                         {"profile", "set"},
-                                         {"profile", "export"},
-                                         {"profile", "import"},
-                                         {"profile", "merge"},
-                                         {"profile", "check"}};
+    std::vector<Words> commands = all_commands();
+    commands.push_back({"profile"});
+    commands.push_back({});
     for (const Words &command : commands) {
-        std::istringstream help(must_exit(done, Words{"help"} + command));
+        std::istringstream help(must_exit(done, command + Words{"--help-all"}));
         for (std::string line; std::getline(help, line);)
             if (line.size() > 100) fail_msg("%s", line.c_str());
     }
@@ -190,7 +142,7 @@ void test_help_fits_100_columns(void **) {
 
 // Results are the same; messages are omitted, or include the time of each step.
 void test_quiet_and_verbose(void **) {
-    const Words build = Words{"build", scene("pano.pto"), "--no-store", "--gamma-from", "exif"} + quick;
+    const Words build = Words{"build", scene("pano.pto"), "--no-store", "--fit", "gamma-from=exif"} + quick;
     const Outcome normal = run_words(build), silent = run_words(build + Words{"-q"}),
                   verbose = run_words(build + Words{"--verbose"});
     assert_int_equal(normal.code, done);
@@ -233,8 +185,8 @@ void test_empty_values_that_are_needed(void **) {
     for (const char *list : {"1,,2", ",1", "1,", ","})
         assert_refused(usage, bracket + Words{list},
                        {std::string("--times: ") + list + ": a value is missing before or after a comma"});
-    assert_refused(usage, {"build", "x.pto", "--free", "ev,"},
-                   {"--free: ev,: a value is missing before or after a comma"});
+    assert_refused(usage, {"build", "x.pto", "--fit", "free=ev,"},
+                   {"--fit free: ev,: a value is missing before or after a comma"});
 }
 
 // Whatever is echoed, a message is a single readable line.
@@ -245,7 +197,7 @@ void test_long_and_odd_words(void **) {
         {usage, {"query", "--" + word}},
         {usage, {"query", word}},
         {usage, {"query", "--focal", word}},
-        {usage, {"query", "--processing", word}},
+        {usage, {"query", "--key", std::string("processing=") + word}},
         {store_failed, {"query", "--camera", "X", "--db", word}},
         {unreadable, {"apply", "--pto", word, "-o", work("out")}},
     };
@@ -283,12 +235,12 @@ void test_help_of_a_verb(void **) {
 // Typed values: the database holds what was meant.
 void test_units(void **) {
     const Json plain = json_of(Words{"build", scene("pano.pto"), "--db", work("p.db"), "--json", "--camera", "X",
-                                     "--focal", "24", "--aperture", "4", "--distance", "3"}
+                                     "--focal", "24", "--aperture", "4", "--key", "distance=3"}
                                + quick);
     assert_int_equal(plain["profile"].get<int>(), 1);
     for (const Words &words : {Words{"--focal", "24mm"}, Words{"--focal", "24 mm"}, Words{"--aperture", "f/4"},
                                Words{"--aperture", "F4"}, Words{"--aperture", "f4"}, Words{"--aperture", "F/4"},
-                               Words{"--distance", "3m"}, Words{"--distance", "3 m"}}) {
+                               Words{"--key", "distance=3m"}, Words{"--key", "distance=3 m"}}) {
         const Json list = json_of(Words{"profile", "list", "--db", work("p.db"), "--json"} + words);
         assert_int_equal(list["profiles"].size(), 1);
     }
@@ -301,13 +253,13 @@ void test_units(void **) {
         {{"--focal", "24m"}, "'m' is not the unit of a focal length"},
         {{"--focal", "2.4cm"}, "'cm' is not the unit"},
         {{"--aperture", "4mm"}, "'mm' is not the unit of an aperture"},
-        {{"--distance", "3mm"}, "'mm' is not the unit of a distance"},
+        {{"--key", "distance=3mm"}, "'mm' is not the unit of a distance"},
         {{"--focal", "f/4"}, "f/4"},
         {{"--aperture", "f/"}, "f/"},
         {{"--aperture", "1/2.8"}, "'/2.8' is not the unit of an aperture"},
         {{"--focal", "1/60"}, "'/60' is not the unit of a focal length"},
-        {{"--distance", "3 m m"}, "3 m m"},
-        {{"--distance", "nan"}, "nan"},
+        {{"--key", "distance=3 m m"}, "3 m m"},
+        {{"--key", "distance=nan"}, "nan"},
         {{"--focal", "0x18"}, "0x18 is not a number"},
         {{"--focal", "-0X1p3"}, "-0X1p3 is not a number"},
         {{"--focal", " 0x18"}, " 0x18 is not a number"},
@@ -327,7 +279,7 @@ void test_units(void **) {
 void test_times_with_units(void **) {
     const auto exposures = [](const char *times) {
         const Outcome outcome = run_words({"bracket", scene("img000.png"), scene("img001.png"), "--no-store", "--json",
-                                           "--pairs", "500", "--modes", "3", "--times", times});
+                                           "--fit", "pairs=500,modes=3", "--times", times});
         return outcome.code == done || outcome.code == not_usable
                    ? replaced(outcome.out, "\"seconds\":\\{[^}]*\\}", "") + outcome.err
                    : std::string("refused: ") + outcome.err;
@@ -344,36 +296,37 @@ void test_bad_options(void **) {
         {"build"},
         {"build", pto, pto},
         {"build", pto, "--frobnicate"},
-        {"build", pto, "--modes", "26"},
-        {"build", pto, "--modes", "-1"},
-        {"build", pto, "--modes", "3x"},
-        {"build", pto, "--modes"},
-        {"build", pto, "--loss", "l1"},
-        {"build", pto, "--huber", "0"},
-        {"build", pto, "--prior", "-1"},
-        {"build", pto, "--free", "everything"},
-        {"build", pto, "--reference", "4"},
-        {"build", pto, "--reference", "img009.png"},
-        {"build", pto, "--pairs", "-1"},
-        {"build", pto, "--pairs", "99999999"},
-        {"build", pto, "--seed", "-1"},
-        {"build", pto, "--seed", "x"},
-        {"build", pto, "--max-side", "-5"},
+        {"build", pto, "--fit", "modes=26"},
+        {"build", pto, "--fit", "modes=-1"},
+        {"build", pto, "--fit", "modes=3x"},
+        {"build", pto, "--fit"},
+        {"build", pto, "--fit", "modes"},
+        {"build", pto, "--fit", "loss=l1"},
+        {"build", pto, "--fit", "huber=0"},
+        {"build", pto, "--fit", "prior=-1"},
+        {"build", pto, "--fit", "free=everything"},
+        {"build", pto, "--fit", "reference=4"},
+        {"build", pto, "--fit", "reference=img009.png"},
+        {"build", pto, "--fit", "pairs=-1"},
+        {"build", pto, "--fit", "pairs=99999999"},
+        {"build", pto, "--fit", "seed=-1"},
+        {"build", pto, "--fit", "seed=x"},
+        {"build", pto, "--fit", "max-side=-5"},
         {"build", pto, "--focal", "0"},
         {"build", pto, "--aperture", "-2"},
         {"build", pto, "--focal", "1e999"},
-        {"build", pto, "--processing", "cooked"},
-        {"build", pto, "--method", "magic"},
-        {"build", pto, "--sampling", "x"},
-        {"build", pto, "--no-store", "--stored", "none", "--db", work("p.db")},
+        {"build", pto, "--key", "processing=cooked"},
+        {"build", pto, "--fit", "method=magic"},
+        {"build", pto, "--fit", "sampling=x"},
+        {"build", pto, "--no-store", "--fit", "stored=none", "--db", work("p.db")},
         {"apply"},
         {"apply", png},
         {"apply", "-o", work("out"), png},
         {"apply", "--profile", "0", "-o", work("out"), png},
         {"apply", "--profile", "x", "-o", work("out"), png},
-        {"apply", "--profile", "1", "--from-db", "-o", work("out"), png},
+        {"apply", "--profile", "1", "--profile", "auto", "-o", work("out"), png},
         {"apply", "--profile", "1", "-o", work("out")},
-        {"apply", "--pto", pto, "-o", work("out"), "--output-exposure", "bright"},
+        {"apply", "--pto", pto, "-o", work("out"), "--set", "exposure=bright"},
         {"query"},
         {"query", "--focal", "50"},
         {"query", "--camera", "x", "--focal", "-1"},
@@ -392,30 +345,33 @@ void test_bad_options(void **) {
         {"simulate", "-o", work("s"), "--size", "10"},
         {"simulate", "-o", work("s"), "--size", "10x10"},
         {"simulate", "-o", work("s"), "--size", "axb"},
-        {"simulate", "-o", work("s"), "--hfov", "0"},
-        {"simulate", "-o", work("s"), "--hfov", "160"},
+        {"simulate", "-o", work("s"), "--set", "hfov=0"},
+        {"simulate", "-o", work("s"), "--set", "hfov=160"},
         {"simulate", "-o", work("s"), "--response", "magic"},
         {"simulate", "-o", work("s"), "--response", "gamma:0"},
         {"simulate", "-o", work("s"), "--response", "gamma: 0x2"},
         {"simulate", "-o", work("s"), "--response", "emor:99"},
         {"simulate", "-o", work("s"), "--vignetting", "1,2"},
         {"simulate", "-o", work("s"), "--vignetting", "-5,0,0"},
-        {"simulate", "-o", work("s"), "--center", "1"},
+        {"simulate", "-o", work("s"), "--set", "center=1"},
         {"simulate", "-o", work("s"), "--format", "bmp"},
         {"simulate", "-o", work("s"), "--seed", "x"},
-        {"simulate", "-o", work("s"), "--overlap", "1"},
+        {"simulate", "-o", work("s"), "--set", "overlap=1"},
     };
     for (const Words &words : cases) assert_refused(usage, words, {});
 }
 
 void test_options_that_are_no_numbers(void **) {
     const std::string pto = scene("pano.pto"), out = work("s");
-    for (const char *option : {"--huber", "--prior", "--focal", "--aperture", "--distance"})
-        assert_refused(usage, Words{"build", pto, "--db", work("new.db"), option, "nan"} + quick, {option});
+    const Words build = Words{"build", pto, "--db", work("new.db")} + quick;
+    for (const char *option : {"--focal", "--aperture"}) assert_refused(usage, build + Words{option, "nan"}, {option});
+    for (const char *key : {"huber", "prior"})
+        assert_refused(usage, build + Words{"--fit", key + std::string("=nan")}, {std::string("--fit ") + key});
+    assert_refused(usage, build + Words{"--key", "distance=nan"}, {"--key distance"});
     assert_refused(usage, {"query", "--camera", "x", "--focal", "nan", "--db", work("p.db")}, {"--focal"});
-    for (const char *option :
-         {"--hfov", "--overlap", "--jitter", "--misalign", "--ev", "--wb", "--noise", "--outliers"})
-        assert_refused(usage, {"simulate", "-o", out, "--images", "2", "--size", "40x30", option, "nan"}, {option});
+    for (const char *key : {"hfov", "overlap", "jitter", "misalign", "ev", "wb", "noise", "outliers"})
+        assert_refused(usage, {"simulate", "-o", out, "--images", "2", "--size", "40x30", "--set", key + std::string("=nan")},
+                       {std::string("--set ") + key});
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ std::string make_project(const Thing &thing = {}, const std::string &more = {}) 
     return work("in/pano.pto");
 }
 
-const Words merging = {"apply", "--linear", "--merge", "--output-exposure", "reference", "--pto"};
+const Words merging = {"apply", "--linear", "--merge", "--set", "exposure=reference", "--pto"};
 
 double light_in(const Picture &picture, uint32_t x, uint32_t y, size_t c) {
     return double(reinterpret_cast<const float *>(picture.pixels.data())[(size_t(y) * width + x) * 3 + c]);
@@ -130,7 +130,7 @@ void test_white_is_filled(void **) {
 void test_own_light_is_not_enough(void **) {
     make_project();
     must_exit(done,
-              {"apply", "--linear", "--output-exposure", "reference", "--pto", work("in/pano.pto"), "-o", work("out")});
+              {"apply", "--linear", "--set", "exposure=reference", "--pto", work("in/pano.pto"), "-o", work("out")});
     assert_true(compare(1, work("out/p1.tif")).worst > 0.3);
 }
 
@@ -155,7 +155,7 @@ void test_masks_are_respected(void **) {
     make_project({}, "k i0 t0 p\"0 0 120 0 120 90 0 90\"\nk i2 t0 p\"0 0 120 0 120 90 0 90\"\n");
     must_exit(done, merging + Words{work("in/pano.pto"), "-o", work("masked")});
     must_exit(done,
-              {"apply", "--linear", "--output-exposure", "reference", "--pto", work("in/pano.pto"), "-o", work("one")});
+              {"apply", "--linear", "--set", "exposure=reference", "--pto", work("in/pano.pto"), "-o", work("one")});
     assert_true(read_picture(work("masked/p1.tif")).pixels != read_picture(work("all/p1.tif")).pixels);
     const Picture masked = read_picture(work("masked/p1.tif")), one = read_picture(work("one/p1.tif"));
     for (uint32_t y = 0; y < height; y++)
@@ -172,7 +172,7 @@ void test_threads_and_json(void **) {
     assert_true(!fs::exists(work("one/p0.tif")));
     must_exit(done, words + Words{"-o", work("four"), "--threads", "4"});
     assert_true(read_picture(work("one/p1.tif")).pixels == read_picture(work("four/p1.tif")).pixels);
-    must_exit(done, words + Words{"--linear-output", "exr", "-o", work("exr"), file_of(0)});
+    must_exit(done, words + Words{"--encoding", "linear=exr", "-o", work("exr"), file_of(0)});
     assert_true(fs::exists(work("exr/p0.exr")));
 }
 
@@ -341,10 +341,10 @@ void test_bad_merges(void **) {
                          {"apply", "--linear", "--merge", "--profile", "1", file_of(0)},
                          {"apply", "--linear", "--merge", file_of(0)},
                          {"apply", "--linear", "--merge", "--pto", project, "--profile", "1"},
-                         {"apply", "--linear", "--merge", "--pto", project, "--gain-cap", "2"},
-                         {"apply", "--linear", "--merge", "--pto", project, "--dither"},
-                         {"apply", "--linear", "--merge", "--pto", project, "--strength", "0.5"},
-                         {"apply", "--linear", "--merge", "--pto", project, "--simulate"},
+                         {"apply", "--linear", "--merge", "--pto", project, "--set", "gain-cap=2"},
+                         {"apply", "--linear", "--merge", "--pto", project, "--encoding", "dither=yes"},
+                         {"apply", "--linear", "--merge", "--pto", project, "--set", "strength=0.5"},
+                         {"apply", "--linear", "--merge", "--pto", project, "--set", "simulate=yes"},
                          {"apply", "--linear", "--merge", "--pto", project, "--contact-sheet", work("sheet.jpg")}};
     for (const Words &words : bad) {
         must_exit(usage, words + Words{"-o", work("none")});

@@ -17,7 +17,7 @@ namespace {
 
 void simulate(const std::string &name, const Words &more) {
     const bool is_sized = std::find(more.begin(), more.end(), "--size") != more.end();
-    render(name, Words{"--noise", "1"} + (is_sized ? Words() : Words{"--size", "480x360"}) + more);
+    render(name, Words{"--set", "noise=1"} + (is_sized ? Words() : Words{"--size", "480x360"}) + more);
 }
 
 // If the program was built without OpenCV, only its message can be tested.
@@ -35,7 +35,7 @@ double corner_of(const Json &json) {
     return 1.0 + k[0].get<double>() + k[1].get<double>() + k[2].get<double>();
 }
 
-const Words quietly{"--no-store", "--stored", "none", "--json"};
+const Words quietly{"--no-store", "--fit", "stored=none", "--json"};
 
 void assert_alike(const Json &one, const Json &other) {
     assert_true(one["usable"] == true && other["usable"] == true);
@@ -51,7 +51,7 @@ void test_a_folder_is_as_good_as_its_project(void **) {
     simulate("row", {"--images", "6", "--seed", "11"});
     const std::string pto = work("row/pano.pto"), found = work("found.pto");
     const Json given = json_of(Words{"build", pto} + quietly);
-    const Outcome run = run_words(Words{"build", work("row"), "--project-out", found} + quietly);
+    const Outcome run = run_words(Words{"build", work("row"), "--write", std::string("project=") + found} + quietly);
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "6 pictures overlap"));
     const Json own = parsed(run.out);
@@ -72,7 +72,7 @@ void test_a_folder_is_as_good_as_its_project(void **) {
 // Pictures that look different: exposures 4 EV apart, white balances, a strong falloff.
 void test_pictures_that_look_unlike(void **) {
     if (is_missing()) return;
-    simulate("unlike", {"--images", "5", "--ev", "4", "--wb", "0.3", "--vignetting=-0.8,0.5,-0.3", "--seed", "5"});
+    simulate("unlike", {"--images", "5", "--set", "ev=4,wb=0.3", "--vignetting=-0.8,0.5,-0.3", "--seed", "5"});
     const Json json = json_of(Words{"build", work("unlike")} + quietly);
     assert_true(json["usable"] == true);
     for (const Json &image : json["images"]) assert_true(image["joined"] == true);
@@ -151,7 +151,7 @@ void test_a_bracket(void **) {
     simulate("row", {"--images", "3", "--seed", "71"});
     fs::create_directory(work("still"));
     for (int i = 0; i < 4; i++) {
-        simulate("shot" + std::to_string(i), {"--images", "2", "--seed", "72", "--mean-ev", std::to_string(i - 2)});
+        simulate("shot" + std::to_string(i), {"--images", "2", "--seed", "72", "--set", "mean-ev=" + std::to_string(i - 2)});
         fs::copy_file(work("shot" + std::to_string(i) + "/img000.png"), work("still/s" + std::to_string(i) + ".png"));
     }
     assert_refused(not_usable, {"build", work("still"), "--no-store"}, {"did not move", "lensprof bracket", "align"});
@@ -169,7 +169,7 @@ void test_a_bracket(void **) {
 // If a third of each picture is fixed to the frame, as through a windscreen, the camera still counts as rotating.
 void test_behind_a_dashboard(void **) {
     if (is_missing()) return;
-    simulate("drive", {"--images", "5", "--seed", "75", "--overlap", "0.5"});
+    simulate("drive", {"--images", "5", "--seed", "75", "--set", "overlap=0.5"});
     simulate("board", {"--images", "2", "--seed", "76", "--scene", "foliage"});
     const Picture board = read_picture(work("board/img000.png"));
     for (int i = 0; i < 5; i++) {
@@ -190,7 +190,7 @@ void test_stacks(void **) {
     fs::create_directory(work("stacks"));
     for (int ev : {-2, 0, 1}) {
         const std::string name = "ev" + std::to_string(ev);
-        simulate(name, {"--images", "4", "--seed", "73", "--ev", "0.01", "--mean-ev", std::to_string(ev)});
+        simulate(name, {"--images", "4", "--seed", "73", "--set", "ev=0.01,mean-ev=" + std::to_string(ev)});
         for (int i = 0; i < 4; i++)
             fs::copy_file(work(name + "/img00" + std::to_string(i) + ".png"),
                           work("stacks/v" + std::to_string(i) + "_" + name + ".png"));
@@ -206,7 +206,7 @@ void test_stacks(void **) {
 void test_own_pictures_are_left_out(void **) {
     if (is_missing()) return;
     simulate("own", {"--images", "3", "--seed", "65"});
-    must_exit(done, {"build", work("own"), "--no-store", "--pto-out", work("own/result.pto")});
+    must_exit(done, {"build", work("own"), "--no-store", "--write", "pto=" + work("own/result.pto")});
     must_exit(done, {"apply", "--pto", work("own/result.pto"), "-o", work("own/even")});
     const Outcome run = run_words(Words{"build", work("own")} + quietly);
     assert_int_equal(run.code, done);
@@ -230,15 +230,15 @@ void test_outputs_are_checked_first(void **) {
     };
     for (const char *picture : {"first/copy.png", "first/z.png", "first/img001.png"}) {
         const std::string before = text_of(work(picture));
-        refused({"--no-store", "--preview", work(picture)}, work(picture) + ": would be overwritten");
+        refused({"--no-store", "--write", "preview=" + work(picture)}, work(picture) + ": would be overwritten");
         assert_true(text_of(work(picture)) == before);
     }
-    refused({"--no-store", "--pto-out", work("alone/img001.png")}, "is the name of a picture");
-    refused({"--no-store", "--preview", work("alone/img001.png")}, "is an existing photograph");
-    refused({"--no-store", "--preview", work("nowhere/p.jpg")}, "cannot write", failed);
-    refused({"--no-store", "--project-out", work("nowhere/p.pto")}, "cannot write", failed);
-    refused({"--no-store", "--pto-out", work("alone")}, "not a regular file");
-    refused({"--no-store", "--pto-out", "/dev/null"}, "not a regular file");
+    refused({"--no-store", "--write", "pto=" + work("alone/img001.png")}, "is the name of a picture");
+    refused({"--no-store", "--write", "preview=" + work("alone/img001.png")}, "is an existing photograph");
+    refused({"--no-store", "--write", "preview=" + work("nowhere/p.jpg")}, "cannot write", failed);
+    refused({"--no-store", "--write", "project=" + work("nowhere/p.pto")}, "cannot write", failed);
+    refused({"--no-store", "--write", "pto=" + work("alone")}, "not a regular file");
+    refused({"--no-store", "--write", "pto=/dev/null"}, "not a regular file");
     for (const char *picture :
          {"first/img000.png", "first/img001.png", "first/img002.png", "first/copy.png", "first/z.png"})
         write_picture(work(picture), read_picture(work(picture)));  // without metadata
@@ -316,26 +316,26 @@ double spread(const Picture &one, uint32_t one_top, const Picture &other, uint32
 
 // The corrected mosaic compared with that of the same scene from a camera without falloff and with one exposure.
 void test_the_preview_is_even(void **) {
-    simulate("uneven", {"--images", "5", "--ev", "0.8", "--seed", "8"});
-    simulate("truth", {"--images", "5", "--ev", "0", "--wb", "0", "--vignetting=-.03,0,0", "--seed", "8"});
+    simulate("uneven", {"--images", "5", "--set", "ev=0.8", "--seed", "8"});
+    simulate("truth", {"--images", "5", "--set", "ev=0,wb=0", "--vignetting=-.03,0,0", "--seed", "8"});
     const std::string preview = work("preview.png"), wide = work("wide.jpg"), pto = work("uneven/pano.pto");
-    must_exit(done, Words{"build", pto, "--preview", preview} + quietly);
-    must_exit(done, Words{"build", work("truth/pano.pto"), "--preview", work("truth.png")} + quietly);
+    must_exit(done, Words{"build", pto, "--write", std::string("preview=") + preview} + quietly);
+    must_exit(done, Words{"build", work("truth/pano.pto"), "--write", "preview=" + work("truth.png")} + quietly);
     const Picture own = read_picture(preview), truth = read_picture(work("truth.png"));
     assert_true(own.width == truth.width && own.height == truth.height && own.width > 1000);
     const uint32_t height = (own.height - 8) / 2;
     const double before = spread(own, 0, truth, 0, height), after = spread(own, height + 8, truth, 0, height);
     assert_true(before > 0.1 && after < 0.03);
-    assert_int_equal(run_words({"build", pto, "--preview", work("preview.txt"), "--no-store"}).code, usage);
-    assert_int_equal(run_words({"build", pto, "--preview", work("uneven/img000.png"), "--no-store"}).code, usage);
-    assert_int_equal(run_words({"build", pto, "--preview", wide, "--points", work("p.txt"), "--no-store"}).code, usage);
+    assert_int_equal(run_words({"build", pto, "--write", "preview=" + work("preview.txt"), "--no-store"}).code, usage);
+    assert_int_equal(run_words({"build", pto, "--write", "preview=" + work("uneven/img000.png"), "--no-store"}).code, usage);
+    assert_int_equal(run_words({"build", pto, "--write", std::string("preview=") + wide, "--points", work("p.txt"), "--no-store"}).code, usage);
     assert_false(fs::exists(wide));
 }
 
 // A cropped picture has another angle of view for the geometry, also with --one-lens.
 void test_one_lens_keeps_the_geometry(void **) {
     if (is_missing()) return;
-    simulate("crops", {"--images", "4", "--seed", "41", "--size", "800x600", "--overlap", "0.5"});
+    simulate("crops", {"--images", "4", "--seed", "41", "--size", "800x600", "--set", "overlap=0.5"});
     for (const char *name : {"img001.png", "img003.png"}) {
         const std::string file = work(std::string("crops/") + name);
         Picture picture = read_picture(file), cut = picture;
@@ -431,7 +431,7 @@ void test_a_camera_that_moved(void **) {
     assert_true(contains(run.err, "compared only at matched points"));
     is_right(parsed(run.out));
     assert_true(parsed(run.out)["images"] == json_of(Words{"build", work("moved")} + quietly)["images"]);
-    is_right(json_of(Words{"build", work("moved"), "--method", "radiance"} + quietly));
+    is_right(json_of(Words{"build", work("moved"), "--fit", "method=radiance"} + quietly));
 
     const Words calibrate{"calibrate", work("moved"), "-o", work("moved_out"), "--no-store"};
     const auto warned = [](const Outcome &of) {
@@ -465,8 +465,8 @@ void test_refused(void **) {
     refuse({"build", a, a, "--no-store"}, not_usable, "has only one picture");
     refuse({"build", a, b, "--no-store"}, not_usable, "no two of the pictures overlap");
     refuse({"build", work("one"), "--points", work("p.txt"), "--no-store"}, usage, "--points: needs the project");
-    refuse({"build", pto, "--project-out", work("q.pto"), "--no-store"}, usage, "--project-out: needs pictures");
-    refuse({"build", work("one"), "--project-out", a, "--no-store"}, usage, "would be overwritten");
+    refuse({"build", pto, "--write", "project=" + work("q.pto"), "--no-store"}, usage, "--write project: needs pictures");
+    refuse({"build", work("one"), "--write", std::string("project=") + a, "--no-store"}, usage, "would be overwritten");
     refuse({"build", work("nowhere"), "--no-store"}, unreadable, "nowhere");
     save_text(work("p1.png"), "no picture"), save_text(work("p2.png"), "none either");
     refuse({"build", work("p1.png"), work("p2.png"), "--no-store"}, unreadable, "none of the pictures can be read");

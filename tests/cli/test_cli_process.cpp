@@ -30,7 +30,7 @@ void make_read_only() {
 void test_read_only_database(void **) {
     make_read_only();
     const Disk before = disk();
-    const Words outputs = {"--points-out", work("open/left.txt"), "--pto-out", work("open/left.pto")};
+    const Words outputs = {"--write", "points=" + work("open/left.txt"), "--write", "pto=" + work("open/left.pto")};
     Outcome outcome = run_child({"profile", "list", "--db", work("closed/p.db")}, become_nobody);
     if (outcome.code == 254) {
         print_message("skipped: root cannot change the user here\n");
@@ -46,7 +46,7 @@ void test_read_only_database(void **) {
     const Words apply = {"apply",        "--profile",        "1", "--db", work("closed/p.db"), "-o",
                          work("closed"), scene("img000.png")};
     assert_refusal(apply, run_child(apply, become_nobody), failed, {work("closed/img000.png")}, before);
-    const Words pto = build_quick({"--no-store", "--pto-out", work("closed/left.pto")});
+    const Words pto = build_quick({"--no-store", "--write", "pto=" + work("closed/left.pto")});
     assert_refusal(pto, run_child(pto, become_nobody), failed, {work("closed/left.pto")}, before);
 }
 
@@ -100,14 +100,14 @@ void test_full_disk(void **) {
         assert_refused_when_full(bytes, build_quick({"--db", work("p.db")}), store_failed, work("p.db"));
     assert_refused_when_full(512, {"profile", "remove", "1", "--db", work("p.db")}, store_failed, work("p.db"));
     // There is room for the project, but not for the database: neither is created.
-    assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--pto-out", work("left.pto")}), store_failed,
+    assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--write", "pto=" + work("left.pto")}), store_failed,
                              work("p.db"));
-    assert_refused_when_full(20000, build_quick({"--no-store", "--points-out", work("left.txt")}), failed,
+    assert_refused_when_full(20000, build_quick({"--no-store", "--write", "points=" + work("left.txt")}), failed,
                              work("left.txt"));
     // There is room for the index of the database's log, 32 KiB.
-    assert_refused_when_full(40000, build_quick({"--db", work("p.db"), "--points-out", work("left.txt")}), failed,
+    assert_refused_when_full(40000, build_quick({"--db", work("p.db"), "--write", "points=" + work("left.txt")}), failed,
                              work("left.txt"));
-    assert_refused_when_full(100, build_quick({"--no-store", "--pto-out", work("left.pto")}), failed, work("left.pto"));
+    assert_refused_when_full(100, build_quick({"--no-store", "--write", "pto=" + work("left.pto")}), failed, work("left.pto"));
     assert_refused_when_full(20000,
                              {"apply", "--profile", "1", "--db", work("p.db"), "-o", work(""), scene("img000.png")},
                              failed, work("img000.png"));
@@ -199,7 +199,7 @@ double interrupt_at(const std::string &stage, const Words &words, int number = S
 
 // About 15000 pairs: seconds of fitting.
 std::string make_many_points() {
-    must_exit(done, {"simulate", "-o", work("many"), "--no-images", "--images", "6", "--points", "15000"});
+    must_exit(done, {"simulate", "-o", work("many"), "--set", "no-images=yes", "--images", "6", "--set", "points=15000"});
     return work("many/pano.pto");
 }
 
@@ -211,8 +211,7 @@ void test_interrupted_build(void **) {
             const Disk before = disk();
             const double seconds =
                 interrupt_at("fitting",
-                             {"build", pto, "--points", work("many/points.txt"), "--camera", "X", "--db", db, "--modes",
-                              "25", "--progress", "--pto-out", work("left.pto"), "--points-out", work("left.txt")},
+                             {"build", pto, "--points", work("many/points.txt"), "--camera", "X", "--db", db, "--fit", "modes=25", "--progress", "--write", "pto=" + work("left.pto"), "--write", "points=" + work("left.txt")},
                              number);
             const std::string changes = difference(before, disk());
             if (!changes.empty()) fail_msg("after the interrupt:%s", changes.c_str());
@@ -227,8 +226,7 @@ void test_interrupted_with_pictures(void **) {
     const Disk before = disk();
     for (const std::string stage : {"reading pictures", "sampling"}) {
         const double seconds = interrupt_at(stage, {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress",
-                                                    "--pairs", stage == "sampling" ? "1000000" : "20000", "--pto-out",
-                                                    work("left.pto"), "--points-out", work("left.txt")});
+                                                    "--fit", std::string("pairs=") + (stage == "sampling" ? "1000000" : "20000"), "--write", "pto=" + work("left.pto"), "--write", "points=" + work("left.txt")});
         const std::string changes = difference(before, disk());
         if (!changes.empty()) fail_msg("after the interrupt:%s", changes.c_str());
         if (seconds > 5) fail_msg("%s: it took %.1f s to stop", stage.c_str(), seconds);

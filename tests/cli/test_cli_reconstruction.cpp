@@ -81,7 +81,7 @@ void test_exposures_are_found(void **) {
 // Colours of the tracks instead of pictures: on request, and if there are no pictures.
 void test_colours_stand_for_pictures(void **) {
     const Json &truth = shared().scene.truth;
-    const Json asked = json_of(build("tracks.csv", {"--track-colors"}));
+    const Json asked = json_of(build("tracks.csv", {"--reconstruction", "track-colors=yes"}));
     assert_true(exposure_error(asked, truth) < 0.06);
     fs::create_directory(work("elsewhere"));
     fs::copy_file(work("tracks.csv"), work("elsewhere/tracks.csv"));
@@ -93,13 +93,13 @@ void test_colours_stand_for_pictures(void **) {
               Json::array({{{"cameras", {{"one", {{"width", 400}, {"height", 300}}}}}, {"shots", shots}}}).dump());
     assert_true(exposure_error(json_of(alone), truth) < 0.06);
     fs::remove_all(work("elsewhere"));
-    assert_refused(usage, build("model", {"--track-colors"}), {"--track-colors", "tracks.csv", "COLMAP model"});
+    assert_refused(usage, build("model", {"--reconstruction", "track-colors=yes"}), {"--reconstruction track-colors", "tracks.csv", "COLMAP model"});
 }
 
 // Repeated runs give the same bytes.
 void test_is_deterministic(void **) {
-    const std::string first = must_exit(done, build("model", {"--exposures-out", work("a.json")}));
-    must_exit(done, build("model", {"--exposures-out", work("b.json")}));
+    const std::string first = must_exit(done, build("model", {"--write", "exposures=" + work("a.json")}));
+    must_exit(done, build("model", {"--write", "exposures=" + work("b.json")}));
     assert_true(load(work("a.json")) == load(work("b.json")));
     for (const char *name : {"a.json", "b.json"}) fs::remove(work(name));
 }
@@ -146,17 +146,17 @@ void test_two_visits(void **) {
         changed << "\n";
     }
     save_text(work("visits.csv"), changed.str());
-    const Words both = {"build", work("visits.csv"), "--images", work("pictures"), "--no-store", "--track-colors"};
-    const Words outputs = {"--exposures-out", work("exposures.json"), "--gain-chart", work("gain.svg")};
+    const Words both = {"build", work("visits.csv"), "--images", work("pictures"), "--no-store", "--reconstruction", "track-colors=yes"};
+    const Words outputs = {"--write", "exposures=" + work("exposures.json"), "--write", "gain-chart=" + work("gain.svg")};
     fs::remove(work("exposures.json"));
-    assert_refused(not_usable, both + outputs, {"visits.csv", "other light", "--image-list"});
+    assert_refused(not_usable, both + outputs, {"visits.csv", "other light", "--reconstruction list"});
     std::string first;
     for (size_t i = 0; i < images / 2; i++) first += shared().scene.file(i) + "\n";
     save_text(work("first.txt"), first);
-    const Json one = json_of(both + Words{"--image-list", work("first.txt"), "--json"});
+    const Json one = json_of(both + Words{"--reconstruction", "list=" + work("first.txt"), "--json"});
     assert_int_equal(one["images"].size(), images / 2);
     save_text(work("first.txt"), first + "nobody.png\n");
-    assert_refused(unreadable, both + Words{"--image-list", work("first.txt")}, {"first.txt", "nobody.png"});
+    assert_refused(unreadable, both + Words{"--reconstruction", "list=" + work("first.txt")}, {"first.txt", "nobody.png"});
     for (const char *name : {"first.txt", "visits.csv"}) fs::remove(work(name));
 }
 
@@ -179,10 +179,9 @@ void test_wrong_matches(void **) {
         own.pop_front();
     }
     save_text(work("wrong.csv"), changed.str());
-    for (const Words &more : {Words{}, Words{"--track-colors"}})
+    for (const Words &more : {Words{}, Words{"--reconstruction", "track-colors=yes"}})
         assert_refused(not_usable,
-                       Words{"build", work("wrong.csv"), "--images", work("pictures"), "--no-store", "--exposures-out",
-                             work("no.json")}
+                       Words{"build", work("wrong.csv"), "--images", work("pictures"), "--no-store", "--write", "exposures=" + work("no.json")}
                            + more,
                        {"wrong.csv"});
     fs::remove(work("wrong.csv"));
@@ -192,7 +191,7 @@ void test_wrong_matches(void **) {
 void write_exposures() {
     static std::string exposures;
     if (exposures.empty()) {
-        must_exit(done, build("model", {"--exposures-out", work("exposures.json")}));
+        must_exit(done, build("model", {"--write", "exposures=" + work("exposures.json")}));
         exposures = text_of(work("exposures.json"));
     }
     save_text(work("exposures.json"), exposures);
@@ -216,7 +215,7 @@ void test_shards(void **) {
     const Words own = {"--camera", "Example", "--lens", "Example"};
     std::vector<std::string> files;
     for (const char *part : {"1/2", "2/2"}) {
-        const Words words = {"build", work("model"), "--images", work("pictures"), "--shard", part, "--json"};
+        const Words words = {"build", work("model"), "--images", work("pictures"), "--reconstruction", std::string("shard=") + part, "--json"};
         const Json result = json_of(words + own + Words{"--db", work(std::string(part, 1) + ".db"), "--force"});
         for (const Json &image : result["images"]) files.push_back(image["file"].get<std::string>());
     }
@@ -224,23 +223,23 @@ void test_shards(void **) {
     assert_int_equal(files.size(), images);
     assert_true(std::unique(files.begin(), files.end()) == files.end());
     must_exit(done, {"profile", "merge", work("1.db"), work("2.db"), "--db", work("all.db")});
-    assert_refused(usage, build("model", {"--shard", "1/9"}), {"--shard 1/9", "fewer than two"});
+    assert_refused(usage, build("model", {"--reconstruction", "shard=1/9"}), {"--reconstruction shard=1/9", "fewer than two"});
 }
 
 void test_chart_of_gains(void **) {
     for (const char *name : {"gain.svg", "gain.png"}) {
-        must_exit(done, build("model", {"--gain-chart", work(name)}));
+        must_exit(done, build("model", {"--write", "gain-chart=" + work(name)}));
         assert_true(load(work(name)).size() > 2000);
         fs::remove(work(name));
     }
-    assert_refused(usage, build("model", {"--gain-chart", work("gain.txt")}), {"gain.txt", ".svg or .png"});
+    assert_refused(usage, build("model", {"--write", "gain-chart=" + work("gain.txt")}), {"gain.txt", ".svg or .png"});
 }
 
 // The file has what other programs need, under the names of the images.
 void test_file_of_exposures(void **) {
     write_exposures();
     const std::string first = text_of(work("exposures.json"));
-    must_exit(done, build("model", {"--exposures-out", work("exposures.json")}));  // replaces its own file
+    must_exit(done, build("model", {"--write", "exposures=" + work("exposures.json")}));  // replaces its own file
     assert_string_equal(text_of(work("exposures.json")).c_str(), first.c_str());
     const Json all = parsed(first);
     assert_int_equal(all["schema"].get<int>(), 1);
@@ -317,7 +316,7 @@ void test_folders_of_names(void **) {
 // EXIF of the copies has the measured exposures, marked as such in XMP.
 void test_seeded_exif(void **) {
     write_exposures();
-    must_exit(done, {"apply", "--model", work("exposures.json"), "--seed-exif", "--output-exposure", "keep", "-o",
+    must_exit(done, {"apply", "--model", work("exposures.json"), "--encoding", "exif-exposure=yes", "--set", "exposure=keep", "-o",
                      work("seeded")});
     const Json all = parsed(text_of(work("exposures.json")));
     double offset = 0;
@@ -346,7 +345,7 @@ void test_bad_files_of_exposures(void **) {
             must_exit(done, apply);
             fs::remove_all(work("out"));
         } else {
-            assert_refused(unreadable, apply, {"exposures.json", "--exposures-out"});
+            assert_refused(unreadable, apply, {"exposures.json", "--write exposures"});
         }
         fs::remove(work("exposures.json"));
         save_text(work("exposures.json"), good);
@@ -363,16 +362,18 @@ void test_options(void **) {
     write_exposures();
     const std::string file = work("exposures.json");
     assert_refused(usage, {"apply", "--model", file, "--pto", file, "-o", work("out")}, {"--pto", "--model"});
-    assert_refused(usage, {"apply", "--profile", "1", "--seed-exif", work("pictures"), "-o", work("out")},
-                   {"--seed-exif", "--model"});
+    assert_refused(usage, {"apply", "--profile", "1", "--encoding", "exif-exposure=yes", work("pictures"), "-o", work("out")},
+                   {"--encoding exif-exposure", "--model"});
     assert_refused(usage, {"apply", "--model", file, "--merge", "--linear", "-o", work("out")}, {"--merge", "--pto"});
     save_text(work("notes.txt"), "mine");
-    assert_refused(usage, build("model", {"--exposures-out", work("notes.txt")}),
+    assert_refused(usage, build("model", {"--write", "exposures=" + work("notes.txt")}),
                    {"notes.txt",
                     "exists and is not a "
                     "file of exposures"});
-    for (const char *option : {"--preview", "--points", "--project-out"})
-        assert_refused(usage, build("model", {option, work("x.png")}), {option, "reconstruction"});
+    for (const char *key : {"preview", "project"})
+        assert_refused(usage, build("model", {"--write", key + ("=" + work("x.png"))}),
+                       {std::string("--write ") + key, "reconstruction"});
+    assert_refused(usage, build("model", {"--points", work("x.png")}), {"--points", "reconstruction"});
     assert_refused(usage, {"build", work("pictures"), "--images", work("pictures"), "--no-store"},
                    {"--images", "reconstruction"});
 }

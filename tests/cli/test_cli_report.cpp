@@ -24,7 +24,7 @@ void assert_jpeg(const Json &url) {
 }
 
 void test_fit(void **) {
-    const Words build = Words{"build", scene("pano.pto"), "--no-store", "--seed", "3"} + quick;
+    const Words build = Words{"build", scene("pano.pto"), "--no-store", "--fit", "seed=3"} + quick;
     must_exit(done, build + Words{"--report", work("a.html")});
     must_exit(done, build + Words{"--report", work("b.html")});
     const Json page = data_of(work("a.html")), result = json_of(build + Words{"--json"});
@@ -192,7 +192,7 @@ void test_flat(void **) {
     assert_true(page["result"]["usable"] == true);
     const Json &images = page["result"]["images"];
     assert_true(images.size() == 1 && contains(images[0]["file"], "card.png") && page["result"]["gain_grid"].is_null());
-    must_exit(done, flat + Words{"--report", work("r.html"), "--grid", "always"});
+    must_exit(done, flat + Words{"--report", work("r.html"), "--fit", "grid=always"});
     const Json grid = data_of(work("r.html"))["result"]["gain_grid"];
     const Json &rows = grid["attenuation"][0];
     assert_true(rows.size() == grid["rows"] && rows[0].size() == grid["columns"] && rows.size() * rows[0].size() > 100);

@@ -177,7 +177,7 @@ void test_stored(void **) {
         const double sigma = stored["provenance"]["gamma_sigma"];
         assert_true(sigma > 0.001 && sigma < 0.02);
     }
-    must_exit(done, {"response", work("shot.dng"), "--db", work("c.db"), "--camera", "Other", "--style", "Vivid"});
+    must_exit(done, {"response", work("shot.dng"), "--db", work("c.db"), "--camera", "Other", "--key", "style=Vivid"});
     const Json named = json_of({"profile", "show", "1", "--db", work("c.db"), "--json"});
     assert_string_equal(std::string(named["key"]["camera_model"]).c_str(), "Other");
     assert_string_equal(std::string(named["key"]["style"]).c_str(), "Vivid");

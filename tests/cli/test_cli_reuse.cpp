@@ -12,13 +12,13 @@ namespace {
 
 // Two overlapping pictures of the simulated camera; the seed determines the place.
 std::string pictures(const std::string &name, const char *seed, const char *falloff = "-0.4,0.1,-0.1") {
-    render(name, {"--images", "2", "--size", "480x320", "--overlap", "0.5", "--vignetting", falloff, "--ev", "1.5",
-                  "--exif", "--exif-rounding", "0.1", "--seed", seed});
+    render(name, {"--images", "2", "--size", "480x320", "--set", "overlap=0.5", "--vignetting", falloff, "--set", "ev=1.5",
+                  "--exif", "--set", "exif-rounding=0.1", "--seed", seed});
     return work(name + "/pano.pto");
 }
 
 Words build(const std::string &project, const Words &more = {}) {
-    return Words{"build", project, "--db", work("l.db"), "--stored", "auto", "--json"} + more;
+    return Words{"build", project, "--db", work("l.db"), "--fit", "stored=auto", "--json"} + more;
 }
 
 double corner_sigma(const Json &json) {
@@ -49,7 +49,7 @@ void test_next_sequences(void **) {
     assert_false(stored["provenance"]["forced"].get<bool>());
     assert_int_equal(stored["provenance"]["images"], 6);
     assert_int_equal(stored["provenance"]["pairs"].get<int>(), 3 * shown(1)["provenance"]["pairs"].get<int>());
-    const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--stored", "auto"});
+    const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--fit", "stored=auto"});
     assert_true(contains(said, "prior     profile 3, used by the result"));
 }
 
@@ -82,10 +82,10 @@ void test_merged_profiles_count_once(void **) {
     must_exit(done, Words{"profile", "merge", work("l.db")} + all);
     const Json merged = json_of(Words{"profile", "show", "3", "--json"} + all);
     assert_int_equal(merged["provenance"]["prior_id"], 2);
-    const Words again = all + Words{"--stored", "auto", "--json", "--no-store"};
+    const Words again = all + Words{"--fit", "stored=auto", "--json", "--no-store"};
     assert_int_equal(json_of(Words{"build", b} + again)["prior"]["profile"], 2);
-    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 already includes these pictures", "--stored none"});
-    assert_refused(usage, Words{"build", a, "--stored", "3", "--no-store"} + all, {"already includes these pictures"});
+    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 already includes these pictures", "--fit stored=none"});
+    assert_refused(usage, Words{"build", a, "--fit", "stored=3", "--no-store"} + all, {"already includes these pictures"});
     const Json deep =
         json_of(Words{"build", a, "--no-store", "--json"} + all);  // not requested: it is left out, with a reason
     assert_true(deep["prior"]["profile"].is_null());
@@ -136,13 +136,12 @@ void test_no_prior_for_this(void **) {
     json_of(build(a, {"--aperture", "4", "--camera", "Another camera"}));
     assert_true(
         contains(json_of(build(b, {"--no-store"}))["prior"]["reason"].get<std::string>(), "no profile is stored"));
-    assert_refused(usage, build(b, {"--method", "transfer-function"}), {"--stored", "transfer"});
-    assert_refused(usage, {"build", b, "--prior", "some"}, {"--prior", "some"});
-    assert_refused(usage, {"build", b, "--prior", "auto"}, {"--prior", "--stored auto"});
-    assert_refused(usage, {"build", b, "--stored", "some"}, {"--stored", "some"});
-    assert_refused(usage, build(b, {"--prior", "0"}), {"--stored", "--prior above 0"});
-    assert_refused(not_found, {"build", b, "--stored", "9", "--db", work("l.db")}, {work("l.db"), "9"});
-    assert_refused(usage, {"bracket", work("a/img000.png"), "--stored", "auto"}, {"--stored"});
+    assert_refused(usage, build(b, {"--fit", "method=transfer-function"}), {"--fit stored", "transfer"});
+    assert_refused(usage, {"build", b, "--fit", "prior=some"}, {"--fit prior", "some"});
+    assert_refused(usage, {"build", b, "--fit", "stored=some"}, {"--fit stored", "some"});
+    assert_refused(usage, build(b, {"--fit", "prior=0"}), {"--fit stored", "prior above 0"});
+    assert_refused(not_found, {"build", b, "--fit", "stored=9", "--db", work("l.db")}, {work("l.db"), "9"});
+    assert_refused(usage, {"bracket", work("a/img000.png"), "--fit", "stored=auto"}, {"stored is not a key"});
     save_text(work("l.db"), "not a database, but long enough that it might be one. not a database, but long enough...");
     assert_refused(store_failed, build(b), {work("l.db")});
 }
@@ -155,9 +154,9 @@ void test_stored_by_default(void **) {
     const Json stored = json_of(Words{"build", b} + one)["prior"];
     assert_int_equal(stored["profile"], 1);
     assert_true(stored["used"].get<bool>() && !stored["composed"].get<bool>());
-    assert_true(json_of({"build", b, "--stored", "none", "--json", "--no-store"})["prior"].is_null());
-    assert_true(json_of({"build", b, "--prior", "0", "--json", "--no-store"})["prior"].is_null());
-    assert_int_equal(json_of(Words{"build", b, "--stored", "1"} + one)["prior"]["profile"], 1);
+    assert_true(json_of({"build", b, "--fit", "stored=none", "--json", "--no-store"})["prior"].is_null());
+    assert_true(json_of({"build", b, "--fit", "prior=0", "--json", "--no-store"})["prior"].is_null());
+    assert_int_equal(json_of(Words{"build", b, "--fit", "stored=1"} + one)["prior"]["profile"], 1);
     const Json other = json_of(Words{"build", b, "--json"} + two + Words{"--db", db});
     assert_true(other["prior"]["used"].get<bool>() && other["prior"]["composed"].get<bool>());
     const Json row =
@@ -169,7 +168,7 @@ void test_stored_by_default(void **) {
 // The camera's response is the prior, even for a lens without profiles.
 void test_response_of_the_camera(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2"), db = work("l.db");
-    must_exit(done, {"build", a, "--db", db, "--lens", "Another lens", "--exif-sigma", "0.01"});
+    must_exit(done, {"build", a, "--db", db, "--lens", "Another lens", "--fit", "exif-sigma=0.01"});
     const Json json = json_of({"build", b, "--db", db, "--lens", "This lens", "--json"});
     assert_true(json["prior"]["used"].get<bool>() && json["prior"]["composed"].get<bool>());
     assert_int_equal(json["prior"]["profile"], 1);
@@ -191,7 +190,7 @@ void test_refined_response_of_the_camera(void **) {
     profile->provenance.gamma_sigma = 0.02;
     assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
     lensprof_store_close(store);
-    const Words words = {"build", b, "--lens", "This lens", "--json", "--no-store", "--exif-sigma", "0"};
+    const Words words = {"build", b, "--lens", "This lens", "--json", "--no-store", "--fit", "exif-sigma=0"};
     const Json alone = json_of(words), json = json_of(words + Words{"--db", db});
     assert_true(json["prior"]["used"].get<bool>());
     assert_true(json["prior"]["overruled"].empty());
@@ -206,9 +205,9 @@ void test_refined_response_of_the_camera(void **) {
 // An imported falloff without covariance determines gamma as well as it can; so does one measured at other settings.
 void test_imported_falloff_settles_gamma(void **) {
     const std::string a = pictures("a", "1"), db = work("lens.db");
-    const Words fit = {"build", a, "--json", "--no-store", "--exif-sigma", "0"};
+    const Words fit = {"build", a, "--json", "--no-store", "--fit", "exif-sigma=0"};
     const Words words = fit + Words{"--db", work("own.db"), "--db", db};
-    const Json alone = json_of(fit + Words{"--stored", "none"});
+    const Json alone = json_of(fit + Words{"--fit", "stored=none"});
     lensprof_store *store = nullptr;
     assert_ok(lensprof_store_open(db.c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
     auto profile = std::make_unique<lensprof_profile>();
@@ -223,10 +222,10 @@ void test_imported_falloff_settles_gamma(void **) {
         assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
     }
     lensprof_store_close(store);
-    const Words unknown = words + Words{"--focal", "38.6", "--crop-factor", "1", "--lens", "Simulated Lens"};
+    const Words unknown = words + Words{"--focal", "38.6", "--key", "crop-factor=1", "--lens", "Simulated Lens"};
     json_of(unknown);
     for (const char *aperture : {"2.8", "2.9"}) {
-        const Json json = json_of(words + Words{"--aperture", aperture, "--focal", "38.6", "--crop-factor", "1"});
+        const Json json = json_of(words + Words{"--aperture", aperture, "--focal", "38.6", "--key", "crop-factor=1"});
         assert_true(json["prior"]["used"].get<bool>() && json["prior"]["composed"].get<bool>());
         assert_true(json["gamma"]["sigma"].get<double>() < alone["gamma"]["sigma"].get<double>());
         double corner = 1, before = 1;
@@ -256,26 +255,26 @@ void test_units(void **) {
     set_unit("123");
     const Words db = {"--db", work("l.db")};
     must_exit(done, Words{"build", a} + db);
-    must_exit(done, Words{"build", a, "--unit", "exif"} + db);
-    must_exit(done, Words{"build", a, "--unit", "other"} + db);
+    must_exit(done, Words{"build", a, "--key", "unit=exif"} + db);
+    must_exit(done, Words{"build", a, "--key", "unit=other"} + db);
     assert_string_equal(shown(1)["key"]["unit"].get<std::string>().c_str(), "");
     assert_string_equal(shown(2)["key"]["unit"].get<std::string>().c_str(), "123/77");
-    const Words apply = Words{"apply", "--from-db", "--json", "-o", work("out"), work("a/img000.png")} + db;
+    const Words apply = Words{"apply", "--profile", "auto", "--json", "-o", work("out"), work("a/img000.png")} + db;
     assert_int_equal(json_of(apply)["pictures"][0]["profile"], 2);
     fs::remove_all(work("out"));
     set_unit("124");
     assert_int_equal(json_of(apply)["pictures"][0]["profile"], 1);
     write_exif(work("a/img000.png"), {{"Exif.Photo.BodySerialNumber", ""}, {"Exif.Photo.LensSerialNumber", "0000"}});
-    assert_refused(usage, Words{"build", a, "--unit", "exif"} + db, {"img000.png", "--unit"});
+    assert_refused(usage, Words{"build", a, "--key", "unit=exif"} + db, {"img000.png", "--key unit"});
 }
 
 // Between two apertures the falloff is predicted, and a note reports it.
 void test_apply_between_settings(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "1", "-0.2,0.05,-0.05");
-    const Words db = {"--db", work("l.db"), "--distance", "inf"};
+    const Words db = {"--db", work("l.db"), "--key", "distance=inf"};
     must_exit(done, Words{"build", a, "--aperture", "2.5"} + db);
     must_exit(done, Words{"build", b, "--aperture", "3.2"} + db);
-    const Words apply = {"apply", "--from-db", "-o", work("out"), work("a/img000.png"), work("a/img001.png"),
+    const Words apply = {"apply", "--profile", "auto", "-o", work("out"), work("a/img000.png"), work("a/img001.png"),
                          "--db",  work("l.db")};
     const Outcome outcome = run_words(apply);
     assert_int_equal(outcome.code, done);

@@ -124,7 +124,7 @@ double corner_of(const char *maker, const char *model, const Words &more) {
     WriteOptions options;
     options.metadata = &metadata;
     write_picture(work("a.tif"), picture, options);
-    must_exit(done, Words{"apply", "--response", "linear", "--overwrite", "-o", work("out"), "--db", work("p.db"),
+    must_exit(done, Words{"apply", "--set", "response=linear", "--overwrite", "-o", work("out"), "--db", work("p.db"),
                           work("a.tif")}
                         + more);
     const Picture out = read_picture(work("out/a.tif"));
@@ -135,7 +135,7 @@ void test_apply(void **) {
     make_database();
     const double r2 = (59.0 * 59 + 39 * 39) / (60 * 60 + 40 * 40);
     assert_close(corner_of("Canon", "Canon EOS 600D", {}), 1 - 0.4 * r2 / (1.6 * 1.6), 1e-3);
-    assert_close(corner_of("Canon", "Canon EOS 600D", {"--crop-factor", "1"}), 1 - 0.4 * r2, 1e-3);
+    assert_close(corner_of("Canon", "Canon EOS 600D", {"--key", "crop-factor=1"}), 1 - 0.4 * r2, 1e-3);
     assert_close(corner_of("Canon", "Canon G", {}), 1 - 0.4 * r2 / (2.72 * 2.72), 1e-3);
     assert_close(corner_of("Canon", "Else", {"--camera", "EOS REBEL T3i"}), 1 - 0.4 * r2 / (1.6 * 1.6), 1e-3);
 }
@@ -145,12 +145,12 @@ void test_query(void **) {
     make_database();
     const auto corner = [](const Words &more) {
         const Json found = json_of(Words{"query", "--json", "--db", work("p.db"), "--lens", "Lens 50mm", "--focal",
-                                         "50", "--aperture", "2", "--processing", "jpeg"}
+                                         "50", "--aperture", "2", "--key", "processing=jpeg"}
                                    + more);
         return 1 + found["vignetting"]["k"][0][0].get<double>();
     };
-    assert_close(corner({"--maker", "Canon", "--camera", "Canon EOS 600D"}), 1 - 0.4 / (1.6 * 1.6), 1e-9);
-    assert_close(corner({"--maker", "Canon", "--camera", "Canon EOS 600D", "--crop-factor", "1"}), 1 - 0.4, 1e-9);
+    assert_close(corner({"--key", "maker=Canon", "--camera", "Canon EOS 600D"}), 1 - 0.4 / (1.6 * 1.6), 1e-9);
+    assert_close(corner({"--key", "maker=Canon", "--camera", "Canon EOS 600D", "--key", "crop-factor=1"}), 1 - 0.4, 1e-9);
     assert_close(corner({"--camera", "Nobody's"}), 1 - 0.4, 1e-9);
 }
 

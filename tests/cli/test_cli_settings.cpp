@@ -12,7 +12,7 @@ using namespace cli_runs;
 
 constexpr double kOpen = 2.8, kStopped = 8.0, kHfovDeg = 50.0;
 const std::vector<double> kOpenFalloff{-0.55, 0.15, -0.12}, kStoppedFalloff{-0.12, 0.02, -0.03};
-const Words quietly{"--no-store", "--stored", "none", "--json"};
+const Words quietly{"--no-store", "--fit", "stored=none", "--json"};
 
 std::string numbered(size_t i) { return "img00" + std::to_string(i) + ".png"; }
 
@@ -26,7 +26,7 @@ void state_aperture(const std::string &file, double f_number) {
 
 // Pictures of one scene, alternating between two apertures.
 std::string two_apertures(const char *overlap = "0.4") {
-    const Words same = Words{"--images", "6", "--seed", "5", "--exif", "--overlap", overlap, "--noise", "1"};
+    const Words same = Words{"--images", "6", "--seed", "5", "--exif", "--set", std::string("overlap=") + overlap, "--set", "noise=1"};
     render("open", Words{"--vignetting=-0.55,0.15,-0.12"} + same);
     render("stopped", Words{"--vignetting=-0.12,0.02,-0.03"} + same);
     for (size_t i = 1; i < 6; i += 2) {
@@ -57,7 +57,7 @@ void assert_both_found(const Json &json) {
 void test_two_apertures(void **) {
     const std::string pto = two_apertures();
     assert_both_found(json_of(Words{"build", pto} + quietly));
-    assert_both_found(json_of(Words{"build", pto, "--method", "radiance"} + quietly));
+    assert_both_found(json_of(Words{"build", pto, "--fit", "method=radiance"} + quietly));
     const std::string text = must_exit(done, {"build", pto, "--no-store"});
     assert_true(contains(text, "f/2.8, 3 pictures\n") && contains(text, "f/8, 3 pictures\n"));
 }
@@ -74,7 +74,7 @@ void test_one_lens(void **) {
     // Values on the command line hold for all pictures.
     assert_true(json_of(Words{"build", pto, "--aperture", "4"} + quietly, one.code)["settings"].empty());
     // A method that fits one falloff only.
-    const Outcome other = run_words(Words{"build", pto, "--method", "transfer-function"} + quietly);
+    const Outcome other = run_words(Words{"build", pto, "--fit", "method=transfer-function"} + quietly);
     assert_true(contains(other.err, "2 lens settings"));
     assert_true(parsed(other.out)["settings"].empty());
 }
@@ -97,7 +97,7 @@ void test_profiles(void **) {
 // The resulting project has both falloffs, and apply uses the right one for each picture.
 void test_project_with_both(void **) {
     const std::string pto = two_apertures(), out = work("open/result.pto");
-    const Json json = json_of(Words{"build", pto, "--pto-out", out} + quietly);
+    const Json json = json_of(Words{"build", pto, "--write", std::string("pto=") + out} + quietly);
     const std::string text = text_of(out);
     for (const char *part : {" Vb=0 Vc=0 Vd=0", " Vb=1 Vc=1 Vd=1"}) {
         size_t count = 0;
@@ -106,8 +106,8 @@ void test_project_with_both(void **) {
     }
     // A picture without falloff, from the same scene.
     must_exit(done, {"simulate", "-o", work("none"), "--vignetting=0,0,0", "--images", "6", "--seed", "5", "--exif",
-                     "--overlap", "0.4", "--noise", "1"});
-    must_exit(done, {"apply", "--pto", out, "--output-exposure", "keep", "-o", work("even")});
+                     "--set", "overlap=0.4,noise=1"});
+    must_exit(done, {"apply", "--pto", out, "--set", "exposure=keep", "-o", work("even")});
     for (size_t i = 0; i < 2; i++) {
         const Picture even = read_picture(work("even/" + numbered(i))),
                       truth = read_picture(work("none/" + numbered(i)));
@@ -119,7 +119,7 @@ void test_project_with_both(void **) {
         assert_true(rms < 3.0);
     }
     // Read again, both are estimated again.
-    assert_both_found(json_of(Words{"build", out, "--free", "all"} + quietly));
+    assert_both_found(json_of(Words{"build", out, "--fit", "free=all"} + quietly));
 }
 
 // A picture without an aperture joins neither of the two settings, at any position, and does not connect them.
@@ -183,8 +183,8 @@ void turn_picture(const std::string &pto, size_t number, uint16_t turn, bool is_
 
 // Six pictures whose falloff has its centre far from the middle.
 std::string off_centre() {
-    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--center=0.1,-0.06", "--images",
-                     "6", "--seed", "5", "--exif", "--overlap", "0.5", "--noise", "1"});
+    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0.1,-0.06", "--images",
+                     "6", "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
     return work("open/pano.pto");
 }
 
@@ -196,14 +196,14 @@ double centre_error(const Json &centre, double x, double y) {
 void test_turned_frames(void **) {
     const std::string pto = off_centre(), out = work("open/result.pto");
     for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, true);
-    const Json json = json_of(Words{"build", pto, "--pto-out", out} + quietly);
+    const Json json = json_of(Words{"build", pto, "--write", std::string("pto=") + out} + quietly);
     assert_true(json["settings"].empty() && json["usable"] == true);
     assert_true(falloff_error(json["vignetting"]["k"][0], kOpenFalloff) < 0.01);
     assert_true(centre_error(json["vignetting"]["center"], 0.1, -0.06) < 0.01);
     // Read again, each picture has the falloff as it is in its own frame.
     must_exit(done, {"simulate", "-o", work("none"), "--vignetting=0,0,0", "--images", "6", "--seed", "5", "--exif",
-                     "--overlap", "0.5", "--noise", "1"});
-    must_exit(done, {"apply", "--pto", out, "--output-exposure", "keep", "-o", work("even")});
+                     "--set", "overlap=0.5,noise=1"});
+    must_exit(done, {"apply", "--pto", out, "--set", "exposure=keep", "-o", work("even")});
     for (const size_t i : {0, 1, 3}) {
         const Picture even = read_picture(work("even/" + numbered(i))),
                       truth = read_picture(work("none/" + numbered(i)));
@@ -255,8 +255,8 @@ void test_turned_profile(void **) {
 
 // Frames whose turn is not stated share the falloff around the middle.
 void test_frames_turned_either_way(void **) {
-    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--center=0,0", "--images", "6",
-                     "--seed", "5", "--exif", "--overlap", "0.5", "--noise", "1"});
+    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0,0", "--images", "6",
+                     "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
     const std::string pto = work("open/pano.pto");
     for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, false);
     const Outcome run = run_words(Words{"build", pto} + quietly);

@@ -9,7 +9,7 @@ namespace {
 constexpr uint32_t width = 160, height = 120;
 
 Words simulate(const std::string &name, const Words &more) {
-    Words words = {"simulate", "-o", work(name), "--response", "linear", "--noise", "0"};
+    Words words = {"simulate", "-o", work(name), "--response", "linear", "--set", "noise=0"};
     const Words usual = {"--size", "160x120", "--images", "6", "--format", "tiff32"};
     for (size_t i = 0; i < usual.size(); i += 2)
         if (std::find(more.begin(), more.end(), usual[i]) == more.end()) words = words + Words{usual[i], usual[i + 1]};
@@ -80,7 +80,7 @@ double median_mismatch(const std::vector<SeenPair> &pairs) {
 // Pixels change only inside the stated blocks; the blocks cover the requested share and differ per picture.
 void test_objects_in_pictures(void **) {
     must_exit(done, simulate("plain", {}));
-    must_exit(done, simulate("moved", {"--objects", "0.25"}));
+    must_exit(done, simulate("moved", {"--set", "objects=0.25"}));
     const Json truth = truth_of("moved");
     assert_close(truth["objects"].get<double>(), 0.25, 0);
     assert_true(truth["images"][0]["ev"] == truth_of("plain")["images"][0]["ev"]);
@@ -107,7 +107,7 @@ void test_objects_in_pictures(void **) {
 
 // Pairs without an end on an object follow the model, pairs with one do not; noise-free pairs have no objects.
 void test_objects_in_pairs(void **) {
-    must_exit(done, simulate("moved", {"--objects", "0.1", "--no-images", "--points", "2000", "--test-points", "500",
+    must_exit(done, simulate("moved", {"--set", "objects=0.1,no-images=yes,points=2000,test-points=500",
                                        "--format", "tiff16"}));
     const Json truth = truth_of("moved");
     std::vector<SeenPair> hit, clear;
@@ -139,7 +139,7 @@ double surroundings(const std::vector<float> &plain, int x, int y) {
 // One gain for the three channels, depending on the surroundings: up to +1 EV in the dark, -1 EV in the light.
 void test_local_tone_in_pictures(void **) {
     must_exit(done, simulate("plain", {}));
-    must_exit(done, simulate("toned", {"--local-tone", "1"}));
+    must_exit(done, simulate("toned", {"--set", "local-tone=1"}));
     assert_close(truth_of("toned")["local_tone"].get<double>(), 1, 0);
     double least = 9, most = -9;
     for (int i = 0; i < 3; ++i) {
@@ -164,7 +164,7 @@ void test_local_tone_in_pictures(void **) {
 // The same point is rendered differently in two pictures, but not in the noise-free pairs, which score the response.
 void test_local_tone_in_pairs(void **) {
     must_exit(done,
-              simulate("toned", {"--local-tone", "1", "--no-images", "--points", "1000", "--test-points", "300"}));
+              simulate("toned", {"--set", "local-tone=1,no-images=yes,points=1000,test-points=300"}));
     assert_true(median_mismatch(pairs_of("toned", "points.txt")) > 0.05);
     for (const SeenPair &pair : pairs_of("toned", "test_points.txt")) assert_close(pair.mismatch, 0, 0.01);
 }
@@ -192,7 +192,7 @@ void test_exif_tells_exposures(void **) {
 }
 
 void test_exif_is_rounded(void **) {
-    must_exit(done, simulate("exif", {"--exif", "--exif-rounding", "0.1", "--images", "40", "--size", "16x16"}));
+    must_exit(done, simulate("exif", {"--exif", "--set", "exif-rounding=0.1", "--images", "40", "--size", "16x16"}));
     const Json truth = truth_of("exif");
     double sum = 0, square = 0;
     for (size_t i = 0; i < 40; ++i) {
@@ -207,7 +207,7 @@ void test_exif_is_rounded(void **) {
 
 // With one manual exposure, all metadata are equal, and the true exposures scatter as requested.
 void test_exif_tells_one_manual_exposure(void **) {
-    must_exit(done, simulate("exif", {"--exif", "--exif-manual", "--exif-scatter", "0.03", "--ev", "0", "--images",
+    must_exit(done, simulate("exif", {"--exif", "--set", "exif-manual=yes,exif-scatter=0.03,ev=0", "--images",
                                       "40", "--size", "16x16"}));
     const Json truth = truth_of("exif");
     double sum = 0, square = 0;
@@ -236,15 +236,15 @@ void test_no_exposure_without_exif(void **) {
 }
 
 void test_mean_exposure(void **) {
-    must_exit(done, simulate("dark", {"--mean-ev", "-3", "--ev", "0.5", "--no-images"}));
+    must_exit(done, simulate("dark", {"--set", "mean-ev=-3,ev=0.5,no-images=yes"}));
     const Json truth = truth_of("dark");
     for (const Json &image : truth["images"]) assert_close(image["ev"].get<double>(), -3, 0.5);
 }
 
 // 1000 pictures, each overlapping a few others: pairs are found for all of them.
 void test_many_pictures(void **) {
-    must_exit(done, {"simulate", "-o", work("many"), "--no-images", "--images", "1000", "--rows", "28", "--hfov", "4",
-                     "--jitter", "0.1", "--ev", "0.5", "--mean-ev", "-1", "--points", "50000"});
+    must_exit(done, {"simulate", "-o", work("many"), "--set", "no-images=yes", "--images", "1000", "--set", "rows=28,hfov=4",
+                     "--set", "jitter=0.1,ev=0.5,mean-ev=-1,points=50000"});
     std::istringstream lines(text_of(work("many/points.txt")));
     std::vector<int> pairs(1000);
     size_t count = 0;
@@ -260,12 +260,12 @@ void test_many_pictures(void **) {
 
 void test_refused_options(void **) {
     for (const Words &words :
-         {Words{"--objects", "0.95"}, Words{"--objects", "nan"}, Words{"--local-tone", "5"},
-          Words{"--local-tone", "nan"}, Words{"--exif-rounding", "0.1"}, Words{"--mean-ev", "9"},
-          Words{"--exif-manual"}, Words{"--exif-scatter", "0.1"}, Words{"--exif-rounding", "-1", "--exif"}})
+         {Words{"--set", "objects=0.95"}, Words{"--set", "objects=nan"}, Words{"--set", "local-tone=5"},
+          Words{"--set", "local-tone=nan"}, Words{"--set", "exif-rounding=0.1"}, Words{"--set", "mean-ev=9"},
+          Words{"--set", "exif-manual=yes"}, Words{"--set", "exif-scatter=0.1"}, Words{"--set", "exif-rounding=-1", "--exif"}})
         assert_refused(usage, simulate("s", words), {words[0]});
-    assert_refused(usage, simulate("s", {"--exif", "--no-images"}), {"--exif", "--no-images"});
-    assert_refused(usage, simulate("s", {"--center", "1e9,0"}), {"--center: the falloff must stay positive"});
+    assert_refused(usage, simulate("s", {"--exif", "--set", "no-images=yes"}), {"--exif", "--set no-images"});
+    assert_refused(usage, simulate("s", {"--set", "center=1e9,0"}), {"--set center: the falloff must stay positive"});
     assert_refused(usage, simulate("s", {"--vignetting=-5,0,0"}), {"--vignetting: the falloff must stay positive"});
     assert_refused(usage, {"simulate", "-o", work("s"), "--response", "emor:1,,2"},
                    {"--response: ", "a value is missing before or after a comma"});

@@ -1,4 +1,4 @@
-// simulate --moving: poses, exposures and light match truth.json. Projection and inversion of the camera are computed
+// simulate --set moving: poses, exposures and light match truth.json. Projection and inversion of the camera are computed
 // here; the positions of surfaces come from the scene itself.
 #include <sched.h>
 
@@ -15,8 +15,8 @@ namespace {
 constexpr uint32_t width = 320, height = 240, images = 5;
 
 Words simulate(const std::string &kind, const Words &more) {
-    Words words = {"simulate", "-o", work(kind), "--moving", kind};
-    const Words usual = {"--size", "320x240", "--images", "5", "--noise", "0", "--format", "tiff16"};
+    Words words = {"simulate", "-o", work(kind), "--set", std::string("moving=") + kind};
+    const Words usual = {"--size", "320x240", "--images", "5", "--set", "noise=0", "--format", "tiff16"};
     for (size_t i = 0; i < usual.size(); i += 2)
         if (std::find(more.begin(), more.end(), usual[i]) == more.end()) words = words + Words{usual[i], usual[i + 1]};
     return words + more;
@@ -184,7 +184,7 @@ void test_light_of_room(void **) { check_light("room"); }
 // The highlight on the floor moves with the camera, unless all surfaces are matte.
 void test_glossy_surfaces(void **) {
     for (const char *gloss : {"1", "0"}) {
-        must_exit(done, simulate("room", {"--gloss", gloss}));
+        must_exit(done, simulate("room", {"--set", std::string("gloss=") + gloss}));
         assert_close(truth_of("room")["gloss"].get<double>(), std::atof(gloss), 0);
         std::vector<double> matte, glossy;
         for (const Match &match : Sequence("room").matches(0, 2))
@@ -202,7 +202,7 @@ double row_dot(const Json &rotation, size_t a, size_t b) {
 // The usual content of truth.json with a valid camera; no project.
 void test_truth(void **) {
     for (const char *kind : {"terrain", "room"}) {
-        const std::string out = must_exit(done, simulate(kind, {"--no-images", "--images", "24"}));
+        const std::string out = must_exit(done, simulate(kind, {"--set", "no-images=yes", "--images", "24"}));
         assert_string_equal(out.c_str(), (work(std::string(kind) + "/truth.json") + "\n").c_str());
         assert_false(fs::exists(work(std::string(kind) + "/pano.pto")));
         const Json truth = truth_of(kind);
@@ -229,9 +229,9 @@ void test_truth(void **) {
 
 // Within the requested limits, around the mean.
 void test_limits_of_exposure(void **) {
-    must_exit(done, simulate("room", {"--no-images", "--images", "24"}));
+    must_exit(done, simulate("room", {"--set", "no-images=yes", "--images", "24"}));
     const Json usual = truth_of("room")["images"];
-    must_exit(done, simulate("room", {"--no-images", "--images", "24", "--ev", "0", "--wb", "0", "--mean-ev", "-1"}));
+    must_exit(done, simulate("room", {"--set", "no-images=yes", "--images", "24", "--set", "ev=0,wb=0,mean-ev=-1"}));
     const Json held = truth_of("room")["images"];
     double mean = 0;
     for (size_t i = 0; i < 24; ++i) {
@@ -255,8 +255,7 @@ void test_metadata(void **) {
 }
 
 void test_same_bytes_with_any_threads(void **) {
-    const Words small = {"--size", "96x72",        "--noise", "2",      "--objects",
-                         "0.1",    "--local-tone", "0.5",     "--clip", "0.02"};
+    const Words small = {"--size", "96x72",        "--set", "noise=2",      "--set", "objects=0.1",    "--set", "local-tone=0.5",     "--set", "clip=0.02"};
     cpu_set_t all, one;
     assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
     CPU_ZERO(&one);
@@ -280,15 +279,15 @@ void test_same_bytes_with_any_threads(void **) {
 
 void test_refused_options(void **) {
     for (const Words &words :
-         {Words{"--rows", "2"}, Words{"--overlap", "0.7"}, Words{"--misalign", "1"}, Words{"--scene", "wall"},
-          Words{"--parallax", "5"}, Words{"--points", "10"}, Words{"--test-points", "10"}})
-        assert_refused(usage, simulate("room", words), {words[0], "omit --moving"});
+         {Words{"--set", "rows=2"}, Words{"--set", "overlap=0.7"}, Words{"--set", "misalign=1"}, Words{"--scene", "wall"},
+          Words{"--set", "parallax=5"}, Words{"--set", "points=10"}, Words{"--set", "test-points=10"}})
+        assert_refused(usage, simulate("room", words), {words[0], "omit --set moving"});
     for (const char *hfov : {"19", "101"})
-        assert_refused(usage, simulate("terrain", {"--hfov", hfov}), {"--hfov", "20 to 100"});
-    assert_refused(usage, {"simulate", "-o", work("s"), "--gloss", "1"}, {"--gloss: needs --moving"});
-    assert_refused(usage, simulate("room", {"--gloss", "5"}), {"--gloss"});
-    assert_refused(usage, {"simulate", "-o", work("s"), "--moving", "sea"}, {"--moving", "terrain"});
-    assert_refused(usage, {"simulate", "-o", work("s"), "--moving", ""}, {"--moving"});
+        assert_refused(usage, simulate("terrain", {"--set", std::string("hfov=") + hfov}), {"--set hfov", "20 to 100"});
+    assert_refused(usage, {"simulate", "-o", work("s"), "--set", "gloss=1"}, {"--set gloss: needs moving"});
+    assert_refused(usage, simulate("room", {"--set", "gloss=5"}), {"--set gloss"});
+    assert_refused(usage, {"simulate", "-o", work("s"), "--set", "moving=sea"}, {"--set moving", "terrain"});
+    assert_refused(usage, {"simulate", "-o", work("s"), "--set", "moving="}, {"--set moving"});
 }
 
 }  // namespace

@@ -14,9 +14,8 @@ constexpr uint32_t width = 320, height = 240;
 // Linear float pictures without noise, falloff or differences of exposure: the scene itself.
 Words simulate(const std::string &name, const Words &more) {
     Words words = {"simulate", "-o",           work(name), "--response", "linear", "--size", "320x240", "--images",
-                   "3",        "--vignetting", "0,0,0",    "--center",   "0,0",    "--wb",   "0",       "--jitter",
-                   "0",        "--format",     "tiff32"};
-    for (const char *none : {"--noise", "--ev"})
+                   "3",        "--vignetting", "0,0,0",    "--set", "center=0,0",    "--set", "wb=0",       "--set", "jitter=0",        "--format",     "tiff32"};
+    for (const char *none : {"--set", "noise=--ev"})
         if (std::find(more.begin(), more.end(), none) == more.end()) words = words + Words{none, "0"};
     return words + more;
 }
@@ -48,7 +47,7 @@ struct Look {
 Look look_of(const std::string &scene) {
     std::vector<double> steps, light;
     for (const char *seed : {"1", "2", "3"}) {
-        must_exit(done, simulate("look", {"--scene", scene, "--seed", seed, "--mean-ev", "-1"}));
+        must_exit(done, simulate("look", {"--scene", scene, "--seed", seed, "--set", "mean-ev=-1"}));
         for (int i = 0; i < 3; ++i) {
             const std::vector<float> picture = samples_of("look", i);
             for (size_t y = 0; y < height; ++y)
@@ -90,8 +89,8 @@ void test_default_scene(void **) {
 // The share of pixels that are white in a channel, over pictures of several exposures whose differences are kept.
 void test_clip(void **) {
     for (const char *scene : {"landscape", "foliage", "sky"}) {
-        must_exit(done, simulate("plain", {"--ev", "1", "--scene", scene}));
-        must_exit(done, simulate("white", {"--ev", "1", "--scene", scene, "--clip", "0.2"}));
+        must_exit(done, simulate("plain", {"--set", "ev=1", "--scene", scene}));
+        must_exit(done, simulate("white", {"--set", "ev=1", "--scene", scene, "--set", "clip=0.2"}));
         size_t white = 0;
         for (int i = 0; i < 3; ++i) {
             const std::vector<float> picture = samples_of("white", i);
@@ -110,7 +109,7 @@ void test_clip(void **) {
 // Computed here: value + gain (value - Gaussian mean), as a single two-dimensional sum.
 void test_sharpen(void **) {
     must_exit(done, simulate("plain", {"--scene", "interior", "--seed", "3"}));
-    must_exit(done, simulate("sharp", {"--scene", "interior", "--seed", "3", "--sharpen", "0.8"}));
+    must_exit(done, simulate("sharp", {"--scene", "interior", "--seed", "3", "--set", "sharpen=0.8"}));
     const std::vector<float> before = samples_of("plain", 1), after = samples_of("sharp", 1);
     double most = 0, least = 0;
     for (size_t y = 8; y < height - 8; y += 3)
@@ -147,7 +146,7 @@ std::array<int, 2> shift_of(const std::vector<float> &a, const std::vector<float
 // Distant objects stay, close ones move by the stated shift, others by half; nothing moves more than requested.
 void test_parallax(void **) {
     must_exit(done, simulate("still", {"--scene", "foliage", "--seed", "3"}));
-    must_exit(done, simulate("moved", {"--scene", "foliage", "--seed", "3", "--parallax", "12"}));
+    must_exit(done, simulate("moved", {"--scene", "foliage", "--seed", "3", "--set", "parallax=12"}));
     const Json images = truth_of("moved")["images"];
     for (size_t i = 0; i < 3; ++i)
         for (size_t j = 0; j < i; ++j)
@@ -171,16 +170,15 @@ void test_parallax(void **) {
 
 // Pairs show the parallax too, noise-free ones do not.
 void test_parallax_in_pairs(void **) {
-    const Words pairs = {"--scene", "foliage", "--no-images", "--points", "500", "--test-points", "200"};
+    const Words pairs = {"--scene", "foliage", "--set", "no-images=yes,points=500,test-points=200"};
     must_exit(done, simulate("still", pairs));
-    must_exit(done, simulate("moved", pairs + Words{"--parallax", "12"}));
+    must_exit(done, simulate("moved", pairs + Words{"--set", "parallax=12"}));
     assert_false(text_of(work("still/points.txt")) == text_of(work("moved/points.txt")));
     assert_true(text_of(work("still/test_points.txt")) == text_of(work("moved/test_points.txt")));
 }
 
 void test_same_bytes_with_any_threads(void **) {
-    const Words hard = {"--scene", "interior", "--parallax", "5",    "--sharpen", "1",          "--clip",
-                        "0.05",    "--noise",  "2",          "--ev", "1",         "--outliers", "0.01"};
+    const Words hard = {"--scene", "interior", "--set", "parallax=5",    "--set", "sharpen=1",          "--set", "clip=0.05",    "--set", "noise=2",          "--set", "ev=1",         "--set", "outliers=0.01"};
     must_exit(done, simulate("many", hard));
     cpu_set_t all, one;
     assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
@@ -196,8 +194,8 @@ void test_same_bytes_with_any_threads(void **) {
 
 void test_refused_options(void **) {
     for (const Words &words :
-         {Words{"--scene", "moon"}, Words{"--scene", ""}, Words{"--parallax", "-1"}, Words{"--parallax", "nan"},
-          Words{"--sharpen", "11"}, Words{"--sharpen", "x"}, Words{"--clip", "1"}, Words{"--clip", "-0.1"}})
+         {Words{"--scene", "moon"}, Words{"--scene", ""}, Words{"--set", "parallax=-1"}, Words{"--set", "parallax=nan"},
+          Words{"--set", "sharpen=11"}, Words{"--set", "sharpen=x"}, Words{"--set", "clip=1"}, Words{"--set", "clip=-0.1"}})
         assert_refused(usage, simulate("s", words), {words[0]});
 }
 

@@ -77,8 +77,8 @@ void test_refusals(void **) {
                    {"--format"});
     assert_refused(usage, split("map", {"--all"}), {"map"});
     assert_refused(usage, split("opcodes", {"--all"}), {"opcodes"});
-    assert_refused(usage, split("alsc", {"--all"}), {"--frame"});
-    assert_refused(usage, split("blob", {"--all", "--covariance"}), {"--covariance"});
+    assert_refused(usage, split("alsc", {"--all"}), {"--encoding frame"});
+    assert_refused(usage, split("blob", {"--all", "--encoding", "covariance=yes"}), {"--encoding covariance", "yes"});
     assert_refused(not_found, split("json", {"--lens", "C"}), {"C"});
     save_text(work("file"), "");
     assert_refused(

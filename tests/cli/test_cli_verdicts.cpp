@@ -21,7 +21,7 @@ void spoil(const std::string &name) {
 void test_one_bad_picture_of_six(void **) {
     spoil("bad");
     const std::string result = work("bad/result.pto"), even = work("even"), db = work("bad.db");
-    const Outcome found = run_words({"build", pto("bad"), "--db", db, "--json", "--pto-out", result});
+    const Outcome found = run_words({"build", pto("bad"), "--db", db, "--json", "--write", std::string("pto=") + result});
     assert_int_equal(found.code, done);
     assert_true(contains(found.err, "img005.png: left out: it disagrees with the others"));
     const Json json = parsed(found.out);
@@ -37,7 +37,7 @@ void test_one_bad_picture_of_six(void **) {
         if (link["pairs"].get<int>() > 100) assert_true(link["state"] == "verified");
     }
     // As text: the picture has no exposure.
-    const std::string text = must_exit(done, {"build", pto("bad"), "--no-store", "--stored", "none"});
+    const std::string text = must_exit(done, {"build", pto("bad"), "--no-store", "--fit", "stored=none"});
     assert_true(contains(text, "img005.png  left out") && contains(text, "\nlinks     4 verified, 1 contradicted\n"));
     // The other pictures are evened out, this one stays unchanged.
     assert_true(contains(text_of(result), "\n#-lensprof left_out 5\n"));
@@ -66,7 +66,7 @@ void test_one_picture_apart(void **) {
 void test_the_reference_can_be_the_bad_one(void **) {
     spoil("first");
     const Outcome found =
-        run_words({"build", pto("first"), "--no-store", "--stored", "none", "--json", "--reference", "img005.png"});
+        run_words({"build", pto("first"), "--no-store", "--fit", "stored=none", "--json", "--fit", "reference=img005.png"});
     assert_int_equal(found.code, done);
     const Json json = parsed(found.out);
     const auto reference = json["reference"].get<size_t>();
@@ -77,11 +77,11 @@ void test_the_reference_can_be_the_bad_one(void **) {
 // Local tone mapping that does not belong to the camera but allows a correction: nothing is stored, the pictures can be
 // corrected.
 void test_even_pictures_that_are_no_profile(void **) {
-    simulate("tone", {"--local-tone", "0.6"});
+    simulate("tone", {"--set", "local-tone=0.6"});
     const std::string db = work("tone.db"), result = work("tone/result.pto");
     const Json json = json_of({"build", pto("tone"), "--no-store", "--json"});
     assert_true(json["usable"] == false && json["evens"] == true && json["reason_code"] == "patterns");
-    const Outcome told = run_words({"build", pto("tone"), "--no-store", "--pto-out", result});
+    const Outcome told = run_words({"build", pto("tone"), "--no-store", "--write", std::string("pto=") + result});
     assert_int_equal(told.code, done);
     assert_true(contains(told.err, "corrects these pictures, but is not stored as a profile"));
     assert_true(contains(told.out, "CORRECTS"));
@@ -92,7 +92,7 @@ void test_even_pictures_that_are_no_profile(void **) {
 }
 
 void test_noise_is_neither(void **) {
-    simulate("noise", {"--noise", "100"});
+    simulate("noise", {"--set", "noise=100"});
     const Outcome found = run_words({"build", pto("noise"), "--no-store", "--json"});
     assert_int_equal(found.code, not_usable);
     const Json json = parsed(found.out);
@@ -102,7 +102,7 @@ void test_noise_is_neither(void **) {
 // One exposure, and a falloff corrected by the camera: the response is typical of the kind of camera, and a reason
 // reports it.
 void test_pictures_that_show_no_response(void **) {
-    simulate("flat", {"--ev", "0", "--wb", "0", "--vignetting=-.04,0,0"});
+    simulate("flat", {"--ev", "0", "--set", "wb=0", "--vignetting=-.04,0,0"});
     const Json json = json_of({"build", pto("flat"), "--no-store", "--json"});
     assert_true(json["usable"] == true && json["evens"] == true);
     assert_true(json["reason_code"] == "response_not_shown" && json["response"]["from"] == "kind");
@@ -110,7 +110,7 @@ void test_pictures_that_show_no_response(void **) {
     assert_close(json["gamma"]["sigma"].get<double>(), 0.264, 0.001);
     const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--seed", "7"});
     assert_true(other["response"]["values"] == json["response"]["values"]);  // independent of noise
-    simulate("equal", {"--ev", "0", "--wb", "0", "--vignetting", "0,0,0"});  // nothing to correct
+    simulate("equal", {"--set", "ev=0,wb=0", "--vignetting", "0,0,0"});  // nothing to correct
     const Json equal = json_of({"build", pto("equal"), "--no-store", "--json"}, not_usable);
     assert_true(equal["reason_code"] == "nothing_better" && equal["model"] == "nothing");
     simulate("shown", {});
@@ -120,7 +120,7 @@ void test_pictures_that_show_no_response(void **) {
 // The falloff of such pictures is still known: it is stored and found for its setting. The response is not a prior of
 // the next fit.
 void test_a_falloff_without_a_response_is_found(void **) {
-    const Words dim{"--ev", "0", "--wb", "0", "--vignetting=-.06,0,0"};
+    const Words dim{"--ev", "0", "--set", "wb=0", "--vignetting=-.06,0,0"};
     const Words setting{"--db", work("even.db"), "--camera", "B", "--lens", "C", "--focal", "30", "--aperture", "4"};
     simulate("even", dim);
     must_exit(done, Words{"build", pto("even")} + setting);
@@ -130,7 +130,7 @@ void test_a_falloff_without_a_response_is_found(void **) {
     assert_true(next["response"]["from"] == "kind");
     assert_close(
         next["gamma"]["sigma"].get<double>(),
-        json_of({"build", pto("next"), "--json", "--no-store", "--stored", "none", "--camera", "B"})["gamma"]["sigma"]
+        json_of({"build", pto("next"), "--json", "--no-store", "--fit", "stored=none", "--camera", "B"})["gamma"]["sigma"]
             .get<double>(),
         0.002);
 }
@@ -138,15 +138,15 @@ void test_a_falloff_without_a_response_is_found(void **) {
 // No parameter of the lens is requested, so the profile would be empty.
 void test_nothing_to_store(void **) {
     simulate("nothing", {});
-    const Outcome refused = run_words({"build", pto("nothing"), "--free", "ev,wb", "--db", work("nothing.db")});
+    const Outcome refused = run_words({"build", pto("nothing"), "--fit", "free=ev,wb", "--db", work("nothing.db")});
     assert_int_equal(refused.code, usage);
-    assert_true(contains(refused.err, "give --no-store, or --free all"));
+    assert_true(contains(refused.err, "give --no-store, or --fit free=all"));
     assert_false(fs::exists(work("nothing.db")));
 }
 
 // A sky with a few wires, with a project that is off by some pixels, is joined.
 void test_smooth_pictures_join(void **) {
-    simulate("sky", {"--scene", "sky", "--misalign", "4", "--response", "srgb"});
+    simulate("sky", {"--scene", "sky", "--set", "misalign=4", "--response", "srgb"});
     const Json json = json_of({"build", pto("sky"), "--no-store", "--json"});
     for (const Json &image : json["images"]) assert_true(image["joined"] == true);
     assert_true(json["evens"] == true);
@@ -165,9 +165,8 @@ void test_frames_of_one_exposure(void **) {
 // The light found by a first fit joins the picture that was left out: exposures are true except for gamma, which is
 // open.
 void test_a_second_look_joins(void **) {
-    must_exit(done, {"simulate", "-o", work("far"), "--size", "480x360", "--images", "4", "--scene", "foliage", "--ev",
-                     "5", "--overlap", "0.35", "--noise", "1", "--seed", "3"});
-    const Json json = json_of({"build", pto("far"), "--no-store", "--stored", "none", "--free", "all", "--json"});
+    must_exit(done, {"simulate", "-o", work("far"), "--size", "480x360", "--images", "4", "--scene", "foliage", "--set", "ev=5,overlap=0.35,noise=1", "--seed", "3"});
+    const Json json = json_of({"build", pto("far"), "--no-store", "--fit", "stored=none,free=all", "--json"});
     assert_int_equal(json["looks"], 2);
     const Json truth = parsed(text_of(work("far/truth.json")))["images"];
     const auto true_ev = [&](size_t i) { return truth[i]["ev"].get<double>() - truth[0]["ev"].get<double>(); };

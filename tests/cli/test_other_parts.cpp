@@ -452,7 +452,7 @@ void test_commands(void **) {
                  {"stereo.jpg", "has 2 pictures", "exiftool -b -MPImage2"},
                  {"two.mpo", "has 2 pictures", "exiftool -b -MPImage2"},
                  {"moving.png", "is an animation of 5 frames", "ffmpeg"}};
-    const Words apply = {"apply", "--profile", "1", "--db", db, "--response", "srgb", "-o", work("out")};
+    const Words apply = {"apply", "--profile", "1", "--db", db, "--set", "response=srgb", "-o", work("out")};
     for (const auto &file : files) {
         assert_refused(unreadable, apply + Words{work(file.name)}, {file.name, file.what, file.step});
         const std::string other = work(std::string("other") + fs::path(file.name).extension().string());
@@ -548,7 +548,7 @@ void test_known_kinds_in_folders(void **) {
     save(in + "/rest.zip", bytes_of("PK\x03\x04") + Bytes(20, 0));
     for (const char *name : {"/one.jpg", "/two.jpg"}) save(in + name, jpeg(name[1] == 'o' ? 80 : 90, 60));
     for (const Words &words :
-         std::vector<Words>{{"apply", "--profile", "1", "--db", db, "--response", "srgb", "-o", work("out"), in},
+         std::vector<Words>{{"apply", "--profile", "1", "--db", db, "--set", "response=srgb", "-o", work("out"), in},
                             {"build", "--no-store", in},
                             {"calibrate", "--no-store", in, "-o", work("calibrated")}}) {
         const std::string said = run_words(words).err;

@@ -257,8 +257,8 @@ void test_card(void **) {
     }
     const Words apply = {"apply", path, "--db", db, "--profile", "1", "-o"};
     must_exit(done, apply + Words{work("dng")});
-    must_exit(done, apply + Words{work("tif"), "--raw-output", "tif", "--threads", "1"});
-    must_exit(done, apply + Words{work("tif4"), "--raw-output", "tif", "--threads", "4"});
+    must_exit(done, apply + Words{work("tif"), "--encoding", "raw=tif", "--threads", "1"});
+    must_exit(done, apply + Words{work("tif4"), "--encoding", "raw=tif", "--threads", "4"});
     assert_true(load(work("tif/card.tif")) == load(work("tif4/card.tif")));
     const Picture before = read_picture(path), same = read_picture(work("dng/card.dng"));
     assert_true(before.pixels == same.pixels);
@@ -334,18 +334,18 @@ void test_opcodes_are_not_doubled(void **) {
             system(("exiftool -s3 -OpcodeList3 '" + work("dng/card.dng") + "' | grep -q FixVignetteRadial").c_str()),
             0);
     assert_refused(not_found, {"apply", work("dng/card.dng"), "--db", db, "--profile", "1", "-o", work("two")},
-                   {"card.dng", "--raw-output tif"});
+                   {"card.dng", "--encoding raw=tif"});
     assert_refused(
         usage,
-        {"apply", path, "--db", db, "--profile", "1", "--raw-output", "dng", "--strength", "0.5", "-o", work("two")},
-        {"--raw-output"});
+        {"apply", path, "--db", db, "--profile", "1", "--encoding", "raw=dng", "--set", "strength=0.5", "-o", work("two")},
+        {"--encoding raw"});
 }
 
 void test_mixed_and_pairs(void **) {
     needs_libraw();
     const std::string path = save_dng("card.dng", card(600, 400, 14, Packing::words)), db = work("x.db");
     must_exit(done, {"flat", path, "--db", db, "--camera", "C"});
-    must_exit(done, {"apply", path, "--db", db, "--profile", "1", "-o", work("tif"), "--raw-output", "tif"});
+    must_exit(done, {"apply", path, "--db", db, "--profile", "1", "-o", work("tif"), "--encoding", "raw=tif"});
     assert_refused(usage, {"flat", path, work("tif/card.tif"), "--no-store"},
                    {"card.dng", "card.tif", "files of one kind"});
     assert_refused(usage, {"bracket", path, work("tif/card.tif"), "--no-store"},

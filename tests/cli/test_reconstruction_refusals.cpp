@@ -16,7 +16,7 @@ int make_work(void **state) {
 }
 
 Words build_of(const std::string &path) {
-    return {"build", path, "--camera", "Example", "--lens", "Example", "--points-out", work("out.txt")};
+    return {"build", path, "--camera", "Example", "--lens", "Example", "--write", "points=" + work("out.txt")};
 }
 
 // A database that names four pictures, the first of them in the parent folder.
@@ -32,7 +32,7 @@ std::string make_project(const std::string &more = {}) {
 void test_pictures(void **) {
     const std::string path = make_project();
     fs::remove(work("project/d.png"));
-    assert_refused(unreadable, build_of(path), {path, "d.png", "--images", "--image-list"});
+    assert_refused(unreadable, build_of(path), {path, "d.png", "--images", "--reconstruction list"});
     write_picture(work("project/d.png"), make_smooth(160, 120, LENSPROF_LAYOUT_RGB));
     assert_refused(unreadable, build_of(path), {path, "project/d.png", "is 160 x 120", "320 x 240", "resized"});
     write_picture(work("project/d.png"), make_smooth(240, 320, LENSPROF_LAYOUT_RGB));
