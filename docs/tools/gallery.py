@@ -78,7 +78,7 @@ def main():
         def run(*words):
             subprocess.run([lensprof, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
-        run("simulate", "-o", "pictures", "--seed", "5", "--mean-ev", "-0.8", "--exif")
+        run("simulate", "-o", "pictures", "--seed", "5", "--set", "mean-ev=-0.8", "--exif")
         run("build", "pictures/pano.pto", "--no-store", "--report", "report.html")
         text = (folder / "report.html").read_text(encoding="utf-8")
         data = json.loads(re.search(r'id="data">(.*?)</script>', text).group(1))

@@ -20,24 +20,24 @@ PICTURES = [
     ("film", "--response film"),
     ("EMoR curves", "--response EMOR"),
     ("linear", "--response linear"),
-    ("linear, 16 bit", "--response linear --format tiff16 --noise 0.5"),
+    ("linear, 16 bit", "--response linear --format tiff16 --set noise=0.5"),
     ("chromatic falloff", "--vignetting -0.30,0.05,-0.15,-0.25,0.03,-0.15,-0.36,0.08,-0.16"),
-    ("10 % outlier pixels", "--outliers 0.1"),
-    ("30 % outlier pixels", "--outliers 0.3"),
-    ("moving objects, 10 %", "--objects 0.1"),
-    ("moving objects, 25 %", "--objects 0.25"),
+    ("10 % outlier pixels", "--set outliers=0.1"),
+    ("30 % outlier pixels", "--set outliers=0.3"),
+    ("moving objects, 10 %", "--set objects=0.1"),
+    ("moving objects, 25 %", "--set objects=0.25"),
     ("JPEG", "--format jpeg"),
-    ("16-bit TIFF", "--format tiff16 --noise 0.5"),
-    ("float TIFF", "--response linear --format tiff32 --noise 0.5"),  # as files of this kind are
-    ("fixed exposure", "--ev 0 --wb 0"),
-    ("misaligned 3 px", "--misalign 3"),
-    ("misaligned 10 px", "--misalign 10"),
-    ("overlap 8 degrees", "--overlap 0.16"),
+    ("16-bit TIFF", "--format tiff16 --set noise=0.5"),
+    ("float TIFF", "--response linear --format tiff32 --set noise=0.5"),  # as files of this kind are
+    ("fixed exposure", "--set ev=0,wb=0"),
+    ("misaligned 3 px", "--set misalign=3"),
+    ("misaligned 10 px", "--set misalign=10"),
+    ("overlap 8 degrees", "--set overlap=0.16"),
     ("2 images", "--images 2"),
-    ("24 images, 2 rows", "--images 24 --rows 2"),
-    ("28 in a strip, one exposure", "--images 28 --rows 1 --hfov 16 --ev 0"),
+    ("24 images, 2 rows", "--images 24 --set rows=2"),
+    ("28 in a strip, one exposure", "--images 28 --set rows=1,hfov=16,ev=0"),
     ("EXIF tells exposures", "--exif"),
-    ("EXIF within 0.1 EV", "--exif --exif-rounding 0.1"),
+    ("EXIF within 0.1 EV", "--exif --set exif-rounding=0.1"),
     ("falloff of 4 stops", "--vignetting=-1.6,0.9,-0.2375"),
 ]
 QUICK_PICTURES = ("sRGB", "30 % outlier pixels", "moving objects, 25 %", "JPEG", "fixed exposure", "2 images",
@@ -54,9 +54,9 @@ TARGETS = [
 
 # No single response produces these pictures: the right answer is that the result is not usable.
 REFUSALS = [
-    ("local tone mapping, 0.5 EV", "--local-tone 0.5"),
-    ("local tone mapping, 1 EV", "--local-tone 1"),
-    ("local tone mapping, 2 EV", "--local-tone 2"),
+    ("local tone mapping, 0.5 EV", "--set local-tone=0.5"),
+    ("local tone mapping, 1 EV", "--set local-tone=1"),
+    ("local tone mapping, 2 EV", "--set local-tone=2"),
 ]
 
 
@@ -80,7 +80,7 @@ def point_cases(quick, _=""):
             groups = ["300 pairs, %d %% outliers" % share] if count == 300 else []
             groups += ["%d pairs, 10 %% outliers" % count] if share == 10 and count != 300 else []
             yield Case("points_%d_%d_%d" % (count, share, seed), groups, seed, response,
-                       ["--no-images", "--points", str(count), "--outliers", str(share / 100.0)], False)
+                       ["--set", f"no-images=yes,points={count},outliers={share / 100.0}"], False)
 
 
 def picture_cases(quick, match=""):
@@ -104,14 +104,14 @@ def cases_of(groups, quick, peers):
 def make(case, folder):
     shutil.rmtree(folder, ignore_errors=True)
     words = case.arguments if "--response" in case.arguments else case.arguments + ["--response", case.response]
-    common = ["-o", str(folder), "--seed", str(case.seed), "--test-points", TEST_PAIRS]
+    common = ["-o", str(folder), "--seed", str(case.seed), "--set", f"test-points={TEST_PAIRS}"]
     subprocess.run([tools.LENSPROF, "simulate", *common, *words], check=True, stdout=subprocess.DEVNULL)
 
 
 def calls(case, folder):
     """(tool, function, arguments) in the order in which they must run."""
     points = folder / ("pairs.txt" if case.pictures else "points.txt")
-    given = ["--points-out", str(points)] if case.pictures else ["--points", str(points)]
+    given = ["--write", f"points={points}"] if case.pictures else ["--points", str(points)]
     yield "lensprof", tools.run_lensprof, given
     if not case.peers:
         return

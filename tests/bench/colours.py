@@ -30,7 +30,7 @@ def curve_of(response):
 
 
 class Exposures:
-    """The result of `build --exposures-out`. ev: NaN for an image that is not joined."""
+    """The result of `build --write exposures`. ev: NaN for an image that is not joined."""
 
     def __init__(self, path):
         with open(path) as file:

@@ -142,8 +142,8 @@ def measure(flight, pictures, folder):
                           pairs_of(flight, numbers))
     record = {"images": len(flight.names), "observations": sum(map(len, numbers)),
               "database_mb": (folder / "database.db").stat().st_size / 2.0 ** 20}
-    used = tools.measured([tools.LENSPROF, "build", folder / "database.db", "--images", pictures, "--no-store", "--stored",
-                           "none", "--json", "--exposures-out", folder / "exposures.json"], folder, folder / "build",
+    used = tools.measured([tools.LENSPROF, "build", folder / "database.db", "--images", pictures, "--no-store",
+                           "--fit", "stored=none", "--json", "--write", "exposures=%s" % (folder / "exposures.json")], folder, folder / "build",
                           limit_s=LIMIT_S)
     text = used.pop("out")
     record.update(used)

@@ -54,8 +54,8 @@ def call(*words):
 def measure(seed, lens):
     folder = tools.WORK / ("flat%d" % seed)
     shutil.rmtree(folder, ignore_errors=True)
-    subprocess.run([tools.LENSPROF, "simulate", "-o", folder, "--seed", str(seed), "--vignetting", lens, "--center=0.02,-0.015",
-                    "--response", "srgb", "--noise", str(NOISE_LEVELS), "--exif"], check=True,
+    subprocess.run([tools.LENSPROF, "simulate", "-o", folder, "--seed", str(seed), "--vignetting", lens,
+                    "--response", "srgb", "--set", f"center=0.02,-0.015,noise={NOISE_LEVELS}", "--exif"], check=True,
                    stdout=subprocess.DEVNULL)
     truth = json.loads((folder / "truth.json").read_text())["vignetting"]
     names = []

@@ -39,7 +39,7 @@ PROJECTS = {  # by the name of the folder; other projects have no expectation
     "pier": Expected(evens=True, beside_hugin=0.2),
 }
 BRACKETS = {  # options, and the expected result
-    "memorial": (["--black", "20"], Expected(usable=True)),  # pure blue borders: nothing in red and green
+    "memorial": (["--fit", "black=20"], Expected(usable=True)),  # pure blue borders: nothing in red and green
     "frobisher": ([], Expected(usable=True)),
 }
 PICTURES = {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
@@ -52,7 +52,7 @@ def pictures_of(project):
 
 
 def freed(project, copy):
-    """A copy whose v lines request everything that lensprof's `--free all` estimates; it may be in another folder."""
+    """A copy whose v lines request everything that lensprof's `--fit free=all` estimates; it may be in another folder."""
     lines = [line for line in project.read_text(errors="replace").splitlines() if not line.startswith("v")]
     lines = [re.sub(r'n"([^"]*)"', lambda m: 'n"%s"' % (project.parent / m.group(1)), line)
              if line.startswith("i ") else line for line in lines]

@@ -157,7 +157,7 @@ def looked_up(store, key, options=None):
 
 def simulate(folder, seed, response, row):
     """-> (images, pairs, truth)"""
-    words = ["--no-images", "--points", str(PAIRS), "--outliers", str(OUTLIERS), "--ev", "1", "--seed", str(seed),
+    words = ["--set", f"no-images=yes,points={PAIRS},outliers={OUTLIERS},ev=1", "--seed", str(seed),
              "--response", "emor:" + ",".join("%.17g" % a for a in response.emor),
              "--vignetting=" + ",".join("%.17g" % k for k in row.k), "-o", str(folder)]
     subprocess.run([tools.LENSPROF, "simulate", *words], check=True, stdout=subprocess.DEVNULL)

@@ -16,8 +16,8 @@ import scorer
 import seams
 import tools
 
-FIT = ["--no-store", "--stored", "none", "--json"]
-RENDERED = "--images 20 --rows 2 --size 4000x3000 --format jpeg --seed 1"
+FIT = ["--no-store", "--fit", "stored=none", "--json"]
+RENDERED = "--images 20 --set rows=2 --size 4000x3000 --format jpeg --seed 1"
 QUICK = "--images 6 --size 1200x900 --format jpeg --seed 1"
 CHAIN = (("pto_gen", "-o", "0.pto"), ("cpfind", "--multirow", "-o", "1.pto", "0.pto"), ("cpclean", "-o", "2.pto", "1.pto"),
          ("autooptimiser", "-a", "-l", "-s", "-o", "3.pto", "2.pto"))
@@ -54,7 +54,7 @@ def measure(name, files, folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     files = [str(f) for f in files]
-    own, model, names = fit(files, folder / "lensprof", ["--project-out", str(folder / "found.pto")])
+    own, model, names = fit(files, folder / "lensprof", ["--write", "project=" + str(folder / "found.pto")])
     record = {"name": name, "pictures": len(files), "lensprof": dict(own, joined=len(names) - len(own.get("left_out", [])))}
     models = {"lensprof": (model, names, own.get("left_out", []))}
     if HAS_HUGIN:
@@ -99,7 +99,7 @@ def measure_moving(name, files, folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     files = [str(f) for f in files]
-    used, model, _ = fit(files, folder / "lensprof", ["--exif-sigma", "0"])
+    used, model, _ = fit(files, folder / "lensprof", ["--fit", "exif-sigma=0"])
     record = {"name": name, "pictures": len(files), **used}
     known = exif_ev(files, folder)
     if model is None or known is None or len(model.ev) != len(files):

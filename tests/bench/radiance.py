@@ -21,9 +21,9 @@ import tools
 IMAGES, POINTS, WIDTH, HEIGHT, NOISE = 12, 2000, 800, 600, 2.0
 FALLOFF = np.array([-0.30, 0.05, -0.15])
 LIMIT_S, QUICK_LIMIT_S = 120, 30
-PICTURES = [("6 pictures", "--images 6"), ("6 pictures, 10 % outliers", "--images 6 --outliers 0.1"),
-            ("12 pictures, 2 rows", "--images 12 --rows 2"),
-            ("6 pictures, 1.5 EV, bright", "--images 6 --ev 1.5 --mean-ev 1")]
+PICTURES = [("6 pictures", "--images 6"), ("6 pictures, 10 % outliers", "--images 6 --set outliers=0.1"),
+            ("12 pictures, 2 rows", "--images 12 --set rows=2"),
+            ("6 pictures, 1.5 EV, bright", "--images 6 --set ev=1.5,mean-ev=1")]
 SIGMA = np.array([3.417, 1.295, 0.4695, 0.2022, 0.09608])  # of the EMoR coefficients over the curves of DoRF
 GRID = np.linspace(0.0, 1.0, 1024)
 
@@ -195,12 +195,12 @@ def beside_transfer(name, options, seeds):
         folder = tools.WORK / "radiance" / ("%s_%d" % ("".join(c if c.isalnum() else "_" for c in name), seed))
         shutil.rmtree(folder, ignore_errors=True)
         subprocess.run([tools.LENSPROF, "simulate", "-o", str(folder), "--size", "800x600", "--seed", str(seed),
-                        "--test-points", "2000", *options.split()], check=True, stdout=subprocess.DEVNULL)
+                        "--set", "test-points=2000", *options.split()], check=True, stdout=subprocess.DEVNULL)
         truth, pairs = scorer.read_truth(folder / "truth.json", "srgb"), scorer.read_points(folder / "test_points.txt")
         project, points = str(folder / "pano.pto"), str(folder / "drawn.txt")
         sizes = tools.sizes_of_pto((folder / "pano.pto").read_text())
-        for tool, extra in (("transfer", ["--points-out", points]), ("radiance", ["--method", "radiance"]),
-                            ("radiance, same pairs", ["--method", "radiance", "--points", points])):
+        for tool, extra in (("transfer", ["--write", f"points={points}"]), ("radiance", ["--fit", "method=radiance"]),
+                            ("radiance, same pairs", ["--fit", "method=radiance", "--points", points])):
             used, model = tools.run_lensprof(project, str(folder / "log"), extra)
             used.pop("timeless", None)
             records.append(dict(used, case=name, method=tool, seed=seed,

@@ -11,7 +11,7 @@ import tools
 
 FOLDS = 5
 NAMES = ("pano.pto", "hugin.pto")
-FREE_ALL = ["--free", "all"]  # whatever the v lines of a project request
+FREE_ALL = ["--fit", "free=all"]  # whatever the v lines of a project request
 CLIP_LEVELS = 20.0
 DISAGREE_LEVELS, DISAGREE_PAIRS = 10.0, 10
 
@@ -86,7 +86,7 @@ def run_project(project, name):
     for turn in "ab":
         outputs = [folder / ("%s_%s" % (turn, file)) for file in ("pairs.txt", "result.pto")]
         used, model = tools.run_lensprof(str(project), str(folder / turn),
-                                         [*FREE_ALL, "--points-out", str(outputs[0]), "--pto-out", str(outputs[1])])
+                                         [*FREE_ALL, "--write", f"points={outputs[0]}", "--write", f"pto={outputs[1]}"])
         runs.append([used.pop("timeless", None)] + [p.read_bytes() if p.exists() else None for p in outputs])
     record = {"project": name, "images": len(tools.sizes_of_pto(project.read_text(errors="replace"))), "lensprof": used,
               "monotone": bool(model and model.monotone), "identical": runs[0] == runs[1], "folds": []}

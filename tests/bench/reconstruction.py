@@ -20,15 +20,15 @@ SIMULATED = (("terrain", 2, "film", "-0.5,0.2,-0.1"), ("terrain", 3, "gamma:1.8"
              ("room", 2, "srgb", "-0.6,0.3,-0.1"), ("room", 3, "emor:0.8,-0.3,0.1", "-0.1,-0.3,0.08"))
 CAMERA = "--images 24 --size 1200x900"
 FEWER_FEATURES = ["--SiftExtraction.max_num_features", 4000]  # for the rendered pictures, to save time
-ONLY = ["--free", "ev,wb"]
-NO_EXIF = ["--exif-sigma", "0"]
+ONLY = ["--fit", "free=ev,wb"]
+NO_EXIF = ["--fit", "exif-sigma=0"]
 REBUILT = ("snowmiku", "lund")
 
 
 def build(project, pictures, log, extra=()):
     """`build` -> usage and the object it printed, or None; exposures and pairs go to files named after the log."""
-    command = [tools.LENSPROF, "build", project, "--images", pictures, "--no-store", "--stored", "none", "--force", "--json",
-               "--exposures-out", "%s.exposures.json" % log, "--points-out", "%s.points.txt" % log, *extra]
+    command = [tools.LENSPROF, "build", project, "--images", pictures, "--no-store", "--force", "--json",
+               "--fit", "stored=none", "--write", f"exposures={log}.exposures.json,points={log}.points.txt", *extra]
     used = tools.measured(command, log.parent, log)
     text = used.pop("out")
     if used["code"] not in (0, 4) or not text.startswith("{"):
@@ -83,7 +83,8 @@ def measure_simulated(kind, seed, response, vignetting):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     pictures = folder / "images"
-    subprocess.run([tools.LENSPROF, "simulate", "-o", pictures, "--moving", kind, "--seed", str(seed), "--response", response,
+    subprocess.run([tools.LENSPROF, "simulate", "-o", pictures, "--seed", str(seed), "--response", response,
+                    "--set", f"moving={kind}",
                     "--vignetting=" + vignetting, *CAMERA.split()], check=True, stdout=subprocess.DEVNULL)
     truth = pictures / "truth.json"
     truth.rename(folder / "truth.json")  # COLMAP reads all files in the folder
@@ -181,7 +182,7 @@ def measure_tracks(source):
     for name, end in (("tracks", ".csv"), ("reconstruction", ".json")):
         shutil.copyfile(source / (name + "_example" + end), folder / (name + end))
     record, evs, stated = {"set": source.name, "images": len(files)}, {}, stated_ev(files)
-    for way, extra in (("pictures", []), ("tracks", ["--track-colors"])):
+    for way, extra in (("pictures", []), ("tracks", ["--reconstruction", "track-colors=yes"])):
         record[way], data = build(folder / "tracks.csv", pictures, folder / way, [*NO_EXIF, *extra])
         if data is None:
             return record

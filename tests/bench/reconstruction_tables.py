@@ -1,22 +1,22 @@
 """The tables of the part `reconstruction`."""
 from report import header, number, row
 
-READING_SIMULATED = """Rendered pictures of a moving camera (`simulate --moving`), matched by COLMAP 3.8, fitted from
+READING_SIMULATED = """Rendered pictures of a moving camera (`simulate --set moving`), matched by COLMAP 3.8, fitted from
 its database and from its model. Errors are the largest ones: exposures with offset and exponent removed, M with the
-exponent removed. Exposures only: `--free ev,wb`."""
+exponent removed. Exposures only: `--fit free=ev,wb`."""
 
 READING_VARIANCE = """Variance of colours: half the squared difference between two pictures at one point, in levels
 of 255 squared, mean of the smallest 90 %. Affine: a gain and an offset per picture and channel in grey values,
 fitted to the same pairs by robust least squares, as in the training of radiance fields; it has six numbers per
-picture, exposures have three. Exposures only: `--free ev,wb`, which uses the mean response of EMoR. "With the
+picture, exposures have three. Exposures only: `--fit free=ev,wb`, which uses the mean response of EMoR. "With the
 typical response" is what `build` itself reports (`colour_variance`)."""
 
-READING_REAL = """EXIF is withheld (`--exif-sigma 0`). Exposures are compared with those of EXIF: correlation r,
-slope, standard deviation of the difference. Values in brackets are for exposures only (`--free ev,wb`)."""
+READING_REAL = """EXIF is withheld (`--fit exif-sigma=0`). Exposures are compared with those of EXIF: correlation r,
+slope, standard deviation of the difference. Values in brackets are for exposures only (`--fit free=ev,wb`)."""
 
 READING_SCALE = """A drone over flat ground: pictures of 1000 x 750 (JPEG) and a database as COLMAP writes it, 600
-keypoints per picture, each point in about ten pictures. `build database.db --no-store --exposures-out`; `apply
---model` on the smallest set. Fits: all fits until no more points are left out as glossy."""
+keypoints per picture, each point in about ten pictures. `build database.db --no-store --write exposures=FILE`;
+`apply --model` on the smallest set. Fits: all fits until no more points are left out as glossy."""
 
 WAYS = {"database": "database.db", "model": "model"}
 
@@ -68,7 +68,7 @@ def tracks(records):
     if not records:
         return []
     lines = ["### Colours in tracks.csv", "", "Exposures from the pictures and from the colours of OpenSfM's tracks"
-             " alone (`--track-colors`); r and slope compared with EXIF, which is withheld.", ""]
+             " alone (`--reconstruction track-colors=yes`); r and slope compared with EXIF, which is withheld.", ""]
     lines += header("pictures", "number", "pairs: pictures", "tracks", "r: pictures", "tracks", "slope: pictures", "tracks",
                     "largest difference, EV")
     for r in records:

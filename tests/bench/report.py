@@ -421,7 +421,7 @@ def moving(records):
     """Pictures of a moving camera: exposures compared with EXIF's, which the fit did not get."""
     if not records:
         return []
-    lines = ["## A camera that moved", "", "Exposures from pictures alone (`build FOLDER --exif-sigma 0`) compared with"
+    lines = ["## A camera that moved", "", "Exposures from pictures alone (`build FOLDER --fit exif-sigma=0`) compared with"
              " those of EXIF: correlation, slope, standard deviation of the difference.", ""]
     lines += header("pictures", "number", "joined", "EXIF spans, EV", "correlation", "slope", "difference, EV", "wall, s",
                     "verdict: usable, evens")

@@ -9,7 +9,7 @@ import tools
 
 SIZES, QUICK_SIZES = (10, 30, 100, 300, 1000, 2000), (10, 30, 100)
 PAIRS_AN_IMAGE = 100
-MOSAIC = "--no-images --seed 1 --hfov 4 --overlap 0.4 --jitter 0.1 --ev 0.5 --mean-ev -1 --outliers 0.1"
+MOSAIC = "--set no-images=yes --seed 1 --set hfov=4,overlap=0.4,jitter=0.1,ev=0.5,mean-ev=-1,outliers=0.1"
 
 
 def measure(images):
@@ -17,8 +17,8 @@ def measure(images):
     shutil.rmtree(folder, ignore_errors=True)
     rows = max(1, round((images / 1.25) ** 0.5))  # about as high as wide, in degrees
     began = time.perf_counter()
-    subprocess.run([tools.LENSPROF, "simulate", "-o", str(folder), *MOSAIC.split(), "--images", str(images), "--rows",
-                    str(rows), "--points", str(PAIRS_AN_IMAGE * images), "--test-points", "2000"], check=True,
+    subprocess.run([tools.LENSPROF, "simulate", "-o", str(folder), *MOSAIC.split(), "--images", str(images),
+                    "--set", f"rows={rows},points={PAIRS_AN_IMAGE * images},test-points=2000"], check=True,
                    stdout=subprocess.DEVNULL)
     record = {"images": images, "simulate_s": time.perf_counter() - began}
     used, model = tools.run_lensprof(str(folder / "pano.pto"), str(folder / "lensprof"),

@@ -8,16 +8,16 @@ import scorer
 import tools
 
 # Name, options of simulate, maximum number of turns, whether a quick run includes it.
-SOLVER = [("6 images, 300 pairs", "--images 6 --points 300", 9, True),
-          ("20 images, 5000 pairs", "--images 20 --rows 2 --points 5000", 9, True),
-          ("61 images, 300 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 300", 3, True),
-          ("61 images, 5000 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 5000", 1, False)]
-GIVEN = "--no-images --outliers 0.1 "
+SOLVER = [("6 images, 300 pairs", "--images 6 --set points=300", 9, True),
+          ("20 images, 5000 pairs", "--images 20 --set rows=2,points=5000", 9, True),
+          ("61 images, 300 pairs", "--images 61 --set rows=4,hfov=25,mean-ev=-1,points=300", 3, True),
+          ("61 images, 5000 pairs", "--images 61 --set rows=4,hfov=25,mean-ev=-1,points=5000", 1, False)]
+GIVEN = "--set no-images=yes,outliers=0.1 "
 COMMAND = [("6 JPEG of 0.5 MP", "--images 6 --size 816x612 --format jpeg", 9, True),
-           ("20 JPEG of 2 MP", "--images 20 --rows 2 --size 1632x1224 --format jpeg", 9, False),
-           ("20 JPEG of 12 MP", "--images 20 --rows 2 --size 4000x3000 --format jpeg", 3, False),
-           ("20 JPEG of 12 MP, outliers", "--images 20 --rows 2 --size 4000x3000 --format jpeg --outliers 0.1", 3, False)]
-COMMON = "--seed 1 --test-points 2000"
+           ("20 JPEG of 2 MP", "--images 20 --set rows=2 --size 1632x1224 --format jpeg", 9, False),
+           ("20 JPEG of 12 MP", "--images 20 --set rows=2 --size 4000x3000 --format jpeg", 3, False),
+           ("20 JPEG of 12 MP, outliers", "--images 20 --set rows=2 --size 4000x3000 --format jpeg --set outliers=0.1", 3, False)]
+COMMON = "--seed 1 --set test-points=2000"
 
 
 def render(name, options):

@@ -113,7 +113,7 @@ def by_debevec(frames, ev):
 def by_lensprof(folder, method):
     files = [str(folder / ("f%d.png" % i)) for i in range(FRAMES)]
     out = folder / method
-    ran = subprocess.run([tools.LENSPROF, "align", "--json", "--method", method, "--to", "first", "-o", str(out), *files],
+    ran = subprocess.run([tools.LENSPROF, "align", "--json", "--fit", f"method={method}", "--to", "first", "-o", str(out), *files],
                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     if ran.returncode != 0:
         return None, ran.returncode

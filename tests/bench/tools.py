@@ -23,7 +23,7 @@ OPENCV = importlib.util.find_spec("cv2") is not None
 NO_OPENCV = "no OpenCV for Python (package python3-opencv)"
 LIMIT_S = 600
 
-PAPER = ["--modes", "5", "--loss", "huber", "--prior", "0", "--sampling", "paper"]
+PAPER = ["--fit", "modes=5,loss=huber,prior=0,sampling=paper"]
 LABELS = {"lensprof": "lensprof", "lensprof-paper": "lensprof as the paper", "hugin": "vig_optimize, same points",
           "hugin-2000": "vig_optimize -s 0 -p 2000", "hugin-3": "vig_optimize -s 3 (defaults)",
           "hugin-default": "vig_optimize, defaults"}

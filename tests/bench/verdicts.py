@@ -48,58 +48,61 @@ def pick(r, *values):
 
 def common(r, falloffs=FALLOFFS, balances=("0", "0.05", "0.2"), exif=([], ["--exif"])):
     return ["--response", pick(r, *RESPONSES), "--vignetting=" + pick(r, *falloffs),
-            "--wb", pick(r, *balances), "--noise", pick(r, "1", "2", "3"), "--format", pick(r, "png", "png", "jpeg", "tiff16"),
-            "--center=%.3f,%.3f" % (r.gauss(0, 0.015), r.gauss(0, 0.015))] + pick(r, *exif)
+            "--set", f"wb={pick(r, *balances)}", "--set", "noise=" + pick(r, "1", "2", "3"),
+            "--format", pick(r, "png", "png", "jpeg", "tiff16"),
+            "--set=center=%.3f,%.3f" % (r.gauss(0, 0.015), r.gauss(0, 0.015))] + pick(r, *exif)
 
 
 def smooth(r):
     return ["--scene", pick(r, "sky", "wall"), "--images", pick(r, "3", "5", "8"), "--size",
-            pick(r, "600x450", "800x600"), "--ev", pick(r, "0.3", "0.8", "1.5"), "--overlap",
-            pick(r, "0.25", "0.35", "0.5"), "--outliers", pick(r, "0", "0", "0.1", "0.3"), "--misalign",
-            pick(r, "0", "2", "5"), "--hfov", pick(r, "40", "50", "65"), *common(r)]
+            pick(r, "600x450", "800x600"), "--set", "ev=" + pick(r, "0.3", "0.8", "1.5"),
+            "--set", "overlap=" + pick(r, "0.25", "0.35", "0.5"), "--set", "outliers=" + pick(r, "0", "0", "0.1", "0.3"),
+            "--set", "misalign=" + pick(r, "0", "2", "5"), "--set", "hfov=" + pick(r, "40", "50", "65"), *common(r)]
 
 
 def hard(r):
     return ["--scene", pick(r, "foliage", "interior", "landscape"), "--images", pick(r, "3", "6", "12"), "--size",
-            pick(r, "600x450", "800x600"), "--ev", pick(r, "0.5", "1.5", "2.5"),
-            "--overlap", pick(r, "0.15", "0.3", "0.4"), "--parallax", pick(r, "0", "3", "8"), "--sharpen", pick(r, "0", "0.3", "0.8"), "--clip",
-            pick(r, "0", "0.03", "0.1"), "--objects", pick(r, "0", "0.1", "0.2"), "--misalign", pick(r, "0", "2", "5"),
-            "--outliers", pick(r, "0", "0", "0.1"), *common(r)]
+            pick(r, "600x450", "800x600"), "--set", "ev=" + pick(r, "0.5", "1.5", "2.5"),
+            "--set", "overlap=" + pick(r, "0.15", "0.3", "0.4"), "--set", "parallax=" + pick(r, "0", "3", "8"),
+            "--set", "sharpen=" + pick(r, "0", "0.3", "0.8"), "--set", "clip=" + pick(r, "0", "0.03", "0.1"),
+            "--set", "objects=" + pick(r, "0", "0.1", "0.2"), "--set", "misalign=" + pick(r, "0", "2", "5"),
+            "--set", "outliers=" + pick(r, "0", "0", "0.1"), *common(r)]
 
 
 def plain(r):
     return ["--scene", pick(r, "landscape", "wall", "foliage", "sky", "interior"), "--images", pick(r, "3", "5", "8"),
-            "--size", "600x450", "--ev", pick(r, "0.3", "1", "2"), *common(r)]
+            "--size", "600x450", "--set", "ev=" + pick(r, "0.3", "1", "2"), *common(r)]
 
 
 def tone_mapped(r):
-    return plain(r) + ["--local-tone", pick(r, "0.5", "1", "2")]
+    return plain(r) + ["--set", "local-tone=" + pick(r, "0.5", "1", "2")]
 
 
 def row(r, images, scenes=("landscape", "wall", "foliage", "interior"), overlap=("0.3", "0.4"), ev=("0.3", "0.8", "1.5"),
         **given):
     """A row of small pictures."""
     return ["--scene", pick(r, *scenes), "--images", pick(r, *images), "--size", pick(r, "600x450", "600x400"),
-            "--overlap", pick(r, *overlap), "--ev", pick(r, *ev), "--hfov", pick(r, "40", "50", "65"), *common(r, **given)]
+            "--set", f"overlap={pick(r, *overlap)}", "--set", "ev=" + pick(r, *ev),
+            "--set", "hfov=" + pick(r, "40", "50", "65"), *common(r, **given)]
 
 
 def little_overlap(r):
-    return row(r, ("3", "5", "7"), overlap=("0.1", "0.12", "0.15")) + ["--misalign", pick(r, "0", "1", "3")]
+    return row(r, ("3", "5", "7"), overlap=("0.1", "0.12", "0.15")) + ["--set", "misalign=" + pick(r, "0", "1", "3")]
 
 
 def few_pictures(r):
-    return row(r, ("2", "3"), overlap=("0.2", "0.3", "0.5")) + ["--misalign", pick(r, "0", "1", "3")]
+    return row(r, ("2", "3"), overlap=("0.2", "0.3", "0.5")) + ["--set", "misalign=" + pick(r, "0", "1", "3")]
 
 
 def constant_exposure(r):
     return row(r, ("6", "8", "12"), ev=("0",), balances=("0",), exif=([],)) + [
-        "--misalign", pick(r, "1", "2", "3"), "--parallax", pick(r, "0", "2", "4"),
-        "--objects", pick(r, "0", "0.05", "0.1")]
+        "--set", "misalign=" + pick(r, "1", "2", "3"), "--set", "parallax=" + pick(r, "0", "2", "4"),
+        "--set", "objects=" + pick(r, "0", "0.05", "0.1")]
 
 
 def moved_camera(r):
     return row(r, ("5", "6"), overlap=("0.4", "0.6")) + [
-        "--parallax", pick(r, "10", "20", "30"), "--objects", pick(r, "0", "0.1", "0.2")]
+        "--set", "parallax=" + pick(r, "10", "20", "30"), "--set", "objects=" + pick(r, "0", "0.1", "0.2")]
 
 
 def sky(r):
@@ -108,7 +111,7 @@ def sky(r):
 
 def one_view(r):
     """The camera stands on a tripod."""
-    return row(r, ("2", "3", "5"), overlap=("0.96", "0.975", "0.985")) + ["--jitter", pick(r, "0", "0.05", "0.2")]
+    return row(r, ("2", "3", "5"), overlap=("0.96", "0.975", "0.985")) + ["--set", "jitter=" + pick(r, "0", "0.05", "0.2")]
 
 
 def corrected(r):
@@ -162,13 +165,13 @@ def measure(sequence, tune, keep):
     folder = tools.WORK / "verdicts" / ("%s_%s_%03d" % (sequence.kind.replace(" ", "_"), "tune" if tune else "report",
                                                         sequence.number))
     shutil.rmtree(folder, ignore_errors=True)
-    subprocess.run([tools.LENSPROF, "simulate", "-o", str(folder), "--test-points", TEST_PAIRS, *sequence.arguments],
+    subprocess.run([tools.LENSPROF, "simulate", "-o", str(folder), "--set", f"test-points={TEST_PAIRS}", *sequence.arguments],
                    check=True, stdout=subprocess.DEVNULL)
     spoil(sequence.kind, folder, random.Random(sequence.number))
     truth = scorer.read_truth(folder / "truth.json", sequence.response)
     pairs = scorer.read_points(folder / "test_points.txt")
     sizes = tools.sizes_of_pto((folder / "pano.pto").read_text())
-    used, model = tools.run_lensprof(str(folder / "pano.pto"), str(folder / "lensprof"), ["--stored", "none"])
+    used, model = tools.run_lensprof(str(folder / "pano.pto"), str(folder / "lensprof"), ["--fit", "stored=none"])
     record = {"kind": sequence.kind, "number": sequence.number, "arguments": " ".join(sequence.arguments),
               "usable": used.get("usable", False), "evens": used.get("evens"),
               "reason": used.get("reason") or used.get("lost", ""), "reason_code": used.get("reason_code", ""),

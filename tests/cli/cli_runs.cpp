@@ -189,8 +189,8 @@ int make_scene(void **state) {
     if (make_folder(state) != 0) return -1;
     setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
     setenv("XDG_DATA_DIRS", in_folder("work/share").c_str(), 1);
-    must_exit(done,
-              {"simulate", "-o", in_folder("scene"), "--images", "4", "--size", "320x240", "--set", "test-points=1500"});
+    must_exit(done, {"simulate", "-o", in_folder("scene"), "--images", "4", "--size", "320x240", "--set",
+                     "test-points=1500"});
     must_exit(done, {"simulate", "-o", in_folder("mixed"), "--images", "6", "--size", "200x150", "--exif", "--format",
                      "png,png16,tiff,tiff16,tiff32,jpeg"});
     return 0;

@@ -48,7 +48,8 @@ inline std::vector<std::pair<std::string, std::string>> keys_of(const std::strin
     std::string option;
     std::vector<std::pair<std::string, std::string>> keys;
     for (std::string line; std::getline(lines, line);) {
-        const auto named = find_pattern("^  (-[a-z],)?(--[a-z-]+)", line), key = find_pattern("^   +([a-z-]+)=[^ ]+: ", line);
+        const auto named = find_pattern("^  (-[a-z],)?(--[a-z-]+)", line),
+                   key = find_pattern("^   +([a-z-]+)=[^ ]+: ", line);
         if (!named.empty())
             option = find_pattern("KEY=[A-Z]+,", line).empty() ? "" : line.substr(named[2].first, named[2].second);
         if (!key.empty() && !option.empty()) keys.emplace_back(option, line.substr(key[1].first, key[1].second));

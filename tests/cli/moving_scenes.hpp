@@ -1,5 +1,5 @@
-// Pictures of `simulate --set moving` with the output that structure from motion would give for them: points computed from
-// the scene itself.
+// Pictures of `simulate --set moving` with the output that structure from motion would give for them: points computed
+// from the scene itself.
 #pragma once
 
 #include <array>
@@ -64,9 +64,10 @@ public:
     MovingScene(const std::string &name, MovingKind kind, uint32_t images, const Words &more = {})
         : name_(name), width_(400), height_(300) {
         const std::string kind_name = kind == MovingKind::room ? "room" : "terrain";
-        must_exit(done, Words{"simulate", "-o", work(name), "--set", std::string("moving=") + kind_name, "--size", "400x300", "--images",
-                              std::to_string(images), "--set", "gloss=0,noise=1", "--format", "png"}
-                            + more);
+        must_exit(done,
+                  Words{"simulate", "-o", work(name), "--set", std::string("moving=") + kind_name, "--size", "400x300",
+                        "--images", std::to_string(images), "--set", "gloss=0,noise=1", "--format", "png"}
+                      + more);
         truth = parsed(text_of(work(name + "/truth.json")));
         const auto world = make_moving_world(kind, {1, images, width_, height_, 50, 1, 0});
         for (size_t i = 0; i < images; i++) poses_.push_back(pose_of(truth, i));

@@ -120,12 +120,13 @@ void test_build_finds_the_truth(void **) {
 void test_build_is_repeatable(void **) {
     const std::string once = must_exit(done, build_scene({}));
     assert_string_equal(timeless(once).c_str(), timeless(must_exit(done, build_scene({}))).c_str());
-    assert_string_not_equal(timeless(once).c_str(), timeless(must_exit(done, build_scene({"--fit", "seed=2"}))).c_str());
+    assert_string_not_equal(timeless(once).c_str(),
+                            timeless(must_exit(done, build_scene({"--fit", "seed=2"}))).c_str());
 }
 
 void test_build_table(void **) {
-    const std::string table =
-        must_exit(done, Words{"build", scene("pano.pto"), "--no-store", "--fit", "truth=" + scene("truth.json")} + quick);
+    const std::string table = must_exit(
+        done, Words{"build", scene("pano.pto"), "--no-store", "--fit", "truth=" + scene("truth.json")} + quick);
     for (const char *part :
          {"img000.png", "img003.png", "reference", "falloff", "response", "residual", "largest error"})
         assert_true(contains(table, part));
@@ -179,8 +180,8 @@ double pto_number(const std::string &pto, int image, const std::string &name) {
 void test_project_with_the_result(void **) {
     const std::string copy = copy_of("scene"), pto = copy + "/out.pto";
     edit(copy + "/pano.pto", "Eev0( .*img000)", "Eev7.5$1");  // Hugin counts from an absolute exposure value
-    const Json json = json_of(
-        Words{"build", copy + "/pano.pto", "--no-store", "--json", "--fit", "modes=5,pairs=600", "--write", std::string("pto=") + pto});
+    const Json json = json_of(Words{"build", copy + "/pano.pto", "--no-store", "--json", "--fit", "modes=5,pairs=600",
+                                    "--write", std::string("pto=") + pto});
     const std::string text = text_of(pto);
     for (int i = 0; i < 4; ++i) {
         const Json &image = json["images"][size_t(i)];
@@ -208,8 +209,8 @@ void test_project_with_the_result(void **) {
 void test_project_in_another_folder(void **) {
     const std::string copy = copy_of("scene", "pictures");
     fs::create_directories(work("projects/mine"));
-    must_exit(done,
-              Words{"build", copy + "/pano.pto", "--no-store", "--write", "pto=" + work("projects/mine/out.pto")} + quick);
+    must_exit(done, Words{"build", copy + "/pano.pto", "--no-store", "--write", "pto=" + work("projects/mine/out.pto")}
+                        + quick);
     assert_true(contains(text_of(work("projects/mine/out.pto")), "n\"../../pictures/img000.png\""));
     must_exit(done, {"apply", "--pto", work("projects/mine/out.pto"), "-o", work("corrected")});
     assert_true(fs::exists(work("corrected/img003.png")));
@@ -286,8 +287,10 @@ void test_variants_of_the_fit(void **) {
 // tracks again except for saturated observations.
 void test_method_radiance(void **) {
     const std::string points = work("tracks.txt"), db = work("tracks.db");
-    const Words words = Words{"build", scene("pano.pto"), "--json", "--fit", "method=radiance", "--db",
-                              db,      "--write", std::string("points=") + points,   "--fit", "pairs=800"};
+    const Words words = Words{"build", scene("pano.pto"), "--json",
+                              "--fit", "method=radiance", "--db",
+                              db,      "--write",         std::string("points=") + points,
+                              "--fit", "pairs=800"};
     const Json built = json_of(words), transfer = json_of(build_scene({}));
     assert_true(built["usable"].get<bool>());
     for (size_t i = 0; i < 4; ++i)
@@ -332,7 +335,8 @@ void test_store_query_show_remove(void **) {
     assert_int_equal(newest["matches"].get<int>(), 2);
     assert_int_equal(json_of(query + Words{"--lens", "Simulated Lens", "--aperture", "8"})["id"].get<int>(), 2);
     assert_int_equal(json_of(query
-                             + Words{"--lens", "Simulated Lens", "--aperture", "2.8", "--focal", "38.6", "--key", "maker=lensprof,processing=jpeg"})["matches"]
+                             + Words{"--lens", "Simulated Lens", "--aperture", "2.8", "--focal", "38.6", "--key",
+                                     "maker=lensprof,processing=jpeg"})["matches"]
                          .get<int>(),
                      2);
     for (const Words &other :
@@ -344,7 +348,8 @@ void test_store_query_show_remove(void **) {
         assert_true(contains(outcome.err, "lensprof: no profile for") && contains(outcome.err, work("profiles.db")));
         assert_true(contains(outcome.err, none["reason"].get<std::string>()));
     }
-    const Json raw = json_of(query + Words{"--camera", "Simulated Camera", "--aperture", "2.8", "--key", "processing=raw"});
+    const Json raw =
+        json_of(query + Words{"--camera", "Simulated Camera", "--aperture", "2.8", "--key", "processing=raw"});
     assert_true(raw["id"].is_null() && raw["lookup"]["response"]["from"] == "raw");  // its falloff, from other pictures
     assert_true(raw["response"]["kind"] == "linear");
 
@@ -406,8 +411,9 @@ void test_forced(void **) {
 // simulate.
 
 void test_simulate_is_repeatable(void **) {
-    const Words words = {"simulate", "--images",        "3",        "--size", "64x48",
-                         "--format", "png,tiff16,jpeg", "--set", "points=200",    "--set", "test-points=100",      "--set", "outliers=0.02",     "-o"};
+    const Words words = {"simulate",        "--images", "3",          "--size", "64x48",           "--format",
+                         "png,tiff16,jpeg", "--set",    "points=200", "--set",  "test-points=100", "--set",
+                         "outliers=0.02",   "-o"};
     must_exit(done, words + Words{work("a")});
     must_exit(done, words + Words{work("b")});
     must_exit(done, Words{"simulate", "--seed", "2"} + Words(words.begin() + 1, words.end()) + Words{work("c")});

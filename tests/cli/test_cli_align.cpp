@@ -101,12 +101,13 @@ void test_mean_and_json(void **) {
 
 // A rendered panorama: the camera moves and has a falloff, which the result does not have.
 void test_moving_camera(void **) {
-    must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--set", "ev=1,noise=1"});
+    must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--set",
+                     "ev=1,noise=1"});
     const std::string pto = work("pano/pano.pto");
     for (const char *method : {"transfer", "transfer-function"}) {
         const std::string out = work(std::string("aligned-") + method);
-        const Json json =
-            json_of({"align", "--fit", std::string("method=") + method, "--project", pto, "--to", "first", "-o", out, "--json"});
+        const Json json = json_of({"align", "--fit", std::string("method=") + method, "--project", pto, "--to", "first",
+                                   "-o", out, "--json"});
         assert_int_equal(json["frames"].size(), 5);
         assert_true(json["residual"]["heldout_median"].get<double>() < 2.0);
         // A fit of the aligned frames finds no falloff and equal exposures: nothing that is better than no correction.
@@ -202,8 +203,8 @@ void test_inputs_stay(void **) {
 }
 
 void test_build_by_transfer_functions(void **) {
-    must_exit(done,
-              {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--set", "ev=1"});
+    must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--set",
+                     "ev=1"});
     const Json json =
         json_of({"build", work("pano/pano.pto"), "--db", work("p.db"), "--fit", "method=transfer-function", "--json"});
     assert_true(json["usable"].get<bool>());

@@ -105,8 +105,8 @@ void test_linear_is_float(void **) {
 void test_simulate_undoes_correct(void **) {
     must_exit(done, {"apply", "--pto", make_project(), "--set", "exposure=keep", "-o", work("once")});
     fs::copy(work("in/pano.pto"), work("once/pano.pto"));
-    must_exit(done, {"apply", "--pto", work("once/pano.pto"), "--set", "exposure=keep,simulate=yes", "-o",
-                     work("twice")});
+    must_exit(done,
+              {"apply", "--pto", work("once/pano.pto"), "--set", "exposure=keep,simulate=yes", "-o", work("twice")});
     for (size_t i = 0; i < 3; ++i) {
         const Picture before = read_picture(picture_name(i)),
                       after = read_picture(work("twice/p" + std::to_string(i) + ".tif"));
@@ -167,7 +167,8 @@ void test_strength_cap_and_dither(void **) {
             if (x < 8 && y < 8) sum[0] += dithered.pixels[at], sum[1] += 40 / m;
         }
     assert_close(sum[0] / 64, sum[1] / 64, 0.1);
-    for (const Words &wrong : {Words{"--set", "strength=1.5"}, Words{"--set", "gain-cap=0.5"}, Words{"--set", "strength=nan"}})
+    for (const Words &wrong :
+         {Words{"--set", "strength=1.5"}, Words{"--set", "gain-cap=0.5"}, Words{"--set", "strength=nan"}})
         must_exit(usage, words + wrong + Words{"-o", work("none")});
     assert_false(fs::exists(work("none")));
 }
@@ -208,7 +209,8 @@ void test_overlaps_agree_better(void **) {
     const std::string copy = copy_of("scene");
     must_exit(done, {"build", copy + "/pano.pto", "--no-store", "--write", std::string("pto=") + copy + "/out.pto"});
     for (const char *exposure : {"mean", "reference"}) {
-        must_exit(done, {"apply", "--pto", copy + "/out.pto", "--set", std::string("exposure=") + exposure, "-o", work(exposure)});
+        must_exit(done, {"apply", "--pto", copy + "/out.pto", "--set", std::string("exposure=") + exposure, "-o",
+                         work(exposure)});
         const double before = disagreement(in_folder("scene")), after = disagreement(work(exposure));
         if (!(before > 10 && after < 3.5))
             fail_msg("%s: median difference: %.1f levels before, %.1f after", exposure, before, after);
@@ -263,7 +265,8 @@ void test_profile_by_id_or_exif(void **) {
     const Words db = {"--db", work("p.db")};
     must_exit(done, Words{"build", scene("pano.pto")} + quick + db);
     must_exit(done, Words{"build", scene("pano.pto"), "--fit", "seed=2"} + quick + db);
-    const Json by_exif = json_of(Words{"apply", "--profile", "auto", "--json", "-o", work("exif"), scene("img001.png")} + db);
+    const Json by_exif =
+        json_of(Words{"apply", "--profile", "auto", "--json", "-o", work("exif"), scene("img001.png")} + db);
     assert_int_equal(by_exif["pictures"][0]["profile"].get<int>(), 2);  // the newest
     must_exit(done, Words{"apply", "--profile", "2", "-o", work("two"), scene("img001.png")} + db);
     must_exit(done, Words{"apply", "--profile", "1", "-o", work("one"), scene("img001.png")} + db);

@@ -42,7 +42,7 @@ int make_db(void **state) {
 }
 
 Words export_of(const std::string &file, const std::string &id = "1") {
-    return {"profile", "export", id, "--blob", file, "--db", work("p.db")};
+    return {"profile", "export", id, "-o", file, "--format", "blob", "--db", work("p.db")};
 }
 
 std::string crc_of(const Bytes &blob) {
@@ -62,7 +62,7 @@ void test_export_is_what_the_library_packs(void **) {
                                             expected.data(), expected.size(), &bytes));
             expected.resize(bytes);
             Words words = export_of(work("camera.blob"), id);
-            if (with_covariance) words.push_back("--encoding", "covariance=yes");
+            if (with_covariance) words = words + Words{"--encoding", "covariance=yes"};
             const std::string text = must_exit(done, words);
             assert_true(load(work("camera.blob")) == expected);
             for (const std::string &part : {work("camera.blob"), "profile " + std::string(id),
@@ -125,10 +125,11 @@ void test_export_replaces_a_file_whole(void **) {
 
 void test_export_refuses(void **) {
     assert_refused(not_found, export_of(work("camera.blob"), "7"), {work("p.db"), "7"});
-    assert_refused(not_found, {"profile", "export", "1", "--blob", work("b"), "--db", work("none.db")},
+    assert_refused(not_found, {"profile", "export", "1", "-o", work("b"), "--format", "blob", "--db", work("none.db")},
                    {work("none.db")});
     save_text(work("text.db"), std::string(300, 'x') + "\n");
-    assert_refused(store_failed, {"profile", "export", "1", "--blob", work("b"), "--db", work("text.db")},
+    assert_refused(store_failed,
+                   {"profile", "export", "1", "-o", work("b"), "--format", "blob", "--db", work("text.db")},
                    {work("text.db")});
     assert_refused(failed, export_of(work("none/camera.blob")), {work("none/camera.blob")});
     fs::create_directory(work("folder"));
@@ -191,14 +192,12 @@ void test_options_that_do_not_fit(void **) {
     const Words db = {"--db", work("p.db")};
     const Words wrong[] = {{"profile", "export"},
                            {"profile", "export", "1"},
-                           {"profile", "export", "--blob", blob},
-                           {"profile", "export", "1", "2", "--blob", blob},
-                           {"profile", "export", "0", "--blob", blob},
-                           {"profile", "export", "1", "--blob"},
-                           {"profile", "export", "1", "--blob", blob, "--chart"},
-                           {"profile", "export", "1", "--blob", blob, "--camera", "Camera"},
-                           {"profile", "export", "1", "--blob", blob, "--format", "json"},
-                           {"profile", "export", "1", "--blob", blob, "-o", work("other.json")},
+                           {"profile", "export", "-o", blob},
+                           {"profile", "export", "1", "2", "-o", blob},
+                           {"profile", "export", "0", "-o", blob},
+                           {"profile", "export", "1", "-o"},
+                           {"profile", "export", "1", "-o", blob, "--chart"},
+                           {"profile", "export", "1", "-o", blob, "--camera", "Camera"},
                            {"profile", "export", "1", "-o", work("other.json"), "--encoding", "covariance=yes"},
                            {"profile", "export", "1", "-o", work("other.unknown")},
                            {"profile", "export", "1", "-o", work("other.xmp")},

@@ -96,7 +96,8 @@ void test_names_that_look_like_numbers(void **) {
 // A forced result is marked as forced, however long the method's name is.
 void test_forced(void **) {
     const Words files = shots(five);
-    must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--fit", "pairs=4000,method=debevec", "--force", "--ev", "-3,-1.5,0,1.5,3"}));
+    must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--fit", "pairs=4000,method=debevec",
+                                          "--force", "--ev", "-3,-1.5,0,1.5,3"}));
     const Json shown = json_of({"profile", "show", "1", "--db", work("p.db"), "--json"});
     assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "bracket debevec");
     assert_true(shown["provenance"]["forced"].get<bool>());
@@ -131,8 +132,8 @@ void test_debevec(void **) {
     assert_int_equal(reversed.code, not_usable);
     assert_true(contains(reversed.err, "falls"));
     assert_refused(usage, bracket(files, debevec), {files[0], "--ev", "--times"});
-    for (const Words &wrong :
-         {Words{"--fit", "modes=5"}, Words{"--fit", "modes-only=yes"}, Words{"--fit", "loss=huber"}, Words{"--fit", "gamma-from=prior"}})
+    for (const Words &wrong : {Words{"--fit", "modes=5"}, Words{"--fit", "modes-only=yes"},
+                               Words{"--fit", "loss=huber"}, Words{"--fit", "gamma-from=prior"}})
         assert_refused(usage, bracket(files, debevec + Words{"--ev", list_of(five)} + wrong), {wrong[0], "debevec"});
     for (size_t i = 0; i + 1 < files.size(); ++i) state_exposure(files[i], five[i]);
     assert_refused(usage, bracket(files, debevec), {files[4]});
@@ -164,22 +165,38 @@ Bytes stored_database() {
 void test_refused_options(void **) {
     stored_database();
     const Words files = shots(three);
-    for (const Words &wrong : {Words{"--ev", "1,2"},          Words{"--ev", "1,2,3,4"},
-                               Words{"--ev", "1,2,three"},    Words{"--ev", "1,2,"},
-                               Words{"--ev", "1,,2"},         Words{"--ev", "1,2,nan"},
-                               Words{"--ev", "1,2,inf"},      Words{"--ev", "1,2,65"},
-                               Words{"--ev", "1;2;3"},        Words{"--ev", "1,2,3x"},
-                               Words{"--ev", "1,2,1e400"},    Words{"--ev", ""},
-                               Words{"--times", "1,2"},       Words{"--times", "1,2,0"},
-                               Words{"--times", "1,2,-1"},    Words{"--times", "1,2,1/0"},
-                               Words{"--times", "1,2,1/-8"},  Words{"--times", "1,2,1/"},
-                               Words{"--times", "1,2,1e-10"}, Words{"--times", ""},
-                               Words{"--fit", "ev-sigma=0"},      Words{"--fit", "ev-sigma=nan"},
-                               Words{"--fit", "max-side=10"},     Words{"--fit", "black=-1"},
-                               Words{"--fit", "black=255"},       Words{"--fit", "white-balance=warm"},
-                               Words{"--fit", "modes=26"},        Words{"--fit", "modes=x"},
-                               Words{"--fit", "pairs=-1"},        Words{"--fit", "seed=x"},
-                               Words{"--fit", "method=guess"},    Words{"--fit", "gamma-from=guess"},
+    for (const Words &wrong : {Words{"--ev", "1,2"},
+                               Words{"--ev", "1,2,3,4"},
+                               Words{"--ev", "1,2,three"},
+                               Words{"--ev", "1,2,"},
+                               Words{"--ev", "1,,2"},
+                               Words{"--ev", "1,2,nan"},
+                               Words{"--ev", "1,2,inf"},
+                               Words{"--ev", "1,2,65"},
+                               Words{"--ev", "1;2;3"},
+                               Words{"--ev", "1,2,3x"},
+                               Words{"--ev", "1,2,1e400"},
+                               Words{"--ev", ""},
+                               Words{"--times", "1,2"},
+                               Words{"--times", "1,2,0"},
+                               Words{"--times", "1,2,-1"},
+                               Words{"--times", "1,2,1/0"},
+                               Words{"--times", "1,2,1/-8"},
+                               Words{"--times", "1,2,1/"},
+                               Words{"--times", "1,2,1e-10"},
+                               Words{"--times", ""},
+                               Words{"--fit", "ev-sigma=0"},
+                               Words{"--fit", "ev-sigma=nan"},
+                               Words{"--fit", "max-side=10"},
+                               Words{"--fit", "black=-1"},
+                               Words{"--fit", "black=255"},
+                               Words{"--fit", "white-balance=warm"},
+                               Words{"--fit", "modes=26"},
+                               Words{"--fit", "modes=x"},
+                               Words{"--fit", "pairs=-1"},
+                               Words{"--fit", "seed=x"},
+                               Words{"--fit", "method=guess"},
+                               Words{"--fit", "gamma-from=guess"},
                                Words{"--fit", "gamma-from=known"}})
         assert_refused(usage, bracket(files, Words{"--db", work("p.db"), "--camera", "X"} + wrong), {wrong[0]});
     assert_refused(usage, bracket(files, {"--ev", "1,2,3", "--times", "1,2,3", "--no-store"}), {"--ev", "--times"});
@@ -242,7 +259,8 @@ void test_pictures_that_show_no_response(void **) {
 
 // Hand-held plain pictures of one view: what `build` advises works.
 void test_one_view(void **) {
-    must_exit(done, {"simulate", "-o", work("plain"), "--images", "2", "--set", "overlap=0.99,jitter=0,noise=1", "--size", "320x240", "--set", "ev=1.5", "--seed", "1"});
+    must_exit(done, {"simulate", "-o", work("plain"), "--images", "2", "--set", "overlap=0.99,jitter=0,noise=1",
+                     "--size", "320x240", "--set", "ev=1.5", "--seed", "1"});
     const Outcome built = run_words({"build", work("plain/pano.pto"), "--no-store"});
     assert_int_equal(built.code, not_usable);
     assert_true(contains(built.err, "use bracket or align for plain exposures (no HDR) from a tripod"));

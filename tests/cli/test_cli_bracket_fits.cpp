@@ -54,7 +54,8 @@ void test_other_responses(void **) {
     const Json refined = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five)}));
     assert_recovered(refined, five, 1.5, kink);
     assert_string_equal(refined["response"]["kind"].get<std::string>().c_str(), "table");
-    const Json modes = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five), "--fit", "modes-only=yes"}));
+    const Json modes =
+        json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five), "--fit", "modes-only=yes"}));
     assert_string_equal(modes["response"]["kind"].get<std::string>().c_str(), "emor");
     assert_true(heldout(refined) < heldout(modes));
 }
@@ -99,8 +100,9 @@ void test_other_wrong_metadata(void **) {
     for (const Case &one : cases)
         for (const char *method : {"transfer", "radiance", "transfer-function"}) {
             const Words files = shots(one.truth);
-            const Words words =
-                bracket(files, no_store + Words{"--fit", std::string("method=") + method, "--fit", "ev-sigma=0.1", "--ev", list_of(one.stated)});
+            const Words words = bracket(files, no_store
+                                                   + Words{"--fit", std::string("method=") + method, "--fit",
+                                                           "ev-sigma=0.1", "--ev", list_of(one.stated)});
             const std::string reason = json_of(words)["reason"].get<std::string>();
             if (!contains(reason, one.word) || (one.named != none && !contains(reason, files[one.named])))
                 fail_msg("%s of %s: %s", method, list_of(one.stated).c_str(), reason.c_str());
@@ -122,7 +124,8 @@ void test_known_exposures_hold_gamma(void **) {
         like.response = response;
         const Words files = shots(evs, like);
         for (const char *method : {"transfer", "radiance", "transfer-function"}) {
-            const Json json = json_of(bracket(files, no_store + Words{"--fit", std::string("method=") + method, "--ev", list_of(evs)}));
+            const Json json = json_of(
+                bracket(files, no_store + Words{"--fit", std::string("method=") + method, "--ev", list_of(evs)}));
             for (size_t i = 0; i < evs.size(); ++i) {
                 const double off = std::fabs(found_ev(json, i) - found_ev(json, 0) - (evs[i] - evs[0]));
                 const double sigma = json["images"][i]["ev_sigma"].get<double>();
@@ -165,7 +168,8 @@ void test_changed_light_is_refused(void **) {
 void test_one_exposure_is_refused(void **) {
     const Words files = shots({0.0, 0.02, -0.02});
     for (const char *method : {"transfer", "radiance", "transfer-function"}) {
-        const Json json = json_of(bracket(files, no_store + Words{"--fit", std::string("method=") + method}), not_usable);
+        const Json json =
+            json_of(bracket(files, no_store + Words{"--fit", std::string("method=") + method}), not_usable);
         assert_string_equal(json["reason_code"].get<std::string>().c_str(), "exposures_alike");
     }
     must_exit(not_usable, bracket(files, no_store + Words{"--ev", "0,2,-2"}));

@@ -74,8 +74,8 @@ void test_gamma_from_the_prior(void **) {
 void test_gamma_known(void **) {
     const std::string path = linear_scene(), pto = path + "/found.pto";
     const Json found = json_of(build(path, {"--fit", "gamma-from=exif,modes=5", "--write", std::string("pto=") + pto}));
-    const Json json = json_of(
-        {"build", pto, "--no-store", "--json", "--fit", "pairs=2000,gamma-from=known,exif-sigma=0"});
+    const Json json =
+        json_of({"build", pto, "--no-store", "--json", "--fit", "pairs=2000,gamma-from=known,exif-sigma=0"});
     assert_gamma(json, "known");
     assert_close(json["gamma"]["sigma"].get<double>(), 0.0, 0.0);
     assert_close(slope(json, path), 1.0, 0.05);
@@ -130,8 +130,7 @@ void test_another_reference_beside_held_exposures(void **) {
     edit(pto, "\nv E[^\n]*", "");
     edit(pto, "\nv ?\n", "\nv Eev1 Er1 Eb1\nv\n");
     const Json first = json_of({"build", pto, "--no-store", "--json", "--fit", "exif-sigma=0"}, not_usable);
-    const Json other =
-        json_of({"build", pto, "--no-store", "--json", "--fit", "exif-sigma=0,reference=1"}, not_usable);
+    const Json other = json_of({"build", pto, "--no-store", "--json", "--fit", "exif-sigma=0,reference=1"}, not_usable);
     const double moved = first["images"][1]["ev"].get<double>();
     size_t compared = 0;  // contradicting held exposures can leave an image out, the same one in both
     for (size_t i : {0u, 2u, 3u}) {
@@ -147,8 +146,10 @@ void test_another_reference_beside_held_exposures(void **) {
 // Small pictures of one manual exposure: a strip of 28 stays level, by EXIF or since no picture shows a difference.
 void test_a_strip_at_one_manual_exposure(void **) {
     const std::string path = work("strip");
-    must_exit(done, {"simulate", "-o",        path,       "--size",  "200x150",   "--set", "hfov=12",
-                     "--set", "jitter=0.4",       "--images", "28",      "--set", "overlap=0.25",   "--set", "ev=0",        "--set", "mean-ev=-1",       "--set", "noise=5",         "--exif", "--set", "exif-manual=yes"});
+    must_exit(done,
+              {"simulate",   "-o",       path,      "--size", "200x150",      "--set",          "hfov=12", "--set",
+               "jitter=0.4", "--images", "28",      "--set",  "overlap=0.25", "--set",          "ev=0",    "--set",
+               "mean-ev=-1", "--set",    "noise=5", "--exif", "--set",        "exif-manual=yes"});
     const Json known = json_of(build(path, {"--fit", "stored=none"}));
     const Json unknown = json_of(build(path, {"--fit", "stored=none,exif-sigma=0"}));
     const Json paper = json_of(build(path, {"--fit", "stored=none,exif-sigma=0,prior=0"}));
@@ -185,10 +186,11 @@ void test_known_is_said(void **) {
 
 void test_refused_options(void **) {
     const std::string path = linear_scene();
-    for (const Words &words : {Words{"--fit", "gamma-from=guess"}, Words{"--fit", "gamma-from="}, Words{"--fit", "exif-sigma=-0.1"},
-                               Words{"--fit", "exif-sigma=nan"}, Words{"--fit", "exif-sigma=11"},
-                               Words{"--fit", "camera-kind=scanner"}, Words{"--fit", "gamma-from=exif,exif-sigma=0"},
-                               Words{"--fit", "falloff-curves=2"}, Words{"--fit", "falloff-curves=4"}})
+    for (const Words &words :
+         {Words{"--fit", "gamma-from=guess"}, Words{"--fit", "gamma-from="}, Words{"--fit", "exif-sigma=-0.1"},
+          Words{"--fit", "exif-sigma=nan"}, Words{"--fit", "exif-sigma=11"}, Words{"--fit", "camera-kind=scanner"},
+          Words{"--fit", "gamma-from=exif,exif-sigma=0"}, Words{"--fit", "falloff-curves=2"},
+          Words{"--fit", "falloff-curves=4"}})
         assert_refused(usage, build(path, words), {words[0]});
     assert_refused(usage, build(path, {"--force"}), {"--no-store and --force", "omit one of them"});
     assert_refused(usage, {"bracket", path + "/img000.tif", path + "/img001.tif", "--no-store", "--force"},

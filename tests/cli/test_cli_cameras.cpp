@@ -26,9 +26,13 @@ std::string two_cameras() { return in_folder("pair"); }
 // Pictures of one scene, alternating between two cameras with different response and falloff.
 int make_pictures(void **state) {
     if (make_folder(state) != 0) return -1;
-    const Words same{"--images", std::to_string(kImages),
-                     "--seed",   "12",
-                     "--exif",   "--set", "overlap=0.72",     "--set", "noise=1",        "--set", "mean-ev=-1",       "--set", "jitter=1"};
+    const Words same{"--images",     std::to_string(kImages),
+                     "--seed",       "12",
+                     "--exif",       "--set",
+                     "overlap=0.72", "--set",
+                     "noise=1",      "--set",
+                     "mean-ev=-1",   "--set",
+                     "jitter=1"};
     must_exit(
         done,
         Words{"simulate", "-o", two_cameras(), "--response", "emor:1.2,-0.3", "--vignetting=-0.45,0.12,-0.1"} + same);
@@ -84,8 +88,8 @@ void test_project(void **) {
     const std::string text = must_exit(done, {"build", project(), "--no-store"});
     assert_true(contains(text, "camera    Other X100, 6 pictures; the light of "));
     assert_true(contains(text, "setting   Other X100, "));
-    assert_int_equal(json_of(Words{"build", project(), "--fit", "method=transfer-function"} + quietly)["cameras"].size(),
-                     2);
+    assert_int_equal(
+        json_of(Words{"build", project(), "--fit", "method=transfer-function"} + quietly)["cameras"].size(), 2);
 }
 
 void test_one_lens_takes_all_as_one(void **) {
@@ -139,8 +143,8 @@ void test_profiles(void **) {
 }
 
 double seams(const std::string &folder) {
-    Words words{"build",      project(),  "--write", "points=" + work("seams.txt"), "--json",
-                "--no-store", "--fit", "stored=none",         "--one-lens"};
+    Words words{"build", project(),     "--write",   "points=" + work("seams.txt"), "--json", "--no-store",
+                "--fit", "stored=none", "--one-lens"};
     fs::remove(work("seams.txt"));
     const std::string copy = work("seams");
     fs::remove_all(copy);
@@ -167,8 +171,7 @@ void test_apply(void **) {
     const double before = seams(two_cameras()), after = seams(out);
     print_message("before %.2f, after %.2f levels\n", before, after);
     assert_true(after < 0.15 * before);
-    assert_false(
-        contains(run_words({"apply", "--pto", result, "--set", "exposure=keep", "-o", kept}).err, "several"));
+    assert_false(contains(run_words({"apply", "--pto", result, "--set", "exposure=keep", "-o", kept}).err, "several"));
     assert_true(seams(kept) > 2.0 * after);
     // The same with profiles from a database, which has both.
     const std::string db = work("both.db"), by_db = work("by_db");

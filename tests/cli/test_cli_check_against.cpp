@@ -137,7 +137,8 @@ void test_parts(void **) {
 // Each channel has its own curve: a single falloff is worse than three.
 void test_three_channels(void **) {
     const char *falloffs = "-0.3,0,0,-0.4,0.1,-0.1,-0.5,0.1,0";
-    must_exit(done, {"build", pictures("colours1", "4", falloffs), "--fit", "falloff-curves=3", "--db", db(), "--fit", "stored=none", "--lens", "colours"});
+    must_exit(done, {"build", pictures("colours1", "4", falloffs), "--fit", "falloff-curves=3", "--db", db(), "--fit",
+                     "stored=none", "--lens", "colours"});
     const std::string colours = pictures("colours", "5", falloffs);
     const Json json = measured("1 8", colours);
     assert_int_equal(json["best"], 8);

@@ -24,7 +24,11 @@ int prepare(void **state) {
 
 // A build with every option that writes files.
 Words build_of(const std::string &pto) {
-    return Words{"build",          pto,         "--db",          work("p.db"), "--camera", "X", "--write", "points=" + work("left.txt"), "--write", "pto=" + work("left.pto")}
+    return Words{"build",    pto,
+                 "--db",     work("p.db"),
+                 "--camera", "X",
+                 "--write",  "points=" + work("left.txt"),
+                 "--write",  "pto=" + work("left.pto")}
            + quick;
 }
 
@@ -44,7 +48,8 @@ void test_missing_picture(void **) {
         assert_refused(unreadable, build_of(copy + "/pano.pto"), {copy + "/" + name});
         assert_refused(unreadable, {"apply", "--profile", "1", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
                        {copy + "/" + name});
-        assert_refused(unreadable, {"apply", "--profile", "auto", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
+        assert_refused(unreadable,
+                       {"apply", "--profile", "auto", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
                        {copy + "/" + name});
     }
 }
@@ -223,13 +228,14 @@ void test_outputs_that_meet(void **) {
     assert_refused(usage, build + Words{"--write", std::string("pto=") + pto}, {pto});
     assert_refused(usage, build + Words{"--write", std::string("pto=") + db}, {db});
     assert_refused(usage, build + Words{"--write", std::string("points=") + copy + "/img001.png"}, {"img001.png"});
-    assert_refused(usage, build + Words{"--write", "points=" + work("same"), "--write", "pto=" + work("same")}, {"same"});
+    assert_refused(usage, build + Words{"--write", "points=" + work("same"), "--write", "pto=" + work("same")},
+                   {"same"});
 }
 
 // Bytes that are not UTF-8 in names and options: stored as question marks, printed as U+FFFD.
 void test_text_that_is_not_utf8(void **) {
-    const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json",
-                               "--fit", "pairs=600,modes=3"});
+    const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json", "--fit",
+                               "pairs=600,modes=3"});
     assert_true(json["profile"].is_number());
     const Json list = json_of({"profile", "list", "--db", work("p.db"), "--json"});
     assert_true(contains(list.dump(), "X?"));
@@ -239,8 +245,8 @@ void test_text_that_is_not_utf8(void **) {
 void test_apply_without_a_result(void **) {
     assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--write pto"});
     assert_refused(usage,
-                   {"apply", "--profile", "1", "--db", work("p.db"), "--set", "exposure=mean", "-o",
-                    work("corrected"), scene("img000.png")},
+                   {"apply", "--profile", "1", "--db", work("p.db"), "--set", "exposure=mean", "-o", work("corrected"),
+                    scene("img000.png")},
                    {"--pto"});
 }
 
@@ -300,7 +306,8 @@ void test_no_database(void **) {
     assert_refused(not_found, Words{"profile", "remove", "1"} + db, {work("none.db")});
     assert_refused(usage, {"apply", "--profile", "auto", "-o", work(""), scene("img000.png"), "--db", ""},
                    {"--db", "empty file name"});
-    assert_refused(not_found, Words{"apply", "--profile", "auto", "-o", work(""), scene("img000.png")} + db, {work("none.db")});
+    assert_refused(not_found, Words{"apply", "--profile", "auto", "-o", work(""), scene("img000.png")} + db,
+                   {work("none.db")});
 }
 
 void test_no_such_profile(void **) {
@@ -311,7 +318,8 @@ void test_no_such_profile(void **) {
                    {work("p.db"), "7"});
     assert_refused(not_found, Words{"query", "--camera", "Other Camera"} + db, {work("p.db"), "Other Camera"});
     write_picture(work("bare.png"), make_smooth(40, 30, LENSPROF_LAYOUT_RGB));
-    assert_refused(not_found, Words{"apply", "--profile", "auto", "-o", in_folder("work/out/../.."), work("bare.png")} + db,
+    assert_refused(not_found,
+                   Words{"apply", "--profile", "auto", "-o", in_folder("work/out/../.."), work("bare.png")} + db,
                    {work("bare.png")});
 }
 

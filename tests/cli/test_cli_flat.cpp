@@ -120,8 +120,8 @@ void test_the_card_is_corrected(void **) {
             const Outcome outcome = run_words(measure);
             assert_int_equal(outcome.code, done);
             assert_false(contains(outcome.err, "note:"));
-            assert_int_equal(json_of(Words{"profile", "list", "--json", "--key", "processing=raw"} + db)["profiles"].size(),
-                             1);
+            assert_int_equal(
+                json_of(Words{"profile", "list", "--json", "--key", "processing=raw"} + db)["profiles"].size(), 1);
             must_exit(done, Words{"apply"} + setting + db + out);
         } else {
             assert_refused(usage, measure, {file, "is not marked as linear", "--linear"});
@@ -246,8 +246,7 @@ void test_grey_pictures_and_the_grid(void **) {
     Card card;
     card.layout = LENSPROF_LAYOUT_GREY;
     const std::string path = shoot("grey.png", card);
-    const Json json =
-        json_of(flat({path, "--linear", "--no-store", "--json", "--fit", "grid=always,center=fixed"}));
+    const Json json = json_of(flat({path, "--linear", "--no-store", "--json", "--fit", "grid=always,center=fixed"}));
     assert_int_equal(json["vignetting"]["k"].size(), 1);
     assert_true(json["gain_grid"]["columns"].get<int>() > 4);
     assert_int_equal(json["gain_grid"]["attenuation"].size(), 1);

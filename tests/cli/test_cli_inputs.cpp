@@ -91,8 +91,8 @@ std::string sparse(const std::string &name, uint64_t bytes) {
 void test_files_that_are_too_large(void **) {
     const std::string pto = sparse(work("65.pto"), uint64_t(65) << 20), json = work("65.json");
     fs::copy(pto, json);
-    for (const Words &words :
-         {build(pto), build(scene("pano.pto"), {"--fit", std::string("truth=") + pto}), Words{"profile", "import", json}}) {
+    for (const Words &words : {build(pto), build(scene("pano.pto"), {"--fit", std::string("truth=") + pto}),
+                               Words{"profile", "import", json}}) {
         const Outcome outcome = run_child(words);
         assert_int_equal(outcome.code, unreadable);
         assert_true(contains(outcome.err, "exceeds the maximum size of such a file"));
@@ -196,7 +196,8 @@ void test_files_in_place_of_folders(void **) {
     for (const std::string &name : {file + "/x.db", file + "/deeper/x.db"})
         assert_refused(store_failed, {"build", pto, "--db", name}, {name + ": " + file + " is not a folder"});
     for (const std::string &name : {std::string("/dev/full"), scene("")})
-        assert_refused(usage, build(pto, {"--write", std::string("points=") + name}), {name + ": ", "give the name of a file"});
+        assert_refused(usage, build(pto, {"--write", std::string("points=") + name}),
+                       {name + ": ", "give the name of a file"});
 }
 
 // Values that a profile cannot hold are not truncated silently.

@@ -92,7 +92,8 @@ void test_memory_of_a_map(void **) {
         R"({"schema":1,"key":{"camera_model":"C","lens":"L","focal_mm":35,"processing":"jpeg"},"vignetting":)"
         R"({"k":[[-0.4,0.1,-0.1],[-0.3,0.1,-0.1],[-0.4,0.1,-0.1]],"center":[0,0]},"response":{"kind":"linear"}})");
     assert_int_equal(run_program({"profile", "import", work("three.json"), "--db", work("map.db")}).code, done);
-    const Words words = {"profile", "export", "1", "--db", work("map.db"), "-o", work("map.tif"), "--encoding", "frame=800x800"};
+    const Words words = {"profile", "export",        "1",          "--db",         work("map.db"),
+                         "-o",      work("map.tif"), "--encoding", "frame=800x800"};
     const long few = peak_of(words + Words{"--encoding", "grid=2x2"}), many = peak_of(words);
     assert_in_range(many - few, 0, 14 * 3 * 800 * 800);
 }

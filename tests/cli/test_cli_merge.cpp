@@ -142,8 +142,8 @@ void test_openexr(void **) {
     fs::create_directories(work("other"));
     fs::copy_file(frames[1], other);
     assert_refused(usage,
-                   {"apply", "--profile", "1", "--db", work("c.db"), "--linear", "--encoding", "linear=exr", other, "-o",
-                    work("light")},
+                   {"apply", "--profile", "1", "--db", work("c.db"), "--linear", "--encoding", "linear=exr", other,
+                    "-o", work("light")},
                    {"light/h0.exr", "made from another picture (h0.png)", "--overwrite"});
     assert_refused(usage, {"align", "--merge", work("hdr.exr"), other, frames[0]}, {"hdr.exr", "--overwrite"});
 #ifdef LENSPROF_HAS_OPENEXR

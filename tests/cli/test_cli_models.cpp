@@ -112,8 +112,8 @@ void test_words_in_place_of_exif(void **) {
     const std::string raw = make_picture("b.tif", "Camera", "Lens 50mm", LENSPROF_SAMPLE_F32);
     must_exit(done, {"apply", "-o", work("out"), raw});
     assert_corner(work("out/b.tif"), by_linear);
-    must_exit(done,
-              {"apply", "-o", work("word"), "--key", "processing=raw", "--camera", "Camera", "--lens", "Lens 50mm", file});
+    must_exit(done, {"apply", "-o", work("word"), "--key", "processing=raw", "--camera", "Camera", "--lens",
+                     "Lens 50mm", file});
     assert_corner(work("word/a.png"), by_linear);
 }
 
@@ -158,7 +158,8 @@ void test_corrected_in_camera(void **) {
     assert_refused(not_found, {"apply", "--profile", "2", "-o", work("out"), file}, {by});
     assert_refused(not_found, words + Words{"--set", "response=srgb", "-o", work("out"), file}, {by});
     for (const Words &how : {Words{"--lens", "JPEG 35mm"}, Words{"--profile", "2"}}) {
-        const Outcome forced = run_words(Words{"apply", "--set", "force-falloff=yes", "-o", work("forced"), file} + how);
+        const Outcome forced =
+            run_words(Words{"apply", "--set", "force-falloff=yes", "-o", work("forced"), file} + how);
         assert_int_equal(forced.code, done);
         assert_true(contains(forced.err, std::string("note: ") + file + ": " + by + ", and is corrected again"));
         assert_corner(work("forced/a.jpg"), by_gamma_2);
@@ -200,7 +201,8 @@ double corrected_by(const std::string &file) {
 // others.
 void test_several_databases(void **) {
     const std::string picture = make_picture("p.png", "Camera", "Lens 50mm");
-    const Words apply = {"apply", "--overwrite", "--set", "response=srgb", "--key", "crop-factor=1",     "-o",          work("out"),  picture};
+    const Words apply = {"apply",         "--overwrite", "--set",     "response=srgb", "--key",
+                         "crop-factor=1", "-o",          work("out"), picture};
     assert_refused(usage, apply, {"--pto", "no database found"});
     make_lens("share/lensprof/lensfun.db", "Lens 50mm", -0.4);
     const std::string out = work("out/p.png");

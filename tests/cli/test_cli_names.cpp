@@ -102,7 +102,8 @@ void test_set(void **) {
     make_db();
     const Words set = Words{"profile", "set"} + db_words();
     assert_true(contains(must_exit(done, set
-                                             + Words{"1", "2", "--lens", "My Lens", "--key", "distance=3m,crop-factor=1.5", "--clear", "aperture"}),
+                                             + Words{"1", "2", "--lens", "My Lens", "--key",
+                                                     "distance=3m,crop-factor=1.5", "--clear", "aperture"}),
                          "changed 2 profiles"));
     const Json key = json_of(Words{"profile", "show", "2", "--json"} + db_words())["key"];
     assert_true(key["lens"] == "My Lens" && key["camera_model"] == "Canon EOS 6D" && key["aperture"].is_null());

@@ -370,7 +370,8 @@ void test_options_that_are_no_numbers(void **) {
     assert_refused(usage, build + Words{"--key", "distance=nan"}, {"--key distance"});
     assert_refused(usage, {"query", "--camera", "x", "--focal", "nan", "--db", work("p.db")}, {"--focal"});
     for (const char *key : {"hfov", "overlap", "jitter", "misalign", "ev", "wb", "noise", "outliers"})
-        assert_refused(usage, {"simulate", "-o", out, "--images", "2", "--size", "40x30", "--set", key + std::string("=nan")},
+        assert_refused(usage,
+                       {"simulate", "-o", out, "--images", "2", "--size", "40x30", "--set", key + std::string("=nan")},
                        {std::string("--set ") + key});
 }
 

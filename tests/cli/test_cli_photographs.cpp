@@ -151,7 +151,8 @@ void test_a_bracket(void **) {
     simulate("row", {"--images", "3", "--seed", "71"});
     fs::create_directory(work("still"));
     for (int i = 0; i < 4; i++) {
-        simulate("shot" + std::to_string(i), {"--images", "2", "--seed", "72", "--set", "mean-ev=" + std::to_string(i - 2)});
+        simulate("shot" + std::to_string(i),
+                 {"--images", "2", "--seed", "72", "--set", "mean-ev=" + std::to_string(i - 2)});
         fs::copy_file(work("shot" + std::to_string(i) + "/img000.png"), work("still/s" + std::to_string(i) + ".png"));
     }
     assert_refused(not_usable, {"build", work("still"), "--no-store"}, {"did not move", "lensprof bracket", "align"});
@@ -327,8 +328,12 @@ void test_the_preview_is_even(void **) {
     const double before = spread(own, 0, truth, 0, height), after = spread(own, height + 8, truth, 0, height);
     assert_true(before > 0.1 && after < 0.03);
     assert_int_equal(run_words({"build", pto, "--write", "preview=" + work("preview.txt"), "--no-store"}).code, usage);
-    assert_int_equal(run_words({"build", pto, "--write", "preview=" + work("uneven/img000.png"), "--no-store"}).code, usage);
-    assert_int_equal(run_words({"build", pto, "--write", std::string("preview=") + wide, "--points", work("p.txt"), "--no-store"}).code, usage);
+    assert_int_equal(run_words({"build", pto, "--write", "preview=" + work("uneven/img000.png"), "--no-store"}).code,
+                     usage);
+    assert_int_equal(
+        run_words({"build", pto, "--write", std::string("preview=") + wide, "--points", work("p.txt"), "--no-store"})
+            .code,
+        usage);
     assert_false(fs::exists(wide));
 }
 
@@ -465,7 +470,8 @@ void test_refused(void **) {
     refuse({"build", a, a, "--no-store"}, not_usable, "has only one picture");
     refuse({"build", a, b, "--no-store"}, not_usable, "no two of the pictures overlap");
     refuse({"build", work("one"), "--points", work("p.txt"), "--no-store"}, usage, "--points: needs the project");
-    refuse({"build", pto, "--write", "project=" + work("q.pto"), "--no-store"}, usage, "--write project: needs pictures");
+    refuse({"build", pto, "--write", "project=" + work("q.pto"), "--no-store"}, usage,
+           "--write project: needs pictures");
     refuse({"build", work("one"), "--write", std::string("project=") + a, "--no-store"}, usage, "would be overwritten");
     refuse({"build", work("nowhere"), "--no-store"}, unreadable, "nowhere");
     save_text(work("p1.png"), "no picture"), save_text(work("p2.png"), "none either");

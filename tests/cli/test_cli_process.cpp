@@ -100,14 +100,15 @@ void test_full_disk(void **) {
         assert_refused_when_full(bytes, build_quick({"--db", work("p.db")}), store_failed, work("p.db"));
     assert_refused_when_full(512, {"profile", "remove", "1", "--db", work("p.db")}, store_failed, work("p.db"));
     // There is room for the project, but not for the database: neither is created.
-    assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--write", "pto=" + work("left.pto")}), store_failed,
-                             work("p.db"));
+    assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--write", "pto=" + work("left.pto")}),
+                             store_failed, work("p.db"));
     assert_refused_when_full(20000, build_quick({"--no-store", "--write", "points=" + work("left.txt")}), failed,
                              work("left.txt"));
     // There is room for the index of the database's log, 32 KiB.
-    assert_refused_when_full(40000, build_quick({"--db", work("p.db"), "--write", "points=" + work("left.txt")}), failed,
-                             work("left.txt"));
-    assert_refused_when_full(100, build_quick({"--no-store", "--write", "pto=" + work("left.pto")}), failed, work("left.pto"));
+    assert_refused_when_full(40000, build_quick({"--db", work("p.db"), "--write", "points=" + work("left.txt")}),
+                             failed, work("left.txt"));
+    assert_refused_when_full(100, build_quick({"--no-store", "--write", "pto=" + work("left.pto")}), failed,
+                             work("left.pto"));
     assert_refused_when_full(20000,
                              {"apply", "--profile", "1", "--db", work("p.db"), "-o", work(""), scene("img000.png")},
                              failed, work("img000.png"));
@@ -199,7 +200,8 @@ double interrupt_at(const std::string &stage, const Words &words, int number = S
 
 // About 15000 pairs: seconds of fitting.
 std::string make_many_points() {
-    must_exit(done, {"simulate", "-o", work("many"), "--set", "no-images=yes", "--images", "6", "--set", "points=15000"});
+    must_exit(done,
+              {"simulate", "-o", work("many"), "--set", "no-images=yes", "--images", "6", "--set", "points=15000"});
     return work("many/pano.pto");
 }
 
@@ -209,10 +211,11 @@ void test_interrupted_build(void **) {
     for (const std::string &db : {work("p.db"), work("new.db")})
         for (int number : {SIGINT, SIGTERM}) {
             const Disk before = disk();
-            const double seconds =
-                interrupt_at("fitting",
-                             {"build", pto, "--points", work("many/points.txt"), "--camera", "X", "--db", db, "--fit", "modes=25", "--progress", "--write", "pto=" + work("left.pto"), "--write", "points=" + work("left.txt")},
-                             number);
+            const double seconds = interrupt_at(
+                "fitting",
+                {"build", pto, "--points", work("many/points.txt"), "--camera", "X", "--db", db, "--fit", "modes=25",
+                 "--progress", "--write", "pto=" + work("left.pto"), "--write", "points=" + work("left.txt")},
+                number);
             const std::string changes = difference(before, disk());
             if (!changes.empty()) fail_msg("after the interrupt:%s", changes.c_str());
             if (seconds > 5) fail_msg("it took %.1f s to stop", seconds);
@@ -225,8 +228,10 @@ void test_interrupted_with_pictures(void **) {
     must_exit(done, {"simulate", "-o", work("many"), "--images", "12", "--size", "320x240"});
     const Disk before = disk();
     for (const std::string stage : {"reading pictures", "sampling"}) {
-        const double seconds = interrupt_at(stage, {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress",
-                                                    "--fit", std::string("pairs=") + (stage == "sampling" ? "1000000" : "20000"), "--write", "pto=" + work("left.pto"), "--write", "points=" + work("left.txt")});
+        const double seconds =
+            interrupt_at(stage, {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress", "--fit",
+                                 std::string("pairs=") + (stage == "sampling" ? "1000000" : "20000"), "--write",
+                                 "pto=" + work("left.pto"), "--write", "points=" + work("left.txt")});
         const std::string changes = difference(before, disk());
         if (!changes.empty()) fail_msg("after the interrupt:%s", changes.c_str());
         if (seconds > 5) fail_msg("%s: it took %.1f s to stop", stage.c_str(), seconds);

@@ -93,7 +93,8 @@ void test_colours_stand_for_pictures(void **) {
               Json::array({{{"cameras", {{"one", {{"width", 400}, {"height", 300}}}}}, {"shots", shots}}}).dump());
     assert_true(exposure_error(json_of(alone), truth) < 0.06);
     fs::remove_all(work("elsewhere"));
-    assert_refused(usage, build("model", {"--reconstruction", "track-colors=yes"}), {"--reconstruction track-colors", "tracks.csv", "COLMAP model"});
+    assert_refused(usage, build("model", {"--reconstruction", "track-colors=yes"}),
+                   {"--reconstruction track-colors", "tracks.csv", "COLMAP model"});
 }
 
 // Repeated runs give the same bytes.
@@ -146,8 +147,10 @@ void test_two_visits(void **) {
         changed << "\n";
     }
     save_text(work("visits.csv"), changed.str());
-    const Words both = {"build", work("visits.csv"), "--images", work("pictures"), "--no-store", "--reconstruction", "track-colors=yes"};
-    const Words outputs = {"--write", "exposures=" + work("exposures.json"), "--write", "gain-chart=" + work("gain.svg")};
+    const Words both = {"build",      work("visits.csv"), "--images",        work("pictures"),
+                        "--no-store", "--reconstruction", "track-colors=yes"};
+    const Words outputs = {"--write", "exposures=" + work("exposures.json"), "--write",
+                           "gain-chart=" + work("gain.svg")};
     fs::remove(work("exposures.json"));
     assert_refused(not_usable, both + outputs, {"visits.csv", "other light", "--reconstruction list"});
     std::string first;
@@ -156,7 +159,8 @@ void test_two_visits(void **) {
     const Json one = json_of(both + Words{"--reconstruction", "list=" + work("first.txt"), "--json"});
     assert_int_equal(one["images"].size(), images / 2);
     save_text(work("first.txt"), first + "nobody.png\n");
-    assert_refused(unreadable, both + Words{"--reconstruction", "list=" + work("first.txt")}, {"first.txt", "nobody.png"});
+    assert_refused(unreadable, both + Words{"--reconstruction", "list=" + work("first.txt")},
+                   {"first.txt", "nobody.png"});
     for (const char *name : {"first.txt", "visits.csv"}) fs::remove(work(name));
 }
 
@@ -181,7 +185,8 @@ void test_wrong_matches(void **) {
     save_text(work("wrong.csv"), changed.str());
     for (const Words &more : {Words{}, Words{"--reconstruction", "track-colors=yes"}})
         assert_refused(not_usable,
-                       Words{"build", work("wrong.csv"), "--images", work("pictures"), "--no-store", "--write", "exposures=" + work("no.json")}
+                       Words{"build", work("wrong.csv"), "--images", work("pictures"), "--no-store", "--write",
+                             "exposures=" + work("no.json")}
                            + more,
                        {"wrong.csv"});
     fs::remove(work("wrong.csv"));
@@ -215,7 +220,9 @@ void test_shards(void **) {
     const Words own = {"--camera", "Example", "--lens", "Example"};
     std::vector<std::string> files;
     for (const char *part : {"1/2", "2/2"}) {
-        const Words words = {"build", work("model"), "--images", work("pictures"), "--reconstruction", std::string("shard=") + part, "--json"};
+        const Words words = {"build",          work("model"),      "--images",
+                             work("pictures"), "--reconstruction", std::string("shard=") + part,
+                             "--json"};
         const Json result = json_of(words + own + Words{"--db", work(std::string(part, 1) + ".db"), "--force"});
         for (const Json &image : result["images"]) files.push_back(image["file"].get<std::string>());
     }
@@ -223,7 +230,8 @@ void test_shards(void **) {
     assert_int_equal(files.size(), images);
     assert_true(std::unique(files.begin(), files.end()) == files.end());
     must_exit(done, {"profile", "merge", work("1.db"), work("2.db"), "--db", work("all.db")});
-    assert_refused(usage, build("model", {"--reconstruction", "shard=1/9"}), {"--reconstruction shard=1/9", "fewer than two"});
+    assert_refused(usage, build("model", {"--reconstruction", "shard=1/9"}),
+                   {"--reconstruction shard=1/9", "fewer than two"});
 }
 
 void test_chart_of_gains(void **) {
@@ -316,8 +324,8 @@ void test_folders_of_names(void **) {
 // EXIF of the copies has the measured exposures, marked as such in XMP.
 void test_seeded_exif(void **) {
     write_exposures();
-    must_exit(done, {"apply", "--model", work("exposures.json"), "--encoding", "exif-exposure=yes", "--set", "exposure=keep", "-o",
-                     work("seeded")});
+    must_exit(done, {"apply", "--model", work("exposures.json"), "--encoding", "exif-exposure=yes", "--set",
+                     "exposure=keep", "-o", work("seeded")});
     const Json all = parsed(text_of(work("exposures.json")));
     double offset = 0;
     for (size_t i = 0; i < images; i++) {
@@ -362,7 +370,8 @@ void test_options(void **) {
     write_exposures();
     const std::string file = work("exposures.json");
     assert_refused(usage, {"apply", "--model", file, "--pto", file, "-o", work("out")}, {"--pto", "--model"});
-    assert_refused(usage, {"apply", "--profile", "1", "--encoding", "exif-exposure=yes", work("pictures"), "-o", work("out")},
+    assert_refused(usage,
+                   {"apply", "--profile", "1", "--encoding", "exif-exposure=yes", work("pictures"), "-o", work("out")},
                    {"--encoding exif-exposure", "--model"});
     assert_refused(usage, {"apply", "--model", file, "--merge", "--linear", "-o", work("out")}, {"--merge", "--pto"});
     save_text(work("notes.txt"), "mine");

@@ -12,8 +12,8 @@ namespace {
 
 // Two overlapping pictures of the simulated camera; the seed determines the place.
 std::string pictures(const std::string &name, const char *seed, const char *falloff = "-0.4,0.1,-0.1") {
-    render(name, {"--images", "2", "--size", "480x320", "--set", "overlap=0.5", "--vignetting", falloff, "--set", "ev=1.5",
-                  "--exif", "--set", "exif-rounding=0.1", "--seed", seed});
+    render(name, {"--images", "2", "--size", "480x320", "--set", "overlap=0.5", "--vignetting", falloff, "--set",
+                  "ev=1.5", "--exif", "--set", "exif-rounding=0.1", "--seed", seed});
     return work(name + "/pano.pto");
 }
 
@@ -49,7 +49,8 @@ void test_next_sequences(void **) {
     assert_false(stored["provenance"]["forced"].get<bool>());
     assert_int_equal(stored["provenance"]["images"], 6);
     assert_int_equal(stored["provenance"]["pairs"].get<int>(), 3 * shown(1)["provenance"]["pairs"].get<int>());
-    const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--fit", "stored=auto"});
+    const std::string said =
+        must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--fit", "stored=auto"});
     assert_true(contains(said, "prior     profile 3, used by the result"));
 }
 
@@ -84,8 +85,10 @@ void test_merged_profiles_count_once(void **) {
     assert_int_equal(merged["provenance"]["prior_id"], 2);
     const Words again = all + Words{"--fit", "stored=auto", "--json", "--no-store"};
     assert_int_equal(json_of(Words{"build", b} + again)["prior"]["profile"], 2);
-    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 already includes these pictures", "--fit stored=none"});
-    assert_refused(usage, Words{"build", a, "--fit", "stored=3", "--no-store"} + all, {"already includes these pictures"});
+    assert_refused(usage, Words{"build", a} + again,
+                   {a, "profile 3 already includes these pictures", "--fit stored=none"});
+    assert_refused(usage, Words{"build", a, "--fit", "stored=3", "--no-store"} + all,
+                   {"already includes these pictures"});
     const Json deep =
         json_of(Words{"build", a, "--no-store", "--json"} + all);  // not requested: it is left out, with a reason
     assert_true(deep["prior"]["profile"].is_null());

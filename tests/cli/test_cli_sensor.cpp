@@ -150,7 +150,8 @@ void test_query(void **) {
         return 1 + found["vignetting"]["k"][0][0].get<double>();
     };
     assert_close(corner({"--key", "maker=Canon", "--camera", "Canon EOS 600D"}), 1 - 0.4 / (1.6 * 1.6), 1e-9);
-    assert_close(corner({"--key", "maker=Canon", "--camera", "Canon EOS 600D", "--key", "crop-factor=1"}), 1 - 0.4, 1e-9);
+    assert_close(corner({"--key", "maker=Canon", "--camera", "Canon EOS 600D", "--key", "crop-factor=1"}), 1 - 0.4,
+                 1e-9);
     assert_close(corner({"--camera", "Nobody's"}), 1 - 0.4, 1e-9);
 }
 

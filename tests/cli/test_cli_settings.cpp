@@ -26,7 +26,8 @@ void state_aperture(const std::string &file, double f_number) {
 
 // Pictures of one scene, alternating between two apertures.
 std::string two_apertures(const char *overlap = "0.4") {
-    const Words same = Words{"--images", "6", "--seed", "5", "--exif", "--set", std::string("overlap=") + overlap, "--set", "noise=1"};
+    const Words same =
+        Words{"--images", "6", "--seed", "5", "--exif", "--set", std::string("overlap=") + overlap, "--set", "noise=1"};
     render("open", Words{"--vignetting=-0.55,0.15,-0.12"} + same);
     render("stopped", Words{"--vignetting=-0.12,0.02,-0.03"} + same);
     for (size_t i = 1; i < 6; i += 2) {
@@ -183,8 +184,8 @@ void turn_picture(const std::string &pto, size_t number, uint16_t turn, bool is_
 
 // Six pictures whose falloff has its centre far from the middle.
 std::string off_centre() {
-    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0.1,-0.06", "--images",
-                     "6", "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
+    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0.1,-0.06",
+                     "--images", "6", "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
     return work("open/pano.pto");
 }
 
@@ -255,8 +256,8 @@ void test_turned_profile(void **) {
 
 // Frames whose turn is not stated share the falloff around the middle.
 void test_frames_turned_either_way(void **) {
-    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0,0", "--images", "6",
-                     "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
+    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0,0", "--images",
+                     "6", "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
     const std::string pto = work("open/pano.pto");
     for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, false);
     const Outcome run = run_words(Words{"build", pto} + quietly);

@@ -107,8 +107,8 @@ void test_objects_in_pictures(void **) {
 
 // Pairs without an end on an object follow the model, pairs with one do not; noise-free pairs have no objects.
 void test_objects_in_pairs(void **) {
-    must_exit(done, simulate("moved", {"--set", "objects=0.1,no-images=yes,points=2000,test-points=500",
-                                       "--format", "tiff16"}));
+    must_exit(done, simulate("moved",
+                             {"--set", "objects=0.1,no-images=yes,points=2000,test-points=500", "--format", "tiff16"}));
     const Json truth = truth_of("moved");
     std::vector<SeenPair> hit, clear;
     for (const SeenPair &pair : pairs_of("moved", "points.txt")) {
@@ -163,8 +163,7 @@ void test_local_tone_in_pictures(void **) {
 
 // The same point is rendered differently in two pictures, but not in the noise-free pairs, which score the response.
 void test_local_tone_in_pairs(void **) {
-    must_exit(done,
-              simulate("toned", {"--set", "local-tone=1,no-images=yes,points=1000,test-points=300"}));
+    must_exit(done, simulate("toned", {"--set", "local-tone=1,no-images=yes,points=1000,test-points=300"}));
     assert_true(median_mismatch(pairs_of("toned", "points.txt")) > 0.05);
     for (const SeenPair &pair : pairs_of("toned", "test_points.txt")) assert_close(pair.mismatch, 0, 0.01);
 }
@@ -207,8 +206,8 @@ void test_exif_is_rounded(void **) {
 
 // With one manual exposure, all metadata are equal, and the true exposures scatter as requested.
 void test_exif_tells_one_manual_exposure(void **) {
-    must_exit(done, simulate("exif", {"--exif", "--set", "exif-manual=yes,exif-scatter=0.03,ev=0", "--images",
-                                      "40", "--size", "16x16"}));
+    must_exit(done, simulate("exif", {"--exif", "--set", "exif-manual=yes,exif-scatter=0.03,ev=0", "--images", "40",
+                                      "--size", "16x16"}));
     const Json truth = truth_of("exif");
     double sum = 0, square = 0;
     for (size_t i = 0; i < 40; ++i) {
@@ -243,8 +242,8 @@ void test_mean_exposure(void **) {
 
 // 1000 pictures, each overlapping a few others: pairs are found for all of them.
 void test_many_pictures(void **) {
-    must_exit(done, {"simulate", "-o", work("many"), "--set", "no-images=yes", "--images", "1000", "--set", "rows=28,hfov=4",
-                     "--set", "jitter=0.1,ev=0.5,mean-ev=-1,points=50000"});
+    must_exit(done, {"simulate", "-o", work("many"), "--set", "no-images=yes", "--images", "1000", "--set",
+                     "rows=28,hfov=4", "--set", "jitter=0.1,ev=0.5,mean-ev=-1,points=50000"});
     std::istringstream lines(text_of(work("many/points.txt")));
     std::vector<int> pairs(1000);
     size_t count = 0;
@@ -262,7 +261,8 @@ void test_refused_options(void **) {
     for (const Words &words :
          {Words{"--set", "objects=0.95"}, Words{"--set", "objects=nan"}, Words{"--set", "local-tone=5"},
           Words{"--set", "local-tone=nan"}, Words{"--set", "exif-rounding=0.1"}, Words{"--set", "mean-ev=9"},
-          Words{"--set", "exif-manual=yes"}, Words{"--set", "exif-scatter=0.1"}, Words{"--set", "exif-rounding=-1", "--exif"}})
+          Words{"--set", "exif-manual=yes"}, Words{"--set", "exif-scatter=0.1"},
+          Words{"--set", "exif-rounding=-1", "--exif"}})
         assert_refused(usage, simulate("s", words), {words[0]});
     assert_refused(usage, simulate("s", {"--exif", "--set", "no-images=yes"}), {"--exif", "--set no-images"});
     assert_refused(usage, simulate("s", {"--set", "center=1e9,0"}), {"--set center: the falloff must stay positive"});

@@ -1,5 +1,5 @@
-// simulate --set moving: poses, exposures and light match truth.json. Projection and inversion of the camera are computed
-// here; the positions of surfaces come from the scene itself.
+// simulate --set moving: poses, exposures and light match truth.json. Projection and inversion of the camera are
+// computed here; the positions of surfaces come from the scene itself.
 #include <sched.h>
 
 #include <array>
@@ -255,7 +255,8 @@ void test_metadata(void **) {
 }
 
 void test_same_bytes_with_any_threads(void **) {
-    const Words small = {"--size", "96x72",        "--set", "noise=2",      "--set", "objects=0.1",    "--set", "local-tone=0.5",     "--set", "clip=0.02"};
+    const Words small = {"--size",      "96x72", "--set",          "noise=2", "--set",
+                         "objects=0.1", "--set", "local-tone=0.5", "--set",   "clip=0.02"};
     cpu_set_t all, one;
     assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
     CPU_ZERO(&one);
@@ -278,9 +279,9 @@ void test_same_bytes_with_any_threads(void **) {
 }
 
 void test_refused_options(void **) {
-    for (const Words &words :
-         {Words{"--set", "rows=2"}, Words{"--set", "overlap=0.7"}, Words{"--set", "misalign=1"}, Words{"--scene", "wall"},
-          Words{"--set", "parallax=5"}, Words{"--set", "points=10"}, Words{"--set", "test-points=10"}})
+    for (const Words &words : {Words{"--set", "rows=2"}, Words{"--set", "overlap=0.7"}, Words{"--set", "misalign=1"},
+                               Words{"--scene", "wall"}, Words{"--set", "parallax=5"}, Words{"--set", "points=10"},
+                               Words{"--set", "test-points=10"}})
         assert_refused(usage, simulate("room", words), {words[0], "omit --set moving"});
     for (const char *hfov : {"19", "101"})
         assert_refused(usage, simulate("terrain", {"--set", std::string("hfov=") + hfov}), {"--set hfov", "20 to 100"});

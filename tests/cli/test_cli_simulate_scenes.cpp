@@ -13,8 +13,9 @@ constexpr uint32_t width = 320, height = 240;
 
 // Linear float pictures without noise, falloff or differences of exposure: the scene itself.
 Words simulate(const std::string &name, const Words &more) {
-    Words words = {"simulate", "-o",           work(name), "--response", "linear", "--size", "320x240", "--images",
-                   "3",        "--vignetting", "0,0,0",    "--set", "center=0,0",    "--set", "wb=0",       "--set", "jitter=0",        "--format",     "tiff32"};
+    Words words = {"simulate", "-o",    work(name),     "--response", "linear", "--size",     "320x240",
+                   "--images", "3",     "--vignetting", "0,0,0",      "--set",  "center=0,0", "--set",
+                   "wb=0",     "--set", "jitter=0",     "--format",   "tiff32"};
     for (const char *none : {"--set", "noise=--ev"})
         if (std::find(more.begin(), more.end(), none) == more.end()) words = words + Words{none, "0"};
     return words + more;
@@ -178,7 +179,8 @@ void test_parallax_in_pairs(void **) {
 }
 
 void test_same_bytes_with_any_threads(void **) {
-    const Words hard = {"--scene", "interior", "--set", "parallax=5",    "--set", "sharpen=1",          "--set", "clip=0.05",    "--set", "noise=2",          "--set", "ev=1",         "--set", "outliers=0.01"};
+    const Words hard = {"--scene",   "interior", "--set",   "parallax=5", "--set", "sharpen=1", "--set",
+                        "clip=0.05", "--set",    "noise=2", "--set",      "ev=1",  "--set",     "outliers=0.01"};
     must_exit(done, simulate("many", hard));
     cpu_set_t all, one;
     assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
@@ -193,9 +195,9 @@ void test_same_bytes_with_any_threads(void **) {
 }
 
 void test_refused_options(void **) {
-    for (const Words &words :
-         {Words{"--scene", "moon"}, Words{"--scene", ""}, Words{"--set", "parallax=-1"}, Words{"--set", "parallax=nan"},
-          Words{"--set", "sharpen=11"}, Words{"--set", "sharpen=x"}, Words{"--set", "clip=1"}, Words{"--set", "clip=-0.1"}})
+    for (const Words &words : {Words{"--scene", "moon"}, Words{"--scene", ""}, Words{"--set", "parallax=-1"},
+                               Words{"--set", "parallax=nan"}, Words{"--set", "sharpen=11"},
+                               Words{"--set", "sharpen=x"}, Words{"--set", "clip=1"}, Words{"--set", "clip=-0.1"}})
         assert_refused(usage, simulate("s", words), {words[0]});
 }
 

@@ -78,13 +78,12 @@ void test_refusals(void **) {
     assert_refused(usage, split("map", {"--all"}), {"map"});
     assert_refused(usage, split("opcodes", {"--all"}), {"opcodes"});
     assert_refused(usage, split("alsc", {"--all"}), {"--encoding frame"});
-    assert_refused(usage, split("blob", {"--all", "--encoding", "covariance=yes"}), {"--encoding covariance", "yes"});
+    assert_refused(usage, split("blob", {"--all", "--encoding", "covariance=yes"}), {"--encoding covariance=yes"});
     assert_refused(not_found, split("json", {"--lens", "C"}), {"C"});
     save_text(work("file"), "");
     assert_refused(
         usage, {"profile", "export", "--all", "--split", "--format", "json", "-o", work("file"), "--db", work("p.db")},
         {work("file"), "folder"});
-    assert_refused(usage, split("json", {"--all", "--blob", work("x")}), {"--blob"});
 }
 
 // A profile with curves given by their kind takes less than 1 kB; others include their samples.

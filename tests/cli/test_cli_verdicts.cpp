@@ -21,7 +21,8 @@ void spoil(const std::string &name) {
 void test_one_bad_picture_of_six(void **) {
     spoil("bad");
     const std::string result = work("bad/result.pto"), even = work("even"), db = work("bad.db");
-    const Outcome found = run_words({"build", pto("bad"), "--db", db, "--json", "--write", std::string("pto=") + result});
+    const Outcome found =
+        run_words({"build", pto("bad"), "--db", db, "--json", "--write", std::string("pto=") + result});
     assert_int_equal(found.code, done);
     assert_true(contains(found.err, "img005.png: left out: it disagrees with the others"));
     const Json json = parsed(found.out);
@@ -65,8 +66,8 @@ void test_one_picture_apart(void **) {
 // The reference of the project is the bad one.
 void test_the_reference_can_be_the_bad_one(void **) {
     spoil("first");
-    const Outcome found =
-        run_words({"build", pto("first"), "--no-store", "--fit", "stored=none", "--json", "--fit", "reference=img005.png"});
+    const Outcome found = run_words(
+        {"build", pto("first"), "--no-store", "--fit", "stored=none", "--json", "--fit", "reference=img005.png"});
     assert_int_equal(found.code, done);
     const Json json = parsed(found.out);
     const auto reference = json["reference"].get<size_t>();
@@ -110,7 +111,7 @@ void test_pictures_that_show_no_response(void **) {
     assert_close(json["gamma"]["sigma"].get<double>(), 0.264, 0.001);
     const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--seed", "7"});
     assert_true(other["response"]["values"] == json["response"]["values"]);  // independent of noise
-    simulate("equal", {"--set", "ev=0,wb=0", "--vignetting", "0,0,0"});  // nothing to correct
+    simulate("equal", {"--set", "ev=0,wb=0", "--vignetting", "0,0,0"});      // nothing to correct
     const Json equal = json_of({"build", pto("equal"), "--no-store", "--json"}, not_usable);
     assert_true(equal["reason_code"] == "nothing_better" && equal["model"] == "nothing");
     simulate("shown", {});
@@ -128,11 +129,11 @@ void test_a_falloff_without_a_response_is_found(void **) {
     simulate("next", dim + Words{"--seed", "77"});
     const Json next = json_of(Words{"build", pto("next"), "--json", "--no-store"} + setting);
     assert_true(next["response"]["from"] == "kind");
-    assert_close(
-        next["gamma"]["sigma"].get<double>(),
-        json_of({"build", pto("next"), "--json", "--no-store", "--fit", "stored=none", "--camera", "B"})["gamma"]["sigma"]
-            .get<double>(),
-        0.002);
+    assert_close(next["gamma"]["sigma"].get<double>(),
+                 json_of({"build", pto("next"), "--json", "--no-store", "--fit", "stored=none", "--camera",
+                          "B"})["gamma"]["sigma"]
+                     .get<double>(),
+                 0.002);
 }
 
 // No parameter of the lens is requested, so the profile would be empty.
@@ -165,7 +166,8 @@ void test_frames_of_one_exposure(void **) {
 // The light found by a first fit joins the picture that was left out: exposures are true except for gamma, which is
 // open.
 void test_a_second_look_joins(void **) {
-    must_exit(done, {"simulate", "-o", work("far"), "--size", "480x360", "--images", "4", "--scene", "foliage", "--set", "ev=5,overlap=0.35,noise=1", "--seed", "3"});
+    must_exit(done, {"simulate", "-o", work("far"), "--size", "480x360", "--images", "4", "--scene", "foliage", "--set",
+                     "ev=5,overlap=0.35,noise=1", "--seed", "3"});
     const Json json = json_of({"build", pto("far"), "--no-store", "--fit", "stored=none,free=all", "--json"});
     assert_int_equal(json["looks"], 2);
     const Json truth = parsed(text_of(work("far/truth.json")))["images"];

@@ -335,10 +335,10 @@ void test_opcodes_are_not_doubled(void **) {
             0);
     assert_refused(not_found, {"apply", work("dng/card.dng"), "--db", db, "--profile", "1", "-o", work("two")},
                    {"card.dng", "--encoding raw=tif"});
-    assert_refused(
-        usage,
-        {"apply", path, "--db", db, "--profile", "1", "--encoding", "raw=dng", "--set", "strength=0.5", "-o", work("two")},
-        {"--encoding raw"});
+    assert_refused(usage,
+                   {"apply", path, "--db", db, "--profile", "1", "--encoding", "raw=dng", "--set", "strength=0.5", "-o",
+                    work("two")},
+                   {"--encoding raw"});
 }
 
 void test_mixed_and_pairs(void **) {

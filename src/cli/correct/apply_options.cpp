@@ -55,8 +55,7 @@ static void declare_experts(Command command, ApplyOptions &o) {
 
 void declare_options(Command &command, ApplyOptions &o) {
     command.folder("-o,--output", o.output, "output folder, with the subfolders of the input; default corrected");
-    command.file("--pto", o.pto,
-                 "use the exposures (and, without --profile, response and falloff) of this project");
+    command.file("--pto", o.pto, "use the exposures (and, without --profile, response and falloff) of this project");
     o.model.add_options(command);
     declare_writing(command, o.kind);
     declare_experts(command.expert(), o);
@@ -94,7 +93,8 @@ void check_project_options(const ApplyOptions &o) {
     if (!o.pto.empty() && !o.exposures.empty())
         throw Failure(ExitCode::usage, "--pto and --model exclude each other: both give exposures; give one of them");
     if (o.seed_exif && o.linear_end == ".exr")
-        throw Failure(ExitCode::usage, "--encoding exif-exposure: OpenEXR has no EXIF; use linear=tif, or omit one of them");
+        throw Failure(ExitCode::usage,
+                      "--encoding exif-exposure: OpenEXR has no EXIF; use linear=tif, or omit one of them");
     if (o.exposures.empty() && (!o.images.empty() || o.seed_exif))
         throw Failure(ExitCode::usage, std::string(o.seed_exif ? "--encoding exif-exposure" : "--images")
                                            + ": needs --model; give it, or omit the option");

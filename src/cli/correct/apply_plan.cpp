@@ -74,7 +74,8 @@ void check_has_result(const Project &project) {
     }
     throw Failure(
         ExitCode::usage,
-        project.path + ": has neither response nor falloff; give the project that `lensprof build --write pto=FILE` wrote");
+        project.path
+            + ": has neither response nor falloff; give the project that `lensprof build --write pto=FILE` wrote");
 }
 
 // If no profile is looked up, an error in the metadata is ignored here: reading the pixels reports it.

@@ -90,7 +90,8 @@ void add_speed(const Corrected &corrected, Json &json) {
 
 void declare_writing(Command &command, CorrectionKind &kind) {
     command.flag("--overwrite", kind.overwrite, "replace existing files even if they were made from other pictures");
-    command.expert().count("--threads", kind.threads, 0, 1024, "number of threads that correct pictures; default 0 = all cores");
+    command.expert().count("--threads", kind.threads, 0, 1024,
+                           "number of threads that correct pictures; default 0 = all cores");
 }
 
 }  // namespace lensprof

@@ -172,7 +172,8 @@ static std::string crop_note(const PictureSize &size) {
 static void check_error(const lensprof_lookup &lookup, const lensprof_profile_key &key, const std::string &file) {
     constexpr double largest_sigma = 0.1;  // of M in the corner
     if (lookup.sigma == LENSPROF_UNKNOWN || lookup.sigma <= largest_sigma) return;
-    std::string step = "make a profile of this setting with `lensprof build`, or use `lensprof apply --key doubtful=yes`";
+    std::string step =
+        "make a profile of this setting with `lensprof build`, or use `lensprof apply --key doubtful=yes`";
     if (std::hypot(lookup.falloff_sigma, lookup.distance_sigma) <= largest_sigma && lookup.sensor_sigma > largest_sigma)
         step = std::string(*key.camera_model ? "the size of the camera's sensor is unknown" : "EXIF names no camera")
                + "; give --key crop-factor=NUMBER, or the camera with --camera and --key maker=TEXT";

@@ -161,8 +161,7 @@ Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uin
     case LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE:
     case LENSPROF_REASON_STILL_IMAGE_DISAGREES:
     case LENSPROF_REASON_STILL_IMAGE_ODD:
-        verdict.text +=
-            "; use --fit black=NUMBER to exclude grey values of a raised black level";
+        verdict.text += "; use --fit black=NUMBER to exclude grey values of a raised black level";
         break;
     default: break;
     }

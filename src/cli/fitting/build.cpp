@@ -96,8 +96,7 @@ void declare_build_fit(Command &command, BuildOptions &o) {
     keys.text("reference", o.reference,
               "image (number or name) whose exposure is 0 EV; default the first whose exposure is fixed, else the "
               "first");
-    keys.choice("sampling", o.sampling,
-                {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
+    keys.choice("sampling", o.sampling, {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
                 "selection of the pairs: balanced (default) or paper (d'Angelo 5.1)");
     declare_sampling(keys, o.pixels, "300 per image, at least 2000 (radiance: number of points, 150 per image)");
     keys.file("truth", o.compare, "print estimated next to true values of this truth.json of `simulate`");
@@ -220,7 +219,8 @@ Project open_reconstruction(const BuildOptions &o, Streams &streams) {
             throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, but " + o.inputs[0]
                                                + " is a reconstruction; omit the option");
     return project_of_reconstruction(
-        o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pixels.pairs, o.pixels.seed}, streams);
+        o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pixels.pairs, o.pixels.seed},
+        streams);
 }
 
 // The project, or the pictures instead.
@@ -228,7 +228,8 @@ Project open_project(const BuildOptions &o, Streams &streams) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
     for (const auto &[option, is_given] :
          {std::pair("--images", !o.images.empty()), std::pair("--reconstruction list", !o.image_list.empty()),
-          std::pair("--reconstruction shard", !o.shard.empty()), std::pair("--reconstruction track-colors", o.track_colours),
+          std::pair("--reconstruction shard", !o.shard.empty()),
+          std::pair("--reconstruction track-colors", o.track_colours),
           std::pair("--write gain-chart", !o.gain_chart.empty())})
         if (is_given)
             throw Failure(ExitCode::usage,
@@ -260,8 +261,8 @@ Project open_project(const BuildOptions &o, Streams &streams) {
     return project_of_pictures(list, o.one_lens, progress, streams);
 }
 
-// The free parameters: by --fit free, else by the v lines; all if these have nothing photometric, as in a project that was
-// only aligned.
+// The free parameters: by --fit free, else by the v lines; all if these have nothing photometric, as in a project that
+// was only aligned.
 void choose_unknowns(const BuildOptions &o, Project &project, Streams &streams) {
     uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), free_in_project = 0;
     for (const auto &image : project.images) free_in_project |= image.free;
@@ -320,10 +321,10 @@ int run(const BuildOptions &o, Streams &streams) {
     if (!o.gain_chart.empty()) check_chart_name(o.gain_chart);
     if (!o.report.empty()) check_page_name(o.report);
     if (!o.preview.empty() && !o.points.empty())
-        throw Failure(ExitCode::usage, "--write preview: needs the pictures, which --points does not read; give one of them");
-    if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage,
-                      "--fit truth prints a table, and --json prints JSON; give one of them");
+                      "--write preview: needs the pictures, which --points does not read; give one of them");
+    if (o.json && !o.compare.empty())
+        throw Failure(ExitCode::usage, "--fit truth prints a table, and --json prints JSON; give one of them");
     check_store_options(o.store, uses_stored_prior(o.fit), !o.pto_out.empty() || !o.exposures_out.empty());
 
     std::vector<std::string> names;

@@ -48,7 +48,6 @@ struct SamplingOptions {
 void declare_sampling(Keys &keys, SamplingOptions &o, const std::string &default_pairs);
 void declare_max_side(Keys &keys, uint32_t &max_side);
 
-
 // Whether stored profiles are the prior of this fit: the method must support it and the prior weight be above 0.
 bool uses_stored_prior(const FitOptions &o);
 

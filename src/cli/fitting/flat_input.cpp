@@ -170,8 +170,7 @@ void check_flat_options(const FlatCommand &o) {
     if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
         throw Failure(ExitCode::usage, "--several: assumes even light on the card; omit --fit light");
     if (o.find_card && !o.cards.empty())
-        throw Failure(ExitCode::usage,
-                      "--card find and a rectangle exclude each other; give one of them");
+        throw Failure(ExitCode::usage, "--card find and a rectangle exclude each other; give one of them");
     if (o.cards.size() > 1 && o.cards.size() != o.files.size())
         throw Failure(ExitCode::usage, std::to_string(o.cards.size()) + " --card for "
                                            + counted(o.files.size(), "picture")

@@ -24,9 +24,9 @@ ExifExposures exif_exposures(const std::vector<PictureMetadata> &metadata, const
 ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetadata> &metadata,
                  const std::vector<std::string> &names);
 
-// Sets the requested standard error (--fit exif-sigma). Without a request: EXIF rounds to thirds of a stop and is known to
-// 0.1 EV, but pictures of one camera at one manual exposure agree to 0.03 EV, the scatter of shutter and aperture. Of
-// several such groups only the largest gets this error; between groups the rounding counts. Prints the note.
+// Sets the requested standard error (--fit exif-sigma). Without a request: EXIF rounds to thirds of a stop and is known
+// to 0.1 EV, but pictures of one camera at one manual exposure agree to 0.03 EV, the scatter of shutter and aperture.
+// Of several such groups only the largest gets this error; between groups the rounding counts. Prints the note.
 ExifUse add_known_exposures(const FitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                             std::vector<lensprof_fit_image> &images, Streams &streams);
 

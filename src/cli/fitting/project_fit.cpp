@@ -314,12 +314,13 @@ bool evens_colours(const ColourVariance &variance) {
 // Failure (not_usable) for pictures of two visits whose light differs by more than an exposure.
 void check_light(const LightGroups &groups, const Project &project) {
     if (groups.second.empty()) return;
-    throw Failure(ExitCode::not_usable,
-                  project.path + ": " + listed(groups.second, project.names)
-                      + format(" show the scene in other light than the rest (colours differ %.0f times as much "
-                               "between these groups as within); fit each visit separately, with --reconstruction list=FILE",
-                               groups.ratio),
-                  LENSPROF_REASON_IMAGE_GROUPS);
+    throw Failure(
+        ExitCode::not_usable,
+        project.path + ": " + listed(groups.second, project.names)
+            + format(" show the scene in other light than the rest (colours differ %.0f times as much "
+                     "between these groups as within); fit each visit separately, with --reconstruction list=FILE",
+                     groups.ratio),
+        LENSPROF_REASON_IMAGE_GROUPS);
 }
 
 // For a reconstruction: fits without glossy points, measures the improvement and, if response and falloff explain the
@@ -491,7 +492,8 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     Pictures pictures = get_points(o, project, state);
     stop_if_interrupted();
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
-        warn(streams, "--fit sampling=paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
+        warn(streams,
+             "--fit sampling=paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");
     input.images = fit_images(project);
     state.item = o.points.empty() ? project.path : o.points;
     set_settings(o, state, streams);

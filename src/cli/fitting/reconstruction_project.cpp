@@ -143,8 +143,8 @@ void keep_shard(const Shard &shard, Reconstruction &r, std::vector<std::string> 
                end = static_cast<std::ptrdiff_t>(shard.end(count));
     const std::string part = format("%u/%u", shard.number, shard.count);
     if (end - first < 2)
-        throw Failure(ExitCode::usage, "--reconstruction shard=" + part + ": contains fewer than two of the " + counted(count, "image")
-                                           + "; use fewer parts");
+        throw Failure(ExitCode::usage, "--reconstruction shard=" + part + ": contains fewer than two of the "
+                                           + counted(count, "image") + "; use fewer parts");
     std::vector<uint32_t> kept(order.begin() + first, order.begin() + end);
     std::sort(kept.begin(), kept.end());
     keep_images(kept, r);
@@ -172,8 +172,8 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     auto clock = std::chrono::steady_clock::now();
     Reconstruction r = read_reconstruction(path, streams);
     if (options.is_by_colours && !r.has_colours)
-        throw Failure(ExitCode::usage, "--reconstruction track-colors: needs OpenSfM's tracks.csv, but " + path + " is a " + r.kind
-                                           + "; omit the option");
+        throw Failure(ExitCode::usage, "--reconstruction track-colors: needs OpenSfM's tracks.csv, but " + path
+                                           + " is a " + r.kind + "; omit the option");
     Project project;
     project.path = path;
     project.by_matches = project.is_reconstruction = true;

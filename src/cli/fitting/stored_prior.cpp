@@ -116,8 +116,9 @@ EarlierProfile single_prior(lensprof_store *store, int64_t id, std::unique_ptr<l
         return {id, std::move(profile), ""};
     const std::string reason = "profile " + std::to_string(id) + " already includes these pictures, and later ones";
     if (is_requested)
-        throw Failure(ExitCode::usage, source_name + ": " + reason
-                                           + "; a fit would add no information. Use --fit stored=none to fit them alone");
+        throw Failure(
+            ExitCode::usage,
+            source_name + ": " + reason + "; a fit would add no information. Use --fit stored=none to fit them alone");
     return {0, nullptr, reason};
 }
 
@@ -144,8 +145,9 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_requ
         check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(o.db), &error);
         EarlierProfile given = single_prior(store.get(), id, std::move(profile), source_name, is_requested);
         if (!given.id)
-            throw Failure(ExitCode::usage, "--fit stored=" + std::to_string(id) + ": " + given.reason
-                                               + "; give another profile, or --fit stored=none to fit the pictures alone");
+            throw Failure(ExitCode::usage,
+                          "--fit stored=" + std::to_string(id) + ": " + given.reason
+                              + "; give another profile, or --fit stored=none to fit the pictures alone");
         return given;
     }
     if (files.empty()) return {0, nullptr, is_requested ? "no database exists yet" : ""};

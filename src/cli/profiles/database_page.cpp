@@ -75,8 +75,9 @@ Json database_verdict(const std::vector<StoredProfile> &profiles, size_t lenses,
         }));
     Json details = warnings;
     if (doubtful)
-        details.push_back(counted(doubtful, "profile")
-                          + " in doubt: lookups use them only with --key doubtful=yes; `lensprof profile check` gives reasons");
+        details.push_back(
+            counted(doubtful, "profile")
+            + " in doubt: lookups use them only with --key doubtful=yes; `lensprof profile check` gives reasons");
     return {{"level", doubtful == profiles.size() || !warnings.empty() ? "warn" : "good"},
             {"headline",
              counted(profiles.size() - doubtful, "usable profile") + " of " + counted(lenses, "lens", "lenses") + "."},

@@ -73,7 +73,8 @@ void import(const std::string &path, const std::string &bytes, const lensprof_im
 // Width and height of the frame, which some files do not state.
 void require_frame(const std::string &path, const ForeignOptions &o) {
     if (!o.width || !o.height)
-        throw Failure(ExitCode::usage, path + ": does not state the size of the pictures; give --encoding frame=WIDTHxHEIGHT");
+        throw Failure(ExitCode::usage,
+                      path + ": does not state the size of the pictures; give --encoding frame=WIDTHxHEIGHT");
 }
 
 // A picture's values as floats, without alpha.

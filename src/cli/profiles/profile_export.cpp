@@ -46,9 +46,9 @@ void declare(Command &command, ExportOptions &o) {
     declare_listed_databases(command, o.dbs, "; ids and --all refer to the first, filters to the first with a match");
     declare_json(command, o.json);
     command.group("Filters, instead of ids");
-    o.filter.add_options(command)
-        .number("crop-factor", o.crop_factor, crop_factors,
-                "43.27 mm divided by the sensor diagonal, for profiles without one; needed by lensfun and lcp");
+    o.filter.add_options(command).number(
+        "crop-factor", o.crop_factor, crop_factors,
+        "43.27 mm divided by the sensor diagonal, for profiles without one; needed by lensfun and lcp");
     command.footer(about_foreign(true));
 }
 

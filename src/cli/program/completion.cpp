@@ -169,7 +169,7 @@ std::string zsh_completion(const CommandDescription &program) {
                 if (!option.type.empty() && name.size() > 2) entry += "=";
                 entry += "[" + zsh_text(first_line(option.about)) + "]";
                 if (!option.type.empty())
-                    entry += is_path(option)          ? ":file:_files"
+                    entry += is_path(option)             ? ":file:_files"
                              : values_of(option).empty() ? ":value:"
                                                          : ":value:(" + joined(values_of(option), " ") + ")";
                 text += " \\\n        " + shell_quoted(entry);

@@ -79,8 +79,6 @@ private:
 
 }  // namespace
 
-std::shared_ptr<CLI::FormatterBase> help_formatter(bool with_expert) {
-    return std::make_shared<HelpText>(with_expert);
-}
+std::shared_ptr<CLI::FormatterBase> help_formatter(bool with_expert) { return std::make_shared<HelpText>(with_expert); }
 
 }  // namespace lensprof

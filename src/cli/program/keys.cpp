@@ -49,8 +49,7 @@ void KeyTable::set(const std::string &pair) {
     }
     if (equal == std::string::npos)
         throw Failure(ExitCode::usage, key_name + ": needs a value; give " + key_name + "=" + key->type);
-    if (!given.insert(name).second)
-        throw Failure(ExitCode::usage, key_name + ": given more than once; give it once");
+    if (!given.insert(name).second) throw Failure(ExitCode::usage, key_name + ": given more than once; give it once");
     const std::string value = pair.substr(equal + 1);
     try {
         if (value.empty()) throw std::invalid_argument("empty value; give " + key->type + ", or omit the key");

@@ -135,8 +135,8 @@ public:
         : app_(&root), tables_(tables), words_(words) {
         const auto end = std::find(words.begin(), words.end(), "--");
         wants_all_ = std::find(words.begin(), end, "--help-all") != end;
-        wants_help_ = wants_all_ || std::find(words.begin(), end, "-h") != end
-                      || std::find(words.begin(), end, "--help") != end;
+        wants_help_ =
+            wants_all_ || std::find(words.begin(), end, "-h") != end || std::find(words.begin(), end, "--help") != end;
         bool only_positionals = false;
         while (position_ < words_.size() && !is_done_) {
             const std::string &word = words_[position_++];

@@ -12,8 +12,8 @@ namespace {
 const char *describe_kind_from(KindFrom from) {
     return from == KindFrom::option     ? "as requested"
            : from == KindFrom::pictures ? "according to the pictures"
-           : from == KindFrom::none     ? "because no picture is a camera's own JPEG; use --fit camera-kind to change it"
-                                        : "typical of reconstructions; use --fit camera-kind to change it";
+           : from == KindFrom::none ? "because no picture is a camera's own JPEG; use --fit camera-kind to change it"
+                                    : "typical of reconstructions; use --fit camera-kind to change it";
 }
 
 void print_exposures(const BuildReport &report, std::ostream &out) {

@@ -58,11 +58,11 @@ void declare_disturbances(Keys &keys, SimulateOptions &o) {
                 "share of each picture covered by moving objects, also in pairs; default 0");
     keys.number("local-tone", o.local_tone, {0.0, 4.0},
                 "maximum gain of local tone mapping after the response, EV; default 0");
-    keys.number("sharpen", o.sharpen, {0.0, 10.0},
-                "gain of an unsharp mask of 1.5 px after the response; default 0");
+    keys.number("sharpen", o.sharpen, {0.0, 10.0}, "gain of an unsharp mask of 1.5 px after the response; default 0");
     keys.number("parallax", o.parallax, {0.0, 1e3},
                 "parallax of a moving camera: maximum shift of near objects between two pictures, px; default 0");
-    keys.number("exif-rounding", o.exif_rounding, {0.0, 4.0}, "sigma of the error of the EXIF exposures, EV; default 0");
+    keys.number("exif-rounding", o.exif_rounding, {0.0, 4.0},
+                "sigma of the error of the EXIF exposures, EV; default 0");
     keys.flag("exif-manual", o.exif_manual, "mark the exposures in EXIF as set manually, at one ISO");
     keys.number("exif-scatter", o.exif_scatter, {0.0, 4.0},
                 "sigma of the true exposure about the one set and written to EXIF, EV; default 0");
@@ -124,9 +124,9 @@ void check_simulate_options(const SimulateOptions &o) {
     if (o.gloss && !o.moving) throw Failure(ExitCode::usage, "--set gloss: needs moving; add it, or omit gloss");
     if (o.exif && o.no_images)
         throw Failure(ExitCode::usage, "--exif: needs pictures to write to; omit --set no-images");
-    for (const auto &[key, is_given] : {std::pair("exif-rounding", o.exif_rounding > 0.0),
-                                        std::pair("exif-scatter", o.exif_scatter > 0.0),
-                                        std::pair("exif-manual", o.exif_manual)})
+    for (const auto &[key, is_given] :
+         {std::pair("exif-rounding", o.exif_rounding > 0.0), std::pair("exif-scatter", o.exif_scatter > 0.0),
+          std::pair("exif-manual", o.exif_manual)})
         if (is_given && !o.exif)
             throw Failure(ExitCode::usage, std::string("--set ") + key + ": needs --exif; add it, or omit " + key);
 }

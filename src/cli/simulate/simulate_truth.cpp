@@ -88,8 +88,9 @@ void check_falloff(lensprof_vignetting falloff) {
     if (lensprof_vignetting_validate(&falloff) != LENSPROF_OK)
         throw Failure(ExitCode::usage,
                       "--vignetting: the falloff must stay positive up to the corner; give smaller numbers");
-    throw Failure(ExitCode::usage,
-                  "--set center: the falloff must stay positive up to the farthest corner; give a centre closer to 0,0");
+    throw Failure(
+        ExitCode::usage,
+        "--set center: the falloff must stay positive up to the farthest corner; give a centre closer to 0,0");
 }
 
 }  // namespace
