@@ -317,7 +317,7 @@ void test_uncertain_prediction(void **) {
     const double sigma = found["lookup"]["sigma"].is_number() ? found["lookup"]["sigma"].get<double>() : 0.0;
     const Outcome run = run_words(words);
     if (run.code != (sigma > 0.1 ? not_found : done) || sigma <= 0.1) fail_msg("%g: %s", sigma, run.err.c_str());
-    assert_true(contains(run.err, "too uncertain") && contains(run.err, "--key", "doubtful=yes"));
+    assert_true(contains(run.err, "too uncertain") && contains(run.err, "--key doubtful=yes"));
     assert_false(fs::exists(work("far_out/far.png")));
     must_exit(done, words + Words{"--key", "doubtful=yes"});
 }
