@@ -269,7 +269,7 @@ void test_refused(void **) {
     };
     const Case cases[] = {
         {usage, {}, {"FILE"}},
-        {usage, {path}, {"--linear", "--fit", "gamma=--profile"}},
+        {usage, {path}, {"--linear", "--fit gamma=", "--fit profile="}},
         {usage, {path, "--linear", "--fit", "gamma=2"}, {"one of"}},
         {usage, {path, "--fit", "gamma=11", "--no-store"}, {"--fit gamma"}},
         {usage, {path, "--fit", "gamma=nan", "--no-store"}, {"--fit gamma"}},

@@ -177,7 +177,7 @@ void test_too_large_maps(void **) {
         assert_refused(usage,
                        {"profile", "export", "1", "--db", work("three.db"), "-o", work("large.tif"), "--encoding",
                         "frame=6000x4000", "--encoding", std::string("grid=") + grid},
-                       {"large.tif", "more than 80 million values", "give a smaller --grid"});
+                       {"large.tif", "more than 80 million values", "give a smaller --encoding grid"});
     assert_false(fs::exists(work("large.tif")));
 }
 

@@ -93,7 +93,7 @@ void test_wrong_keys(void **) {
         {{"--fit", "loss=hubr"}, "--fit loss: hubr: use robust, huber, squared; did you mean huber?\n"},
         {{"--fit", "loss=huber,squared"}, "--fit loss: huber,squared: use robust, huber, squared"},
         {{"--fit", "huber=300"}, "--fit huber: "},
-        {{"--fit", "free=ev,,wb"}, "--fit free: ev,,wb: a value is missing before or after a comma\n"},
+        {{"--fit", "free=ev,,wb"}, "--fit free: ev,,wb: a value is missing before or after a comma"},
         {{"--reconstruction", "track-colors=on"}, "--reconstruction track-colors: on: use yes, no"},
         {{"--fit"}, "--fit: needs a value; give --fit KEY=VALUE,..."},
         {{"--fit", ""}, "--fit: empty value; give one, or omit the option"},

@@ -138,7 +138,7 @@ void test_each_once(void **) {
     assert_refused(usage, Words{"profile", "set", "1", "--focal", "60", "--clear", "focal"} + at, {"--clear"});
     assert_refused(usage, Words{"profile", "set", "1", "--key", "crop-factor=2", "--clear", "crop-factor"} + at,
                    {"--clear"});
-    assert_refused(usage, Words{"profile", "set", "1", "--key", "unit=7", "--clear", "unit"} + at, {"--clear", "unit"});
+    assert_refused(usage, Words{"profile", "set", "1", "--key", "unit=7", "--clear", "unit"} + at, {"--clear"});
     must_exit(done, Words{"profile", "remove", "1", "1"} + at);
     must_exit(done, Words{"profile", "remove", "--camera", "EOS 5D", "--yes"} + at);
 }

@@ -253,7 +253,7 @@ void test_units(void **) {
         {{"--focal", "24m"}, "'m' is not the unit of a focal length"},
         {{"--focal", "2.4cm"}, "'cm' is not the unit"},
         {{"--aperture", "4mm"}, "'mm' is not the unit of an aperture"},
-        {{"--key", "distance=3mm"}, "'mm' is not the unit of a distance"},
+        {{"--key", "distance=3mm"}, "--key distance: 3mm: 'mm' is not the unit of a distance"},
         {{"--focal", "f/4"}, "f/4"},
         {{"--aperture", "f/"}, "f/"},
         {{"--aperture", "1/2.8"}, "'/2.8' is not the unit of an aperture"},
@@ -268,7 +268,7 @@ void test_units(void **) {
     };
     for (const auto &one : wrong)
         assert_refused(usage, Words{"query", "--camera", "X", "--db", work("p.db")} + one.words,
-                       {one.words[0] + ": ", one.said});
+                       {one.words[0], one.said});
     const Words bracket = {"bracket", scene("img000.png"), scene("img001.png"), "--no-store", "--times"};
     for (const char *times : {"1/60ms,1/30", "1/0,1", "1/60,", ",1", "1/60s,1m", "1/ 0x2,1", "1/60, 1"})
         assert_refused(usage, bracket + Words{times}, {"--times: "});

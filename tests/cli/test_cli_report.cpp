@@ -49,7 +49,7 @@ void test_fit(void **) {
     assert_true(page["responses"][0]["f"].back() == 1.0);
     // Deterministic except for the name in the command, and without network access.
     Json other = data_of(work("b.html"));
-    assert_true(contains(page["command"], "lensprof build ") && contains(page["command"], "--seed 3"));
+    assert_true(contains(page["command"], "lensprof build ") && contains(page["command"], "--fit seed=3"));
     other["command"] = page["command"];
     other["result"]["seconds"] = page["result"]["seconds"];
     assert_true(other == page);

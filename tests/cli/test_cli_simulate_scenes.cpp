@@ -16,8 +16,10 @@ Words simulate(const std::string &name, const Words &more) {
     Words words = {"simulate", "-o",    work(name),     "--response", "linear", "--size",     "320x240",
                    "--images", "3",     "--vignetting", "0,0,0",      "--set",  "center=0,0", "--set",
                    "wb=0",     "--set", "jitter=0",     "--format",   "tiff32"};
-    for (const char *none : {"--set", "noise=--ev"})
-        if (std::find(more.begin(), more.end(), none) == more.end()) words = words + Words{none, "0"};
+    for (const std::string key : {"noise=", "ev="}) {
+        const auto sets = [&](const std::string &word) { return !find_pattern("(^|,)" + key, word).empty(); };
+        if (std::none_of(more.begin(), more.end(), sets)) words = words + Words{"--set", key + "0"};
+    }
     return words + more;
 }
 

@@ -103,7 +103,7 @@ void test_noise_is_neither(void **) {
 // One exposure, and a falloff corrected by the camera: the response is typical of the kind of camera, and a reason
 // reports it.
 void test_pictures_that_show_no_response(void **) {
-    simulate("flat", {"--ev", "0", "--set", "wb=0", "--vignetting=-.04,0,0"});
+    simulate("flat", {"--set", "ev=0,wb=0", "--vignetting=-.04,0,0"});
     const Json json = json_of({"build", pto("flat"), "--no-store", "--json"});
     assert_true(json["usable"] == true && json["evens"] == true);
     assert_true(json["reason_code"] == "response_not_shown" && json["response"]["from"] == "kind");
@@ -121,7 +121,7 @@ void test_pictures_that_show_no_response(void **) {
 // The falloff of such pictures is still known: it is stored and found for its setting. The response is not a prior of
 // the next fit.
 void test_a_falloff_without_a_response_is_found(void **) {
-    const Words dim{"--ev", "0", "--set", "wb=0", "--vignetting=-.06,0,0"};
+    const Words dim{"--set", "ev=0,wb=0", "--vignetting=-.06,0,0"};
     const Words setting{"--db", work("even.db"), "--camera", "B", "--lens", "C", "--focal", "30", "--aperture", "4"};
     simulate("even", dim);
     must_exit(done, Words{"build", pto("even")} + setting);
