@@ -109,7 +109,7 @@ void test_pictures_that_show_no_response(void **) {
     assert_true(json["reason_code"] == "response_not_shown" && json["response"]["from"] == "kind");
     assert_true(json["response"]["light_spread_ev"].get<double>() < 0.06);
     assert_close(json["gamma"]["sigma"].get<double>(), 0.264, 0.001);
-    const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--seed", "7"});
+    const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--fit", "seed=7"});
     assert_true(other["response"]["values"] == json["response"]["values"]);  // independent of noise
     simulate("equal", {"--set", "ev=0,wb=0", "--vignetting", "0,0,0"});      // nothing to correct
     const Json equal = json_of({"build", pto("equal"), "--no-store", "--json"}, not_usable);
