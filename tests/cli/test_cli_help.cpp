@@ -73,6 +73,8 @@ void test_earlier_names(void **) {
     }
     assert_refused(usage, {"build", "x.pto", "--huber=3"}, {"--huber is now --fit huber=NUMBER", "build --help-all`"});
     assert_refused(usage, {"flat", "x.tif", "--modes", "3"}, {"--modes: no such option"});  // flat never had it
+    assert_refused(usage, {"simulate", "--blob", "x"}, {"--blob: no such option"});
+    assert_refused(usage, {"report", "--from-db"}, {"--from-db: no such option"});
     assert_refused(usage, {"simulate", "--center", "0,0"}, {"--center is now --set center="});
     assert_refused(usage, {"flat", "--center", "free"}, {"--center is now --fit center="});
 }

@@ -87,17 +87,18 @@ std::string empty_text(const CLI::Option &option) {
            + (option.get_required() || option.get_positional() ? "" : ", or omit the option");
 }
 
-// The options and keys in a form such as "--fit huber=" or "-o FILE --format blob" are those of the command.
+// The options, keys and choices in a form such as "--fit huber=NUMBER" or "-o FILE --format blob" are the command's.
 bool has_form(const CLI::App &app, const KeyTables &tables, const std::string &form) {
-    const KeyTable *table = nullptr;
+    const CLI::Option *option = nullptr;
     for (const std::string &word : split(form, ' ')) {
         const size_t equal = word.find('=');
         if (word[0] == '-') {
-            const CLI::Option *option = app.get_option_no_throw(word);
+            option = app.get_option_no_throw(word);
             if (!option) return false;
-            const auto found = tables.find(option);
-            table = found == tables.end() ? nullptr : found->second.get();
-        } else if (table && equal != std::string::npos && !table->find(word.substr(0, equal))) {
+        } else if (equal != std::string::npos) {
+            const auto table = tables.find(option);
+            if (table == tables.end() || !table->second->find(word.substr(0, equal))) return false;
+        } else if (option->get_type_name().find(word) == std::string::npos) {
             return false;
         }
     }
