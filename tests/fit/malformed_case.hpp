@@ -15,7 +15,6 @@ struct Case : FitRun {
     Simulation s;
     lensprof_response given;  // target of options.response, if it is set
     lensprof_fit_options options;
-    std::vector<uint64_t> memory;  // of the fit; empty: the library's
     lensprof_error error;
     bool null_options = false, null_images = false, null_pairs = false, null_exposures = false, null_result = false,
          null_error = false;
@@ -58,6 +57,7 @@ inline lensprof_status Case::run() {
     exposures.resize(s.fit_images.size());  // exactly as many as announced: a sanitizer detects any more
     if (!exposures.empty())
         std::memset(static_cast<void *>(exposures.data()), 0xFF, exposures.size() * sizeof exposures[0]);
+    held.reset();
     memory.clear();
     if (chance(0.5))  // exactly as much as needed, with anything in it
         memory.assign(lensprof_fit_bytes(s.fit_images.data(), static_cast<uint32_t>(s.fit_images.size())) / 8,
