@@ -94,6 +94,13 @@ static void print_structs(void) {
     FIELD(lensprof_image, height);
     FIELD(lensprof_image, sample);
     FIELD(lensprof_image, layout);
+    STRUCT(lensprof_target);
+    FIELD(lensprof_target, data);
+    FIELD(lensprof_target, row_bytes);
+    FIELD(lensprof_target, width);
+    FIELD(lensprof_target, height);
+    FIELD(lensprof_target, sample);
+    FIELD(lensprof_target, layout);
     STRUCT(lensprof_apply_options);
     FIELD(lensprof_apply_options, struct_size);
     FIELD(lensprof_apply_options, direction);

@@ -44,7 +44,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_open(const vo
 /* As lensprof_apply. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_apply(const lensprof_fixed_plan *plan,
                                                                     const lensprof_image *source,
-                                                                    const lensprof_image *target, uint32_t x0,
+                                                                    const lensprof_target *target, uint32_t x0,
                                                                     uint32_t y0);
 
 #ifdef __cplusplus
