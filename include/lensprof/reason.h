@@ -46,16 +46,14 @@ typedef enum lensprof_reason {
 
     /* Exposures, and the exponent gamma, which pictures alone do not determine. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201, /* image: standard error, EV */
-    LENSPROF_REASON_KNOWN_ALIKE = 202,        /* difference, EV */
-    LENSPROF_REASON_KNOWN_REVERSED = 203,
-    LENSPROF_REASON_EXPOSURES_ALIKE = 204,  /* difference, EV */
-    LENSPROF_REASON_KNOWN_ORDER = 251,      /* difference, EV */
-    LENSPROF_REASON_KNOWN_WRONG = 252,      /* image: distance, EV */
-    LENSPROF_REASON_KNOWN_MORE_FROM = 253,  /* image: step, EV */
-    LENSPROF_REASON_KNOWN_LESS_FROM = 254,  /* image: step, EV */
-    LENSPROF_REASON_KNOWN_CONTRADICT = 255, /* distance, EV */
-    LENSPROF_REASON_GAMMA_UNFOLLOWED = 256, /* factor of all exposures */
-    LENSPROF_REASON_BALANCES_HELD = 257,    /* image: difference, levels of 255 */
+    LENSPROF_REASON_EXPOSURES_ALIKE = 204,    /* difference, EV */
+    LENSPROF_REASON_KNOWN_ORDER = 251,        /* difference, EV */
+    LENSPROF_REASON_KNOWN_WRONG = 252,        /* image: distance, EV */
+    LENSPROF_REASON_KNOWN_MORE_FROM = 253,    /* image: step, EV */
+    LENSPROF_REASON_KNOWN_LESS_FROM = 254,    /* image: step, EV */
+    LENSPROF_REASON_KNOWN_CONTRADICT = 255,   /* distance, EV */
+    LENSPROF_REASON_GAMMA_UNFOLLOWED = 256,   /* factor of all exposures */
+    LENSPROF_REASON_BALANCES_HELD = 257,      /* image: difference, levels of 255 */
 
     /* Response. */
     LENSPROF_REASON_FEW_GREYS = 301,     /* tenths of the grey values */

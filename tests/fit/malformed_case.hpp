@@ -40,11 +40,8 @@ inline Case::Case(uint32_t number) : random(0x9e3779b97f4a7c15ull * (number + 1)
     options.max_iterations = 1 + below(6);
     options.loss = below(3);
     if (number % 200 == 7) options.method = LENSPROF_METHOD_TRANSFER_FUNCTION;
-    if (number % 20 == 9) {
-        options.method = LENSPROF_METHOD_DEBEVEC;
-        options.free = LENSPROF_FREE_RESPONSE;
+    if (number % 20 == 9)
         for (auto &image : s.fit_images) image.known_ev = 4.0 * uniform(), image.known_ev_sigma = 0.1;
-    }
 }
 
 inline int count_down(double, void *user) {

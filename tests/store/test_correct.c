@@ -69,7 +69,7 @@ static void test_as_in_parts(void **state) {
         }
 }
 
-/* As in the example of correct.h. */
+/* As in the example of store.h. */
 static void test_from_a_database(void **state) {
     const place *here = *state;
     lensprof_profile profile = profile_of_lens();

@@ -173,8 +173,6 @@ class Reason(IntEnum):
     LINKS_CONTRADICT = 158
     IMAGES_UNCONNECTED = 159
     EXPOSURE_UNCERTAIN = 201
-    KNOWN_ALIKE = 202
-    KNOWN_REVERSED = 203
     EXPOSURES_ALIKE = 204
     KNOWN_ORDER = 251
     KNOWN_WRONG = 252
@@ -293,7 +291,6 @@ class Method(IntEnum):
     TRANSFER = 0
     RADIANCE = 1
     TRANSFER_FUNCTION = 2
-    DEBEVEC = 3
 
 
 class Loss(IntEnum):

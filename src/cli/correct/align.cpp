@@ -63,7 +63,7 @@ void declare(Command &command, Options &o) {
     command.file("--project", o.pto,
                  "Hugin project with the orientations of the camera; the falloff is then estimated and corrected too; "
                  "default none: a stationary camera");
-    declare_fit(command, o.fit, {false, false});
+    declare_fit(command, o.fit, {false});
     command.count("--pairs", o.pairs, 0, 1 << 24,
                   "number of pairs; default 0 = 10000 per frame; with --project 300 per frame, at least 2000");
     command.count("--seed", o.seed, 0, UINT32_MAX, "seed of the sampling; default 1");

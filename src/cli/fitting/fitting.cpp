@@ -25,26 +25,20 @@ int on_fit_progress(double done, void *progress) {
 }
 
 const char *method_name(uint32_t method) {
-    static const char *const names[] = {"transfer", "radiance", "transfer-function", "debevec"};
-    return method <= LENSPROF_METHOD_DEBEVEC ? names[method] : "unknown";
+    static const char *const names[] = {"transfer", "radiance", "transfer-function"};
+    return method <= LENSPROF_METHOD_TRANSFER_FUNCTION ? names[method] : "unknown";
 }
 
 namespace {
 
-void declare_method(Command &command, FitOptions &o, const FitChoices &choices) {
-    Choices<uint32_t> methods = {{"transfer", LENSPROF_METHOD_TRANSFER},
-                                 {"radiance", LENSPROF_METHOD_RADIANCE},
-                                 {"transfer-function", LENSPROF_METHOD_TRANSFER_FUNCTION}};
-    std::string about =
-        "estimation method: transfer (d'Angelo 2007, default), radiance (Goldman & Chen 2005: one radiance per scene "
-        "point, seen by any number of pictures, saturated ones included) or transfer-function (Kim & Pollefeys 2004)";
-    if (choices.debevec) {
-        methods.emplace_back("debevec", LENSPROF_METHOD_DEBEVEC);
-        about +=
-            "; debevec (Debevec & Malik 1997), for comparison: takes known exposures as exact and fixes white "
-            "balances";
-    }
-    command.choice("--method", o.method, methods, about);
+void declare_method(Command &command, FitOptions &o) {
+    command.choice("--method", o.method,
+                   {{"transfer", LENSPROF_METHOD_TRANSFER},
+                    {"radiance", LENSPROF_METHOD_RADIANCE},
+                    {"transfer-function", LENSPROF_METHOD_TRANSFER_FUNCTION}},
+                   "estimation method: transfer (d'Angelo 2007, default), radiance (Goldman & Chen 2005: one radiance "
+                   "per scene point, seen by any number of pictures, saturated ones included) or transfer-function "
+                   "(Kim & Pollefeys 2004)");
 }
 
 Choices<std::optional<uint32_t>> camera_kind_choices() {
@@ -94,7 +88,7 @@ void declare_gamma(Command &command, FitOptions &o, bool known_response) {
 }  // namespace
 
 void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
-    declare_method(command, o, choices);
+    declare_method(command, o);
     const auto read_modes = [&o](const std::string &word) {
         o.modes = word == "auto" ? LENSPROF_MODES_AUTO : count_of(word, 0, LENSPROF_EMOR_MODES);
     };
