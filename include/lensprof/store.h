@@ -1,6 +1,8 @@
 /* lensprof/store.h - the profile database (SQLite), and pictures corrected by what it holds.
  *
- *     lensprof_profile_key_init(&key), lensprof_profile_init(&profile);   // the rest of the key stays unknown
+ * Example: a picture corrected with a stored lens, in place.
+ *
+ *     lensprof_profile_key_init(&key), lensprof_profile_init(&profile); // the rest of the key stays unknown
  *     strcpy(key.lens, "Acme 50mm f/1.8"), key.focal_mm = 50, key.aperture = 2.8, key.crop_factor = 1.5;
  *     status = lensprof_store_open("lenses.db", LENSPROF_STORE_READ, &store, &error);
  *     if (status == LENSPROF_OK) status = lensprof_store_lookup(store, &key, NULL, &profile, NULL, &error);

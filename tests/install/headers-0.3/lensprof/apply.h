@@ -1,5 +1,20 @@
 /* lensprof/apply.h - correct (or simulate) falloff, exposure and white balance in pixels.
  *
+ * Example: a picture corrected row by row, in place.
+ *
+ *     static uint64_t memory[1 << 14];
+ *     const lensprof_plan *plan;
+ *     lensprof_apply_options options;
+ *     lensprof_apply_options_init(&options); // 8 bit RGB
+ *     options.frame_width = picture.width, options.frame_height = picture.height;
+ *     status = lensprof_apply_options_set_profile(&options, &profile);
+ *     if (status == LENSPROF_OK) status = lensprof_plan_init(memory, sizeof memory, &options, &plan, &error);
+ *     for (uint32_t y = 0; y < picture.height && status == LENSPROF_OK; y++) {
+ *         lensprof_target row = picture;
+ *         row.data = (uint8_t *)picture.data + (ptrdiff_t)y * picture.row_bytes, row.height = 1;
+ *         status = lensprof_apply(plan, NULL, &row, 0, y);
+ *     }
+ *
  *   correct:  B' = f( g(B) / (M e w) * e' w' )                 Goldman & Chen 2005, equation 16
  *   simulate: B' = f( g(B) * M e w / (e' w') )                 the inverse, up to clipping
  *

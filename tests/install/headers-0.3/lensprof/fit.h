@@ -1,5 +1,23 @@
 /* lensprof/fit.h - recover response, vignetting, exposure and white balance from correspondences.
  *
+ * Example: self-calibration from three overlapping pictures, which are then corrected and evened out in place.
+ *
+ *     static lensprof_pair pairs[2000];
+ *     lensprof_sample_image samples[3]; lensprof_fit_image fitted[3]; lensprof_exposure exposures[3]; uint32_t count;
+ *     lensprof_sample_options sampling; lensprof_fit_options options; lensprof_fit *fit = NULL;
+ *     lensprof_sample_options_init(&sampling), lensprof_fit_options_init(&options), lensprof_profile_init(&profile);
+ *     for (uint32_t i = 0; i < 3; i++) {
+ *         lensprof_sample_image_init(&samples[i]), samples[i].view = images[i], samples[i].camera = cameras[i];
+ *         lensprof_fit_image_init(&fitted[i], i, images[i].width, images[i].height);
+ *     }
+ *     status = lensprof_sample_overlap(&sampling, samples, 3, pairs, 2000, &count, &error);
+ *     if (status == LENSPROF_OK)
+ *         status = lensprof_fit_overlap(&options, fitted, 3, pairs, count, NULL, 0, exposures, &fit, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_fit_profile(fit, LENSPROF_FIT_REFERENCE, &profile, &error);
+ *     for (uint32_t i = 0; i < 3 && status == LENSPROF_OK; i++)
+ *         status = lensprof_correct(&profile, &exposures[i], &pictures[i], &error);
+ *     lensprof_fit_destroy(fit);
+ *
  * Method `radiance` (Goldman & Chen 2005) minimises the error of every grey value,
  *     B_xi - f( e_i w_i M(r_xi) L_x )                                             (equations 2, 3, 11, 12)
  * over the unknowns of `transfer` and the radiance L of every scene point x that is observed in two or more images.

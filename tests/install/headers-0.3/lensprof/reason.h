@@ -1,5 +1,11 @@
 /* lensprof/reason.h - reason codes: why a result is not usable, or what is doubtful about it.
  *
+ * Example: all codes and what they mean.
+ *
+ *     for (uint32_t code = 1; code < 1000; code++)
+ *         if (*lensprof_reason_text(code))
+ *             printf("%u %s: %s\n", (unsigned)code, lensprof_reason_name(code), lensprof_reason_text(code));
+ *
  * Fits, flat fields and lookups report their verdict as data: a code, the image or shot concerned, and numbers. The
  * sentence next to it (`reason`) is composed of these, for people. docs/reasons.md has a remedy for every code.
  */
