@@ -20,7 +20,7 @@ static int make_profile(void) {
 static int correct(uint8_t pixels[HEIGHT][WIDTH][3]) {
     const lensprof_plan *plan;
     lensprof_apply_options options;
-    lensprof_image view = {pixels, WIDTH * 3, WIDTH, HEIGHT, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+    lensprof_target picture = {pixels, WIDTH * 3, WIDTH, HEIGHT, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
     lensprof_error error;
     lensprof_status status;
 
@@ -30,7 +30,7 @@ static int correct(uint8_t pixels[HEIGHT][WIDTH][3]) {
     options.frame_height = HEIGHT;
     status = lensprof_apply_options_set_profile(&options, &profile);
     if (status == LENSPROF_OK) status = lensprof_plan_init(plan_memory, sizeof plan_memory, &options, &plan, &error);
-    if (status == LENSPROF_OK) status = lensprof_apply(plan, &view, &view, 0, 0);
+    if (status == LENSPROF_OK) status = lensprof_apply(plan, NULL, &picture, 0, 0);
     if (status != LENSPROF_OK) printf("cannot correct: %s: %s\n", lensprof_status_name(status), error.text);
     return status == LENSPROF_OK;
 }

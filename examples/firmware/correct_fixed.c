@@ -30,10 +30,9 @@ int main(void) {
     put_number("plan: stack ", deepest_stack());
     paint_stack();
     for (uint32_t y = 0; y < STRIP_ROWS && status == LENSPROF_OK; y++) {
-        lensprof_image source = {
-            (void *)(strip + y * sizeof row), 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
-        lensprof_image target = source;
-        target.data = row;
+        const lensprof_image source = {strip + y * sizeof row, 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8,
+                                       LENSPROF_LAYOUT_RGB};
+        const lensprof_target target = {row, 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
         const uint32_t before = clock_ticks();
         status = lensprof_fixed_apply(plan, &source, &target, 0, y);
         ticks += (before - clock_ticks()) & 0xFFFFFF;

@@ -32,7 +32,7 @@ static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3]) {
     static float light[STRIP_ROWS][STRIP_WIDTH][3];
     static uint64_t memory[1 << 12];
     lensprof_image from = {light, sizeof light[0], STRIP_WIDTH, STRIP_ROWS, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
-    lensprof_image to = {rows, sizeof rows[0], STRIP_WIDTH, STRIP_ROWS, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+    lensprof_target to = {rows, sizeof rows[0], STRIP_WIDTH, STRIP_ROWS, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
     lensprof_apply_options options;
     const lensprof_plan *plan;
 

@@ -1,5 +1,20 @@
 /* lensprof/apply.h - correct (or simulate) falloff, exposure and white balance in pixels.
  *
+ * Example: a picture corrected row by row, in place.
+ *
+ *     static uint64_t memory[1 << 14];
+ *     const lensprof_plan *plan;
+ *     lensprof_apply_options options;
+ *     lensprof_apply_options_init(&options); // 8 bit RGB
+ *     options.frame_width = picture.width, options.frame_height = picture.height;
+ *     status = lensprof_apply_options_set_profile(&options, &profile);
+ *     if (status == LENSPROF_OK) status = lensprof_plan_init(memory, sizeof memory, &options, &plan, &error);
+ *     for (uint32_t y = 0; y < picture.height && status == LENSPROF_OK; y++) {
+ *         lensprof_target row = picture;
+ *         row.data = (uint8_t *)picture.data + (ptrdiff_t)y * picture.row_bytes, row.height = 1;
+ *         status = lensprof_apply(plan, NULL, &row, 0, y);
+ *     }
+ *
  *   correct:  B' = f( g(B) / (M e w) * e' w' )                 Goldman & Chen 2005, equation 16
  *   simulate: B' = f( g(B) * M e w / (e' w') )                 the inverse, up to clipping
  *
@@ -40,14 +55,22 @@ typedef enum lensprof_layout {
     LENSPROF_LAYOUT_BGGR = 10
 } lensprof_layout;
 
-/* A view of interleaved pixels owned by the caller. Frozen value struct. */
+/* A view of interleaved pixels owned by the caller, which are only read. Frozen value struct. */
 typedef struct lensprof_image {
-    void *data;          /* upper left sample of the view */
+    const void *data;    /* upper left sample of the view */
     ptrdiff_t row_bytes; /* from one row to the next; negative for bottom-up images */
     uint32_t width, height;
     uint32_t sample; /* lensprof_sample_type */
     uint32_t layout; /* lensprof_layout */
 } lensprof_image;
+
+/* The same of pixels that are written. Frozen value struct. */
+typedef struct lensprof_target {
+    void *data;
+    ptrdiff_t row_bytes;
+    uint32_t width, height;
+    uint32_t sample, layout;
+} lensprof_target;
 
 /* Samples per pixel (1..4; planes and mosaics 1) and colour channels (1 or 3) of a layout; 0 if it is unknown. */
 LENSPROF_API uint32_t lensprof_layout_samples(uint32_t layout);
@@ -135,20 +158,20 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, 
                                                                   const lensprof_plan **plan, lensprof_error *error);
 
 /* Applies the plan to a tile whose upper left pixel is pixel (x0, y0) of the frame. `target` has the size of the tile.
- * It may be the same memory as `source` (same sample type and row_bytes). Otherwise the byte ranges from the first to
- * the last sample of the two must not overlap (so they cannot be two tiles side by side in one buffer). Alpha samples
- * are copied (converted to the target type). Integer output is rounded to nearest and clipped; linear float output is
- * not clipped. NaN in float input gives NaN. A saturated sample stays saturated if light is added; if light is removed,
- * it becomes grey (see lensprof_saturated). Errors: SIZE or ARGUMENT for views that do not fit the plan or the frame;
- * nothing is written then. */
+ * source NULL: in place, the pixels of `target` are read and replaced. It may also be the same memory as `source` (same
+ * sample type and row_bytes). Otherwise the byte ranges from the first to the last sample of the two must not overlap
+ * (so they cannot be two tiles side by side in one buffer). Alpha samples are copied (converted to the target type).
+ * Integer output is rounded to nearest and clipped; linear float output is not clipped. NaN in float input gives NaN. A
+ * saturated sample stays saturated if light is added; if light is removed, it becomes grey (see lensprof_saturated).
+ * Errors: SIZE or ARGUMENT for views that do not fit the plan or the frame; nothing is written then. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply(const lensprof_plan *plan, const lensprof_image *source,
-                                                              const lensprof_image *target, uint32_t x0, uint32_t y0);
+                                                              const lensprof_target *target, uint32_t x0, uint32_t y0);
 
-/* The same for three planes of layout GREY (red, green, blue) of one size; the layout of the plan is PLANAR. Each
- * target may be the same memory as its own source; no other two of the six may overlap. */
+/* The same for three planes of layout GREY (red, green, blue) of one size; the layout of the plan is PLANAR. source
+ * NULL: in place. Each target may be the same memory as its own source; no other two of the six may overlap. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply_planar(const lensprof_plan *plan,
                                                                      const lensprof_image source[3],
-                                                                     const lensprof_image target[3], uint32_t x0,
+                                                                     const lensprof_target target[3], uint32_t x0,
                                                                      uint32_t y0);
 
 #ifdef __cplusplus

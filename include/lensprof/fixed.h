@@ -1,5 +1,16 @@
 /* lensprof/fixed.h - apply.h in integer arithmetic, for processors without a floating-point unit.
  *
+ * Example: a picture corrected without floating point, but for the plan.
+ *
+ *     static uint32_t memory[2048];
+ *     const lensprof_fixed_plan *plan;
+ *     lensprof_apply_options options;
+ *     lensprof_apply_options_init(&options); // 8 bit RGB
+ *     options.frame_width = picture.width, options.frame_height = picture.height;
+ *     status = lensprof_apply_options_set_profile(&options, &profile);
+ *     if (status == LENSPROF_OK) status = lensprof_fixed_plan_init(memory, sizeof memory, &options, &plan, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_fixed_apply(plan, NULL, &picture, 0, 0);
+ *
  * Light and gains are logarithms: removing falloff and exposure is one addition per sample, followed by a search among
  * the thresholds between grey values. Results are within 1 level of those in double precision.
  *
@@ -44,7 +55,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_open(const vo
 /* As lensprof_apply. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_apply(const lensprof_fixed_plan *plan,
                                                                     const lensprof_image *source,
-                                                                    const lensprof_image *target, uint32_t x0,
+                                                                    const lensprof_target *target, uint32_t x0,
                                                                     uint32_t y0);
 
 #ifdef __cplusplus

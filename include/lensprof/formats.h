@@ -3,6 +3,17 @@
  * docs/formats.md states what each holds and how it is converted. hugin.h, which this header includes, has Hugin's
  * projects and points.
  *
+ * Example: a profile as a file for Lensfun.
+ *
+ *     char text[4096];
+ *     size_t size;
+ *     const lensprof_profile *const all[] = {&profile};
+ *     lensprof_export_options options;
+ *     lensprof_export_options_init(&options);
+ *     options.format = LENSPROF_FORMAT_LENSFUN;
+ *     status = lensprof_export(all, 1, &options, text, sizeof text, &size, &error);
+ *     if (status == LENSPROF_OK) fwrite(text, 1, size, stdout);
+ *
  * lensprof_import reads all of them, lensprof_export writes them. No function here opens a file.
  *
  * Threads: calls are independent of each other. */

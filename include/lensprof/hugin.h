@@ -1,4 +1,16 @@
 /* lensprof/hugin.h - Hugin projects and point files, from and to memory. No function here opens a file.
+ *
+ * Example: the field of view of the first image of a project.
+ *
+ *     static const char project[] = "i w640 h480 f0 v50 y20 n\"a.jpg\"\ni w640 h480 f0 v50 y0 n\"b.jpg\"\n";
+ *     lensprof_pto *pto = NULL;
+ *     lensprof_pto_image first;
+ *     lensprof_pto_image_init(&first);
+ *     status = lensprof_pto_read(project, strlen(project), &pto, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_pto_get_image(pto, 0, &first, &error);
+ *     if (status == LENSPROF_OK) printf("%.1f degrees\n", first.camera.hfov_deg);
+ *     lensprof_pto_destroy(pto);
+ *
  * Threads: a handle belongs to one thread at a time. */
 #ifndef LENSPROF_HUGIN_H
 #define LENSPROF_HUGIN_H

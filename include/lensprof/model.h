@@ -1,5 +1,14 @@
 /* lensprof/model.h - the camera model: response, vignetting, exposure.
  *
+ * Example: the falloff in a corner, and the grey values of half the light of white there and in the centre.
+ *
+ *     lensprof_vignetting falloff = {{-0.3, 0.05, -0.1}, {0.0, 0.0}};
+ *     lensprof_response response;
+ *     double corner = lensprof_vignetting_eval(&falloff, 1.0, NULL); // r^2 = 1
+ *     status = lensprof_response_set_gamma(&response, 2.2);
+ *     printf("M = %.2f; %.0f instead of %.0f\n", corner, 255.0 * lensprof_response_eval(&response, 0.5 * corner, NULL),
+ *            255.0 * lensprof_response_eval(&response, 0.5, NULL));
+ *
  *     B = f( L * M(r) * e * w )                                    d'Angelo 2007, equations 1 and 3
  *
  *   B  grey value 0..1            f  response, [0,1] -> [0,1], non-decreasing, f(0) = 0, f(1) = 1

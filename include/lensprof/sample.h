@@ -1,5 +1,19 @@
 /* lensprof/sample.h - correspondences: the same scene point in two pictures.
  *
+ * Example: pairs from overlapping pictures whose cameras are known.
+ *
+ *     static lensprof_pair pairs[2000];
+ *     uint32_t count;
+ *     lensprof_sample_image samples[3];
+ *     lensprof_sample_options options;
+ *     lensprof_sample_options_init(&options);
+ *     for (uint32_t i = 0; i < 3; i++) {
+ *         lensprof_sample_image_init(&samples[i]);
+ *         samples[i].view = images[i], samples[i].camera = cameras[i];
+ *     }
+ *     status = lensprof_sample_overlap(&options, samples, 3, pairs, 2000, &count, &error);
+ *     if (status == LENSPROF_OK) printf("%u pairs\n", (unsigned)count);
+ *
  * Threads: calls are independent of each other; the pictures are only read. One call uses up to the number of threads
  * in its options, and joins them before it returns. The pairs do not depend on that number: same input, same bytes. */
 #ifndef LENSPROF_SAMPLE_H

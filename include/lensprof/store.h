@@ -1,10 +1,12 @@
 /* lensprof/store.h - the profile database (SQLite), and pictures corrected by what it holds.
  *
- *     lensprof_profile_key_init(&key), lensprof_profile_init(&profile);   // the rest of the key stays unknown
+ * Example: a picture corrected with a stored lens, in place.
+ *
+ *     lensprof_profile_key_init(&key), lensprof_profile_init(&profile); // the rest of the key stays unknown
  *     strcpy(key.lens, "Acme 50mm f/1.8"), key.focal_mm = 50, key.aperture = 2.8, key.crop_factor = 1.5;
  *     status = lensprof_store_open("lenses.db", LENSPROF_STORE_READ, &store, &error);
  *     if (status == LENSPROF_OK) status = lensprof_store_lookup(store, &key, NULL, &profile, NULL, &error);
- *     if (status == LENSPROF_OK) status = lensprof_correct(&profile, NULL, &image, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_correct(&profile, NULL, &picture, &error);
  *     lensprof_store_close(store);
  *
  * Every call is one transaction, or part of the caller's transaction. It is atomic, even if the process is killed or
@@ -332,7 +334,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_names(lenspro
  * lensprof_plan_init, with the picture unchanged; UNSUPPORTED for the layout PLANAR; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_correct(const lensprof_profile *profile,
                                                                 const lensprof_exposure *exposure,
-                                                                const lensprof_image *image, lensprof_error *error);
+                                                                const lensprof_target *picture, lensprof_error *error);
 
 #ifdef __cplusplus
 }

@@ -9,11 +9,12 @@ static lensprof_status validate_tile(const lensprof_plan *plan, const lensprof_i
     return lp_tile_validate(&tiles, source, target, x0, y0);
 }
 
-static void apply_rows(const lensprof_plan *plan, const lensprof_image *source, const lensprof_image *target,
+/* Valid views: a source that does not overlap its target, or is the same. */
+static void apply_rows(const lensprof_plan *plan, const lensprof_image *source, const lensprof_target *target,
                        uint32_t planes, uint32_t x0, uint32_t y0) {
     const size_t bytes =
         (size_t)target->width * target->height * plan->samples * lensprof_sample_type_bytes(target->sample);
-    const int stream = bytes >= STREAMED && target->sample == LENSPROF_SAMPLE_F32 && !lp_is_in_place(source, target);
+    const int stream = bytes >= STREAMED && target->sample == LENSPROF_SAMPLE_F32 && source->data != target->data;
     for (uint32_t y = 0; y < source->height; y++) {
         const uint8_t *from[3] = {NULL, NULL, NULL};
         uint8_t *to[3] = {NULL, NULL, NULL};
@@ -25,26 +26,30 @@ static void apply_rows(const lensprof_plan *plan, const lensprof_image *source, 
     }
 }
 
-lensprof_status lensprof_apply(const lensprof_plan *plan, const lensprof_image *source, const lensprof_image *target,
+lensprof_status lensprof_apply(const lensprof_plan *plan, const lensprof_image *source, const lensprof_target *target,
                                uint32_t x0, uint32_t y0) {
-    if (!plan || !source || !target || plan->layout == LENSPROF_LAYOUT_PLANAR) return LENSPROF_ERROR_ARGUMENT;
-    lensprof_status status = validate_tile(plan, source, target, plan->layout, x0, y0);
+    if (!plan || !target || plan->layout == LENSPROF_LAYOUT_PLANAR) return LENSPROF_ERROR_ARGUMENT;
+    const lensprof_image written = lp_image_of(target);
+    if (!source) source = &written;
+    lensprof_status status = validate_tile(plan, source, &written, plan->layout, x0, y0);
     if (status == LENSPROF_OK) apply_rows(plan, source, target, 1, x0, y0);
     return status;
 }
 
 lensprof_status lensprof_apply_planar(const lensprof_plan *plan, const lensprof_image source[3],
-                                      const lensprof_image target[3], uint32_t x0, uint32_t y0) {
-    if (!plan || !source || !target || plan->layout != LENSPROF_LAYOUT_PLANAR) return LENSPROF_ERROR_ARGUMENT;
+                                      const lensprof_target target[3], uint32_t x0, uint32_t y0) {
+    if (!plan || !target || plan->layout != LENSPROF_LAYOUT_PLANAR) return LENSPROF_ERROR_ARGUMENT;
+    const lensprof_image written[3] = {lp_image_of(target), lp_image_of(target + 1), lp_image_of(target + 2)};
+    if (!source) source = written;
     for (uint32_t p = 0; p < 3; p++) {
-        const lensprof_status status = validate_tile(plan, &source[p], &target[p], LENSPROF_LAYOUT_GREY, x0, y0);
+        const lensprof_status status = validate_tile(plan, &source[p], &written[p], LENSPROF_LAYOUT_GREY, x0, y0);
         if (status != LENSPROF_OK) return status;
         if (source[p].width != source->width || source[p].height != source->height) return LENSPROF_ERROR_SIZE;
     }
     for (uint32_t p = 0; p < 3; p++) /* views are compared only if all six are valid: sizes do not overflow then */
         for (uint32_t other = 0; other < 3; other++)
             if (other != p
-                && (lp_images_overlap(&target[p], &source[other]) || lp_images_overlap(&target[p], &target[other])))
+                && (lp_images_overlap(&written[p], &source[other]) || lp_images_overlap(&written[p], &written[other])))
                 return LENSPROF_ERROR_ARGUMENT;
     apply_rows(plan, source, target, 3, x0, y0);
     return LENSPROF_OK;

@@ -190,10 +190,12 @@ static void do_row(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t
 }
 
 lensprof_status lensprof_fixed_apply(const lensprof_fixed_plan *plan, const lensprof_image *source,
-                                     const lensprof_image *target, uint32_t x0, uint32_t y0) {
-    if (!plan || !source || !target) return LENSPROF_ERROR_ARGUMENT;
+                                     const lensprof_target *target, uint32_t x0, uint32_t y0) {
+    if (!plan || !target) return LENSPROF_ERROR_ARGUMENT;
+    const lensprof_image written = lp_image_of(target);
+    if (!source) source = &written;
     const lp_tiles tiles = {plan->sample, plan->sample, plan->layout, plan->frame_width, plan->frame_height};
-    const lensprof_status status = lp_tile_validate(&tiles, source, target, x0, y0);
+    const lensprof_status status = lp_tile_validate(&tiles, source, &written, x0, y0);
     for (uint32_t y = 0; status == LENSPROF_OK && y < source->height; y++)
         do_row(plan, (const uint8_t *)source->data + (ptrdiff_t)y * source->row_bytes,
                (uint8_t *)target->data + (ptrdiff_t)y * target->row_bytes, x0, y0 + y, source->width);

@@ -67,7 +67,8 @@ int lp_images_overlap(const lensprof_image *a, const lensprof_image *b) {
     return !(a1 < b0 || b1 < a0);
 }
 
-int lp_is_in_place(const lensprof_image *source, const lensprof_image *target) {
+/* The same memory, row by row and sample by sample. */
+static int is_in_place(const lensprof_image *source, const lensprof_image *target) {
     return source->data == target->data && source->row_bytes == target->row_bytes && source->sample == target->sample;
 }
 
@@ -83,5 +84,5 @@ lensprof_status lp_tile_validate(const lp_tiles *tiles, const lensprof_image *so
     if (x0 > tiles->frame_width || source->width > tiles->frame_width - x0 || y0 > tiles->frame_height
         || source->height > tiles->frame_height - y0)
         return LENSPROF_ERROR_SIZE;
-    return lp_is_in_place(source, target) || !lp_images_overlap(source, target) ? LENSPROF_OK : LENSPROF_ERROR_ARGUMENT;
+    return is_in_place(source, target) || !lp_images_overlap(source, target) ? LENSPROF_OK : LENSPROF_ERROR_ARGUMENT;
 }

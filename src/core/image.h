@@ -26,7 +26,9 @@ lensprof_status lp_tile_validate(const lp_tiles *tiles, const lensprof_image *so
 /* Whether the byte ranges of two valid views, from the first to the last sample, overlap. */
 int lp_images_overlap(const lensprof_image *a, const lensprof_image *b);
 
-/* The same memory, row by row and sample by sample. */
-int lp_is_in_place(const lensprof_image *source, const lensprof_image *target);
+/* The pixels of a target, for what only compares or reads them. */
+static inline lensprof_image lp_image_of(const lensprof_target *t) {
+    return (lensprof_image){t->data, t->row_bytes, t->width, t->height, t->sample, t->layout};
+}
 
 #endif

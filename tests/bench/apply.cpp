@@ -87,9 +87,8 @@ public:
     }
     void apply(const void *source, void *target, uint32_t sample) const {
         const ptrdiff_t row = static_cast<ptrdiff_t>(kWidth) * 3 * lensprof_sample_type_bytes(sample);
-        const lensprof_image from = {const_cast<void *>(source), row, kWidth, kHeight, sample, LENSPROF_LAYOUT_RGB};
-        lensprof_image to = from;
-        to.data = target;
+        const lensprof_image from = {source, row, kWidth, kHeight, sample, LENSPROF_LAYOUT_RGB};
+        const lensprof_target to = {target, row, kWidth, kHeight, sample, LENSPROF_LAYOUT_RGB};
         if (lensprof_apply(plan_, &from, &to, 0, 0) != LENSPROF_OK) std::abort();
     }
     double init_s = 0.0;

@@ -225,7 +225,7 @@ def static(records):
         return []
     lines = ["## Stationary camera", "", "Four frames, exposures unknown, aligned to the brightest (Kim & Pollefeys"
              " 2004, section 3.1): RMS difference summed over the channels, levels of 255, median over the seeds."
-             " With the true curve, only rounding and noise remain. Debevec (OpenCV) is given the true exposures.", ""]
+             " With the true curve, only rounding and noise remain. Debevec & Malik 1997 is given the true exposures.", ""]
     tools = [key for key in ("truth", "transfer", "transfer-function", "debevec") if key in records[0]]
     lines += header("curve", "noise", "runs", *tools)
     for curve, noise in sorted({(r["curve"], r["noise"]) for r in records}):

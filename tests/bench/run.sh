@@ -11,7 +11,7 @@
 #                      --real DIR the folders of DIR/reconstruction; existing database.db and sparse are used
 #   tests/bench/run.sh --only verdicts --match "smooth 17"   one rendered sequence again, or all of a kind; --keep keeps
 #                      its pictures in build/bench/verdicts
-#   tests/bench/run.sh --self-test      tests the scorer; needs no program; exit 77: NumPy is missing
+#   tests/bench/run.sh --self-test      tests the scorer and the references; needs no program; exit 77: NumPy is missing
 #   tests/bench/run.sh --lookup [DIR]   lookups between stored settings compared with Lensfun's rule, also written to
 #                                       build/bench/lookup.md; exit 1: target missed; 77: no NumPy or Lensfun data
 #
@@ -26,7 +26,7 @@ if [ -z "$python" ]; then
     case "${1:-}" in --self-test | --lookup) exit 77 ;; esac
     exit 1
 fi
-[ "${1:-}" = --self-test ] && exec "$python" -B "$folder/test_scorer.py"
+[ "${1:-}" = --self-test ] && exec "$python" -B -m unittest discover -q -s "$folder"
 if [ "${1:-}" = --lookup ]; then
     shift
     mkdir -p "$folder/../../build/bench"

@@ -1,8 +1,7 @@
 """The experiment of Kim & Pollefeys 2004, section 3.1: frames of a stationary camera, exposures unknown, aligned to the
 brightest. Error: RMS difference from it, summed over the channels, on pixels without a sample at 0 or 255. Compared
-with
-the true response and exposures (only rounding remains), and with OpenCV's Debevec, given the true exposures, if cv2 is
-installed. Own scenes and curves, because the paper's 20 curves of DoRF are not freely available."""
+with the true response and exposures (only rounding remains), and with Debevec & Malik 1997 (debevec.py), given the true
+exposures. Own scenes and curves, because the paper's 20 curves of DoRF are not freely available."""
 import json
 import shutil
 import struct
@@ -11,12 +10,8 @@ import zlib
 
 import numpy as np
 
+import debevec
 import tools
-
-try:
-    import cv2
-except ImportError:
-    cv2 = None
 
 WIDTH, HEIGHT, FRAMES = 320, 240, 4
 CURVES = {"linear": lambda x: x, "gamma 2.2": lambda x: x ** (1 / 2.2),
@@ -104,9 +99,7 @@ def by_truth(frames, ev, curve):
 
 
 def by_debevec(frames, ev):
-    found = cv2.createCalibrateDebevec().process(frames, (2.0 ** np.asarray(ev)).astype(np.float32)).reshape(256, 3)
-    g = np.maximum.accumulate(np.exp(np.log(np.maximum(found, 1e-12)).mean(1)))
-    g = g / g[-1]
+    g = debevec.response_of(frames, ev)
     return by_curve(frames, ev, np.interp(GRID, g, np.arange(256) / 255), g)
 
 
@@ -134,8 +127,7 @@ def measure(curve, seed, noise):
         record[method] = error(frames, aligned) if aligned else None
         if code:
             record["code of " + method] = code
-    if cv2:
-        record["debevec"] = error(frames, by_debevec(frames, ev))
+    record["debevec"] = error(frames, by_debevec(frames, ev))
     return record
 
 

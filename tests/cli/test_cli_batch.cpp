@@ -73,7 +73,8 @@ Picture corrected_whole(const std::string &file, const lensprof_profile &model, 
     std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
     const lensprof_plan *plan = nullptr;
     assert_ok(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan, nullptr));
-    lensprof_image from = source.view(), to = result.view();
+    const lensprof_image from = source.view();
+    const lensprof_target to = result.target();
     assert_ok(lensprof_apply(plan, &from, &to, 0, 0));
     return result;
 }
@@ -143,11 +144,11 @@ void test_reader_and_writer(void **) {
             Bytes rows(reader.header().row_bytes * strip);
             for (uint32_t y = 0; y < 61; y += strip) {
                 const Picture &header = reader.header();
-                const lensprof_image view = {rows.data(),   ptrdiff_t(header.row_bytes),
-                                             header.width,  std::min(strip, 61 - y),
-                                             header.sample, header.layout};
+                const lensprof_target view = {rows.data(),   ptrdiff_t(header.row_bytes),
+                                              header.width,  std::min(strip, 61 - y),
+                                              header.sample, header.layout};
                 reader.read(view);
-                writer.write(view);
+                writer.write(image_of(view));
             }
             assert_true(writer.finish());
             assert_false(fs::exists(work("strips" + extension)));

@@ -24,9 +24,9 @@ static uint32_t samples, same;
 static uint32_t check(const random_case *c) {
     static uint16_t out[512];
     const lensprof_fixed_plan *plan;
-    lensprof_image from = {(void *)c->in, 0, c->width, 1, c->sample, c->layout}, to = from;
+    const lensprof_image from = {c->in, 0, c->width, 1, c->sample, c->layout};
+    const lensprof_target to = {out, 0, c->width, 1, c->sample, c->layout};
     uint32_t worst = 0;
-    to.data = out;
     if (lensprof_fixed_plan_open(c->plan, c->plan_bytes, &plan) != LENSPROF_OK
         || lensprof_fixed_apply(plan, &from, &to, c->x0, c->y0) != LENSPROF_OK)
         return 65536;

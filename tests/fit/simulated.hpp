@@ -173,7 +173,8 @@ inline bool is_monotone(const lensprof_response &response) {
 
 // A fit with all its results.
 struct FitRun {
-    std::shared_ptr<lensprof_fit> held;
+    std::vector<uint64_t> memory;        // of the fit; empty: the library's
+    std::shared_ptr<lensprof_fit> held;  // released before its memory
     std::vector<lensprof_exposure> exposures;
     std::vector<lensprof_fit_image_quality> quality;
     lensprof_fit_result result;  // of the setting of the reference

@@ -451,9 +451,6 @@ void test_bad_input(void **) {
     auto s = alternating<Simulation>();
     lensprof_error error;
     Run run(s);
-    lensprof_fit_options options = default_fit();
-    options.method = LENSPROF_METHOD_DEBEVEC;
-    assert_int_equal(run.fit(s, options, &error), LENSPROF_ERROR_UNSUPPORTED);
     auto mixed = s;
     mixed.fit_images[3].setting = 0;  // belongs to camera 1
     assert_int_equal(run_fit(s).result.usable, 1);

@@ -166,12 +166,10 @@ std::vector<double> corrected(const lensprof_response &response, const lensprof_
     std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
     const lensprof_plan *plan;
     assert_ok(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan, nullptr));
-    std::vector<float> in = pixels, out(pixels.size());
-    lensprof_image source{in.data(),          static_cast<ptrdiff_t>(side * 12), side, side, LENSPROF_SAMPLE_F32,
-                          LENSPROF_LAYOUT_RGB};
-    lensprof_image target = source;
-    target.data = out.data();
-    assert_ok(lensprof_apply(plan, &source, &target, 0, 0));
+    std::vector<float> out = pixels;
+    const lensprof_target picture{
+        out.data(), static_cast<ptrdiff_t>(side * 12), side, side, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
+    assert_ok(lensprof_apply(plan, nullptr, &picture, 0, 0));
     return {out.begin(), out.end()};
 }
 

@@ -49,8 +49,7 @@ void test_refuses(void **) {
     REFUSED((call.memory = &call, call.size = 8), LENSPROF_ERROR_CAPACITY);
     REFUSED(call.options.method = LENSPROF_METHOD_TRANSFER, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(call.options.method = LENSPROF_METHOD_TRANSFER_FUNCTION, LENSPROF_ERROR_UNSUPPORTED);
-    REFUSED(call.options.method = LENSPROF_METHOD_DEBEVEC, LENSPROF_ERROR_UNSUPPORTED);
-    REFUSED(call.options.method = 4, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.method = 3, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.options.channels = 2, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.options.reference = 6, LENSPROF_ERROR_ARGUMENT);
     REFUSED((call.s.response.table[9] = -1.0, call.options.response = &call.s.response), LENSPROF_ERROR_RESPONSE);

@@ -33,8 +33,8 @@ static int correct(const lensprof_apply_options *options, uint8_t *pixels) {
     const lensprof_plan *plan;
     const lensprof_status status = lensprof_plan_init(memory, bytes, options, &plan, NULL);
     if (status == LENSPROF_OK) {
-        const lensprof_image image = {pixels, SIDE * 3, SIDE, SIDE, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
-        demand(lensprof_apply(plan, &image, &image, 0, 0) == LENSPROF_OK, "a plan was not applied");
+        const lensprof_target image = {pixels, SIDE * 3, SIDE, SIDE, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+        demand(lensprof_apply(plan, NULL, &image, 0, 0) == LENSPROF_OK, "a plan was not applied");
     }
     free(memory);
     return status == LENSPROF_OK;

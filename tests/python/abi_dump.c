@@ -94,6 +94,13 @@ static void print_structs(void) {
     FIELD(lensprof_image, height);
     FIELD(lensprof_image, sample);
     FIELD(lensprof_image, layout);
+    STRUCT(lensprof_target);
+    FIELD(lensprof_target, data);
+    FIELD(lensprof_target, row_bytes);
+    FIELD(lensprof_target, width);
+    FIELD(lensprof_target, height);
+    FIELD(lensprof_target, sample);
+    FIELD(lensprof_target, layout);
     STRUCT(lensprof_apply_options);
     FIELD(lensprof_apply_options, struct_size);
     FIELD(lensprof_apply_options, direction);
@@ -632,8 +639,6 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_LINKS_CONTRADICT);
     VALUE(LENSPROF_REASON_IMAGES_UNCONNECTED);
     VALUE(LENSPROF_REASON_EXPOSURE_UNCERTAIN);
-    VALUE(LENSPROF_REASON_KNOWN_ALIKE);
-    VALUE(LENSPROF_REASON_KNOWN_REVERSED);
     VALUE(LENSPROF_REASON_EXPOSURES_ALIKE);
     VALUE(LENSPROF_REASON_KNOWN_ORDER);
     VALUE(LENSPROF_REASON_KNOWN_WRONG);
@@ -736,7 +741,6 @@ static void print_values(void) {
     VALUE(LENSPROF_METHOD_TRANSFER);
     VALUE(LENSPROF_METHOD_RADIANCE);
     VALUE(LENSPROF_METHOD_TRANSFER_FUNCTION);
-    VALUE(LENSPROF_METHOD_DEBEVEC);
     VALUE(LENSPROF_LOSS_ROBUST);
     VALUE(LENSPROF_LOSS_HUBER);
     VALUE(LENSPROF_LOSS_SQUARED);

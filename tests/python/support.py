@@ -1,5 +1,6 @@
 """Common parts of the tests: a rendered scene with a known camera, and shortcuts."""
 import contextlib
+import tempfile
 
 import numpy as np
 
@@ -19,6 +20,14 @@ def refused(test, status):
         yield caught
     test.assertEqual(caught.exception.status, status)
     test.assertGreater(len(caught.exception.text), 10)
+
+
+def read_only(array):
+    """A copy in memory that cannot be written, as of a mapped file."""
+    with tempfile.NamedTemporaryFile() as file:
+        file.write(array.tobytes())
+        file.flush()
+        return np.memmap(file.name, array.dtype, "r", shape=array.shape)
 
 
 def cameras():

@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 import lensprof as lp
-from support import refused
+from support import read_only, refused
 
 WIDTH, HEIGHT = 240, 180
 LENS = lp.Vignetting(k=(-0.4, 0.1, -0.05), center=(0.02, -0.01))
@@ -48,6 +48,12 @@ class Flat(unittest.TestCase):
         self.assertEqual(result.shots, 1)
         self.assertGreater(result.gain_grid.columns, 2)
         self.assertLess(abs(result.image_quality["ev_residual"]).max(), 0.02)
+
+    def test_read_only_memory(self):
+        array, options = card(), lp.FlatOptions(threads=1)
+        mapped = lp.FlatImage(read_only(array))
+        self.assertEqual(mapped._view(0).view.data, mapped.array.ctypes.data)
+        self.assertEqual(lp.fit_flat([mapped], options).vignetting, lp.fit_flat([lp.FlatImage(array)], options).vignetting)
 
     def test_refused(self):
         with refused(self, lp.Status.ERROR_ARGUMENT):

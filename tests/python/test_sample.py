@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 import lensprof as lp
-from support import HEIGHT, WIDTH, cameras, fit_images, pictures, radiance, refused, sample_images
+from support import HEIGHT, WIDTH, cameras, fit_images, pictures, radiance, read_only, refused, sample_images
 
 
 class Sampling(unittest.TestCase):
@@ -139,6 +139,15 @@ class Sampling(unittest.TestCase):
         mirrored = [lp.SampleImage(np.ascontiguousarray(array[..., ::-1]), camera, layout=lp.Layout.BGR)
                     for array, camera in zip(arrays, cameras())]
         np.testing.assert_array_equal(lp.sample_overlap(mirrored), expected)
+
+    def test_read_only_memory(self):
+        mapped = [read_only(picture) for picture in pictures()]
+        for array, image in zip(mapped, sample_images(mapped)):
+            self.assertFalse(array.flags.writeable)
+            self.assertEqual(image._view(0).view.data, array.ctypes.data)  # no copy
+        options = lp.SampleOptions(pairs=300)
+        for call in (lp.sample_overlap, lp.sample_tracks):
+            np.testing.assert_array_equal(call(sample_images(mapped), options), call(sample_images(pictures()), options))
 
     def test_masks(self):
         arrays, mask = pictures(), np.zeros((HEIGHT * 2, WIDTH), dtype=bool)

@@ -16,10 +16,10 @@ static lensprof_profile profile_of_lens(void) {
 }
 
 /* Makes a picture of any sample type and layout; free its data. */
-static lensprof_image picture(uint32_t sample, uint32_t layout) {
+static lensprof_target picture(uint32_t sample, uint32_t layout) {
     const size_t row = (size_t)WIDTH * lensprof_layout_samples(layout);
     const size_t bytes = lensprof_sample_type_bytes(sample);
-    lensprof_image image = {malloc(row * bytes * HEIGHT), (ptrdiff_t)(row * bytes), WIDTH, HEIGHT, sample, layout};
+    lensprof_target image = {malloc(row * bytes * HEIGHT), (ptrdiff_t)(row * bytes), WIDTH, HEIGHT, sample, layout};
     for (size_t i = 0; i < row * HEIGHT; i++) {
         const unsigned value = (unsigned)(i * 37 % 200);
         if (sample == LENSPROF_SAMPLE_U8) ((uint8_t *)image.data)[i] = (uint8_t)value;
@@ -31,7 +31,7 @@ static lensprof_image picture(uint32_t sample, uint32_t layout) {
 
 /* The same by the functions of apply.h. */
 static void correct_in_parts(const lensprof_profile *profile, const lensprof_exposure *exposure,
-                             const lensprof_image *image) {
+                             const lensprof_target *image) {
     lensprof_apply_options options;
     const lensprof_plan *plan;
     lensprof_apply_options_init(&options);
@@ -42,7 +42,7 @@ static void correct_in_parts(const lensprof_profile *profile, const lensprof_exp
     const size_t size = lensprof_plan_bytes(&options);
     void *memory = malloc(size);
     assert_ok(lensprof_plan_init(memory, size, &options, &plan, NULL));
-    assert_ok(lensprof_apply(plan, image, image, 0, 0));
+    assert_ok(lensprof_apply(plan, NULL, image, 0, 0));
     free(memory);
 }
 
@@ -60,7 +60,7 @@ static void test_as_in_parts(void **state) {
     const lensprof_exposure exposure = {0.5, {1.1, 1.0, 0.9}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         for (int with = 0; with < 2; with++) {
-            const lensprof_image a = picture(cases[i].sample, cases[i].layout), b = picture(a.sample, a.layout);
+            const lensprof_target a = picture(cases[i].sample, cases[i].layout), b = picture(a.sample, a.layout);
             lensprof_error error;
             assert_ok(lensprof_correct(&profile, with ? &exposure : NULL, &a, &error));
             correct_in_parts(&profile, with ? &exposure : NULL, &b);
@@ -69,7 +69,7 @@ static void test_as_in_parts(void **state) {
         }
 }
 
-/* As in the example of correct.h. */
+/* As in the example of store.h. */
 static void test_from_a_database(void **state) {
     const place *here = *state;
     lensprof_profile profile = profile_of_lens();
@@ -79,7 +79,7 @@ static void test_from_a_database(void **state) {
     assert_ok(lensprof_store_put(store, &profile, NULL, &error));
     lensprof_store_close(store);
 
-    const lensprof_image image = picture(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+    const lensprof_target image = picture(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     lensprof_profile_key key;
     lensprof_profile_key_init(&key);
     strcpy(key.lens, "Acme 50mm f/1.8"), key.focal_mm = 50, key.aperture = 2.8, key.crop_factor = 1.5;
@@ -103,21 +103,21 @@ static void test_bad_input(void **state) {
     lensprof_profile raw = profile, steep = profile;
     raw.struct_size = 0;
     steep.vignetting[0].k[0] = -3;
-    const lensprof_image image = picture(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
-    lensprof_image none = image, empty = image, planes = image;
+    const lensprof_target image = picture(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+    lensprof_target none = image, empty = image, planes = image;
     none.data = NULL, empty.width = 0, planes.layout = LENSPROF_LAYOUT_PLANAR;
     const lensprof_exposure dark = {NAN, {1, 1, 1}};
     const struct {
         const lensprof_profile *profile;
         const lensprof_exposure *exposure;
-        const lensprof_image *image;
+        const lensprof_target *image;
         lensprof_status status;
     } cases[] = {
         {NULL, NULL, &image, LENSPROF_ERROR_ARGUMENT},         {&profile, NULL, NULL, LENSPROF_ERROR_ARGUMENT},
         {&profile, NULL, &none, LENSPROF_ERROR_ARGUMENT},      {&profile, NULL, &empty, LENSPROF_ERROR_SIZE},
         {&profile, NULL, &planes, LENSPROF_ERROR_UNSUPPORTED}, {&raw, NULL, &image, LENSPROF_ERROR_STRUCT_SIZE},
         {&steep, NULL, &image, LENSPROF_ERROR_VIGNETTING},     {&profile, &dark, &image, LENSPROF_ERROR_EXPOSURE}};
-    const lensprof_image before = picture(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+    const lensprof_target before = picture(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         lensprof_error error = {.text = ""};
         const lensprof_status status = lensprof_correct(cases[i].profile, cases[i].exposure, cases[i].image, &error);

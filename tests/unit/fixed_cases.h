@@ -17,7 +17,8 @@ typedef struct fixture {
     model m;
     uint8_t in[ROOM], out[ROOM];
     uint32_t x0, y0, bytes;
-    lensprof_image from, to;
+    lensprof_image from;
+    lensprof_target to;
     uint32_t memory[2048]; /* 8 KiB, enough for every plan */
     const lensprof_fixed_plan *plan;
 } fixture;
@@ -48,8 +49,7 @@ static void make_case(fixture *f, uint32_t sample, uint64_t *random) {
     f->x0 = (uint32_t)((o->frame_width - PIXELS) * lp_random(random));
     f->y0 = (uint32_t)(o->frame_height * lp_random(random));
     f->from = (lensprof_image){f->in, 0, PIXELS, 1, sample, o->source_layout};
-    f->to = f->from;
-    f->to.data = f->out;
+    f->to = (lensprof_target){f->out, 0, PIXELS, 1, sample, o->source_layout};
     make_plan(f);
 }
 

@@ -1,5 +1,6 @@
 /* Applying a model to pixels, compared with the formula in double precision. */
 #include "core/exposure.h"
+#include "core/image.h"
 #include "support.h"
 
 #include "campaign.h"
@@ -97,8 +98,8 @@ static double get(const uint8_t *p, uint32_t sample) {
     return memcpy(&v, p, 4), (double)v;
 }
 
-static lensprof_image make_image(uint32_t sample, uint32_t layout, uint64_t seed) {
-    lensprof_image image = {NULL, 0, W, H, sample, layout};
+static lensprof_target make_image(uint32_t sample, uint32_t layout, uint64_t seed) {
+    lensprof_target image = {NULL, 0, W, H, sample, layout};
     uint32_t bytes = lensprof_sample_type_bytes(sample), count = W * H * lensprof_layout_samples(layout);
     image.row_bytes = (ptrdiff_t)(W * lensprof_layout_samples(layout) * bytes);
     uint8_t *data = malloc((size_t)count * bytes);
@@ -107,19 +108,26 @@ static lensprof_image make_image(uint32_t sample, uint32_t layout, uint64_t seed
     return image;
 }
 
+/* lensprof_apply from the pixels of a target. */
+static lensprof_status apply(const lensprof_plan *plan, const lensprof_target *source, const lensprof_target *target,
+                             uint32_t x0, uint32_t y0) {
+    const lensprof_image from = lp_image_of(source);
+    return lensprof_apply(plan, &from, target, x0, y0);
+}
+
 static int channel_of(uint32_t layout, uint32_t s) {
     if (s >= lensprof_layout_channels(layout)) return -2; /* alpha */
     if (lensprof_layout_channels(layout) == 1) return -1;
     return (int)(layout == LENSPROF_LAYOUT_BGR || layout == LENSPROF_LAYOUT_BGRA ? 2 - s : s);
 }
 
-static void compare(const fixture *f, const lensprof_image *source, const lensprof_image *target) {
+static void compare(const fixture *f, const lensprof_target *source, const lensprof_target *target) {
     uint32_t samples = lensprof_layout_samples(source->layout), sb = lensprof_sample_type_bytes(source->sample),
              tb = lensprof_sample_type_bytes(target->sample);
     for (uint32_t y = 0; y < H; y++)
         for (uint32_t x = 0; x < W; x++)
             for (uint32_t s = 0; s < samples; s++) {
-                double in = get((uint8_t *)source->data + y * source->row_bytes + (size_t)(x * samples + s) * sb,
+                double in = get((const uint8_t *)source->data + y * source->row_bytes + (size_t)(x * samples + s) * sb,
                                 source->sample);
                 double out = get((uint8_t *)target->data + y * target->row_bytes + (size_t)(x * samples + s) * tb,
                                  target->sample);
@@ -147,8 +155,8 @@ static void test_every_format_follows_the_formula(void **state) {
         f.options.target_sample = target_sample;
         f.options.source_layout = layout;
         make_plan(&f);
-        lensprof_image source = make_image(source_sample, layout, n), target = make_image(target_sample, layout, 1);
-        assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
+        lensprof_target source = make_image(source_sample, layout, n), target = make_image(target_sample, layout, 1);
+        assert_ok(apply(f.plan, &source, &target, 0, 0));
         compare(&f, &source, &target);
         free(source.data), free(target.data), free(f.memory);
     }
@@ -170,18 +178,18 @@ static void test_output_has_a_response_of_its_own(void **state) {
         f.options.target_sample = target_sample;
         f.options.source_layout = n % 6;
         make_plan(&f);
-        lensprof_image source = make_image(source_sample, n % 6, n), target = make_image(target_sample, n % 6, 1);
-        assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
+        lensprof_target source = make_image(source_sample, n % 6, n), target = make_image(target_sample, n % 6, 1);
+        assert_ok(apply(f.plan, &source, &target, 0, 0));
         compare(&f, &source, &target);
         /* If the output response equals the input response, the plan is the same as without an output response. */
         if (f.options.responses == f.options.output_responses) {
-            lensprof_image same = make_image(target_sample, n % 6, 2), plain = make_image(target_sample, n % 6, 3);
+            lensprof_target same = make_image(target_sample, n % 6, 2), plain = make_image(target_sample, n % 6, 3);
             for (int own = 0; own < 2; own++) {
                 f.options.output_response = own ? f.response : NULL;
                 f.options.output_responses = own ? f.options.responses : 0;
                 free(f.memory);
                 make_plan(&f);
-                assert_ok(lensprof_apply(f.plan, &source, own ? &same : &plain, 0, 0));
+                assert_ok(apply(f.plan, &source, own ? &same : &plain, 0, 0));
             }
             assert_memory_equal(same.data, plain.data, (size_t)same.row_bytes * H);
             free(same.data), free(plain.data);
@@ -203,8 +211,8 @@ static void test_gain_grids_follow_the_formula(void **state) {
         f.options.source_sample = f.options.target_sample = (k /= 6) % 3;
         make_plan(&f);
         memset(&f.grid.attenuation, 0, sizeof f.grid.attenuation); /* the plan has its own copy */
-        lensprof_image source = make_image(k % 3, layout, n), target = make_image(k % 3, layout, 1);
-        assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
+        lensprof_target source = make_image(k % 3, layout, n), target = make_image(k % 3, layout, 1);
+        assert_ok(apply(f.plan, &source, &target, 0, 0));
         make_grid(&f, sides[side][0], sides[side][1], channels);
         compare(&f, &source, &target);
         free(source.data), free(target.data), free(f.memory);
@@ -214,7 +222,7 @@ static void test_gain_grids_follow_the_formula(void **state) {
 /* A grid of ones, an empty grid and NULL give the same result. */
 static void test_no_gain_grid(void **state) {
     (void)state;
-    lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 3), target[3];
+    lensprof_target source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 3), target[3];
     for (int n = 0; n < 3; n++) {
         fixture f;
         make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
@@ -223,7 +231,7 @@ static void test_no_gain_grid(void **state) {
         for (int i = 0; n == 2 && i < 24; i++) f.grid.attenuation[i] = 1.0f;
         make_plan(&f);
         target[n] = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 1);
-        assert_ok(lensprof_apply(f.plan, &source, &target[n], 0, 0));
+        assert_ok(apply(f.plan, &source, &target[n], 0, 0));
         assert_memory_equal(target[n].data, target[0].data, (size_t)source.row_bytes * H);
         free(f.memory);
     }
@@ -237,10 +245,10 @@ static void tiles_give_the_whole(int has_grid) {
     if (has_grid) make_grid(&f, 9, 13, 3);
     f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_U16;
     make_plan(&f);
-    lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 4),
-                   whole = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 5);
-    assert_ok(lensprof_apply(f.plan, &source, &whole, 0, 0));
-    lensprof_image bottom_up = source; /* the tiles below use the row order of the frame */
+    lensprof_target source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 4),
+                    whole = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 5);
+    assert_ok(apply(f.plan, &source, &whole, 0, 0));
+    lensprof_target bottom_up = source; /* the tiles below use the row order of the frame */
     uint8_t *flipped = malloc((size_t)source.row_bytes * H);
     for (uint32_t y = 0; y < H; y++)
         memcpy(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)source.data + y * source.row_bytes,
@@ -249,11 +257,11 @@ static void tiles_give_the_whole(int has_grid) {
     bottom_up.row_bytes = -source.row_bytes;
     for (uint32_t y = 0; y < H; y += 5)
         for (uint32_t x = 0; x < W; x += 11) {
-            lensprof_image tile = bottom_up;
+            lensprof_target tile = bottom_up;
             tile.data = (uint8_t *)bottom_up.data + (ptrdiff_t)y * bottom_up.row_bytes + x * 6;
             tile.width = x + 11 > W ? W - x : 11;
             tile.height = y + 5 > H ? H - y : 5;
-            assert_ok(lensprof_apply(f.plan, &tile, &tile, x, y));
+            assert_ok(lensprof_apply(f.plan, NULL, &tile, x, y));
         }
     for (uint32_t y = 0; y < H; y++)
         assert_memory_equal(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)whole.data + y * whole.row_bytes,
@@ -276,13 +284,13 @@ static void test_correct_undoes_simulate(void **state) {
     f.options.source = f.options.target = (lensprof_exposure){0.0, {1, 1, 1}};
     f.options.direction = LENSPROF_DIRECTION_SIMULATE;
     make_plan(&f);
-    lensprof_image start = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 8),
-                   there = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 9);
-    assert_ok(lensprof_apply(f.plan, &start, &there, 0, 0));
+    lensprof_target start = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 8),
+                    there = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 9);
+    assert_ok(apply(f.plan, &start, &there, 0, 0));
     free(f.memory);
     f.options.direction = LENSPROF_DIRECTION_CORRECT;
     make_plan(&f);
-    assert_ok(lensprof_apply(f.plan, &there, &there, 0, 0));
+    assert_ok(lensprof_apply(f.plan, NULL, &there, 0, 0));
     for (int i = 0; i < W * H * 3; i++) assert_close(((float *)there.data)[i], ((float *)start.data)[i], 2e-5);
     free(start.data), free(there.data), free(f.memory);
 }
@@ -293,9 +301,9 @@ static void test_not_a_number_stays_in_its_sample(void **state) {
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
     f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_F32;
     make_plan(&f);
-    lensprof_image image = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 8);
+    lensprof_target image = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 8);
     ((float *)image.data)[100] = NAN;
-    assert_ok(lensprof_apply(f.plan, &image, &image, 0, 0));
+    assert_ok(lensprof_apply(f.plan, NULL, &image, 0, 0));
     for (int i = 0; i < W * H * 3; i++) assert_int_equal(isnan(((float *)image.data)[i]) != 0, i == 100);
     free(image.data), free(f.memory);
 }
@@ -307,12 +315,12 @@ static void test_saturated_pixels_stay_neutral(void **state) {
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
     f.options.saturated = LENSPROF_SATURATED_NEUTRAL;
     make_plan(&f);
-    lensprof_image image = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8),
-                   before = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8);
+    lensprof_target image = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8),
+                    before = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8);
     uint8_t *data = image.data;
     data[0] = data[1] = data[2] = 255;
     data[3] = 255, data[4] = 200, data[5] = 100; /* bright, but coloured */
-    assert_ok(lensprof_apply(f.plan, &image, &image, 0, 0));
+    assert_ok(lensprof_apply(f.plan, NULL, &image, 0, 0));
     assert_int_equal(data[0], data[1]);
     assert_int_equal(data[1], data[2]);
     for (int c = 0; c < 3; c++) {
@@ -427,9 +435,9 @@ static void test_model_of_a_profile(void **state) {
         uint8_t light[2][7 * 5 * 3];
         memset(light, 100, sizeof light);
         for (int i = 0; i < 2; i++) {
-            const lensprof_image view = {light[i], 21, 7, 5, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+            const lensprof_target view = {light[i], 21, 7, 5, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
             const lensprof_plan *plan = i ? f.plan : (const lensprof_plan *)(const void *)by_hand;
-            assert_ok(lensprof_apply(plan, &view, &view, 0, 0));
+            assert_ok(lensprof_apply(plan, NULL, &view, 0, 0));
         }
         assert_memory_equal(light[0], light[1], sizeof light[0]);
         free(by_hand);
@@ -448,34 +456,37 @@ static void test_apply_refuses_and_writes_nothing(void **state) {
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
     make_plan(&f);
-    lensprof_image s = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 1),
-                   t = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 2);
+    lensprof_target s = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 1),
+                    t = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 2);
     size_t bytes = (size_t)t.row_bytes * H;
     uint8_t *before = malloc(bytes);
     memcpy(before, t.data, bytes);
-    lensprof_image bad;
-    assert_int_equal(lensprof_apply(NULL, &s, &t, 0, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_apply(f.plan, &s, NULL, 0, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_apply(f.plan, &s, &t, 1, 0), LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_apply(f.plan, &s, &t, 0, 0xFFFFFFFFu), LENSPROF_ERROR_SIZE);
+    lensprof_target bad;
+    assert_int_equal(apply(NULL, &s, &t, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(apply(f.plan, &s, NULL, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(apply(f.plan, &s, &t, 1, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(apply(f.plan, &s, &t, 0, 0xFFFFFFFFu), LENSPROF_ERROR_SIZE);
     bad = t, bad.layout = LENSPROF_LAYOUT_BGR;
-    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
     bad = t, bad.sample = LENSPROF_SAMPLE_U16, bad.row_bytes *= 2;
-    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
     bad = t, bad.width = W - 1;
-    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
     bad = t, bad.row_bytes = 3 * W - 1;
-    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
     bad = t, bad.row_bytes = PTRDIFF_MIN;
-    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
     bad = t, bad.data = NULL;
-    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
     bad = t, bad.height = 0;
-    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    bad = t, bad.data = NULL; /* in place */
+    assert_int_equal(lensprof_apply(f.plan, NULL, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_apply(f.plan, NULL, NULL, 0, 0), LENSPROF_ERROR_ARGUMENT);
     bad = s, bad.data = (uint8_t *)s.data + 3, bad.height = H - 1; /* overlaps the source at another address */
-    lensprof_image shorter = s;
+    lensprof_target shorter = s;
     shorter.height = H - 1;
-    assert_int_equal(lensprof_apply(f.plan, &shorter, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(apply(f.plan, &shorter, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_memory_equal(before, t.data, bytes);
     free(s.data), free(t.data), free(before), free(f.memory);
 }

@@ -32,8 +32,8 @@ static double worst_error(const model *m, uint32_t sample, uint64_t *random, dou
             in.f32[i] = (float)value;
     }
     const uint32_t x0 = (uint32_t)((W - PIXELS) * lp_random(random)), y = (uint32_t)(H * lp_random(random));
-    lensprof_image from = {&in, 0, PIXELS, 1, sample, LENSPROF_LAYOUT_RGB}, to = from;
-    to.data = &out;
+    const lensprof_image from = {&in, 0, PIXELS, 1, sample, LENSPROF_LAYOUT_RGB};
+    const lensprof_target to = {&out, 0, PIXELS, 1, sample, LENSPROF_LAYOUT_RGB};
     assert_ok(lensprof_apply(plan, &from, &to, x0, y));
     for (uint32_t i = 0; i < 3 * PIXELS; i++) {
         double value = sample == LENSPROF_SAMPLE_U8    ? in.u8[i]

@@ -1,5 +1,6 @@
 /* Plans made from a blob equal plans made from the profile unpacked from it. */
 #include "blob_support.h"
+#include "core/image.h"
 
 enum {
     W = 41,
@@ -23,16 +24,18 @@ static void fill(pictures *p, uint32_t sample, uint64_t *random) {
     memset(p->target, 0, sizeof p->target);
 }
 
-static lensprof_image view(uint8_t *data, uint32_t sample, uint32_t layout) {
+static lensprof_target view(uint8_t *data, uint32_t sample, uint32_t layout) {
     if (layout == LENSPROF_LAYOUT_PLANAR) layout = LENSPROF_LAYOUT_GREY;
     const ptrdiff_t row = (ptrdiff_t)(W * lensprof_layout_samples(layout) * lensprof_sample_type_bytes(sample));
-    return (lensprof_image){data, row, W, H, sample, layout};
+    return (lensprof_target){data, row, W, H, sample, layout};
 }
 
 static void run(const lensprof_plan *plan, const lensprof_apply_options *o, pictures *p) {
-    lensprof_image source[3], target[3];
+    lensprof_image source[3];
+    lensprof_target target[3];
     for (int i = 0; i < 3; i++) {
-        source[i] = view(p->source[i], o->source_sample, o->source_layout);
+        const lensprof_target read = view(p->source[i], o->source_sample, o->source_layout);
+        source[i] = lp_image_of(&read);
         target[i] = view(p->target[i], o->target_sample, o->source_layout);
     }
     if (o->source_layout == LENSPROF_LAYOUT_PLANAR)

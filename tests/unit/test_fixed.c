@@ -134,7 +134,7 @@ static void test_white_stays_white(void **state) {
         const lensprof_plan *plan;
         assert_ok(lensprof_plan_init(memory, sizeof memory, o, &plan, NULL));
         assert_ok(lensprof_fixed_apply(f.plan, &f.from, &f.to, f.x0, f.y0));
-        lensprof_image target = f.to;
+        lensprof_target target = f.to;
         target.data = wanted;
         assert_ok(lensprof_apply(plan, &f.from, &target, f.x0, f.y0));
         for (uint32_t i = 0; i < PIXELS * lensprof_layout_samples(f.from.layout); i++) {
@@ -165,25 +165,25 @@ static void test_tiles_give_the_frame(void **state) {
         make_plan(&f);
         for (size_t i = 0; i < sizeof in; i++)
             in[i] = whole[i] = tiled[i] = upside[i] = (uint8_t)(256.0 * lp_random(&random));
-        lensprof_image from = {in, PITCH, W, H, LENSPROF_SAMPLE_U8, f.m.options.source_layout}, to = from;
-        to.data = whole;
+        lensprof_image from = {in, PITCH, W, H, LENSPROF_SAMPLE_U8, f.m.options.source_layout};
+        lensprof_target to = {whole, PITCH, W, H, LENSPROF_SAMPLE_U8, f.m.options.source_layout};
         assert_ok(lensprof_fixed_apply(f.plan, &from, &to, 0, 0));
         for (uint32_t y = 0; y < H; y += 10)
             for (uint32_t x = 0; x < W; x += 13) {
-                lensprof_image tile = {tiled + y * PITCH + x * f.bytes,
-                                       PITCH,
-                                       W - x < 13 ? W - x : 13,
-                                       H - y < 10 ? H - y : 10,
-                                       LENSPROF_SAMPLE_U8,
-                                       from.layout};
-                assert_ok(lensprof_fixed_apply(f.plan, &tile, &tile, x, y));
+                lensprof_target tile = {tiled + y * PITCH + x * f.bytes,
+                                        PITCH,
+                                        W - x < 13 ? W - x : 13,
+                                        H - y < 10 ? H - y : 10,
+                                        LENSPROF_SAMPLE_U8,
+                                        from.layout};
+                assert_ok(lensprof_fixed_apply(f.plan, NULL, &tile, x, y));
             }
         assert_memory_equal(whole, tiled, sizeof whole);
         if (from.layout >= LENSPROF_LAYOUT_RGGB) continue;
         f.m.options.frame_height = 1;
         for (uint32_t y = 0; y < H; y++) { /* rows stored bottom up */
             from = (lensprof_image){in + (H - 1 - y) * PITCH, -PITCH, W, 1, LENSPROF_SAMPLE_U8, to.layout};
-            lensprof_image row = {upside + y * PITCH, PITCH, W, 1, LENSPROF_SAMPLE_U8, to.layout};
+            lensprof_target row = {upside + y * PITCH, PITCH, W, 1, LENSPROF_SAMPLE_U8, to.layout};
             assert_ok(lensprof_fixed_apply(f.plan, &from, &row, 0, H - 1 - y));
             assert_memory_equal(row.data, whole + (H - 1 - y) * PITCH, W * f.bytes);
         }
@@ -205,7 +205,7 @@ static void test_plans_can_be_copied(void **state) {
         memcpy(copy, f.memory, bytes);
         assert_ok(lensprof_fixed_plan_open(copy, bytes, &opened));
         memset(f.memory, 0, sizeof f.memory);
-        lensprof_image to = f.to;
+        lensprof_target to = f.to;
         to.data = again;
         assert_ok(lensprof_fixed_apply(opened, &f.from, &to, f.x0, f.y0));
         make_plan(&f);
@@ -330,7 +330,8 @@ static void test_tiles_that_are_refused(void **state) {
     before = f;
 #define BAD(change, status)                                                         \
     do {                                                                            \
-        lensprof_image from = f.from, to = f.to;                                    \
+        lensprof_image from = f.from;                                               \
+        lensprof_target to = f.to;                                                  \
         uint32_t x0 = f.x0, y0 = f.y0;                                              \
         change;                                                                     \
         assert_int_equal(lensprof_fixed_apply(f.plan, &from, &to, x0, y0), status); \
@@ -350,7 +351,7 @@ static void test_tiles_that_are_refused(void **state) {
     BAD(to.data = f.in + f.bytes, LENSPROF_ERROR_ARGUMENT);
     BAD(to.row_bytes = PTRDIFF_MAX, LENSPROF_ERROR_SIZE);
     assert_int_equal(lensprof_fixed_apply(NULL, &f.from, &f.to, 0, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fixed_apply(f.plan, NULL, &f.to, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fixed_apply(f.plan, NULL, NULL, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fixed_apply(f.plan, &f.from, NULL, 0, 0), LENSPROF_ERROR_ARGUMENT);
 }
 

@@ -19,16 +19,16 @@ static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture
     const int opens = lensprof_fixed_plan_open(copy, bytes, &opened) == LENSPROF_OK;
     if (!opens) assert_null(opened);
     for (int corner = 0; opens && corner < 4; corner++) {
-        lensprof_image from = f->from;
-        from.sample = opened->sample, from.layout = opened->layout;
-        from.width = opened->frame_width < PIXELS ? opened->frame_width : PIXELS;
+        lensprof_target tile = f->to;
+        tile.sample = opened->sample, tile.layout = opened->layout;
+        tile.width = opened->frame_width < PIXELS ? opened->frame_width : PIXELS;
         const size_t row =
-            (size_t)from.width * lensprof_layout_samples(from.layout) * lensprof_sample_type_bytes(from.sample);
-        from.data = malloc(row);
-        memcpy(from.data, f->in, row);
-        assert_ok(lensprof_fixed_apply(opened, &from, &from, corner & 1 ? opened->frame_width - from.width : 0,
+            (size_t)tile.width * lensprof_layout_samples(tile.layout) * lensprof_sample_type_bytes(tile.sample);
+        tile.data = malloc(row);
+        memcpy(tile.data, f->in, row);
+        assert_ok(lensprof_fixed_apply(opened, NULL, &tile, corner & 1 ? opened->frame_width - tile.width : 0,
                                        corner & 2 ? opened->frame_height - 1 : 0));
-        free(from.data);
+        free(tile.data);
     }
     free(copy);
     return opens;

@@ -120,17 +120,17 @@ static void fill_samples(uint8_t *p, size_t bytes, uint32_t sample, uint64_t ran
 }
 
 /* Rows of a tile that end at the end of the guarded memory, with `gap` bytes between rows. */
-static lensprof_image tile_in(const guarded *g, uint32_t sample, uint32_t layout, uint32_t width, size_t gap) {
+static lensprof_target tile_in(const guarded *g, uint32_t sample, uint32_t layout, uint32_t width, size_t gap) {
     uint32_t bytes = lensprof_sample_type_bytes(sample) * lensprof_layout_samples(layout);
-    lensprof_image image = {NULL, (ptrdiff_t)(width * bytes + gap), width, ROWS, sample, layout};
-    image.data = g->end - (width * bytes + (size_t)(ROWS - 1) * (size_t)image.row_bytes);
-    return image;
+    lensprof_target tile = {NULL, (ptrdiff_t)(width * bytes + gap), width, ROWS, sample, layout};
+    tile.data = g->end - (width * bytes + (size_t)(ROWS - 1) * (size_t)tile.row_bytes);
+    return tile;
 }
 
-static void apply_rows_streamed(const lensprof_plan *plan, const lensprof_image *from, const lensprof_image *to,
+static void apply_rows_streamed(const lensprof_plan *plan, const lensprof_image *from, const lensprof_target *to,
                                 uint32_t x0, uint32_t y0) {
     for (uint32_t y = 0; y < ROWS; y++) {
-        const uint8_t *source[3] = {(uint8_t *)from->data + y * from->row_bytes, NULL, NULL};
+        const uint8_t *source[3] = {(const uint8_t *)from->data + y * from->row_bytes, NULL, NULL};
         uint8_t *target[3] = {(uint8_t *)to->data + y * to->row_bytes, NULL, NULL};
         plan->row(plan, source, target, x0, y0 + y, from->width, 1);
     }
@@ -144,8 +144,9 @@ static void check_case(uint64_t seed, uint32_t width, const guarded *in, const g
     uint32_t x0 = (uint32_t)((FRAME_W - width) * lp_random(&random)),
              y0 = (uint32_t)((FRAME_H - ROWS) * lp_random(&random));
     size_t gap = 4 * (size_t)(4 * lp_random(&random));
-    lensprof_image from = tile_in(in, m.options.source_sample, m.options.source_layout, width, gap);
-    lensprof_image to = tile_in(out, m.options.target_sample, m.options.source_layout, width, gap);
+    const lensprof_target read = tile_in(in, m.options.source_sample, m.options.source_layout, width, gap);
+    const lensprof_image from = lp_image_of(&read);
+    const lensprof_target to = tile_in(out, m.options.target_sample, m.options.source_layout, width, gap);
     const uint32_t lanes[] = {1, 4, 8, 0};
     int in_place = m.options.source_sample == m.options.target_sample && seed % 3 == 0;
     for (int n = 0; n < 4; n++) {
@@ -157,7 +158,7 @@ static void check_case(uint64_t seed, uint32_t width, const guarded *in, const g
         if (n && seed % 5 == 0 && !in_place)
             apply_rows_streamed(plan, &from, &to, x0, y0);
         else
-            assert_ok(lensprof_apply(plan, in_place ? &to : &from, &to, x0, y0));
+            assert_ok(lensprof_apply(plan, in_place ? NULL : &from, &to, x0, y0));
         if (n == 0)
             memcpy(wanted, out->pages, out->bytes);
         else if (memcmp(wanted, out->pages, out->bytes))
@@ -205,7 +206,8 @@ static void test_long_rows_of_values(void **state) {
         const float rare[] = {0.0f, -0.0f, 1.0f, INFINITY, -INFINITY, 1e-42f, -1e30f, 1e30f, 0.99999994f};
         for (size_t i = 0; i < 500; i++)
             source[(size_t)(3 * W * lp_random(&random))] = rare[i % (sizeof rare / sizeof *rare)];
-        lensprof_image from = {source, 0, W, 1, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB}, to = from;
+        const lensprof_image from = {source, 0, W, 1, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
+        lensprof_target to = {wanted, 0, W, 1, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
         for (int n = 0; n < 4; n++) {
             const lensprof_plan *plan;
             void *memory = make_plan(&m, lanes[n], &plan);
@@ -232,7 +234,7 @@ static void test_pieces_give_the_row(void **state) {
                  out = samples * lensprof_sample_type_bytes(m.options.target_sample);
         fill_samples(source, sizeof source, m.options.source_sample, seed);
         lensprof_image from = {source, 0, FRAME_W, 1, m.options.source_sample, m.options.source_layout};
-        lensprof_image to = {whole, 0, FRAME_W, 1, m.options.target_sample, m.options.source_layout};
+        lensprof_target to = {whole, 0, FRAME_W, 1, m.options.target_sample, m.options.source_layout};
         assert_ok(lensprof_apply(plan, &from, &to, 0, 77));
         uint64_t random = seed;
         for (uint32_t x = 0; x < FRAME_W;) {
@@ -261,13 +263,14 @@ static void test_planes_are_the_same_picture(void **state) {
         uint32_t in = lensprof_sample_type_bytes(m.options.source_sample),
                  out = lensprof_sample_type_bytes(m.options.target_sample);
         fill_samples(rgb, sizeof rgb, m.options.source_sample, seed);
-        lensprof_image from = {rgb, 0, W, 1, m.options.source_sample, LENSPROF_LAYOUT_RGB}, to = from;
-        to.data = target, to.sample = m.options.target_sample;
-        lensprof_image sources[3], targets[3];
+        const lensprof_image from = {rgb, 0, W, 1, m.options.source_sample, LENSPROF_LAYOUT_RGB};
+        const lensprof_target to = {target, 0, W, 1, m.options.target_sample, LENSPROF_LAYOUT_RGB};
+        lensprof_image sources[3];
+        lensprof_target targets[3];
         for (uint32_t c = 0; c < 3; c++) {
             for (uint32_t i = 0; i < W; i++) memcpy(planes[c] + i * in, rgb + (3 * i + c) * in, in);
             sources[c] = (lensprof_image){planes[c], 0, W, 1, m.options.source_sample, LENSPROF_LAYOUT_GREY};
-            targets[c] = (lensprof_image){result[c], 0, W, 1, m.options.target_sample, LENSPROF_LAYOUT_GREY};
+            targets[c] = (lensprof_target){result[c], 0, W, 1, m.options.target_sample, LENSPROF_LAYOUT_GREY};
         }
         const lensprof_plan *plan;
         m.options.source_layout = LENSPROF_LAYOUT_RGB;
@@ -288,10 +291,11 @@ enum {
     SIDE = 8
 };
 
-/* A plan for planes of 8 bit; views 0..2 are the sources, 3..5 the targets, each with its own memory. */
+/* A plan for planes of 8 bit; data 0..2 are those of the sources, 3..5 those of the targets. */
 typedef struct planes {
     uint8_t data[6][SIDE * SIDE];
-    lensprof_image views[6];
+    lensprof_image source[3];
+    lensprof_target target[3];
     model m;
     void *memory;
     const lensprof_plan *plan;
@@ -299,8 +303,10 @@ typedef struct planes {
 
 static void make_planes(planes *p) {
     memset(p->data, 77, sizeof p->data);
-    for (int v = 0; v < 6; v++)
-        p->views[v] = (lensprof_image){p->data[v], SIDE, SIDE, SIDE, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
+    for (int v = 0; v < 3; v++) {
+        p->source[v] = (lensprof_image){p->data[v], SIDE, SIDE, SIDE, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
+        p->target[v] = (lensprof_target){p->data[3 + v], SIDE, SIDE, SIDE, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
+    }
     make_model(&p->m, 1);
     p->m.options.source_layout = LENSPROF_LAYOUT_PLANAR;
     p->m.options.source_sample = p->m.options.target_sample = LENSPROF_SAMPLE_U8;
@@ -316,7 +322,9 @@ static void test_planes_that_are_refused(void **state) {
     (void)state;
     static planes p;
     make_planes(&p);
-    lensprof_image *source = p.views, *target = p.views + 3, wrong[3];
+    const lensprof_image *source = p.source;
+    lensprof_image narrow[3];
+    lensprof_target *target = p.target, wrong[3];
     assert_int_equal(lensprof_apply(p.plan, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_apply_planar(NULL, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_apply_planar(p.plan, source, target, FRAME_W, 0), LENSPROF_ERROR_SIZE);
@@ -325,14 +333,17 @@ static void test_planes_that_are_refused(void **state) {
     assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
     wrong[2].data = p.data[0]; /* another plane's source */
     assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
-    memcpy(wrong, source, sizeof wrong);
-    wrong[1].width = SIDE - 1;
-    assert_int_equal(lensprof_apply_planar(p.plan, wrong, target, 0, 0), LENSPROF_ERROR_SIZE);
+    memcpy(narrow, source, sizeof narrow);
+    narrow[1].width = SIDE - 1;
+    assert_int_equal(lensprof_apply_planar(p.plan, narrow, target, 0, 0), LENSPROF_ERROR_SIZE);
     memcpy(wrong, target, sizeof wrong);
     wrong[1].layout = LENSPROF_LAYOUT_RGB, wrong[1].row_bytes = 3 * SIDE;
     assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_untouched(&p);
-    assert_ok(lensprof_apply_planar(p.plan, source, source, 0, 0)); /* each in place */
+    for (int v = 0; v < 3; v++) wrong[v] = target[v], wrong[v].data = p.data[v];
+    assert_ok(lensprof_apply_planar(p.plan, source, wrong, 0, 0)); /* each in place */
+    assert_ok(lensprof_apply_planar(p.plan, NULL, target, 0, 0));
+    assert_memory_equal(p.data[0], p.data[3], sizeof p.data / 2);
     free(p.memory);
 }
 
@@ -344,9 +355,10 @@ static void test_planes_are_checked_before_they_are_compared(void **state) {
     make_planes(&p);
     for (int n = 0; n < 6; n++)
         for (size_t i = 0; i < sizeof strides / sizeof *strides; i++) {
-            p.views[n].row_bytes = strides[i];
-            assert_int_equal(lensprof_apply_planar(p.plan, p.views, p.views + 3, 0, 0), LENSPROF_ERROR_SIZE);
-            p.views[n].row_bytes = SIDE;
+            ptrdiff_t *stride = n < 3 ? &p.source[n].row_bytes : &p.target[n - 3].row_bytes;
+            *stride = strides[i];
+            assert_int_equal(lensprof_apply_planar(p.plan, p.source, p.target, 0, 0), LENSPROF_ERROR_SIZE);
+            *stride = SIDE;
         }
     assert_untouched(&p);
     free(p.memory);
@@ -370,10 +382,11 @@ static void test_mosaics_follow_their_pattern(void **state) {
         for (uint32_t y = 0; y < H; y++)
             for (uint32_t x = 0; x < 3 * W; x++) rgb[y][x] = mosaic[y][x / 3];
         const uint32_t x0 = 11 * (n % 3), y0 = n % 2;
-        lensprof_image from = {mosaic, sizeof *mosaic, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGGB + n % 4},
-                       to = from;
-        lensprof_image from_rgb = {rgb, sizeof *rgb, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB}, to_rgb = from_rgb;
-        to.data = result, to_rgb.data = full;
+        const uint32_t layout = LENSPROF_LAYOUT_RGGB + n % 4;
+        const lensprof_image from = {mosaic, sizeof *mosaic, W, H, LENSPROF_SAMPLE_U16, layout};
+        const lensprof_target to = {result, sizeof *result, W, H, LENSPROF_SAMPLE_U16, layout};
+        const lensprof_image from_rgb = {rgb, sizeof *rgb, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB};
+        const lensprof_target to_rgb = {full, sizeof *full, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB};
         const lensprof_plan *plan;
         m.options.source_layout = from.layout;
         void *memory = make_plan(&m, 0, &plan);
@@ -407,9 +420,10 @@ static void test_half_floats(void **state) {
     o->input = o->output = LENSPROF_ENCODING_LINEAR;
     o->source_layout = LENSPROF_LAYOUT_GREY;
     for (uint32_t h = 0; h < 65536; h++) half[h] = (uint16_t)h;
-    lensprof_image image = {half, 0, 65536, 1, LENSPROF_SAMPLE_F16, LENSPROF_LAYOUT_GREY}, as_float = image,
-                   again = image;
-    as_float.data = wide, as_float.sample = LENSPROF_SAMPLE_F32, again.data = back;
+    const lensprof_image image = {half, 0, 65536, 1, LENSPROF_SAMPLE_F16, LENSPROF_LAYOUT_GREY},
+                         from_float = {wide, 0, 65536, 1, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_GREY};
+    const lensprof_target as_float = {wide, 0, 65536, 1, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_GREY},
+                          again = {back, 0, 65536, 1, LENSPROF_SAMPLE_F16, LENSPROF_LAYOUT_GREY};
     const lensprof_plan *plan;
     o->source_sample = LENSPROF_SAMPLE_F16, o->target_sample = LENSPROF_SAMPLE_F32;
     void *memory = make_plan(&m, 0, &plan);
@@ -425,17 +439,17 @@ static void test_half_floats(void **state) {
     }
     o->source_sample = LENSPROF_SAMPLE_F32, o->target_sample = LENSPROF_SAMPLE_F16;
     memory = make_plan(&m, 0, &plan);
-    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    assert_ok(lensprof_apply(plan, &from_float, &again, 0, 0));
     for (uint32_t h = 0; h < 65536; h++)
         if ((h >> 10 & 31) < 31 || !(h & 0x3ff)) assert_int_equal(back[h], h);
     for (uint32_t h = 0; h < 0x7bff; h++) wide[h] = 0.5f * (wide[h] + wide[h + 1]); /* exactly between two */
-    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    assert_ok(lensprof_apply(plan, &from_float, &again, 0, 0));
     for (uint32_t h = 0; h < 0x7bff; h++) assert_int_equal(back[h], h + (h & 1));
     for (uint32_t h = 0; h < 0x7bff; h++) wide[h] = nextafterf(wide[h], 1e9f);
-    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    assert_ok(lensprof_apply(plan, &from_float, &again, 0, 0));
     for (uint32_t h = 0; h < 0x7bff; h++) assert_int_equal(back[h], h + 1);
     wide[0] = 65519.0f, wide[1] = 65520.0f;
-    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    assert_ok(lensprof_apply(plan, &from_float, &again, 0, 0));
     assert_int_equal(back[0], 0x7bff);
     assert_int_equal(back[1], 0x7c00);
     free(memory);

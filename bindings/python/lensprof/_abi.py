@@ -173,8 +173,6 @@ class Reason(IntEnum):
     LINKS_CONTRADICT = 158
     IMAGES_UNCONNECTED = 159
     EXPOSURE_UNCERTAIN = 201
-    KNOWN_ALIKE = 202
-    KNOWN_REVERSED = 203
     EXPOSURES_ALIKE = 204
     KNOWN_ORDER = 251
     KNOWN_WRONG = 252
@@ -293,7 +291,6 @@ class Method(IntEnum):
     TRANSFER = 0
     RADIANCE = 1
     TRANSFER_FUNCTION = 2
-    DEBEVEC = 3
 
 
 class Loss(IntEnum):
@@ -561,6 +558,17 @@ class Profile(Structure):
 
 
 class Image(Structure):
+    _fields_ = [
+        ("data", c_void_p),
+        ("row_bytes", c_ssize_t),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("sample", c_uint32),
+        ("layout", c_uint32),
+    ]
+
+
+class Target(Structure):
     _fields_ = [
         ("data", c_void_p),
         ("row_bytes", c_ssize_t),
@@ -1197,6 +1205,7 @@ STRUCTS = {
     "lensprof_provenance": Provenance,
     "lensprof_profile": Profile,
     "lensprof_image": Image,
+    "lensprof_target": Target,
     "lensprof_apply_options": ApplyOptions,
     "lensprof_camera": Camera,
     "lensprof_pair": Pair,
@@ -1321,8 +1330,8 @@ FUNCTIONS = {
     "lensprof_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
     "lensprof_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(Plan)),
                                    POINTER(ErrorText)]),
-    "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
-    "lensprof_apply_planar": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
+    "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
+    "lensprof_apply_planar": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
     # reason.h
     "lensprof_reason_name": (c_char_p, [c_uint32]),
     "lensprof_reason_text": (c_char_p, [c_uint32]),
@@ -1360,7 +1369,7 @@ FUNCTIONS = {
     "lensprof_fixed_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(FixedPlan)),
                                          POINTER(ErrorText)]),
     "lensprof_fixed_plan_open": (c_int, [c_void_p, c_size_t, POINTER(POINTER(FixedPlan))]),
-    "lensprof_fixed_apply": (c_int, [POINTER(FixedPlan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
+    "lensprof_fixed_apply": (c_int, [POINTER(FixedPlan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
     # flat.h
     "lensprof_flat_image_init_sized": (None, [POINTER(FlatImage), c_size_t]),
     "lensprof_flat_options_init_sized": (None, [POINTER(FlatOptions), c_size_t]),
@@ -1438,5 +1447,5 @@ FUNCTIONS = {
     "lensprof_store_set_key": (c_int, [POINTER(Store), c_int64, POINTER(ProfileKey), POINTER(ErrorText)]),
     "lensprof_store_list_names": (c_int, [POINTER(Store), c_uint32, c_char_p, POINTER(StoreSummary), c_uint32,
                                           POINTER(c_uint32), POINTER(ErrorText)]),
-    "lensprof_correct": (c_int, [POINTER(Profile), POINTER(Exposure), POINTER(Image), POINTER(ErrorText)]),
+    "lensprof_correct": (c_int, [POINTER(Profile), POINTER(Exposure), POINTER(Target), POINTER(ErrorText)]),
 }

@@ -112,9 +112,9 @@ def _checked(array: Any, what: str) -> np.ndarray:
     return array
 
 
-def image(array: np.ndarray, layout: Optional[Layout] = None, writable: bool = False,
-          what: str = "picture") -> _abi.Image:
-    """A view on a picture; the caller keeps the array alive."""
+def image(array: np.ndarray, layout: Optional[Layout] = None, what: str = "picture", *,
+          writable: bool = False) -> _abi.Image:
+    """A view on a picture, which may be read-only; the caller keeps the array alive."""
     _checked(array, what)
     sample, layout = sample_type(array.dtype), layout_of(array, layout)
     height, width = (integer(side, f"side of the {what}") for side in array.shape[:2])
@@ -122,6 +122,11 @@ def image(array: np.ndarray, layout: Optional[Layout] = None, writable: bool = F
     check(lib.lensprof_image_validate(ctypes.byref(view)),
           f"{what} of {_form(array)}: sizes must be 1..1048576, samples aligned, rows apart")
     return view
+
+
+def target(array: np.ndarray, layout: Optional[Layout] = None, what: str = "out") -> _abi.Target:
+    """The same on a picture to be written."""
+    return _abi.Target.from_buffer_copy(image(array, layout, what, writable=True))
 
 
 def mask(array: np.ndarray, shape: tuple[int, ...], writable: bool = False) -> tuple[Any, int]:

@@ -99,7 +99,7 @@ class Plan:
         view = _arrays.image(source, self._layout, what="source")
         if out is None:
             out = np.empty(source.shape, dtype=self._target_dtype)
-        target = _arrays.image(out, self._layout, writable=True, what="out")
+        target = _arrays.target(out, self._layout)
         check(lib.lensprof_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
               f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
               "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
@@ -116,7 +116,7 @@ class Plan:
         if len(source) != 3 or len(out) != 3:
             raise ValueError(f"{len(source)} planes and {len(out)} for the result: give red, green and blue")
         planes = (_abi.Image * 3)(*(_arrays.image(p, Layout.GREY, what="source") for p in source))
-        targets = (_abi.Image * 3)(*(_arrays.image(p, Layout.GREY, writable=True, what="out") for p in out))
+        targets = (_abi.Target * 3)(*(_arrays.target(p, Layout.GREY) for p in out))
         check(lib.lensprof_apply_planar(self._plan, planes, targets, integer(x0, "x0"), integer(y0, "y0")),
               f"planes of {source[0].shape} {source[0].dtype} at ({x0}, {y0}): all must have the plan's sample types and one "
               "size, lie in the frame, and each result be its source or apart from all")
@@ -156,7 +156,7 @@ class FixedPlan:
         """As Plan.apply."""
         view = _arrays.image(source, self._layout, what="source")
         out = np.empty_like(source) if out is None else out
-        target = _arrays.image(out, self._layout, writable=True, what="out")
+        target = _arrays.target(out, self._layout)
         check(lib.lensprof_fixed_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
               f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
               "the plan's sample type, the same size, lie in the frame, and be the same array or apart")
@@ -166,7 +166,7 @@ class FixedPlan:
 def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optional[np.ndarray],
            layout: Optional[Layout], **fields: Any) -> np.ndarray:
     view = _arrays.image(array, layout)
-    target = view.sample if out is None else _arrays.image(out, layout, writable=True, what="out").sample
+    target = view.sample if out is None else _arrays.target(out, layout).sample
     options = ApplyOptions(direction=direction, frame_width=view.width, frame_height=view.height,
                            source_sample=view.sample, source_layout=view.layout, target_sample=target,
                            **{name: value for name, value in fields.items() if value is not None})

@@ -56,7 +56,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     modes 0..25 or MODES_AUTO. huber_levels: levels of 255. prior_weight: 0 = none, as in the paper. response,
     vignetting: values if fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out error.
     gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: selects the responses of the prior. method:
-    Method.TRANSFER, RADIANCE, TRANSFER_FUNCTION, or DEBEVEC: only the response, from known exposures of all images.
+    Method.TRANSFER, RADIANCE or TRANSFER_FUNCTION.
     refine: free the response from the EMoR modes, unless held-out pairs get clearly worse. threads: maximum number, 0 =
     one per core; does not affect the result. profile: of the same camera, lens and setting, from other pictures;
     replaces the prior of all cameras, and the result supersedes it unless FitResult.profile_prior is OVERRULED. links:

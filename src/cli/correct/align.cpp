@@ -63,7 +63,7 @@ void declare(Command &command, Options &o) {
     command.file("--project", o.pto,
                  "Hugin project with the orientations of the camera; the falloff is then estimated and corrected too; "
                  "default none: a stationary camera");
-    Keys keys = declare_fit(command, o.fit, {false, false});
+    Keys keys = declare_fit(command, o.fit, {false});
     declare_sampling(keys, o.pixels, "10000 per frame; with --project 300 per frame, at least 2000");
     declare_writing(command, o.kind);
     declare_json(command, o.json);

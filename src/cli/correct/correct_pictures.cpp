@@ -29,7 +29,7 @@ namespace {
 // Rows of a picture, before and after correction; `after` is empty if they change in place.
 struct Strip {
     std::vector<uint8_t> before, after;
-    lensprof_image written{};
+    lensprof_target written{};
 };
 
 // A finished picture under its temporary name.
@@ -94,15 +94,16 @@ bool PictureCorrection::make(Strip &strip) {
     bool in_place = result_.sample == source.sample;
     strip.before.resize(source.row_bytes * rows);
     strip.after.resize(in_place ? 0 : result_.row_bytes * rows);
-    lensprof_image from{strip.before.data(), static_cast<ptrdiff_t>(source.row_bytes),
-                        source.width,        rows,
-                        source.sample,       source.layout};
-    strip.written = from;
+    const lensprof_target read{strip.before.data(), static_cast<ptrdiff_t>(source.row_bytes),
+                               source.width,        rows,
+                               source.sample,       source.layout};
+    const lensprof_image from = image_of(read);
+    strip.written = read;
     if (!in_place)
         strip.written = {strip.after.data(), static_cast<ptrdiff_t>(result_.row_bytes),
                          result_.width,      rows,
                          result_.sample,     result_.layout};
-    reader_.read(from);
+    reader_.read(read);
     check_finite(from, next_row_, 1, job_.source);
     if (thumbnails_) before.add(from);
     clipped_before_.add(from, next_row_);
@@ -110,15 +111,15 @@ bool PictureCorrection::make(Strip &strip) {
         check(lensprof_apply(plan_.get(), &from, &strip.written, 0, next_row_), job_.source);
     else
         crops_.apply(plan_, from, strip.written, next_row_);
-    if (thumbnails_) after.add(strip.written);
-    clipped_after_.add(strip.written, next_row_);
+    if (thumbnails_) after.add(image_of(strip.written));
+    clipped_after_.add(image_of(strip.written), next_row_);
     next_row_ += rows;
     return true;
 }
 
 uint64_t PictureCorrection::take(const Strip &strip) {
     stop_if_interrupted();
-    writer_->write(strip.written);
+    writer_->write(image_of(strip.written));
     return uint64_t(strip.written.width) * strip.written.height;
 }
 

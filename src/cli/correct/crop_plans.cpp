@@ -21,10 +21,12 @@ std::pair<uint32_t, uint32_t> columns_of(const CropCorrection &part, uint32_t wi
     return {column(begin), std::max(column(begin), column(end))};
 }
 
-lensprof_image tile_of(const lensprof_image &image, uint32_t row, uint32_t begin, uint32_t end) {
-    const size_t pixel = size_t(lensprof_layout_samples(image.layout)) * lensprof_sample_type_bytes(image.sample);
-    lensprof_image tile = image;
-    tile.data = static_cast<uint8_t *>(image.data) + static_cast<ptrdiff_t>(row) * image.row_bytes + begin * pixel;
+// Columns [begin, end) of a row of an image or a target, whose bytes are of type Byte.
+template <class Byte, class View>
+View tile_of(const View &view, uint32_t row, uint32_t begin, uint32_t end) {
+    const size_t pixel = size_t(lensprof_layout_samples(view.layout)) * lensprof_sample_type_bytes(view.sample);
+    View tile = view;
+    tile.data = static_cast<Byte *>(view.data) + static_cast<ptrdiff_t>(row) * view.row_bytes + begin * pixel;
     tile.width = end - begin, tile.height = 1;
     return tile;
 }
@@ -59,13 +61,14 @@ std::vector<CropPlans::Span> CropPlans::spans_of(uint32_t width, uint32_t row) c
     return spans;
 }
 
-void CropPlans::apply(const Plan &rest, const lensprof_image &source, const lensprof_image &target,
+void CropPlans::apply(const Plan &rest, const lensprof_image &source, const lensprof_target &target,
                       uint32_t first_row) const {
     for (uint32_t y = 0; y < source.height; y++) {
         const uint32_t row = first_row + y;
         const auto correct = [&](const Plan &plan, uint32_t begin, uint32_t end, uint32_t x0, uint32_t y0) {
             if (begin >= end) return;
-            const lensprof_image from = tile_of(source, y, begin, end), to = tile_of(target, y, begin, end);
+            const auto from = tile_of<const uint8_t>(source, y, begin, end);
+            const auto to = tile_of<uint8_t>(target, y, begin, end);
             check(lensprof_apply(plan.get(), &from, &to, x0, y0), job_.source);
         };
         uint32_t done = 0;

@@ -14,7 +14,7 @@ public:
 
     // Rows of the picture, from `first_row` on; `target` has the size of `source`, or is the same memory. Where crops
     // overlap, each has the half that is nearer to its middle.
-    void apply(const Plan &rest, const lensprof_image &source, const lensprof_image &target, uint32_t first_row) const;
+    void apply(const Plan &rest, const lensprof_image &source, const lensprof_target &target, uint32_t first_row) const;
 
 private:
     struct Part {

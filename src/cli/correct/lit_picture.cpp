@@ -16,9 +16,9 @@ LitPicture::LitPicture(const PlacedCorrection &placed, const CorrectionKind &kin
     view_ = grey_.view();
     check_finite(view_, 0, 1, file);
     light_.resize(size_t(grey_.width) * grey_.height * samples_);
-    const lensprof_image after{light_.data(),       static_cast<ptrdiff_t>(grey_.width * samples_ * sizeof(float)),
-                               grey_.width,         grey_.height,
-                               LENSPROF_SAMPLE_F32, grey_.layout};
+    const lensprof_target after{light_.data(),       static_cast<ptrdiff_t>(grey_.width * samples_ * sizeof(float)),
+                                grey_.width,         grey_.height,
+                                LENSPROF_SAMPLE_F32, grey_.layout};
     const Plan plan(options_of(grey_, placed.job, kind), file);
     check(lensprof_apply(plan.get(), &view_, &after, 0, 0), file);
     for (size_t c = 0; c < 3; c++) gain_[c] = gain_of(placed.job, c);

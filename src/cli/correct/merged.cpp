@@ -34,14 +34,16 @@ public:
         const Picture &h = header();
         before_.resize(h.row_bytes * rows);
         light_.resize(size_t(h.width) * rows * samples_);
-        before_rows_ = {before_.data(), static_cast<ptrdiff_t>(h.row_bytes), h.width, rows, h.sample, h.layout};
-        lensprof_image after{light_.data(),
-                             static_cast<ptrdiff_t>(h.width * samples_ * sizeof(float)),
-                             h.width,
-                             rows,
-                             LENSPROF_SAMPLE_F32,
-                             h.layout};
-        reader_.read(before_rows_);
+        const lensprof_target before{before_.data(), static_cast<ptrdiff_t>(h.row_bytes), h.width, rows, h.sample,
+                                     h.layout};
+        const lensprof_target after{light_.data(),
+                                    static_cast<ptrdiff_t>(h.width * samples_ * sizeof(float)),
+                                    h.width,
+                                    rows,
+                                    LENSPROF_SAMPLE_F32,
+                                    h.layout};
+        reader_.read(before);
+        before_rows_ = image_of(before);
         check_finite(before_rows_, first, 1, job_.source);
         check(lensprof_apply(plan_.get(), &before_rows_, &after, 0, first), job_.source);
     }

@@ -222,8 +222,8 @@ void write_light(const Correction &job, const CorrectionKind &kind, Merge &merge
     const Picture header = header_of_result(merge.picture().header(), LENSPROF_SAMPLE_F32);
     PictureWriter writer(job.target, header, write_options(job, kind));
     const std::vector<float> &light = merge.result();
-    writer.write({const_cast<float *>(light.data()), static_cast<ptrdiff_t>(header.row_bytes), header.width,
-                  header.height, header.sample, header.layout});
+    writer.write({light.data(), static_cast<ptrdiff_t>(header.row_bytes), header.width, header.height, header.sample,
+                  header.layout});
     const bool with_metadata = writer.finish();
     writer.commit();
     warn_of_written(job, with_metadata, progress);

@@ -34,7 +34,7 @@ struct BracketOptions {
 };
 
 void declare_bracket_fit(Command &command, BracketOptions &o) {
-    Keys keys = declare_fit(command, o.fit, {true, false});
+    Keys keys = declare_fit(command, o.fit, {false});
     keys.flag("modes-only", o.modes_only, "restrict the response to EMoR modes even if a free curve fits better");
     keys.number("ev-sigma", o.ev_sigma, {0.001, 10.0},
                 "standard error of the exposures given by --ev or --times, EV; default 0.05");
@@ -168,29 +168,6 @@ Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uin
     return verdict;
 }
 
-bool is_debevec(const BracketOptions &o) { return o.fit.method == LENSPROF_METHOD_DEBEVEC; }
-
-// Failure (usage) for options without meaning for the method debevec.
-void check_debevec_options(const BracketOptions &o) {
-    const std::pair<bool, const char *> without[] = {{o.fit.modes != LENSPROF_MODES_AUTO, "modes"},
-                                                     {o.modes_only, "modes-only"},
-                                                     {o.fit.loss != LENSPROF_LOSS_ROBUST, "loss"},
-                                                     {o.fit.gamma_from == LENSPROF_GAMMA_PRIOR, "gamma-from=prior"}};
-    for (const auto &[is_given, option] : without)
-        if (is_given && is_debevec(o))
-            throw Failure(ExitCode::usage, std::string("--fit method=debevec and ") + option
-                                               + " exclude each other: debevec estimates the response at every grey "
-                                                 "level by least squares, with known exposures; omit one of them");
-}
-
-// Failure (usage) if the exposure of a picture is unknown but needed.
-void check_exposures_known(const BracketOptions &o, const std::vector<lensprof_fit_image> &images) {
-    for (size_t i = 0; i < images.size() && is_debevec(o); i++)
-        if (!(images[i].known_ev_sigma > 0.0))
-            throw Failure(ExitCode::usage, o.files[i] + ": EXIF does not state the exposure, which --fit method=debevec "
-                                                        "needs; give --ev or --times, or use method=transfer");
-}
-
 FitInput fit_input(const BracketOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                    const std::vector<double> &ev, ExifUse &exif, Streams &streams) {
     FitInput input;
@@ -204,7 +181,6 @@ FitInput fit_input(const BracketOptions &o, const Project &project, const std::v
         input.images[i].known_ev = ev[i];
         input.images[i].known_ev_sigma = o.ev_sigma;
     }
-    check_exposures_known(o, input.images);
     return input;
 }
 
@@ -272,7 +248,6 @@ int bracket_and_store(const BracketOptions &o, Streams &streams) {
 int run(const BracketOptions &o, Streams &streams) {
     check_max_side(o.pixels.max_side);
     check_fit_options(o.fit);
-    check_debevec_options(o);
     check_store_options(o.store);
     check_report(o.report, o.files, o.store);
     if (!o.ev.empty() && !o.times_s.empty())

@@ -25,26 +25,19 @@ int on_fit_progress(double done, void *progress) {
 }
 
 const char *method_name(uint32_t method) {
-    static const char *const names[] = {"transfer", "radiance", "transfer-function", "debevec"};
-    return method <= LENSPROF_METHOD_DEBEVEC ? names[method] : "unknown";
+    static const char *const names[] = {"transfer", "radiance", "transfer-function"};
+    return method <= LENSPROF_METHOD_TRANSFER_FUNCTION ? names[method] : "unknown";
 }
 
 namespace {
 
-void declare_method(Keys &keys, FitOptions &o, const FitChoices &choices) {
-    Choices<uint32_t> methods = {{"transfer", LENSPROF_METHOD_TRANSFER},
-                                 {"radiance", LENSPROF_METHOD_RADIANCE},
-                                 {"transfer-function", LENSPROF_METHOD_TRANSFER_FUNCTION}};
-    std::string about =
-        "transfer (d'Angelo 2007, default), radiance (Goldman & Chen 2005: one radiance per scene point, seen by any "
-        "number of pictures, saturated ones included) or transfer-function (Kim & Pollefeys 2004)";
-    if (choices.debevec) {
-        methods.emplace_back("debevec", LENSPROF_METHOD_DEBEVEC);
-        about +=
-            "; debevec (Debevec & Malik 1997), for comparison: takes known exposures as exact and fixes white "
-            "balances";
-    }
-    keys.choice("method", o.method, methods, about);
+void declare_method(Keys &keys, FitOptions &o) {
+    keys.choice("method", o.method,
+                {{"transfer", LENSPROF_METHOD_TRANSFER},
+                 {"radiance", LENSPROF_METHOD_RADIANCE},
+                 {"transfer-function", LENSPROF_METHOD_TRANSFER_FUNCTION}},
+                "transfer (d'Angelo 2007, default), radiance (Goldman & Chen 2005: one radiance per scene point, seen "
+                "by any number of pictures, saturated ones included) or transfer-function (Kim & Pollefeys 2004)");
 }
 
 Choices<std::optional<uint32_t>> camera_kind_choices() {
@@ -87,7 +80,7 @@ void declare_gamma(Keys &keys, FitOptions &o, bool known_response) {
 
 Keys declare_fit(Command &command, FitOptions &o, FitChoices choices) {
     Keys keys = command.expert().keys("--fit", "how the pictures are fitted");
-    declare_method(keys, o, choices);
+    declare_method(keys, o);
     const auto read_modes = [&o](const std::string &word) {
         o.modes = word == "auto" ? LENSPROF_MODES_AUTO : count_of(word, 0, LENSPROF_EMOR_MODES);
     };

@@ -34,10 +34,10 @@ struct FitOptions {
 
 // Options that only some commands offer.
 struct FitChoices {
-    bool debevec = false;        // exposures may be given
     bool known_response = true;  // a project has a response that may be fixed
     bool stored_prior = false;   // a stored profile can be the prior
 };
+
 // Declares --fit, whose further keys are declared with what this returns.
 Keys declare_fit(Command &command, FitOptions &o, FitChoices choices = {});
 

@@ -229,7 +229,7 @@ void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input) {
     if (input.options.channels == 1 && input.options.vignettings == 3)
         throw Failure(ExitCode::usage, "--fit falloff-curves=3: the pictures are grey; use 1");
     for (size_t i = 0; i < count; i++) {
-        Picture &picture = input.pictures[i];
+        const Picture &picture = input.pictures[i];
         if (!o.cards.empty())
             input.masks[i] = mask_of(o.cards.size() == 1 ? o.cards.front() : o.cards[i], picture, o.files[i]);
         auto &image = input.images[i];

@@ -16,7 +16,7 @@ constexpr double max_flat_angle = 55.0 * M_PI / 180.0,
                  max_flat_radius = 8.0;  // forward view; px of a plane at distance 1
 
 // The model on a reduced picture, whose position in the frame does not matter: radii are in half diagonals.
-Picture applied(Picture &source, const lensprof_apply_options &options, const std::string &file) {
+Picture applied(const Picture &source, const lensprof_apply_options &options, const std::string &file) {
     lensprof_apply_options plan_options = options;
     plan_options.frame_width = source.width, plan_options.frame_height = source.height;
     plan_options.source_sample = source.sample, plan_options.source_layout = source.layout;
@@ -30,7 +30,8 @@ Picture applied(Picture &source, const lensprof_apply_options &options, const st
     const lensprof_plan *plan = nullptr;
     lensprof_error error{};
     check(lensprof_plan_init(memory.data(), memory.size() * 8, &plan_options, &plan, &error), file, &error);
-    const lensprof_image from = source.view(), to = target.view();
+    const lensprof_image from = source.view();
+    const lensprof_target to = target.target();
     check(lensprof_apply(plan, &from, &to, 0, 0), file);
     return target;
 }

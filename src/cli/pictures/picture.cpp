@@ -102,7 +102,11 @@ void check_held(const std::string &path, const Picture &picture) {
 
 }  // namespace
 
-lensprof_image Picture::view() {
+lensprof_image Picture::view() const {
+    return {pixels.data(), static_cast<ptrdiff_t>(row_bytes), width, height, sample, layout};
+}
+
+lensprof_target Picture::target() {
     return {pixels.data(), static_cast<ptrdiff_t>(row_bytes), width, height, sample, layout};
 }
 
@@ -139,7 +143,7 @@ PictureReader::~PictureReader() = default;
 
 const Picture &PictureReader::header() const { return source_->header(); }
 
-void PictureReader::read(const lensprof_image &rows) {
+void PictureReader::read(const lensprof_target &rows) {
     reading(path_, [&] {
         for (uint32_t y = 0; y < rows.height; ++y)
             source_->read(static_cast<uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes);
@@ -237,8 +241,7 @@ bool write_picture(const std::string &path, const Picture &picture, const WriteO
     format_of_name(path);
     check_held(path, picture);
     PictureWriter writer(path, picture, options);
-    writer.write({const_cast<uint8_t *>(picture.pixels.data()), static_cast<ptrdiff_t>(picture.row_bytes),
-                  picture.width, picture.height, picture.sample, picture.layout});
+    writer.write(picture.view());
     const bool with_metadata = writer.finish();
     writer.commit();
     return with_metadata;

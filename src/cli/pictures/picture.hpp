@@ -81,8 +81,14 @@ struct Picture {
     std::vector<uint8_t> icc;     // colour profile of the file, may be empty
     PictureTraits traits;
 
-    lensprof_image view();  // valid until pixels is changed
+    lensprof_image view() const;  // valid until pixels is changed
+    lensprof_target target();
 };
+
+// The pixels of a target after they were written.
+inline lensprof_image image_of(const lensprof_target &t) {
+    return {t.data, t.row_bytes, t.width, t.height, t.sample, t.layout};
+}
 
 struct ReadOptions {
     // 0 = full size. Otherwise every stored pixel represents a square of the frame, whose side is 1 or the largest even
@@ -154,7 +160,7 @@ public:
 
     // Reads the next rows.height rows into `rows`, of the header's width, sample and layout. With the last row the rest
     // of the file is checked.
-    void read(const lensprof_image &rows);
+    void read(const lensprof_target &rows);
 
 private:
     std::string path_;

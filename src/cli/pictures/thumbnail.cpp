@@ -97,7 +97,7 @@ Picture Thumbnail::upright(uint16_t orientation) const {
     return copy;
 }
 
-Picture upright_copy(Picture &stored, uint16_t orientation, uint32_t side) {
+Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side) {
     Thumbnail thumbnail(stored.width, stored.height, side);
     thumbnail.add(stored.view());
     return thumbnail.upright(orientation);

@@ -32,7 +32,7 @@ private:
 };
 
 // A small copy of a picture in memory, or of a file.
-Picture upright_copy(Picture &stored, uint16_t orientation, uint32_t side);
+Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side);
 Picture upright_copy(const std::string &file, uint16_t orientation, uint32_t side);
 
 }  // namespace lensprof

@@ -34,7 +34,7 @@ cv::Mat reduced_grey(PictureReader &reader, uint32_t reduction) {
     rows.height = 1;
     rows.pixels.resize(rows.row_bytes);
     for (uint32_t y = 0; y < left; y++) {
-        reader.read(rows.view());
+        reader.read(rows.target());
         const int v = static_cast<int>(y / reduction);
         if (v >= height) continue;
         float *out = grey.ptr<float>(v);

@@ -58,8 +58,8 @@ void expose(const Truth &truth, uint32_t i, Picture &picture) {
     const lensprof_plan *plan = nullptr;
     lensprof_error error{};
     check(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan, &error), "simulate", &error);
-    lensprof_image view = picture.view();
-    check(lensprof_apply(plan, &view, &view, 0, 0), "simulate");
+    const lensprof_target target = picture.target();
+    check(lensprof_apply(plan, nullptr, &target, 0, 0), "simulate");
 }
 
 void map_tones(const Truth &truth, uint32_t i, Picture &picture) {

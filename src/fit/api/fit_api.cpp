@@ -98,8 +98,6 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         if (status == LENSPROF_OK) status = check_place(target.place, fit_bytes(call->images), "fit", error);
         if (status == LENSPROF_OK)
             status = check_pairs(pairs, pair_count, call->images.data(), image_count, call->channels(), error);
-        if (status == LENSPROF_OK && call->options.method == LENSPROF_METHOD_DEBEVEC)
-            status = check_debevec(call->options, call->images.data(), image_count, error);
         if (status != LENSPROF_OK) return status;
         if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
         return run(*call, target, error, [&](lensprof_exposure *found) {

@@ -17,20 +17,15 @@ lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std
 
 namespace {
 
-// Rejects more than one setting per camera for methods that estimate a single falloff.
+// Rejects more than one setting per camera for the method that estimates a single falloff.
 lensprof_status check_settings(const FitCall &call, lensprof_error *error) {
-    const uint32_t method = call.options.method;
-    if (method != LENSPROF_METHOD_TRANSFER_FUNCTION && method != LENSPROF_METHOD_DEBEVEC) return LENSPROF_OK;
+    if (call.options.method != LENSPROF_METHOD_TRANSFER_FUNCTION) return LENSPROF_OK;
     std::map<uint32_t, uint32_t> setting_of;  // per camera
     for (uint32_t i = 0; i < call.count(); i++) {
         const lensprof_fit_image &image = call.images[i];
-        const uint32_t camera = method == LENSPROF_METHOD_DEBEVEC ? 0 : image.camera;
-        if (setting_of.try_emplace(camera, image.setting).first->second != image.setting)
+        if (setting_of.try_emplace(image.camera, image.setting).first->second != image.setting)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
                            "has another lens setting; use the method transfer or radiance to fit several");
-        if (method == LENSPROF_METHOD_DEBEVEC && image.camera != call.images[0].camera)
-            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
-                           "belongs to another camera; the method debevec fits one camera at a time");
     }
     return LENSPROF_OK;
 }
@@ -65,8 +60,7 @@ lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fi
     if (const char *wrong = lp_sized_take(&call.options, options, kFirstOptions))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: %s", wrong);
     lensprof_status status = check_options(call.options, image_count, error);
-    if (call.options.camera_kind == LENSPROF_CAMERA_LINEAR && (call.options.free & LENSPROF_FREE_RESPONSE)
-        && call.options.method != LENSPROF_METHOD_DEBEVEC) {
+    if (call.options.camera_kind == LENSPROF_CAMERA_LINEAR && (call.options.free & LENSPROF_FREE_RESPONSE)) {
         lensprof_response_set_linear(&call.linear);
         call.options.response = &call.linear;
         call.options.free &= ~LENSPROF_FREE_RESPONSE;

@@ -14,7 +14,7 @@ namespace lensprof {
 
 // Sizes of the structs in the first version of the library.
 constexpr size_t kFirstOptions = LP_END_OF(lensprof_fit_options, reserved2);
-constexpr size_t kFirstImage = sizeof(lensprof_fit_image);
+constexpr size_t kFirstImage = LP_END_OF(lensprof_fit_image, crop_factor);
 
 // All arguments and results of a call except pairs, observations and exposures, in this library's struct versions.
 struct FitCall {

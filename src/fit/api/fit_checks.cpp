@@ -6,7 +6,6 @@
 
 #include "core/profile.h"
 #include "fit/base/fail.hpp"
-#include "fit/methods/debevec.hpp"
 #include "fit/prior/stored_prior.hpp"
 
 namespace lensprof {
@@ -53,7 +52,7 @@ const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
         {o.gamma_from <= LENSPROF_GAMMA_EXPOSURES,
          "gamma_from must be LENSPROF_GAMMA_AUTO, _PRIOR or _EXPOSURES; the others occur only in results"},
         {o.camera_kind <= LENSPROF_CAMERA_LINEAR, "camera_kind must be one of lensprof_camera_kind, 0..5"},
-        {o.method <= LENSPROF_METHOD_DEBEVEC, "method must be one of lensprof_fit_method, 0..3"},
+        {o.method <= LENSPROF_METHOD_TRANSFER_FUNCTION, "method must be one of lensprof_fit_method, 0..2"},
         {o.refine <= 1, "refine must be 0 or 1"},
         {!o.reserved && !o.reserved2, "reserved and reserved2 must be 0"},
         {o.links || !o.link_count, "links must not be NULL if link_count is not 0"},
@@ -206,24 +205,6 @@ lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error) {
                 return fail_at(LENSPROF_ITEM_POINT, first.point, LENSPROF_ERROR_ARGUMENT, error,
                                "two observations in image %u; leave one out", tracks.observations[i].image);
     }
-    return LENSPROF_OK;
-}
-
-// Checks what the method `debevec` requires as known, and that only the response is free.
-lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_image *images, uint32_t image_count,
-                              lensprof_error *error) {
-    if (o.free != LENSPROF_FREE_RESPONSE)
-        return fail(LENSPROF_ERROR_ARGUMENT, error,
-                    "fit options: the method debevec estimates only the response; free it, and fix falloff and centre");
-    for (uint32_t i = 0; i < image_count; i++)
-        if (!(images[i].known_ev_sigma > 0.0))
-            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                           "the method debevec needs the known exposures of all images (known_ev, and a "
-                           "known_ev_sigma above 0); give them, or use the method transfer");
-    for (uint32_t i = 0; i < image_count; i++)
-        if (!(std::abs(known_exposure(images, o.reference, i)) <= 64.0))
-            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
-                           "known exposure beyond 64 EV relative to the reference");
     return LENSPROF_OK;
 }
 

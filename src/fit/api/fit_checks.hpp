@@ -27,10 +27,6 @@ lensprof_status check_observations(const lensprof_observation *observations, uin
 
 lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error);
 
-// Checks what the method `debevec` requires as known, and that only the response is free.
-lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_image *images, uint32_t image_count,
-                              lensprof_error *error);
-
 lensprof_status check_model(const lensprof_response &response, const lensprof_vignetting *vignetting, uint32_t channels,
                             const lensprof_exposure *exposures, uint32_t image_count, lensprof_error *error);
 

@@ -193,20 +193,26 @@ void lensprof_fit_destroy(lensprof_fit *fit) {
 lensprof_status lensprof_fit_image_at(const lensprof_fit *fit, uint32_t index, lensprof_fit_image_quality *quality,
                                       lensprof_error *error) {
     const lensprof_status status = check_fit(fit, quality, index, fit ? fit->image_count : 0, "image", error);
-    return status == LENSPROF_OK ? give(fit->quality[index], quality, "fit", error) : status;
+    return status == LENSPROF_OK ? give(fit->quality[index], quality,
+                                        LP_END_OF(lensprof_fit_image_quality, known_ev_left_out), "fit", error)
+                                 : status;
 }
 
 lensprof_status lensprof_fit_setting_at(const lensprof_fit *fit, uint32_t setting, lensprof_fit_result *result,
                                         lensprof_error *error) {
     const uint32_t number = setting_of(fit, setting);
     const lensprof_status status = check_fit(fit, result, number, fit ? fit->setting_count : 0, "setting", error);
-    return status == LENSPROF_OK ? give(fit->results[number], result, "fit", error) : status;
+    return status == LENSPROF_OK
+               ? give(fit->results[number], result, LP_END_OF(lensprof_fit_result, seconds), "fit", error)
+               : status;
 }
 
 lensprof_status lensprof_fit_camera_at(const lensprof_fit *fit, uint32_t camera, lensprof_fit_camera *result,
                                        lensprof_error *error) {
     const lensprof_status status = check_fit(fit, result, camera, fit ? fit->camera_count : 0, "camera", error);
-    return status == LENSPROF_OK ? give(fit->cameras[camera], result, "fit", error) : status;
+    return status == LENSPROF_OK
+               ? give(fit->cameras[camera], result, LP_END_OF(lensprof_fit_camera, reserved), "fit", error)
+               : status;
 }
 
 lensprof_status lensprof_fit_profile(const lensprof_fit *fit, uint32_t setting, lensprof_profile *profile,

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "fit/api/fit_checks.hpp"
-#include "fit/methods/debevec.hpp"
 #include "fit/methods/group.hpp"
 #include "fit/methods/overlap.hpp"
 #include "fit/methods/transfer_function/transfer_function.hpp"
@@ -13,7 +12,6 @@
 namespace lensprof {
 
 bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t count) {
-    if (options.method == LENSPROF_METHOD_DEBEVEC) return true;  // the response, without modes
     Problem problem = make_problem(options, images, count, nullptr, {});
     return problem.image_unknowns > 0 || !free_columns(problem, options.modes == 0 ? 0 : 1).empty();
 }
@@ -62,18 +60,14 @@ void fit_group(FitCall &call, const lensprof_pair *pairs, uint32_t count, lenspr
 
 lensprof_status fit_pairs(FitCall &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures,
                           lensprof_error *error) {
-    const auto &options = call.options;
-    const lensprof_fit_image *images = call.images.data();
-    if (options.method == LENSPROF_METHOD_RADIANCE) {
+    if (call.options.method == LENSPROF_METHOD_RADIANCE) {
         std::vector<lensprof_observation> observations = observations_of(pairs, count, call.channels());
         return fit_tracks(call, observations.data(), static_cast<uint32_t>(observations.size()), exposures, error);
     }
-    if (options.method == LENSPROF_METHOD_TRANSFER)
+    if (call.options.method == LENSPROF_METHOD_TRANSFER)
         fit_group(call, pairs, count, exposures, fit_overlap);
-    else if (options.method == LENSPROF_METHOD_TRANSFER_FUNCTION)
-        fit_group(call, pairs, count, exposures, fit_transfer_functions);
     else
-        fit_debevec(options, images, call.count(), pairs, count, exposures, call.result);
+        fit_group(call, pairs, count, exposures, fit_transfer_functions);
     return LENSPROF_OK;
 }
 
@@ -110,7 +104,6 @@ const char *method_name(uint32_t method) {
     case LENSPROF_METHOD_TRANSFER: return "transfer";
     case LENSPROF_METHOD_RADIANCE: return "radiance";
     case LENSPROF_METHOD_TRANSFER_FUNCTION: return "transfer-function";
-    case LENSPROF_METHOD_DEBEVEC: return "debevec";
     default: return "";
     }
 }

@@ -23,8 +23,8 @@ namespace {
 
 constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr double kLargestTurn = 360.0;
-constexpr size_t kFirstFlatOptions = sizeof(lensprof_flat_options);
-constexpr size_t kFirstFlatImage = sizeof(lensprof_flat_image);
+constexpr size_t kFirstFlatOptions = LP_END_OF(lensprof_flat_options, progress_user);
+constexpr size_t kFirstFlatImage = LP_END_OF(lensprof_flat_image, turn_deg);
 constexpr uint32_t kHeldFlat = 0x4c504643u;
 
 // The first option that is out of range, with its range; NULL if all are valid.
@@ -204,14 +204,18 @@ void lensprof_flat_destroy(lensprof_flat *flat) {
 
 lensprof_status lensprof_flat_get(const lensprof_flat *flat, lensprof_flat_result *result, lensprof_error *error) {
     const lensprof_status status = check_held(flat, result, kHeldFlat, "flat", error);
-    return status == LENSPROF_OK ? give(*flat->result, result, "flat", error) : status;
+    return status == LENSPROF_OK
+               ? give(*flat->result, result, LP_END_OF(lensprof_flat_result, reason_value), "flat", error)
+               : status;
 }
 
 lensprof_status lensprof_flat_image_at(const lensprof_flat *flat, uint32_t index, lensprof_flat_image_quality *quality,
                                        lensprof_error *error) {
     const uint32_t count = flat && flat->mark == kHeldFlat ? flat->result->images : 0;
     const lensprof_status status = check_part(flat, quality, kHeldFlat, "flat", index, count, "image", error);
-    return status == LENSPROF_OK ? give(flat->quality[index], quality, "flat", error) : status;
+    return status == LENSPROF_OK
+               ? give(flat->quality[index], quality, LP_END_OF(lensprof_flat_image_quality, card), "flat", error)
+               : status;
 }
 
 lensprof_status lensprof_flat_profile(const lensprof_flat *flat, lensprof_profile *profile, lensprof_error *error) {

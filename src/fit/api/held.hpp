@@ -54,10 +54,10 @@ lensprof_status check_part(const Held *held, const void *result, uint32_t mark, 
     return status;
 }
 
-// Copies a part to the caller's struct, which has at least the size of the first version: the whole.
+// Copies a part to the caller's struct, which has at least the `first` bytes of the first version.
 template <class T>
-lensprof_status give(const T &found, T *given, const char *what, lensprof_error *error) {
-    if (const char *wrong = lp_sized_wrong(given, sizeof found, sizeof found))
+lensprof_status give(const T &found, T *given, size_t first, const char *what, lensprof_error *error) {
+    if (const char *wrong = lp_sized_wrong(given, first, sizeof found))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "%s: %s", what, wrong);
     lp_sized_copy(given, &found);
     return LENSPROF_OK;

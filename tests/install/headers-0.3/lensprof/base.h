@@ -1,5 +1,12 @@
 /* lensprof/base.h - version, status codes, errors.
  *
+ * Example: the error of a call, printed.
+ *
+ *     status = lensprof_store_open("lenses.db", LENSPROF_STORE_READ, &store, &error);
+ *     if (status != LENSPROF_OK)
+ *         fprintf(stderr, "lensprof %s: %s: %s\n", lensprof_version(), lensprof_status_name(status), error.text);
+ *     lensprof_store_close(store);
+ *
  * Rules for the whole API:
  *  - Every function that can fail returns lensprof_status. On error its outputs are unchanged.
  *  - A call that can fail for more than one reason also takes a caller-owned lensprof_error (may be NULL). It receives
@@ -20,6 +27,11 @@
  *  - lensprof_profile_key and lensprof_provenance are members of other structs. They have a fixed size, with reserved
  *    space (zero) for new members. Structs that the library owns and only shows (lensprof_import_entry,
  *    lensprof_store_fault) get new members at their end. All other public structs are frozen values.
+ *  - Every header opens with an example, the body of a function. Variables that it does not declare are these:
+ *        lensprof_status status; lensprof_error error; lensprof_profile profile; lensprof_profile_key key;
+ *        lensprof_store *store; lensprof_camera cameras[3]; lensprof_image image, images[3];
+ *        lensprof_target picture, pictures[3];
+ *    image and picture, and images[i] and pictures[i], are views of the same pixels, 8 bit RGB.
  *  - Input and output live in the caller's buffers. The library keeps no reference after a call returns unless stated.
  *
  * Threads: everything declared here may be called from any thread at any time.

@@ -1,5 +1,23 @@
 /* lensprof/fit.h - recover response, vignetting, exposure and white balance from correspondences.
  *
+ * Example: self-calibration from three overlapping pictures, which are then corrected and evened out in place.
+ *
+ *     static lensprof_pair pairs[2000];
+ *     lensprof_sample_image samples[3]; lensprof_fit_image fitted[3]; lensprof_exposure exposures[3]; uint32_t count;
+ *     lensprof_sample_options sampling; lensprof_fit_options options; lensprof_fit *fit = NULL;
+ *     lensprof_sample_options_init(&sampling), lensprof_fit_options_init(&options), lensprof_profile_init(&profile);
+ *     for (uint32_t i = 0; i < 3; i++) {
+ *         lensprof_sample_image_init(&samples[i]), samples[i].view = images[i], samples[i].camera = cameras[i];
+ *         lensprof_fit_image_init(&fitted[i], i, images[i].width, images[i].height);
+ *     }
+ *     status = lensprof_sample_overlap(&sampling, samples, 3, pairs, 2000, &count, &error);
+ *     if (status == LENSPROF_OK)
+ *         status = lensprof_fit_overlap(&options, fitted, 3, pairs, count, NULL, 0, exposures, &fit, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_fit_profile(fit, LENSPROF_FIT_REFERENCE, &profile, &error);
+ *     for (uint32_t i = 0; i < 3 && status == LENSPROF_OK; i++)
+ *         status = lensprof_correct(&profile, &exposures[i], &pictures[i], &error);
+ *     lensprof_fit_destroy(fit);
+ *
  * Method `radiance` (Goldman & Chen 2005) minimises the error of every grey value,
  *     B_xi - f( e_i w_i M(r_xi) L_x )                                             (equations 2, 3, 11, 12)
  * over the unknowns of `transfer` and the radiance L of every scene point x that is observed in two or more images.
@@ -14,11 +32,6 @@
  * (equations 5 to 13), alternating with the vignetting. Here `modes` counts components of ln f^-1, and the response of
  * the result has all EMoR modes. SQUARED loss is the variant of the paper; iterations are rounds, at most 20. Pictures
  * that differ by less than 0.15 EV are not usable.
- *
- * Method `debevec` (Debevec & Malik 1997, equation 3), a reference, solves linear least squares for ln f^-1 at the grey
- * levels 1..255, smoothed with weight 10 prior_weight. Exposures of all images must be known (known_ev_sigma > 0) and
- * are taken as exact; white balances and falloff are fixed. Only the response is free; it is a TABLE, made monotone at
- * the end. modes, loss, vignettings, gamma_from, refine and max_iterations are ignored; there is no covariance.
  *
  * Threads: calls are independent. One call uses up to the number of threads in its options, and joins them before it
  * returns; progress is reported on the caller's thread. The result does not depend on that number: same input, same
@@ -53,8 +66,7 @@ extern "C" {
 typedef enum lensprof_fit_method {
     LENSPROF_METHOD_TRANSFER = 0, /* default: d'Angelo 2007, transfers grey values from one image to the other */
     LENSPROF_METHOD_RADIANCE = 1, /* Goldman & Chen 2005: estimates one radiance per scene point */
-    LENSPROF_METHOD_TRANSFER_FUNCTION = 2, /* Kim & Pollefeys 2004: uses transfer functions of image pairs */
-    LENSPROF_METHOD_DEBEVEC = 3            /* Debevec & Malik 1997: uses known exposures; lensprof_fit_overlap only */
+    LENSPROF_METHOD_TRANSFER_FUNCTION = 2 /* Kim & Pollefeys 2004: uses transfer functions of image pairs */
 } lensprof_fit_method;
 
 typedef enum lensprof_loss {
@@ -93,7 +105,7 @@ typedef struct lensprof_fit_image {
                               below 0.02 count as 0.02. Only differences matter, so a single known_ev has no effect */
     uint32_t camera;   /* 0..LENSPROF_CAMERAS_MAX - 1: each camera has its own response if that is free. All images of a
                           setting belong to one camera. Fixed or known exposures apply relative to other images of the
-                          same camera. DEBEVEC allows only one camera */
+                          same camera */
     uint32_t reserved; /* 0 */
     double f_number_ratio; /* f-number over the widest one of the lens, 1..1024: 1 wide open, 2 two stops down; 0 =
                               unknown. Selects the lenses whose falloffs a falloff that pictures leave open resembles */
@@ -315,11 +327,10 @@ LENSPROF_API size_t lensprof_fit_bytes(const lensprof_fit_image *images, uint32_
  * images are consistent, the fit uses the largest group that is; the ev of an image left out is NaN. Pictures of a
  * stationary camera are used all together or not at all. Method RADIANCE joins pairs that share an end (image, position
  * and values) into a track.
- * Errors: ARGUMENT for indices, values outside 0..1 and unusable options; with DEBEVEC also for an image without known
- * exposure, a free falloff or a fixed response. CAPACITY for too little or unaligned memory; NOT_FINITE for NaN;
- * NO_SAMPLES without pairs, and with several cameras if none has pairs between two of its own images; NO_UNKNOWNS if
- * nothing is free; UNSUPPORTED for a method missing in this version, and for several settings with DEBEVEC, or of one
- * camera with TRANSFER_FUNCTION; CANCELLED; MEMORY. exposures and *fit are then unchanged. */
+ * Errors: ARGUMENT for indices, values outside 0..1 and unusable options; CAPACITY for too little or unaligned memory;
+ * NOT_FINITE for NaN; NO_SAMPLES without pairs, and with several cameras if none has pairs between two of its own
+ * images; NO_UNKNOWNS if nothing is free; UNSUPPORTED for a method missing in this version, and for several settings of
+ * one camera with TRANSFER_FUNCTION; CANCELLED; MEMORY. exposures and *fit are then unchanged. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options,
                                                                     const lensprof_fit_image *images,
                                                                     uint32_t image_count, const lensprof_pair *pairs,

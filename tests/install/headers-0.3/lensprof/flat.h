@@ -1,5 +1,16 @@
 /* lensprof/flat.h - falloff from pictures of a white card or of another even light.
  *
+ * Example: the falloff from a linear picture of a white card.
+ *
+ *     lensprof_flat *flat = NULL;
+ *     lensprof_flat_image card;
+ *     lensprof_flat_options options;
+ *     lensprof_flat_image_init(&card), lensprof_flat_options_init(&options), lensprof_profile_init(&profile);
+ *     card.view = image, card.width = image.width, card.height = image.height;
+ *     status = lensprof_fit_flat(&options, &card, 1, NULL, 0, &flat, &error);
+ *     if (status == LENSPROF_OK) status = lensprof_flat_profile(flat, &profile, &error);
+ *     lensprof_flat_destroy(flat);
+ *
  * Method `flat` (Goldman & Chen 2005, section 6.1): the response is known. The exposures of each shot are merged,
  *     E = sum_i w_i g(B_i) / t_i  /  sum_i w_i,
  * and the falloff is fitted to the result (equation 14):

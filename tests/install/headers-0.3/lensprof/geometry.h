@@ -1,5 +1,14 @@
 /* lensprof/geometry.h - camera projections: direction <-> image pixel.
  *
+ * Example: where the centre of one picture lies in the next.
+ *
+ *     lensprof_camera left = {.width = 640, .height = 480, .hfov_deg = 50.0}, right = left; // rectilinear
+ *     double direction[2], xy[2];
+ *     right.yaw_deg = 20.0;
+ *     if (lensprof_camera_unproject(&left, 319.5, 239.5, direction)
+ *         && lensprof_camera_project(&right, direction[0], direction[1], xy))
+ *         printf("%.1f, %.1f\n", xy[0], xy[1]);
+ *
  * The PanoTools camera model as used by Hugin and nona; agrees with libpano13 (`pano_trafo`) to 1e-4 px.
  * Directions are longitude and latitude in radians, latitude positive DOWN; (0,0) is the centre of the panorama.
  * Pixel centres are integers; pixel (0,0) is the centre of the upper left pixel. No heap, no I/O.

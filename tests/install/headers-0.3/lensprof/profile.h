@@ -1,5 +1,14 @@
 /* lensprof/profile.h - calibration of one camera, lens and setting.
  *
+ * Example: a profile by hand, as a blob for firmware.
+ *
+ *     uint8_t blob[1024];
+ *     size_t size;
+ *     lensprof_profile_init(&profile);
+ *     strcpy(profile.key.lens, "Acme 50mm f/1.8"), profile.key.focal_mm = 50, profile.key.aperture = 2.8;
+ *     profile.vignetting[0].k[0] = -0.35; // of linear pictures: 65 % of the light in the corner
+ *     status = lensprof_profile_pack(&profile, 0, blob, sizeof blob, &size);
+ *
  * A profile is a value: it can be copied, stored (store.h), applied (apply.h) and packed into a blob for firmware.
  * No heap, no I/O.
  * Threads: all functions are pure. */

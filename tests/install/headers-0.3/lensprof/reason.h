@@ -1,5 +1,11 @@
 /* lensprof/reason.h - reason codes: why a result is not usable, or what is doubtful about it.
  *
+ * Example: all codes and what they mean.
+ *
+ *     for (uint32_t code = 1; code < 1000; code++)
+ *         if (*lensprof_reason_text(code))
+ *             printf("%u %s: %s\n", (unsigned)code, lensprof_reason_name(code), lensprof_reason_text(code));
+ *
  * Fits, flat fields and lookups report their verdict as data: a code, the image or shot concerned, and numbers. The
  * sentence next to it (`reason`) is composed of these, for people. docs/reasons.md has a remedy for every code.
  */
@@ -46,16 +52,14 @@ typedef enum lensprof_reason {
 
     /* Exposures, and the exponent gamma, which pictures alone do not determine. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201, /* image: standard error, EV */
-    LENSPROF_REASON_KNOWN_ALIKE = 202,        /* difference, EV */
-    LENSPROF_REASON_KNOWN_REVERSED = 203,
-    LENSPROF_REASON_EXPOSURES_ALIKE = 204,  /* difference, EV */
-    LENSPROF_REASON_KNOWN_ORDER = 251,      /* difference, EV */
-    LENSPROF_REASON_KNOWN_WRONG = 252,      /* image: distance, EV */
-    LENSPROF_REASON_KNOWN_MORE_FROM = 253,  /* image: step, EV */
-    LENSPROF_REASON_KNOWN_LESS_FROM = 254,  /* image: step, EV */
-    LENSPROF_REASON_KNOWN_CONTRADICT = 255, /* distance, EV */
-    LENSPROF_REASON_GAMMA_UNFOLLOWED = 256, /* factor of all exposures */
-    LENSPROF_REASON_BALANCES_HELD = 257,    /* image: difference, levels of 255 */
+    LENSPROF_REASON_EXPOSURES_ALIKE = 204,    /* difference, EV */
+    LENSPROF_REASON_KNOWN_ORDER = 251,        /* difference, EV */
+    LENSPROF_REASON_KNOWN_WRONG = 252,        /* image: distance, EV */
+    LENSPROF_REASON_KNOWN_MORE_FROM = 253,    /* image: step, EV */
+    LENSPROF_REASON_KNOWN_LESS_FROM = 254,    /* image: step, EV */
+    LENSPROF_REASON_KNOWN_CONTRADICT = 255,   /* distance, EV */
+    LENSPROF_REASON_GAMMA_UNFOLLOWED = 256,   /* factor of all exposures */
+    LENSPROF_REASON_BALANCES_HELD = 257,      /* image: difference, levels of 255 */
 
     /* Response. */
     LENSPROF_REASON_FEW_GREYS = 301,     /* tenths of the grey values */
