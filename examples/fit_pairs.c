@@ -47,6 +47,7 @@ int main(void) {
     lensprof_exposure exposures[IMAGES];
     lensprof_fit_options options;
     lensprof_fit *fit;
+    lensprof_finding finding;
     lensprof_error error;
     uint32_t i;
 
@@ -64,8 +65,13 @@ int main(void) {
         printf("%s\n", error.text);
         return 1;
     }
+    printf("usable: %s, residual %.2f of 255 levels\n", result.usable ? "yes" : "no", result.heldout_rms);
+    for (i = 0; i < result.findings; i++) {
+        lensprof_finding_init(&finding);
+        if (lensprof_fit_finding_at(fit, LENSPROF_FIT_REFERENCE, i, &finding, &error) == LENSPROF_OK)
+            printf("%s\n", finding.text);
+    }
     lensprof_fit_destroy(fit);
-    printf("usable: %s, residual %.2f of 255 levels\n", result.usable ? "yes" : result.reason, result.heldout_rms);
     for (i = 0; i < IMAGES; i++) printf("image %u: %+.3f EV, true %+.3f\n", i, exposures[i].ev, true_ev[i]);
     printf("light in the corner: %.3f, true %.3f\n", lensprof_vignetting_eval(&result.vignetting[0], 1.0, NULL),
            1.0 + true_k1);

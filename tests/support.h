@@ -23,11 +23,11 @@ static inline void lp_assert_close(double a, double b, double tolerance, const c
     }
 }
 
-/* Checks the reason of a fit or flat field: its code, and words of its sentence. */
-#define assert_reason(result, code, words)                              \
-    do {                                                                \
-        assert_non_null(strstr((result).reason, (words)));              \
-        assert_int_equal((result).reason_code, LENSPROF_REASON_##code); \
+/* Checks the first finding of a fit or flat field: its code, and words of its sentence. */
+#define assert_reason(result, reason, words)                             \
+    do {                                                                 \
+        assert_int_equal((result).first.code, LENSPROF_REASON_##reason); \
+        assert_non_null(strstr((result).first.text, (words)));           \
     } while (0)
 
 #define assert_ok(call) assert_int_equal((call), LENSPROF_OK)

@@ -54,8 +54,8 @@ typedef struct lensprof_flat_image {
     double black, white;      /* samples outside [black, white] in any channel are not used; 0..1 */
     double ev; /* known exposure, log2 of t, EV up to a common offset. Only differences matter: within a shot and, for
                   a card at several places, between shots */
-    double turn_deg; /* rotation of the camera about its axis, degrees clockwise seen from the back of the camera; the
-                        same for all pictures of a shot */
+    double rotation_deg; /* rotation of the camera about its axis, degrees clockwise seen from the back of the camera;
+                        the same for all pictures of a shot */
 } lensprof_flat_image;
 
 /* Full size, shot 0, no mask, 2/255 to 250/255, 0 EV, no rotation. View and frame are zero; the caller must set them.
@@ -141,11 +141,12 @@ typedef struct lensprof_flat_spot {
 
 typedef struct lensprof_flat_result {
     uint32_t struct_size;
-    uint32_t usable;          /* 1, or 0 with the reason in words */
+    uint32_t usable;          /* 1, or 0 as the findings state */
     uint32_t images;          /* pictures given */
     uint32_t covariance_size; /* order as in profile.h, with the coefficients of the responses in the options; fixed
                                  parameters have zero rows; 0 = not determined, or more than LENSPROF_COVARIANCE_MAX */
-    char reason[256];         /* why not usable; if usable, a warning or empty */
+    uint32_t findings;        /* number of lensprof_flat_finding_at: refusals, then warnings, then notes; */
+    uint32_t passed;          /* after them, the rules that hold */
     lensprof_vignetting vignetting[3]; /* per channel; all equal if `vignettings` is 1; they share one centre */
     uint32_t vignettings;              /* 1 or 3 */
     uint32_t light;                    /* EVEN, PLANE or QUADRATIC */
@@ -169,11 +170,7 @@ typedef struct lensprof_flat_result {
     double grid_residual;  /* what falloff and grid together leave of frame_residual; 0 without a grid */
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lensprof_gain_grid gain_grid; /* residual of the polynomial: the attenuation is M times this grid, which is 1 at the
-                                     centre of M. 0 x 0 if not requested, or if the pictures do not show it */
-    uint32_t reason_code;         /* lensprof_reason that `reason` states */
-    uint32_t reason_values;       /* number of reason_value, 0..2 */
-    lensprof_item reason_item;    /* the image or shot concerned */
-    double reason_value[2];       /* numbers, in the units of reason.h */
+                                     centre of M. 0 x 0 if not requested, or if the pictures do not constrain it */
 } lensprof_flat_result;
 
 /* An empty result. */
@@ -187,8 +184,8 @@ LENSPROF_API size_t lensprof_flat_bytes(uint32_t image_count);
 /* Fits the falloff to `image_count` pictures. *flat receives all that was found: in memory[size], 8-byte aligned, of at
  * least lensprof_flat_bytes, which must outlive it; or, if memory is NULL, in memory of its own. Release it with
  * lensprof_flat_destroy. A fit that ran returns OK even if the result is poor: see `usable`.
- * Errors: ARGUMENT or SIZE for unusable options, different turn_deg within a shot or different frames; CAPACITY for too
- * little or unaligned memory; NOT_FINITE for NaN in a float view (the text names image and pixel); NO_SAMPLES if no
+ * Errors: ARGUMENT or SIZE for unusable options, different rotation_deg within a shot or different frames; CAPACITY for
+ * too little or unaligned memory; NOT_FINITE for NaN in a float view (the text names image and pixel); NO_SAMPLES if no
  * cell lies between black and white; NO_UNKNOWNS if nothing is free; RESPONSE for an invalid response; CANCELLED;
  * MEMORY. *flat is then unchanged. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_flat(const lensprof_flat_options *options,
@@ -206,6 +203,11 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_get(const lensprof_
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_image_at(const lensprof_flat *flat, uint32_t index,
                                                                       lensprof_flat_image_quality *quality,
                                                                       lensprof_error *error);
+
+/* Finding `index`: of `findings`, then of `passed`. Errors: as lensprof_flat_get. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_finding_at(const lensprof_flat *flat, uint32_t index,
+                                                                        lensprof_finding *finding,
+                                                                        lensprof_error *error);
 
 /* Makes the profile in an initialised *profile, as lensprof_fit_profile does: the responses of the options (linear by
  * default), vignettings, covariance and gain grid; method "flat"; `pairs` counts cells. Errors: as lensprof_flat_get;

@@ -61,17 +61,17 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_stor
 
 /* What to use if the focus distance is unknown. */
 typedef enum lensprof_distance_rule {
-    LENSPROF_DISTANCE_WEAKEST = 0,  /* the weakest of the falloffs at all stored distances, radius by radius: never
-                                       corrects too much, whatever the distance */
-    LENSPROF_DISTANCE_FARTHEST = 1, /* the falloff at the farthest stored distance */
-    LENSPROF_DISTANCE_USUAL = 2     /* the mean over the distances of most photographs (docs/database.md) */
+    LENSPROF_DISTANCE_USUAL = 0,   /* the mean over the distances of most photographs (docs/database.md) */
+    LENSPROF_DISTANCE_WEAKEST = 1, /* the weakest of the falloffs at all stored distances, radius by radius: never
+                                      corrects too much, whatever the distance */
+    LENSPROF_DISTANCE_FARTHEST = 2 /* the falloff at the farthest stored distance */
 } lensprof_distance_rule;
 
 typedef struct lensprof_lookup_options {
     uint32_t struct_size;
     uint32_t distance_rule;  /* lensprof_distance_rule */
     uint32_t with_doubt;     /* 1: use profiles with a doubt (provenance) like others; 0: use them only if the doubt
-                                concerns     the response alone */
+                                concerns the response alone */
     uint32_t any_processing; /* 1: ignore the processing of the key; 0: see lensprof_store_lookup */
     uint32_t force_falloff;  /* 1: use falloffs of uncorrected pictures for CORRECTED keys as well; 0: do not */
     uint32_t response_alone; /* 1: if there is no falloff for the key, but profiles of the camera, return their response
@@ -79,9 +79,8 @@ typedef struct lensprof_lookup_options {
 } lensprof_lookup_options;
 
 /* USUAL, without doubt, falloffs of the key's processing. */
-LENSPROF_API void lensprof_lookup_options_init_sized(lensprof_lookup_options *options, size_t size);
 static inline void lensprof_lookup_options_init(lensprof_lookup_options *options) {
-    lensprof_lookup_options_init_sized(options, sizeof *options);
+    lensprof_init_sized(options, sizeof *options);
 }
 
 #define LENSPROF_LOOKUP_ROWS 24
@@ -153,20 +152,21 @@ static inline void lensprof_lookup_init(lensprof_lookup *lookup) { lensprof_init
  * "lookup", and a covariance of both parts. Nothing is written. NOT_FOUND if there is no such lens or nothing near
  * enough: *lookup is then filled as far as possible, *profile is unchanged, and the text of the error is the reason.
  * *profile must be initialised, and *lookup if it is given. options may be NULL, for the defaults, and lookup, if the
- * answer alone is wanted. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
-                                                                     const lensprof_profile_key *key,
-                                                                     const lensprof_lookup_options *options,
-                                                                     lensprof_profile *profile, lensprof_lookup *lookup,
-                                                                     lensprof_error *error);
-
-/* The same in stores[count], count > 0: the falloff comes from the first that has one for the key, the response from
- * the first that has profiles of the camera. The reason of a refusal is that of the first that has the lens. */
+ * answer alone is wanted. Of stores[count],
+ * count > 0, the falloff comes from the first that has one for the key, the response from the first that has profiles
+ * of the camera; the reason of a refusal is that of the first that has the lens. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup_in(lensprof_store *const *stores, uint32_t count,
                                                                         const lensprof_profile_key *key,
                                                                         const lensprof_lookup_options *options,
                                                                         lensprof_profile *profile,
                                                                         lensprof_lookup *lookup, lensprof_error *error);
+
+/* The same in one database. */
+LENSPROF_MUST_USE static inline lensprof_status
+lensprof_store_lookup(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *options,
+                      lensprof_profile *profile, lensprof_lookup *lookup, lensprof_error *error) {
+    return lensprof_store_lookup_in(&store, 1, key, options, profile, lookup, error);
+}
 
 /* From here to commit or rollback, all calls on this handle form one transaction, which makes thousands of them fast.
  * Closing the store rolls back. Errors: READ_ONLY, BUSY, ...; ARGUMENT for a second begin, or a commit without begin.

@@ -86,5 +86,5 @@ uint32_t lensprof_camera_kind_of(const lensprof_profile_key *key) {
     if (HAS_WORD(key->camera_maker, scanner_words) || HAS_WORD(key->camera_model, scanner_words))
         return LENSPROF_CAMERA_ANY; /* the medium that was scanned is unknown */
     if (is_phone(key)) return LENSPROF_CAMERA_PHONE;
-    return *key->camera_maker || *key->camera_model ? LENSPROF_CAMERA_CAMERA : LENSPROF_CAMERA_ANY;
+    return *key->camera_maker || *key->camera_model ? LENSPROF_CAMERA_STILL : LENSPROF_CAMERA_ANY;
 }

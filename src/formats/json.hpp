@@ -9,7 +9,7 @@
 
 namespace lensprof {
 
-constexpr int64_t kJsonSchema = 1;
+constexpr int64_t kJsonSchema = 2;  // 1 differs in what commands report of fits, not in profiles
 constexpr const char *kJsonResponseKinds[] = {"linear", "gamma", "emor", "table"};
 constexpr const char *kJsonProcessings[] = {"raw", "jpeg", "corrected"};
 

@@ -208,8 +208,9 @@ void read_provenance(const JsonValue &object, const char *source, lensprof_prove
 void check_schema(const JsonValue &object) {
     const JsonValue schema = object["schema"];
     if (!schema) return;
-    if (schema.integer(INT64_MIN, INT64_MAX) != kJsonSchema)
-        schema.fail("is not 1, the only one supported; use a newer lensprof", LENSPROF_ERROR_UNSUPPORTED);
+    const int64_t version = schema.integer(INT64_MIN, INT64_MAX);
+    if (version < 1 || version > kJsonSchema)
+        schema.fail("is not 1 or 2; use a newer lensprof", LENSPROF_ERROR_UNSUPPORTED);
 }
 
 void read_profile(const JsonValue &object, const char *source, lensprof_profile &profile) {

@@ -62,7 +62,7 @@ def measure(seed, lens):
     for turn in (0, 90, 180):
         names.append(folder / ("card%d.png" % turn))
         write_png16(names[-1], card(truth["k"][0], truth["center"], turn, 1000 * seed + turn))
-    curves = {"card": call("flat", *names, "--linear", "--turned", "0,90,180", "--no-store", "--json"),
+    curves = {"card": call("flat", *names, "--linear", "--rotation", "0,90,180", "--no-store", "--json"),
               "sequence": call("build", folder / "pano.pto", "--no-store", "--json")}
     shutil.rmtree(folder)
     record = {"seed": seed, "lens": lens, "usable": {name: bool(c and c["usable"]) for name, c in curves.items()}}

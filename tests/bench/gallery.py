@@ -21,7 +21,7 @@ HUGIN_SHARE = 1.1  # of vig_optimize's median seam; it seeds its sampling from t
 @dataclass
 class Expected:
     usable: bool = None
-    evens: bool = None
+    equalizes: bool = None
     joined: int = None            # number of images
     seam: float = None            # upper limit of the median over the links, levels
     beside_hugin: float = None    # levels allowed above HUGIN_SHARE of Hugin's median seam
@@ -29,14 +29,14 @@ class Expected:
 
 
 PROJECTS = {  # by the name of the folder; other projects have no expectation
-    "weir": Expected(evens=True, seam=3.0),
+    "weir": Expected(equalizes=True, seam=3.0),
     "brighton_beach": Expected(beside_hugin=0.0, unless_refused=True),
-    "grail": Expected(evens=True, joined=17),
-    "halfdome": Expected(usable=False, evens=True),
-    "goldengate": Expected(evens=True, beside_hugin=0.2),
-    "hill": Expected(evens=True, beside_hugin=0.2),
-    "ledge": Expected(evens=True, beside_hugin=0.2),
-    "pier": Expected(evens=True, beside_hugin=0.2),
+    "grail": Expected(equalizes=True, joined=17),
+    "halfdome": Expected(usable=False, equalizes=True),
+    "goldengate": Expected(equalizes=True, beside_hugin=0.2),
+    "hill": Expected(equalizes=True, beside_hugin=0.2),
+    "ledge": Expected(equalizes=True, beside_hugin=0.2),
+    "pier": Expected(equalizes=True, beside_hugin=0.2),
 }
 BRACKETS = {  # options, and the expected result
     "memorial": (["--fit", "black=20"], Expected(usable=True)),  # pure blue borders: nothing in red and green
@@ -81,7 +81,7 @@ def measure(project, used, model, hugin):
 def unmet(expected, used, record=None):
     """Unmet expectations, as texts; record: from `measure`."""
     said = {True: "yes", False: "no", None: "not stated"}
-    found = ["%s: %s" % (key, said[used.get(key)]) for key in ("usable", "evens")
+    found = ["%s: %s" % (key, said[used.get(key)]) for key in ("usable", "equalizes")
              if getattr(expected, key) not in (None, used.get(key))]
     if record is None:
         return found

@@ -38,7 +38,7 @@ STATES = ("nothing", "camera", "lens", "both")
 # median error of M in the corner, share of exponents within .9 .. 1.1
 TARGETS = {"nothing": (0.05, 0.80), "camera": (0.03, 0.90), "lens": (0.02, 0.95), "both": (0.01, 0.98)}
 HOLDS = (0.63, 0.73)  # share of errors within the stated standard errors; nominal 68 %
-KIND = lp.CameraKind.CAMERA
+KIND = lp.CameraKind.STILL
 PAIRS, OUTLIERS = 2000, 0.1
 FRAMES, POINTS, NOISE = 6, 300, 2.0  # for a bracket; noise in levels
 TIME_SIGMA_EV, REPEATABILITY = 0.07, 0.018

@@ -37,11 +37,11 @@ def simulated(records):
         return []
     lines = ["### Rendered", "", READING_SIMULATED, ""]
     lines += header("set", "response", "by", "joined", "exposure, EV", "M", "exposures only: exposure, EV", "M", "CPU, s", "peak, MB",
-                    "verdict: usable, evens")
+                    "verdict: usable, equalizes")
     for r in records:
         lines.append(row(r["set"], r["response"], WAYS[r["way"]], "%d of %d" % (r["joined"], r["images"]), number(r["ev"]),
                          number(r["falloff"]), number(r["only"]["ev"]), number(r["only"]["falloff"]), number(r["cpu_s"]),
-                         number(r["peak_mb"]), "%s, %s" % (r["usable"], r["evens"])))
+                         number(r["peak_mb"]), "%s, %s" % (r["usable"], r["equalizes"])))
     lines += ["", READING_VARIANCE, ""]
     lines += header("set", "by", "pairs", *VARIANCE_TITLES)
     for r in records:
@@ -54,13 +54,13 @@ def real(records):
         return []
     lines = ["### Real pictures", "", READING_REAL, ""]
     lines += header("pictures", "by", "joined", "EXIF spans, EV", "r", "slope", "difference, EV", *VARIANCE_TITLES, "CPU, s",
-                    "peak, MB", "verdict: usable, evens")
+                    "peak, MB", "verdict: usable, equalizes")
     for r in records:
         ours, only = r.get("result", {}), r.get("only", {})
         cells = ["%s (%s)" % (number(ours.get(key)), number(only.get(key))) for key in ("r", "slope", "off_ev")]
         lines.append(row(r["set"], WAYS[r["way"]], "%s of %d" % (ours.get("joined", "–"), r["images"]), number(r.get("exif_ev")),
                          *cells, *variance_cells(r), number(r["cpu_s"]), number(r["peak_mb"]),
-                         "%s, %s" % (r["usable"], r["evens"])))
+                         "%s, %s" % (r["usable"], r["equalizes"])))
     return lines + [""]
 
 

@@ -299,7 +299,7 @@ def met(unmet):
 def verdict_cells(used):
     said = {True: "yes", False: "no"}
     reason = used.get("reason_code") or used.get("lost", "")
-    return (*(said.get(used.get(key), "–") for key in ("usable", "evens")), reason)
+    return (*(said.get(used.get(key), "–") for key in ("usable", "equalizes")), reason)
 
 
 def gallery(records):
@@ -310,7 +310,7 @@ def gallery(records):
     if not any("gallery" in r for r in records):
         return lines + ["**SKIPPED: no OpenCV for Python (package python3-opencv)**", ""]
     lines += [READING_GALLERY, ""]
-    lines += header("project", "usable", "evens", "reason", "joined", "residual before", "held out", "links",
+    lines += header("project", "usable", "equalizes", "reason", "joined", "residual before", "held out", "links",
                     "seam before", "lensprof", "vig_optimize", "expected")
     for r in records:
         of, used = r["gallery"], r["lensprof"]
@@ -407,13 +407,13 @@ def photographs(records):
              " autooptimiser, without the fit. Seam: median over the links, levels of 255, after lensprof's fit on each"
              " geometry.", ""]
     lines += header("pictures", "number", "lensprof joined", "Hugin joined", "lensprof wall, s", "Hugin wall, s", "wall ratio", "CPU ratio",
-                    "lensprof seam", "Hugin seam", "verdict: usable, evens")
+                    "lensprof seam", "Hugin seam", "verdict: usable, equalizes")
     for r in records:
         ours, theirs = r["lensprof"], r.get("hugin", {})
         lines.append(row(r["name"], r["pictures"], ours["joined"], theirs.get("joined", "–"), number(ours["wall_s"]),
                          number(theirs.get("wall_s")), number(ratio_of(ours, theirs, "wall_s")),
                          number(ratio_of(ours, theirs, "cpu_s")), number(ours.get("seam")), number(theirs.get("seam")),
-                         "%s, %s" % (ours.get("usable"), ours.get("evens"))))
+                         "%s, %s" % (ours.get("usable"), ours.get("equalizes"))))
     return lines + [""]
 
 
@@ -424,11 +424,11 @@ def moving(records):
     lines = ["## A camera that moved", "", "Exposures from pictures alone (`build FOLDER --fit exif-sigma=0`) compared with"
              " those of EXIF: correlation, slope, standard deviation of the difference.", ""]
     lines += header("pictures", "number", "joined", "EXIF spans, EV", "correlation", "slope", "difference, EV", "wall, s",
-                    "verdict: usable, evens")
+                    "verdict: usable, equalizes")
     for r in records:
         lines.append(row(r["name"], r["pictures"], r.get("joined", "–"), number(r.get("exif_ev")), number(r.get("correlation")),
                          number(r.get("slope")), number(r.get("off_ev")), number(r["wall_s"]),
-                         "%s, %s" % (r.get("usable"), r.get("evens"))))
+                         "%s, %s" % (r.get("usable"), r.get("equalizes"))))
     return lines + [""]
 
 

@@ -23,6 +23,7 @@ import report
 import scorer
 import seams
 import tools
+import limit_curves
 import verdict_tables
 import verdicts
 
@@ -192,18 +193,18 @@ class Files(unittest.TestCase):
         """Its numbers are null; it counts as uncorrected, and is named."""
         image = {"ev": 0.5, "white_balance": [1.1, 1.0, 0.9]}
         alone = [{"ev": None, "white_balance": w, "joined": False} for w in (None, [None] * 3)]
-        data = {"usable": False, "evens": True, "reason": "r", "reason_code": "c", "pairs": 7, "seconds": {"solve": 1.0},
+        data = {"usable": False, "equalizes": True, "reason": "r", "reason_code": "c", "pairs": 7, "seconds": {"solve": 1.0},
                 "residual": {"before_rms": 9.0, "heldout_rms": None}, "images": [dict(image, joined=True), *alone],
                 "links": [{"images": [0, 1], "pairs": 3, "verified": False}, {"images": [0, 2], "pairs": 4, "verified": True}],
                 "vignetting": {"k": [[-0.3, 0, 0]], "center": [0, 0]}}
         model, used = scorer.model_of_json(data, None), tools.of_json(data)
         self.assertEqual(model.ev.tolist(), [0.5, 0.0, 0.0])
         self.assertEqual(model.white_balance.tolist(), [[1.1, 1.0, 0.9], [1.0] * 3, [1.0] * 3])
-        self.assertEqual((used["left_out"], used["unverified"], used["evens"]), ([1, 2], [[0, 1]], True))
+        self.assertEqual((used["left_out"], used["unverified"], used["equalizes"]), ([1, 2], [[0, 1]], True))
         data["images"] = [image]  # output of older programs
-        del data["evens"], data["links"]
+        del data["equalizes"], data["links"]
         used = tools.of_json(json.loads(json.dumps(data)))
-        self.assertEqual((used["left_out"], used["unverified"], used["evens"]), ([], [], None))
+        self.assertEqual((used["left_out"], used["unverified"], used["equalizes"]), ([], [], None))
 
     def test_usage_of_a_process(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -335,7 +336,7 @@ class Verdicts(unittest.TestCase):
         truth.k, model.k = np.array([[-0.3, 0.0, 0.0]]), np.array([[-0.1, -0.1, 0.05]])
         model.ev = np.array([0.0, 0.3, 7.0, -0.3])
         images = [{"ev": 0.0}, {"ev": 0.3}, {"ev": 7.0, "joined": False}, {"ev": -0.3}]
-        found = verdicts.applied({"usable": False, "evens": True, "model": "exposures", "images": images}, truth, model)
+        found = verdicts.applied({"usable": False, "equalizes": True, "model": "exposures", "images": images}, truth, model)
         self.assertEqual(found["applied"], "exposures")
         np.testing.assert_allclose([found[key] for key in ("corner", "corner_error", "ev_range", "ev_deviation")],
                                    [0.85, 0.15, 0.6, math.sqrt(0.06)])
@@ -368,13 +369,13 @@ class Verdicts(unittest.TestCase):
 class Gallery(unittest.TestCase):
     RECORD = {"joined": 3, "seams": {"lensprof": {"median": 2.4}, "hugin": {"median": 2.0}}}
 
-    def unmet(self, expected, usable=True, evens=True, record=None):
-        return gallery.unmet(gallery.Expected(**expected), {"usable": usable, "evens": evens}, record or self.RECORD)
+    def unmet(self, expected, usable=True, equalizes=True, record=None):
+        return gallery.unmet(gallery.Expected(**expected), {"usable": usable, "equalizes": equalizes}, record or self.RECORD)
 
     def test_expectations(self):
-        everything = {"usable": True, "evens": True, "joined": 3, "seam": 2.4, "beside_hugin": 0.2}
+        everything = {"usable": True, "equalizes": True, "joined": 3, "seam": 2.4, "beside_hugin": 0.2}
         self.assertEqual(self.unmet(everything), [])
-        self.assertEqual(self.unmet(everything, False, None), ["usable: no", "evens: not stated"])
+        self.assertEqual(self.unmet(everything, False, None), ["usable: no", "equalizes: not stated"])
         self.assertEqual(self.unmet({"joined": 4}), ["joined: 3"])
         self.assertEqual(self.unmet({"seam": 2.3}), ["seam: 2.40, above 2.30"])
         self.assertEqual(self.unmet({"beside_hugin": 0.1}), ["seam: 2.40, above 2.30"])
@@ -503,6 +504,29 @@ class Drone(unittest.TestCase):
             places = [found[image][own[:, side], :2] + flight.origin[flight.names.index(names[image])]
                       for side, image in enumerate((a, b))]
             self.assertLess(np.abs(places[0] - places[1]).max(), 10.0 * drone.KEYPOINT_PX)  # one point of the ground
+
+
+class LimitCurves(unittest.TestCase):
+    """Four sequences, of which a rule at 6 levels refuses two."""
+
+    @staticmethod
+    def record(kind, noise, others=()):
+        rule = {"code": "scatter", "measured": noise, "limit": 6.0}
+        findings = [{"code": code, "severity": "refusal", "measured": None, "limit": None} for code in others]
+        if noise > 6.0:
+            findings.append(dict(rule, severity="refusal"))
+        return {"kind": kind, "findings": findings, "passed": [{"code": "few_agree", "measured": 0.9, "limit": 0.3}]
+                + ([] if noise > 6.0 else [rule])}
+
+    def test_moving_a_limit_trades_one_error_for_the_other(self):
+        records = [self.record("smooth", 3.5), self.record("hard", 8.0), self.record("noise", 7.0),
+                   self.record("noise", 5.5), self.record("misplaced", 1.0, ["few_greys"])]
+        lines = limit_curves.curves(records)
+        self.assertEqual(len([line for line in lines if "few_agree" in line]), 0)  # it refuses none of them
+        cells = [c.strip() for c in lines[-1].strip("|").split("|")]
+        self.assertEqual(cells[:2], ["`scatter`", "> 6"])
+        self.assertEqual(cells[2:], ["2 / 0", "1 / 0", "1 / 0", "1 / 1", "1 / 2", "0 / 2", "0 / 2"])
+        self.assertEqual(limit_curves.curves([]), [])
 
 
 if __name__ == "__main__":

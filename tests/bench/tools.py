@@ -62,10 +62,13 @@ def run_lensprof(project, log, extra=()):
 
 
 def of_json(data):
-    """The verdict and figures of the object that `build` and `bracket` print. evens: None for older programs."""
-    residual = data["residual"]
-    return {"usable": data["usable"], "evens": data.get("evens"), "reason": data["reason"],
-            "reason_code": data.get("reason_code", ""), "solve_s": data["seconds"]["solve"], "pairs": data["pairs"],
+    """The verdict and figures of the object that `build` and `bracket` print. reason: the text of the first refusal or
+    warning; reason_code: the code of the first finding. equalizes: None for older programs, which print one reason."""
+    residual, findings = data["residual"], data.get("findings", [])
+    severe = [f["text"] for f in findings if f["severity"] in ("refusal", "warning")]
+    return {"usable": data["usable"], "equalizes": data.get("equalizes", data.get("evens")), "findings": findings,
+            "passed": data.get("passed", []), "reason": severe[0] if severe else data.get("reason", ""),
+            "reason_code": findings[0]["code"] if findings else data.get("reason_code", "none"), "solve_s": data["seconds"]["solve"], "pairs": data["pairs"],
             "before_rms": residual["before_rms"], "heldout_rms": residual["heldout_rms"],
             "left_out": [n for n, i in enumerate(data["images"]) if i["ev"] is None or not i.get("joined", True)],
             "unverified": [link["images"] for link in data.get("links", []) if not link["verified"]]}

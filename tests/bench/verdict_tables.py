@@ -1,4 +1,5 @@
 """The tables of the part `verdicts`."""
+import limit_curves
 from report import count, failures, header, median, number, row
 from verdicts import BAD, GOOD, HOLDS, LIMITS, OPEN, is_missed
 
@@ -30,6 +31,7 @@ def verdicts(results):
             lines.append(verdict_row(kind, of, kind in GOOD, LIMITS))
         elif kind in results["skipped"]:
             lines.append(row(kind, "SKIPPED: no OpenCV", *[""] * 7))
+    lines += limit_curves.curves(results["records"])
     lines += open_table(results["records"])
     missed = [r for r in results["records"] if is_missed(r)]
     if missed:
@@ -42,7 +44,7 @@ def verdicts(results):
 def verdict_row(kind, of, good, limits):
     accepted = [r for r in of if r["usable"]]
     wordless = count(accepted, lambda r: not r["reason"])
-    evened = [r["evens"] for r in of if r["evens"] is not None]
+    evened = [r["equalizes"] for r in of if r["equalizes"] is not None]
     missed = len(of) - len(accepted) if good else wordless
     target = "%d (at most %.0f %%%s)" % (missed, 100 * limits[good],
                                          "" if missed <= limits[good] * len(of) else "; **not met**")

@@ -173,8 +173,9 @@ def measure(sequence, tune, keep):
     sizes = tools.sizes_of_pto((folder / "pano.pto").read_text())
     used, model = tools.run_lensprof(str(folder / "pano.pto"), str(folder / "lensprof"), ["--fit", "stored=none"])
     record = {"kind": sequence.kind, "number": sequence.number, "arguments": " ".join(sequence.arguments),
-              "usable": used.get("usable", False), "evens": used.get("evens"),
+              "usable": used.get("usable", False), "equalizes": used.get("equalizes"),
               "reason": used.get("reason") or used.get("lost", ""), "reason_code": used.get("reason_code", ""),
+              "findings": used.get("findings", []), "passed": used.get("passed", []),
               "left_out": used.get("left_out", []), "unverified": used.get("unverified", []),
               "uncorrected_rms": scorer.rms(scorer.transfer(scorer.identity(len(sizes)), pairs, sizes)), "failed": True}
     joined = ~np.isin(pairs.image, record["left_out"]).any(axis=1)
@@ -195,7 +196,7 @@ def applied(data, truth, model):
     deviation of the errors of the exposures. Older programs apply all that they estimate."""
     joined = [image["ev"] is not None and image.get("joined", True) for image in data["images"]]
     off = (model.ev - truth.ev)[joined]
-    return {"applied": data.get("model", "full") if data["usable"] or data.get("evens") else "nothing",
+    return {"applied": data.get("model", "full") if data["usable"] or data.get("equalizes") else "nothing",
             "lens_prior": data.get("lens_prior"), "corner": float(model.falloff(1.0)[0]),
             "corner_error": float(abs(model.falloff(1.0) - truth.falloff(1.0))[0]),
             "ev_range": float(np.ptp(off)), "ev_deviation": float(off.std())}

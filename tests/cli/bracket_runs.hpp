@@ -145,7 +145,7 @@ inline void assert_rises(const Json &json) {
 // Checks that exposures and response are correct except for gamma; returns gamma.
 inline double assert_recovered(const Json &json, const std::vector<double> &truth, double levels,
                                const std::function<double(double)> &response = srgb) {
-    if (!json["usable"].get<bool>()) fail_msg("not usable: %s", json["reason"].get<std::string>().c_str());
+    if (!json["usable"].get<bool>()) fail_msg("not usable: %s", text_of(json).c_str());
     double worst;
     const double gamma = slope(json, truth, worst), error = response_error(json, gamma, response);
     if (worst > 0.05 || error > levels)

@@ -36,8 +36,18 @@ Json json_of(const Words &words, int code) {
     assert_int_equal(std::count(text.begin(), text.end(), '\n'), 1);
     const Json json = Json::parse(text, nullptr, false);
     assert_false(json.is_discarded());
-    assert_int_equal(json.value("schema", 0), 1);
+    assert_int_equal(json.value("schema", 0), 2);
     return json;
+}
+
+std::string code_of(const Json &json) {
+    const Json &findings = json.at("findings");
+    return findings.empty() ? "none" : findings[0].at("code").get<std::string>();
+}
+
+std::string text_of(const Json &json) {
+    const Json &findings = json.at("findings");
+    return findings.empty() ? "" : findings[0].at("text").get<std::string>();
 }
 
 Outcome run_child(const Words &words, const std::function<void()> &prepare) {

@@ -57,6 +57,10 @@ Json parsed(const std::string &text);
 
 Json json_of(const Words &words, int code = done);
 
+// Code and text of the first finding in what a command printed; "none" and "" without findings.
+std::string code_of(const Json &json);
+std::string text_of(const Json &json);
+
 // Runs in a child process that `prepare` has changed: another user, another limit. Both outputs come back through a
 // pipe, so that a full disk does not hide them.
 Outcome run_child(

@@ -267,7 +267,7 @@ inline lensprof_response gamma_curve(double gamma) {
 constexpr int response_kinds = 10;
 inline lensprof_response response_number(int i) {
     switch (i % response_kinds) {
-    case 0: return typical(LENSPROF_CAMERA_CAMERA);
+    case 0: return typical(LENSPROF_CAMERA_STILL);
     case 1: return table_response(srgb);
     case 2: return gamma_curve(2.2);
     case 3: return typical(LENSPROF_CAMERA_FILM);

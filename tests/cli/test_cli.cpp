@@ -61,9 +61,10 @@ void check_response(const Json &response) {
 void test_build_keeps_its_contract(void **) {
     const Json json = json_of(build_scene({}));
     assert_true(json.at("usable").is_boolean() && json["usable"].get<bool>());
-    assert_string_equal(json.at("reason").get<std::string>().c_str(), "");
-    assert_string_equal(json.at("reason_code").get<std::string>().c_str(), "none");
-    assert_true(json.at("reason_item").is_null() && json.at("reason_values").empty());
+    assert_true(json.at("findings").empty());
+    assert_true(json.at("passed").size() > 20);
+    for (const Json &rule : json["passed"])
+        assert_true(rule.at("code").is_string() && rule.at("measured").is_number() && rule.at("limit").is_number());
     assert_int_equal(json.at("images").size(), 4);
     for (size_t i = 0; i < 4; ++i) {
         const Json &image = json["images"][i];
@@ -241,8 +242,8 @@ void test_what_is_free(void **) {
     assert_close(ev["images"][1]["white_balance"][0].get<double>(), 1, 0);
     assert_true(std::fabs(ev["images"][1]["ev"].get<double>()) > 0.1);
     const Json falloff =
-        json_of(build_scene({"--fit", "free=falloff,ev,wb"}));  // not a profile, but usable to even out the pictures
-    assert_true(falloff["usable"] == false && falloff["evens"] == true);
+        json_of(build_scene({"--fit", "free=falloff,ev,wb"}));  // not a profile, but usable to equalise the pictures
+    assert_true(falloff["usable"] == false && falloff["equalizes"] == true);
     assert_close(falloff["vignetting"]["center"][0].get<double>(), 0, 0);
     assert_true(falloff["response"]["values"] == ev["response"]["values"]);
     assert_true(std::fabs(falloff["vignetting"]["k"][0][0].get<double>()) > 0.05);
@@ -392,18 +393,18 @@ void test_forced(void **) {
     const Words words = Words{"build", copy + "/pano.pto", "--db", db, "--json"} + quick;
     const Json json = json_of(words, not_usable);
     assert_false(json["usable"].get<bool>());
-    assert_true(contains(json["reason"].get<std::string>(), "3 groups"));
-    assert_string_equal(json["reason_code"].get<std::string>().c_str(), "image_groups");
-    assert_string_equal(json["reason_item"]["kind"].get<std::string>().c_str(), "image");
-    const auto index = json["reason_item"]["index"].get<size_t>();
-    assert_true(json["reason_item"]["file"] == json["images"][index]["file"]);
-    assert_true(contains(json["reason"].get<std::string>(), json["images"][index]["file"].get<std::string>()));
-    assert_true(json["reason_values"] == Json({3.0}));
+    assert_true(contains(text_of(json), "3 groups"));
+    assert_string_equal(code_of(json).c_str(), "image_groups");
+    assert_string_equal(json["findings"][0]["item"]["kind"].get<std::string>().c_str(), "image");
+    const auto index = json["findings"][0]["item"]["index"].get<size_t>();
+    assert_true(json["findings"][0]["item"]["file"] == json["images"][index]["file"]);
+    assert_true(contains(text_of(json), json["images"][index]["file"].get<std::string>()));
+    assert_true(json["findings"][0]["values"] == Json({3.0}));
     assert_true(json["profile"].is_null());
     assert_false(fs::exists(db));
     save_text(copy + "/one.pto", replaced(text_of(copy + "/pano.pto"), "\n(i [^\n]*img00[123]|v E)[^\n]*", ""));
     const Json one = json_of({"build", copy + "/one.pto", "--no-store", "--json"}, not_usable);
-    assert_string_equal(one["reason_code"].get<std::string>().c_str(), "few_pairs");
+    assert_string_equal(code_of(one).c_str(), "few_pairs");
     assert_int_equal(json_of(words + Words{"--force"}, not_usable)["profile"].get<int>(), 1);
     assert_int_equal(json_of({"profile", "list", "--db", db, "--json"})["profiles"].size(), 1);
 }

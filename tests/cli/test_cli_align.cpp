@@ -173,8 +173,8 @@ void test_object_without_a_fit(void **) {
     for (const char *name : {"a.png", "b.png"}) write_picture(work(name), white);
     const Json json = json_of({"align", work("a.png"), work("b.png"), "-o", work("out"), "--json"}, not_usable);
     assert_false(json["usable"].get<bool>());
-    assert_string_equal(json["reason_code"].get<std::string>().c_str(), "few_pairs");
-    assert_true(contains(json["reason"].get<std::string>(), "black"));
+    assert_string_equal(code_of(json).c_str(), "few_pairs");
+    assert_true(contains(text_of(json), "black"));
     assert_true(json["frames"] == Json::array() && json["residual"]["heldout_rms"].is_null());
     assert_false(fs::exists(work("out")));
 }

@@ -71,11 +71,12 @@ void test_wrong_metadata_is_said(void **) {
             stated[which] += wrong;
             const Words files = shots(truth);
             const Json json = json_of(bracket(files, no_store + Words{"--ev", list_of(stated)}));
-            const std::string reason = json["reason"].get<std::string>();
+            const std::string reason = text_of(json);
             if (!contains(reason, files[which]) || !contains(reason, std::to_string(std::fabs(wrong)).substr(0, 3)))
                 fail_msg("%zu pictures, %.1f EV: %s", count, wrong, reason.c_str());
-            assert_string_equal(json["reason_code"].get<std::string>().c_str(), "known_wrong");
-            assert_true(json["reason_item"]["file"] == files[which] && json["reason_item"]["index"] == which);
+            assert_string_equal(code_of(json).c_str(), "known_wrong");
+            assert_true(json["findings"][0]["item"]["file"] == files[which]
+                        && json["findings"][0]["item"]["index"] == which);
             assert_close(assert_recovered(json, truth, 1.5), 1.0, 0.05);
         }
 }
@@ -103,7 +104,7 @@ void test_other_wrong_metadata(void **) {
             const Words words = bracket(files, no_store
                                                    + Words{"--fit", std::string("method=") + method, "--fit",
                                                            "ev-sigma=0.1", "--ev", list_of(one.stated)});
-            const std::string reason = json_of(words)["reason"].get<std::string>();
+            const std::string reason = text_of(json_of(words));
             if (!contains(reason, one.word) || (one.named != none && !contains(reason, files[one.named])))
                 fail_msg("%s of %s: %s", method, list_of(one.stated).c_str(), reason.c_str());
         }
@@ -135,7 +136,7 @@ void test_known_exposures_hold_gamma(void **) {
         }
         const Json modes = json_of(bracket(files, no_store + Words{"--fit", "modes-only=yes", "--ev", list_of(evs)}));
         if (std::fabs(found_ev(modes, 4) - found_ev(modes, 0) - 6.0) > 0.6)
-            assert_true(contains(modes["reason"].get<std::string>(), "modes of the response do not allow"));
+            assert_true(contains(text_of(modes), "modes of the response do not allow"));
     }
 }
 
@@ -144,7 +145,7 @@ void test_exposures_of_three_pictures_contradict(void **) {
     const Words files = shots(three);
     for (const char *stated : {"2,0.6,-2", "2,-0.8,-2", "3,0,-2", "2.6,0,-2", "2,0,-1.2", "2,0,-2.8"}) {
         const Json json = json_of(bracket(files, no_store + Words{"--ev", stated}));
-        const std::string reason = json["reason"].get<std::string>();
+        const std::string reason = text_of(json);
         if (!contains(reason, "exposures contradict each other")) fail_msg("--ev %s: %s", stated, reason.c_str());
         assert_true(json["gamma"]["sigma"].get<double>() > 0.05);
         for (size_t i = 1; i < 3; ++i)
@@ -152,7 +153,7 @@ void test_exposures_of_three_pictures_contradict(void **) {
                         < 3.0 * json["images"][i]["ev_sigma"].get<double>());
     }
     const Json right = json_of(bracket(files, no_store + Words{"--ev", "2,0.05,-2"}));
-    assert_string_equal(right["reason"].get<std::string>().c_str(), "");
+    assert_string_equal(text_of(right).c_str(), "");
 }
 
 // Local changes from picture to picture: light, or tone mapping.
@@ -160,7 +161,7 @@ void test_changed_light_is_refused(void **) {
     Shot like;
     like.waves_ev = 0.4;
     const Json json = json_of(bracket(shots(five, like)), not_usable);
-    const std::string reason = json["reason"].get<std::string>();
+    const std::string reason = text_of(json);
     if (!contains(reason, "light changed") || contains(reason, "free them")) fail_msg("%s", reason.c_str());
 }
 
@@ -170,7 +171,7 @@ void test_one_exposure_is_refused(void **) {
     for (const char *method : {"transfer", "radiance", "transfer-function"}) {
         const Json json =
             json_of(bracket(files, no_store + Words{"--fit", std::string("method=") + method}), not_usable);
-        assert_string_equal(json["reason_code"].get<std::string>().c_str(), "exposures_alike");
+        assert_string_equal(code_of(json).c_str(), "exposures_equal");
     }
     must_exit(not_usable, bracket(files, no_store + Words{"--ev", "0,2,-2"}));
 }

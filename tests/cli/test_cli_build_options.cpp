@@ -172,9 +172,9 @@ void test_held_balances(void **) {
     const std::string path = work("warm");
     must_exit(done, {"simulate", "-o", path, "--size", "400x300", "--images", "6", "--set", "wb=0.03,ev=0.5"});
     const Json held = json_of(build(path, {"--fit", "free=response,falloff,ev"}));
-    assert_string_equal(held["reason_code"].get<std::string>().c_str(), "balances_held");
-    assert_true(contains(held["reason"].get<std::string>(), "--fit free=all"));
-    assert_string_equal(json_of(build(path, {"--fit", "free=all"}))["reason_code"].get<std::string>().c_str(), "none");
+    assert_string_equal(code_of(held).c_str(), "white_balance_fixed");
+    assert_true(contains(text_of(held), "--fit free=all"));
+    assert_string_equal(code_of(json_of(build(path, {"--fit", "free=all"}))).c_str(), "none");
 }
 
 // Held values determine gamma.

@@ -59,7 +59,7 @@ std::string pictures(const std::string &name) {
 
 // EXIF of both determines gamma, so that falloffs can be compared with the true ones.
 void assert_both_found(const Json &json, double tolerance) {
-    assert_true(json["usable"] == true && json["evens"] == true);
+    assert_true(json["usable"] == true && json["equalizes"] == true);
     assert_int_equal(json["cameras"].size(), 2);
     assert_int_equal(json["settings"].size(), 2);
     for (size_t n = 0; n < 2; n++) {
@@ -67,7 +67,7 @@ void assert_both_found(const Json &json, double tolerance) {
         assert_int_equal(camera["images"], kImages / 2);
         assert_true(camera["joined"] == true && camera["reference"] == (n == 0));
         assert_true(camera["shared_pairs"].get<int>() > 500);
-        assert_true(camera["light_difference_ev"].get<double>() < 0.03);
+        assert_true(camera["irradiance_difference_ev"].get<double>() < 0.03);
         assert_int_equal(setting["camera"], n);
         assert_string_equal(setting["key"]["camera_model"].get<std::string>().c_str(),
                             n ? "Other X100" : "Simulated Camera");

@@ -149,7 +149,7 @@ void test_local_tones_are_refused(void **) {
     const std::string file = save_shot("shot.dng", take(shot));
     const Json json = json_of(respond(file), not_usable);
     assert_false(bool(json["usable"]));
-    assert_string_equal(std::string(json["reason_code"]).c_str(), "patterns");
+    assert_string_equal(code_of(json).c_str(), "patterns");
     assert_string_equal(std::string(json["files"][0]["tones"]["mapped"]).c_str(), "local");
     assert_refused(not_usable, {"response", file, "--db", work("a.db")}, {"mapped locally", "nothing was stored"});
     assert_false(fs::exists(work("a.db")));
@@ -235,7 +235,7 @@ void test_bad_input(void **) {
     assert_refused(not_usable, {"response", save_shot("white.dng", take(shot)), "--no-store"},
                    {"white.dng", "too few areas"});
     const Json none = json_of(respond(work("white.dng")), not_usable);
-    assert_string_equal(std::string(none["reason_code"]).c_str(), "few_pairs");
+    assert_string_equal(code_of(none).c_str(), "few_pairs");
     assert_true(none["response"].is_null());
     shot = good_shot();
     shot.scene = lensprof::SceneKind::wall;

@@ -39,7 +39,7 @@ std::string two_apertures(const char *overlap = "0.4") {
 }
 
 void assert_both_found(const Json &json) {
-    assert_true(json["usable"] == true && json["evens"] == true);
+    assert_true(json["usable"] == true && json["equalizes"] == true);
     assert_int_equal(json["settings"].size(), 2);
     for (size_t n = 0; n < 2; n++) {
         const Json &setting = json["settings"][n];

@@ -26,7 +26,7 @@ void test_one_bad_picture_of_six(void **) {
     assert_int_equal(found.code, done);
     assert_true(contains(found.err, "img005.png: left out: it disagrees with the others"));
     const Json json = parsed(found.out);
-    assert_true(json["usable"] == true && json["evens"] == true);
+    assert_true(json["usable"] == true && json["equalizes"] == true);
     for (size_t i = 0; i < 6; i++) {
         const Json &image = json["images"][i];
         assert_true(image["joined"] == (i != 5));
@@ -40,7 +40,7 @@ void test_one_bad_picture_of_six(void **) {
     // As text: the picture has no exposure.
     const std::string text = must_exit(done, {"build", pto("bad"), "--no-store", "--fit", "stored=none"});
     assert_true(contains(text, "img005.png  left out") && contains(text, "\nlinks     4 verified, 1 contradicted\n"));
-    // The other pictures are evened out, this one stays unchanged.
+    // The other pictures are equalised, this one stays unchanged.
     assert_true(contains(text_of(result), "\n#-lensprof left_out 5\n"));
     const Outcome corrected = run_words({"apply", "--pto", result, "-o", even});
     assert_int_equal(corrected.code, done);
@@ -60,7 +60,7 @@ void test_one_picture_apart(void **) {
     assert_true(contains(found.err, "img005.png: left out: no pair connects it to the others"));
     const Json json = parsed(found.out);
     assert_true(json["images"][4]["joined"] == true && json["images"][5]["joined"] == false);
-    assert_true(json["reason_code"] == "images_unconnected");
+    assert_true(code_of(json) == "images_unconnected");
 }
 
 // The reference of the project is the bad one.
@@ -81,7 +81,7 @@ void test_even_pictures_that_are_no_profile(void **) {
     simulate("tone", {"--set", "local-tone=0.6"});
     const std::string db = work("tone.db"), result = work("tone/result.pto");
     const Json json = json_of({"build", pto("tone"), "--no-store", "--json"});
-    assert_true(json["usable"] == false && json["evens"] == true && json["reason_code"] == "patterns");
+    assert_true(json["usable"] == false && json["equalizes"] == true && code_of(json) == "patterns");
     const Outcome told = run_words({"build", pto("tone"), "--no-store", "--write", std::string("pto=") + result});
     assert_int_equal(told.code, done);
     assert_true(contains(told.err, "corrects these pictures, but is not stored as a profile"));
@@ -97,7 +97,7 @@ void test_noise_is_neither(void **) {
     const Outcome found = run_words({"build", pto("noise"), "--no-store", "--json"});
     assert_int_equal(found.code, not_usable);
     const Json json = parsed(found.out);
-    assert_true(json["usable"] == false && json["evens"] == false);
+    assert_true(json["usable"] == false && json["equalizes"] == false);
 }
 
 // One exposure, and a falloff corrected by the camera: the response is typical of the kind of camera, and a reason
@@ -105,15 +105,15 @@ void test_noise_is_neither(void **) {
 void test_pictures_that_show_no_response(void **) {
     simulate("flat", {"--set", "ev=0,wb=0", "--vignetting=-.04,0,0"});
     const Json json = json_of({"build", pto("flat"), "--no-store", "--json"});
-    assert_true(json["usable"] == true && json["evens"] == true);
-    assert_true(json["reason_code"] == "response_not_shown" && json["response"]["from"] == "kind");
-    assert_true(json["response"]["light_spread_ev"].get<double>() < 0.06);
+    assert_true(json["usable"] == true && json["equalizes"] == true);
+    assert_true(code_of(json) == "response_unconstrained" && json["response"]["from"] == "kind");
+    assert_true(json["response"]["irradiance_spread_ev"].get<double>() < 0.06);
     assert_close(json["gamma"]["sigma"].get<double>(), 0.264, 0.001);
     const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--fit", "seed=7"});
     assert_true(other["response"]["values"] == json["response"]["values"]);  // independent of noise
     simulate("equal", {"--set", "ev=0,wb=0", "--vignetting", "0,0,0"});      // nothing to correct
     const Json equal = json_of({"build", pto("equal"), "--no-store", "--json"}, not_usable);
-    assert_true(equal["reason_code"] == "nothing_better" && equal["model"] == "nothing");
+    assert_true(code_of(equal) == "nothing_better" && equal["model"] == "nothing");
     simulate("shown", {});
     assert_true(json_of({"build", pto("shown"), "--no-store", "--json"})["response"]["from"] == "pictures");
 }
@@ -150,7 +150,7 @@ void test_smooth_pictures_join(void **) {
     simulate("sky", {"--scene", "sky", "--set", "misalign=4", "--response", "srgb"});
     const Json json = json_of({"build", pto("sky"), "--no-store", "--json"});
     for (const Json &image : json["images"]) assert_true(image["joined"] == true);
-    assert_true(json["evens"] == true);
+    assert_true(json["equalizes"] == true);
     for (const Json &link : json["links"]) assert_true(link["state"] != "contradicted");
 }
 

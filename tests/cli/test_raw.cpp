@@ -312,7 +312,7 @@ void test_calibrate(void **) {
     write_picture(folder + "/img002.png", small, WriteOptions{});
     const Json json = json_of({"calibrate", folder, "-o", work("out"), "--db", work("x.db"), "--json"});
     assert_int_equal(json["panoramas"].size(), 1);
-    assert_true(json["panoramas"][0]["result"]["evens"] == true);
+    assert_true(json["panoramas"][0]["result"]["equalizes"] == true);
     assert_int_equal(json["pictures"].size(), 6);
     for (const Json &picture : json["pictures"]) {
         const std::string output = picture["output"];

@@ -28,6 +28,18 @@ inline const std::vector<double> &normal_numbers() {
     return numbers;
 }
 
+// A result with its first finding, which is empty if all rules hold.
+struct FoundFlat : lensprof_flat_result {
+    lensprof_finding first;
+};
+
+inline void take_flat(const lensprof_flat *flat, FoundFlat &result) {
+    lensprof_flat_result_init(&result);
+    lensprof_finding_init(&result.first);
+    assert_ok(lensprof_flat_get(flat, &result, nullptr));
+    if (result.findings) assert_ok(lensprof_flat_finding_at(flat, 0, &result.first, nullptr));
+}
+
 struct FlatPictures {
     uint32_t width = 600, height = 450, channels = 3;
     uint32_t sample = LENSPROF_SAMPLE_U16;
@@ -51,8 +63,8 @@ struct FlatPictures {
     }
 
     // The light that reaches a pixel, falloff included.
-    double light(double x, double y, uint32_t channel, double turn_deg) const {
-        double half = 0.5 * std::hypot(width, height), turn = turn_deg * 3.14159265358979 / 180.0;
+    double light(double x, double y, uint32_t channel, double rotation_deg) const {
+        double half = 0.5 * std::hypot(width, height), turn = rotation_deg * 3.14159265358979 / 180.0;
         double dx = (x - 0.5 * (width - 1.0)) / half, dy = (y - 0.5 * (height - 1.0)) / half;
         double qx = std::cos(turn) * dx - std::sin(turn) * dy, qy = std::sin(turn) * dx + std::cos(turn) * dy;
         double m = lensprof_vignetting_eval(
@@ -73,7 +85,7 @@ struct FlatPictures {
     }
 
     // Takes a picture; `shot` as in lensprof_flat_image.
-    lensprof_flat_image &shoot(uint32_t shot, double ev = 0.0, double turn_deg = 0.0) {
+    lensprof_flat_image &shoot(uint32_t shot, double ev = 0.0, double rotation_deg = 0.0) {
         const uint32_t bytes = lensprof_sample_type_bytes(sample);
         data.push_back(std::make_unique<std::vector<uint8_t>>(static_cast<size_t>(width) * height * channels * bytes));
         uint8_t *at = data.back()->data();
@@ -82,7 +94,7 @@ struct FlatPictures {
         for (uint32_t y = 0; y < height; y++)
             for (uint32_t x = 0; x < width; x++)
                 for (uint32_t c = 0; c < channels; c++, at += bytes) {
-                    double irradiance = light(x, y, c, turn_deg) * std::exp2(ev);
+                    double irradiance = light(x, y, c, rotation_deg) * std::exp2(ev);
                     random = random * 6364136223846793005ull + 1442695040888963407ull;
                     put(at, lensprof_response_eval(&response, irradiance, nullptr) + noise * normals[random >> 48]);
                 }
@@ -95,7 +107,7 @@ struct FlatPictures {
                       sample,
                       channels == 3 ? LENSPROF_LAYOUT_RGB : LENSPROF_LAYOUT_GREY};
         image.width = width, image.height = height, image.reduction = 1;
-        image.shot = shot, image.ev = ev, image.turn_deg = turn_deg;
+        image.shot = shot, image.ev = ev, image.rotation_deg = rotation_deg;
         image.black = 0.01, image.white = 0.98;
         images.push_back(image);
         return images.back();
@@ -110,17 +122,16 @@ struct FlatPictures {
     }
 
     // The fit, which must succeed.
-    std::unique_ptr<lensprof_flat_result> fit(const lensprof_flat_options &o,
-                                              lensprof_flat_image_quality *quality = nullptr) const {
-        auto result = std::make_unique<lensprof_flat_result>();
-        lensprof_flat_result_init(result.get());
+    std::unique_ptr<FoundFlat> fit(const lensprof_flat_options &o,
+                                   lensprof_flat_image_quality *quality = nullptr) const {
+        auto result = std::make_unique<FoundFlat>();
         lensprof_error error;
         lensprof_flat *flat = nullptr;
         const auto count = static_cast<uint32_t>(images.size());
         const lensprof_status status = lensprof_fit_flat(&o, images.data(), count, nullptr, 0, &flat, &error);
         if (status != LENSPROF_OK) print_error("%s: %s\n", lensprof_status_name(status), error.text);
         assert_int_equal(status, LENSPROF_OK);
-        assert_ok(lensprof_flat_get(flat, result.get(), &error));
+        take_flat(flat, *result);
         for (uint32_t i = 0; i < count && quality; i++) {
             lensprof_flat_image_quality_init(&quality[i]);
             assert_ok(lensprof_flat_image_at(flat, i, &quality[i], &error));

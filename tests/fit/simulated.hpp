@@ -171,27 +171,56 @@ inline bool is_monotone(const lensprof_response &response) {
     return true;
 }
 
+// A result with its first finding, which is empty if all rules hold.
+struct FoundResult : lensprof_fit_result {
+    lensprof_finding first;
+};
+
+// All findings on a setting.
+inline std::vector<lensprof_finding> findings_of(const lensprof_fit *fit, uint32_t setting, uint32_t count) {
+    std::vector<lensprof_finding> findings(count);
+    for (uint32_t i = 0; i < count; i++) {
+        lensprof_finding_init(&findings[i]);
+        assert_ok(lensprof_fit_finding_at(fit, setting, i, &findings[i], nullptr));
+    }
+    return findings;
+}
+
+inline void take_setting(const lensprof_fit *fit, uint32_t setting, FoundResult &result) {
+    lensprof_fit_result_init(&result);
+    lensprof_finding_init(&result.first);
+    assert_ok(lensprof_fit_setting_at(fit, setting, &result, nullptr));
+    if (result.findings) result.first = findings_of(fit, setting, 1)[0];
+}
+
 // A fit with all its results.
 struct FitRun {
     std::vector<uint64_t> memory;        // of the fit; empty: the library's
     std::shared_ptr<lensprof_fit> held;  // released before its memory
     std::vector<lensprof_exposure> exposures;
     std::vector<lensprof_fit_image_quality> quality;
-    lensprof_fit_result result;  // of the setting of the reference
-    std::vector<lensprof_fit_result> settings;
+    FoundResult result;                      // of the setting of the reference
+    std::vector<lensprof_finding> findings;  // on it
+    std::vector<FoundResult> settings;
     std::vector<lensprof_fit_camera> cameras;
 
     // The result of a camera's own fit.
-    const lensprof_fit_result &of_camera(size_t camera) const { return settings[cameras[camera].setting]; }
+    const FoundResult &of_camera(size_t camera) const { return settings[cameras[camera].setting]; }
+
+    // The finding with this code, or NULL.
+    const lensprof_finding *with(lensprof_reason code) const {
+        for (const lensprof_finding &finding : findings)
+            if (finding.code == static_cast<uint32_t>(code)) return &finding;
+        return nullptr;
+    }
 
     // Takes a fit, and asks it for everything.
     void take(lensprof_fit *fit) {
         held = {fit, lensprof_fit_destroy};
-        lensprof_fit_result_init(&result);
-        assert_ok(lensprof_fit_setting_at(fit, LENSPROF_FIT_REFERENCE, &result, nullptr));
+        take_setting(fit, LENSPROF_FIT_REFERENCE, result);
+        findings = findings_of(fit, LENSPROF_FIT_REFERENCE, result.findings);
         settings.assign(result.setting_count, result);
-        for (uint32_t s = 0; s < settings.size(); s++)
-            assert_ok(lensprof_fit_setting_at(fit, s, &settings[s], nullptr));
+        for (uint32_t s = 0; s < settings.size(); s++) take_setting(fit, s, settings[s]);
         cameras.resize(result.camera_count);
         for (uint32_t k = 0; k < cameras.size(); k++) {
             lensprof_fit_camera_init(&cameras[k]);

@@ -268,8 +268,8 @@ void test_most_must_agree(void **) {
     assert_ok(run.fit(s, default_fit()));
     assert_int_equal(run.result.left_out, 7);
     assert_int_equal(run.result.usable, 0);
-    assert_int_equal(run.result.evens, 0);
-    assert_int_equal(run.result.reason_code, LENSPROF_REASON_IMAGE_GROUPS);
+    assert_int_equal(run.result.equalizes, 0);
+    assert_int_equal(run.result.first.code, LENSPROF_REASON_IMAGE_GROUPS);
     assert_int_equal(run.settings[0].usable, 0);
     assert_int_equal(run.settings[1].usable, 0);
 }

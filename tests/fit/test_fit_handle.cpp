@@ -173,12 +173,13 @@ void test_refused(void **) {
     lensprof_fit_image_quality quality;
     lensprof_fit_result result;
     lensprof_fit_camera camera;
+    lensprof_finding finding;
     lensprof_profile profile;
     lensprof_error error;
     double rms;
     const auto prepare = [&] {
         lensprof_fit_image_quality_init(&quality), lensprof_fit_result_init(&result);
-        lensprof_fit_camera_init(&camera), lensprof_profile_init(&profile);
+        lensprof_fit_camera_init(&camera), lensprof_profile_init(&profile), lensprof_finding_init(&finding);
         error.text[0] = 0;
     };
     const auto all = [&](const lensprof_fit *of, uint32_t image, uint32_t setting, uint32_t number,
@@ -187,6 +188,7 @@ void test_refused(void **) {
         assert_int_equal(lensprof_fit_image_at(of, image, &quality, &error), wanted);
         assert_int_equal(lensprof_fit_setting_at(of, setting, &result, nullptr), wanted);
         assert_int_equal(lensprof_fit_camera_at(of, number, &camera, nullptr), wanted);
+        assert_int_equal(lensprof_fit_finding_at(of, setting, 0, &finding, nullptr), wanted);
         assert_int_equal(lensprof_fit_profile(of, setting, &profile, nullptr), wanted);
         assert_int_equal(*error.text == 0, wanted == LENSPROF_OK);
     };
@@ -198,12 +200,21 @@ void test_refused(void **) {
     assert_int_equal(lensprof_fit_image_at(fit, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_setting_at(fit, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_camera_at(fit, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_finding_at(fit, 0, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_profile(fit, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_transfer_rms(fit, nullptr, 1, &rms, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_transfer_rms(fit, s.pairs.data(), 0, &rms, nullptr, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_transfer_rms(fit, s.pairs.data(), 1, nullptr, nullptr, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
+    const uint32_t count = run.result.findings + run.result.passed;
+    assert_ok(lensprof_fit_finding_at(fit, LENSPROF_FIT_REFERENCE, count - 1, &finding, &error));
+    assert_int_equal(finding.severity, LENSPROF_SEVERITY_PASSED);
+    for (const uint32_t beyond : {count, UINT32_MAX})
+        assert_int_equal(lensprof_fit_finding_at(fit, 0, beyond, &finding, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_non_null(std::strstr(error.text, "no finding 4294967295, but"));
+    finding.struct_size = 0;
+    assert_int_equal(lensprof_fit_finding_at(fit, 0, 0, &finding, nullptr), LENSPROF_ERROR_STRUCT_SIZE);
     quality.struct_size = result.struct_size = camera.struct_size = profile.struct_size = 0;
     assert_int_equal(lensprof_fit_image_at(fit, 0, &quality, nullptr), LENSPROF_ERROR_STRUCT_SIZE);
     assert_int_equal(lensprof_fit_setting_at(fit, 0, &result, nullptr), LENSPROF_ERROR_STRUCT_SIZE);

@@ -140,7 +140,7 @@ void test_data_without_information_are_not_usable(void **) {
             }
             assert_ok(call.run());
             assert_int_equal(call.result.usable, 0);
-            assert_true(call.result.reason[0] != 0);
+            assert_true(call.result.first.text[0] != 0);
             for (uint32_t i = 0; i < call.result.covariance_size; i++)
                 assert_true(call.result.covariance[i * call.result.covariance_size + i] >= 0.0);
         }

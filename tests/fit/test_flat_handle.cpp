@@ -91,7 +91,9 @@ void test_refused(void **) {
     const auto result = std::make_unique<lensprof_flat_result>();
     lensprof_flat_image_quality quality;
     lensprof_profile profile = used_profile();
+    lensprof_finding finding;
     lensprof_error error;
+    lensprof_finding_init(&finding);
     lensprof_flat_result_init(result.get()), lensprof_flat_image_quality_init(&quality);
     assert_int_equal(lensprof_flat_image_at(flat, 2, &quality, &error), LENSPROF_ERROR_ARGUMENT);
     assert_non_null(std::strstr(error.text, "no image 2, but 2"));
@@ -99,6 +101,13 @@ void test_refused(void **) {
     assert_int_equal(lensprof_flat_get(flat, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_flat_image_at(nullptr, 0, &quality, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_flat_image_at(flat, 0, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_ok(lensprof_flat_get(flat, result.get(), &error));
+    const uint32_t count = result->findings + result->passed;
+    assert_ok(lensprof_flat_finding_at(flat, count - 1, &finding, &error));
+    assert_int_equal(finding.severity, LENSPROF_SEVERITY_PASSED);
+    assert_int_equal(lensprof_flat_finding_at(flat, count, &finding, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_flat_finding_at(nullptr, 0, &finding, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_flat_finding_at(flat, 0, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_flat_profile(nullptr, &profile, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_flat_profile(flat, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
     result->struct_size = quality.struct_size = profile.struct_size = 0;
@@ -111,6 +120,7 @@ void test_refused(void **) {
     assert_int_equal(lensprof_flat_get(flat, result.get(), &error), LENSPROF_ERROR_ARGUMENT);
     assert_non_null(std::strstr(error.text, "released"));
     assert_int_equal(lensprof_flat_image_at(flat, 0, &quality, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_flat_finding_at(flat, 0, &finding, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_flat_profile(flat, &profile, &error), LENSPROF_ERROR_ARGUMENT);
     assert_string_equal(profile.provenance.method, "a method that is longer");
     lensprof_flat_destroy(flat);

@@ -4,7 +4,7 @@
 struct Input {
     FlatPictures pictures;
     lensprof_flat_options options;
-    std::unique_ptr<lensprof_flat_result> result = std::make_unique<lensprof_flat_result>();
+    std::unique_ptr<FoundFlat> result = std::make_unique<FoundFlat>();
     lensprof_flat *flat = nullptr;
     void *memory = nullptr;
     size_t size = 0;
@@ -26,7 +26,7 @@ struct Input {
         flat = nullptr;
         const lensprof_status status =
             lensprof_fit_flat(&options, pictures.images.data(), count, memory, size, &flat, &error);
-        if (status == LENSPROF_OK) assert_ok(lensprof_flat_get(flat, result.get(), nullptr));
+        if (status == LENSPROF_OK) take_flat(flat, *result);
         return status;
     }
 
@@ -122,8 +122,8 @@ static void unusable_pictures(void **) {
         {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[0].white = NAN; }},
         {LENSPROF_ERROR_EXPOSURE, [](Input &in) { in.pictures.images[0].ev = 65.0; }},
         {LENSPROF_ERROR_EXPOSURE, [](Input &in) { in.pictures.images[0].ev = NAN; }},
-        {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[1].turn_deg = 361.0; }},
-        {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[1].turn_deg = NAN; }},
+        {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[1].rotation_deg = 361.0; }},
+        {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[1].rotation_deg = NAN; }},
         {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[1].shot = 0; }},
     };
     for (const Spoil &spoil : cases) {
@@ -172,7 +172,7 @@ static void tiny_and_odd_pictures_are_survived(void **) {
             lensprof_flat_destroy(flat);
             const auto r = p.fit(o);
             assert_int_equal(r->usable, 0);
-            assert_true(strlen(r->reason) > 10);
+            assert_true(strlen(r->first.text) > 10);
             for (const auto &v : r->vignetting) assert_ok(lensprof_vignetting_validate(&v));
         }
 }

@@ -57,7 +57,7 @@ static void what_is_not_radial_goes_into_a_grid(void **) {
     for (uint32_t shot = 0; shot < 4; shot++) p.shoot(shot, 0.0, 90.0 * shot);
     auto r = p.fit(p.options());
     assert_true(r->usable);
-    assert_reason(*r, FLAT_NOT_RADIAL_GRID, "grid");
+    assert_reason(*r, FLAT_NOT_RADIAL, "grid");
     assert_true(r->frame_residual > 0.004);
     assert_true(r->grid_residual < 0.001);
     assert_int_equal(r->gain_grid.columns, 24);
@@ -98,7 +98,7 @@ static void what_is_far_from_radial_needs_a_grid(void **) {
     o.grid = LENSPROF_FLAT_GRID_NONE;
     r = p.fit(o);
     assert_false(r->usable);
-    assert_reason(*r, FLAT_CORNER_NOT_RADIAL, "request a gain grid");
+    assert_reason(*r, CORNER_UNCERTAIN, "request a gain grid");
 }
 
 static void the_result_does_not_depend_on_threads(void **) {
@@ -120,7 +120,7 @@ static void wrong_angles_are_noticed(void **) {
     p.set_center(0.03, 0.0);
     p.gradient[0] = 0.12;
     p.shoot(0), p.shoot(1, 0.0, 90.0), p.shoot(2, 0.0, 180.0);
-    p.images[1].turn_deg = 270.0;
+    p.images[1].rotation_deg = 270.0;
     auto r = p.fit(p.options());
     assert_false(r->usable);
     assert_reason(*r, FLAT_SHOTS_DIFFER, "angles");

@@ -36,7 +36,7 @@ void test_position_counts_the_exponent(void **) {
 }
 
 constexpr uint32_t kKinds[] = {LENSPROF_CAMERA_ANY, LENSPROF_CAMERA_FILM, LENSPROF_CAMERA_DIGITAL,
-                               LENSPROF_CAMERA_CAMERA, LENSPROF_CAMERA_PHONE};
+                               LENSPROF_CAMERA_STILL, LENSPROF_CAMERA_PHONE};
 
 lensprof_response typical(uint32_t kind, double *sigma = nullptr) {
     lensprof_response response;
@@ -93,7 +93,7 @@ void test_the_prior_is_that_of_the_typical_response(void **) {
 void test_plain_curves_are_within_what_is_stated(void **) {
     std::vector<Named> plain = {{"srgb", srgb_response()}, {"linear", linear_response()}};
     for (double gamma : {1.8, 2.0, 2.2, 2.4, 2.6}) plain.push_back({"gamma", gamma_response(gamma)});
-    for (uint32_t kind : {LENSPROF_CAMERA_ANY, LENSPROF_CAMERA_CAMERA, LENSPROF_CAMERA_PHONE})
+    for (uint32_t kind : {LENSPROF_CAMERA_ANY, LENSPROF_CAMERA_STILL, LENSPROF_CAMERA_PHONE})
         for (const Named &curve : plain) {
             const GammaPrior prior(kind);
             const double *table = curve.response.table;
@@ -362,16 +362,16 @@ void test_what_is_asked_for_settles_gamma(void **) {
 
 // Gamma moves by the distance between the priors of the kinds.
 void test_kinds_of_camera_differ(void **) {
-    Simulation s = simulate(typical(LENSPROF_CAMERA_CAMERA));
+    Simulation s = simulate(typical(LENSPROF_CAMERA_STILL));
     lensprof_fit_options options = twelve_modes();
     FitRun any = run_fit(s, options);
-    for (uint32_t kind : {LENSPROF_CAMERA_DIGITAL, LENSPROF_CAMERA_CAMERA, LENSPROF_CAMERA_PHONE}) {
+    for (uint32_t kind : {LENSPROF_CAMERA_DIGITAL, LENSPROF_CAMERA_STILL, LENSPROF_CAMERA_PHONE}) {
         options.camera_kind = kind;
         FitRun run = run_fit(s, options);
         const double apart = GammaPrior(kind).position() - GammaPrior(LENSPROF_CAMERA_ANY).position();
         assert_close(run.result.gamma_sigma, GammaPrior(kind).sigma(), 0.01 * GammaPrior(kind).sigma());
         assert_close(log_gamma_between(run, any), apart, 0.02);  // the depth of the falloff pulls at `any`
-        assert_string_equal(run.result.reason, "");
+        assert_string_equal(run.result.first.text, "");
     }
 }
 
@@ -380,13 +380,13 @@ void test_an_unusual_response_is_said(void **) {
     for (const Named &curve : {Named{"srgb", srgb_response()}, Named{"gamma 2.4", gamma_response(2.4)}}) {
         Simulation s = simulate(curve.response);
         lensprof_fit_options options = default_fit();
-        options.camera_kind = LENSPROF_CAMERA_CAMERA;
+        options.camera_kind = LENSPROF_CAMERA_STILL;
         FitRun run = run_fit(s, options);
         assert_int_equal(run.result.usable, 1);
-        assert_int_equal(run.result.reason_code, LENSPROF_REASON_UNUSUAL_RESPONSE);
-        assert_true(run.result.reason_value[0] > 1.0);
-        assert_close(run.result.reason_value[1], run.result.gamma_sigma, 0.0);
-        assert_true(run.result.gamma_sigma > 2.0 * GammaPrior(LENSPROF_CAMERA_CAMERA).sigma());
+        assert_int_equal(run.result.first.code, LENSPROF_REASON_UNUSUAL_RESPONSE);
+        assert_true(run.result.first.value[0] > 1.0);
+        assert_close(run.result.first.value[1], run.result.gamma_sigma, 0.0);
+        assert_true(run.result.gamma_sigma > 2.0 * GammaPrior(LENSPROF_CAMERA_STILL).sigma());
         assert_true(std::abs(std::log(s.gamma(run.exposures))) <= 2.0 * run.result.gamma_sigma);
     }
 }
@@ -426,7 +426,7 @@ void test_one_known_exposure_says_nothing(void **) {
     s.fit_images[2].known_ev = 5.0, s.fit_images[2].known_ev_sigma = 0.001;
     FitRun with = run_fit(s);
     assert_memory_equal(without.exposures.data(), with.exposures.data(), s.images * sizeof with.exposures[0]);
-    assert_string_equal(with.result.reason, "");
+    assert_string_equal(with.result.first.text, "");
     for (const auto &q : with.quality) assert_close(q.known_ev_residual, 0.0, 0.0);
 }
 

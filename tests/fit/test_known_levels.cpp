@@ -58,7 +58,7 @@ void test_the_scatter_is_found(void **) {
         Simulation s = strip(0.03, seed);
         const FitRun run = run_fit(s);
         assert_true(spread(s, run.exposures, 0, kImages) <= 0.05);
-        assert_string_equal(run.result.reason, "");
+        assert_string_equal(run.result.first.text, "");
         for (const auto &q : run.quality) assert_int_equal(q.known_ev_left_out, 0);
     }
 }
@@ -76,8 +76,8 @@ void test_a_few_that_are_wrong_are_left_out(void **) {
         for (uint32_t i = 0; i < kImages; i++)
             assert_int_equal(with.quality[i].known_ev_left_out, i == 4 || i == 13 || i == 14);
         assert_int_equal(with.result.usable, 1);
-        assert_int_equal(with.result.reason_code, LENSPROF_REASON_KNOWN_WRONG);
-        assert_true(with.quality[with.result.reason_item.index].known_ev_left_out);
+        assert_int_equal(with.result.first.code, LENSPROF_REASON_KNOWN_WRONG);
+        assert_true(with.quality[with.result.first.item.index].known_ev_left_out);
     }
 }
 
@@ -91,8 +91,8 @@ void test_a_step_parts_the_strip(void **) {
         assert_true(spread(s, run.exposures, 10, kImages) <= 0.05);
         assert_true(spread(s, run.exposures, 0, kImages) <= 0.1);
         for (const auto &q : run.quality) assert_int_equal(q.known_ev_left_out, 0);
-        assert_int_equal(run.result.reason_code, LENSPROF_REASON_KNOWN_MORE_FROM);
-        assert_int_equal(run.result.reason_item.index, 10);
+        assert_int_equal(run.result.first.code, LENSPROF_REASON_KNOWN_STEP);
+        assert_int_equal(run.result.first.item.index, 10);
     }
 }
 

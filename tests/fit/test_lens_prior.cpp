@@ -167,7 +167,7 @@ void test_the_same_view_shows_no_falloff(void **) {
     s.make(2000, 1.0, 0.0, 0.0, 3);
     const FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
-    assert_int_equal(run.result.reason_code, LENSPROF_REASON_SAME_VIEW);
+    assert_int_equal(run.result.first.code, LENSPROF_REASON_SAME_VIEW);
     assert_int_equal(run.result.model, LENSPROF_FIT_MODEL_EXPOSURES);  // these are known
     assert_close(corner_of(run), 1.0, 1e-12);
     assert_close(run.exposures[1].ev, -0.7, 0.2);
@@ -177,16 +177,16 @@ void test_the_same_view_shows_no_falloff(void **) {
 void test_exposures_alone(void **) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
         Simulation s;
-        assert_ok(lensprof_response_set_typical(&s.response, LENSPROF_CAMERA_CAMERA, nullptr, nullptr));
+        assert_ok(lensprof_response_set_typical(&s.response, LENSPROF_CAMERA_STILL, nullptr, nullptr));
         s.vignetting = {};
         s.make(1500, 2.0, 0.05, 0.7, seed);
         lensprof_fit_options options = default_fit();
-        options.camera_kind = LENSPROF_CAMERA_CAMERA;
+        options.camera_kind = LENSPROF_CAMERA_STILL;
         const FitRun run = run_fit(s, options);
         assert_int_equal(run.result.model, LENSPROF_FIT_MODEL_EXPOSURES);
         assert_int_equal(run.result.usable, 0);
-        assert_int_equal(run.result.evens, 1);
-        assert_int_equal(run.result.reason_code, LENSPROF_REASON_EXPOSURES_ONLY);
+        assert_int_equal(run.result.equalizes, 1);
+        assert_int_equal(run.result.first.code, LENSPROF_REASON_EXPOSURES_ONLY);
         for (uint32_t i = 0; i < s.images; i++) assert_close(run.exposures[i].ev, s.exposures[i].ev, 0.06);
     }
 }

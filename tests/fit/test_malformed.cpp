@@ -30,8 +30,8 @@ std::string text_of(const lensprof_exposure &e) {
 std::string fault_of_result(const Case &c) {
     const auto &r = c.result;
     if (r.usable > 1 || r.converged > 1) return "usable or converged is neither 0 nor 1";
-    if (!std::memchr(r.reason, 0, sizeof r.reason)) return "the reason does not end";
-    if (!r.usable && r.reason[0] == 0) return "not usable without a reason";
+    if (!std::memchr(r.first.text, 0, sizeof r.first.text)) return "the reason does not end";
+    if (!r.usable && r.first.text[0] == 0) return "not usable without a reason";
     if (lensprof_response_validate(&r.response) != LENSPROF_OK) return "the response is not monotone from 0 to 1";
     for (const auto &v : r.vignetting)
         if (lensprof_vignetting_validate(&v) != LENSPROF_OK) return "a vignetting is not positive and finite";
@@ -52,8 +52,8 @@ std::string fault_of_result(const Case &c) {
     }
     if (left_out != r.left_out || r.reference >= c.exposures.size() || std::isnan(c.exposures[r.reference].ev))
         return "images left out, or the reference";
-    if (r.evens > 1 || r.response_from > LENSPROF_FIT_RESPONSE_PROFILE || !(r.light_spread_ev >= 0.0))
-        return "evens, response_from or light_spread_ev";
+    if (r.equalizes > 1 || r.response_from > LENSPROF_FIT_RESPONSE_PROFILE || !(r.irradiance_spread_ev >= 0.0))
+        return "equalizes, response_from or irradiance_spread_ev";
     for (double v : {r.before_rms, r.noise_levels, r.inlier_share, r.frame_share, r.image_share, r.seconds})
         if (!(v >= 0.0 && v < 1e9)) return "a figure of the residual is " + std::to_string(v);
     for (double v : {r.heldout_rms, r.heldout_median})
@@ -161,7 +161,7 @@ int tell(uint32_t number) {
     std::printf("case %u: %s\n%zu images, %zu pairs; status %d %s, %.3f s\n", number, c.what.c_str(),
                 c.s.fit_images.size(), c.s.pairs.size(), static_cast<int>(status), c.error.text, seconds);
     if (status == LENSPROF_OK)
-        std::printf("usable %u %s, %u iterations, residual %g, noise %g\n", c.result.usable, c.result.reason,
+        std::printf("usable %u %s, %u iterations, residual %g, noise %g\n", c.result.usable, c.result.first.text,
                     c.result.iterations, c.result.heldout_rms, c.result.noise_levels);
     std::printf("%s\n", fault.empty() ? "no fault" : fault.c_str());
     return fault.empty() ? 0 : 1;

@@ -57,9 +57,9 @@ void test_recovers_an_srgb_camera(void **) {
     Simulation s = simulate(srgb_response(), 2000, 1.0, 0.0);
     Run run = fit(s, default_options());
     assert_int_equal(run.result.usable, 1);
-    assert_string_equal(run.result.reason, "");
-    assert_int_equal(run.result.reason_code, LENSPROF_REASON_NONE);
-    assert_int_equal(run.result.reason_values, 0);
+    assert_string_equal(run.result.first.text, "");
+    assert_int_equal(run.result.first.code, LENSPROF_REASON_NONE);
+    assert_int_equal(run.result.first.value_count, 0);
     // Unknown exposures and response: the exponent depends on the prior, whose spread over measured curves is 0.15.
     assert_close(std::log(run.gamma), 0.0, 0.35);
     assert_true(s.exposure_error(run.exposures, run.gamma) < 0.01);
@@ -233,7 +233,7 @@ void test_unconnected_images_are_not_usable(void **) {
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 2);
     assert_reason(run.result, IMAGE_GROUPS, "2 groups: no usable overlap connects image 3 ");
-    assert_int_equal(run.result.reason_item.index, 3);
+    assert_int_equal(run.result.first.item.index, 3);
 }
 
 void test_too_few_pairs_are_not_usable(void **) {

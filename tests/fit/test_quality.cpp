@@ -21,15 +21,16 @@ void drop(Simulation &s, Condition &&condition) {
 }
 
 bool says(const FitRun &run, lensprof_reason code, const char *words) {
-    bool found = strstr(run.result.reason, words) != nullptr && run.result.reason_code == code;
-    if (!found) print_error("no \"%s\" (%u) in \"%s\" (%u)\n", words, code, run.result.reason, run.result.reason_code);
+    bool found = strstr(run.result.first.text, words) != nullptr && run.result.first.code == code;
+    if (!found)
+        print_error("no \"%s\" (%u) in \"%s\" (%u)\n", words, code, run.result.first.text, run.result.first.code);
     return found;
 }
 
 // Whether the reason is about this image, with the range in its text that names it.
 bool names(const FitRun &run, uint32_t image) {
-    const lensprof_item &item = run.result.reason_item;
-    const std::string words = std::string(run.result.reason).substr(item.text_begin, item.text_bytes);
+    const lensprof_item &item = run.result.first.item;
+    const std::string words = std::string(run.result.first.text).substr(item.text_begin, item.text_bytes);
     return item.kind == LENSPROF_ITEM_IMAGE && item.index == image && words == "image " + std::to_string(image);
 }
 
@@ -39,7 +40,7 @@ void test_groups_are_told(void **) {
     FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 3);
-    assert_close(run.result.reason_value[0], 3.0, 0.0);
+    assert_close(run.result.first.value[0], 3.0, 0.0);
     assert_true(says(run, LENSPROF_REASON_IMAGE_GROUPS, "3 groups") && names(run, 2));
     const uint32_t component[6] = {0, 0, 2, 2, 4, 4};
     for (uint32_t i = 0; i < 6; i++) assert_int_equal(run.quality[i].component, component[i]);
@@ -97,7 +98,7 @@ void test_a_falloff_that_rises_is_not_usable(void **) {
     const FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
     assert_true(says(run, LENSPROF_REASON_FALLOFF_RISES, "unlike any lens"));
-    assert_true(run.result.reason_value[0] > 1.1 && run.result.reason_value[1] < 0.1);
+    assert_true(run.result.first.value[0] > 1.1 && run.result.first.value[1] < 0.1);
 }
 
 // Two pictures with different white balances, which are held: the falloff's centre absorbs the difference, without a
@@ -115,12 +116,12 @@ void test_a_centre_on_its_limit_is_not_usable(void **) {
         assert_close(all.result.vignetting[0].center[0], s.vignetting.center[0], 0.02);
         s.fit_images[1].free = LENSPROF_FREE_EV;
         const FitRun prior = run_fit(s);
-        assert_true(!prior.result.usable || prior.result.reason_code == LENSPROF_REASON_BALANCES_HELD);
+        assert_true(!prior.result.usable || prior.result.first.code == LENSPROF_REASON_WHITE_BALANCE_FIXED);
         lensprof_fit_options options = default_fit();
         options.prior_weight = 0.0;
         const FitRun held = run_fit(s, options);
-        assert_int_equal(held.result.reason_code, LENSPROF_REASON_CENTER_ON_LIMIT);
-        assert_close(held.result.reason_value[0], 0.5, 0.01);
+        assert_int_equal(held.result.first.code, LENSPROF_REASON_CENTER_ON_LIMIT);
+        assert_close(held.result.first.value[0], 0.5, 0.01);
     }
 }
 
@@ -133,8 +134,8 @@ void test_a_falloff_to_nothing_is_not_usable(void **) {
     s.make(6000, 1.0, 0.0, 1.0, 5);
     const FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
-    assert_int_equal(run.result.reason_code, LENSPROF_REASON_FALLOFF_DARK);
-    assert_true(run.result.reason_value[0] < 0.05);
+    assert_int_equal(run.result.first.code, LENSPROF_REASON_FALLOFF_DARK);
+    assert_true(run.result.first.value[0] < 0.05);
 }
 
 // Six pictures, the third of them warmer; white balances held, free, or equal.
@@ -150,13 +151,13 @@ void test_balances_that_are_held_are_told(void **) {
         for (Simulation *one : {&s, &equal}) {
             one->make(6000, 2.0, 0.02, 1.0, seed);
             const FitRun free = run_fit(*one);
-            assert_int_not_equal(free.result.reason_code, LENSPROF_REASON_BALANCES_HELD);
+            assert_int_not_equal(free.result.first.code, LENSPROF_REASON_WHITE_BALANCE_FIXED);
             for (auto &image : one->fit_images) image.free = LENSPROF_FREE_EV;
         }
-        assert_int_not_equal(run_fit(equal).result.reason_code, LENSPROF_REASON_BALANCES_HELD);
+        assert_int_not_equal(run_fit(equal).result.first.code, LENSPROF_REASON_WHITE_BALANCE_FIXED);
         const FitRun held = run_fit(s);
-        assert_true(says(held, LENSPROF_REASON_BALANCES_HELD, "the colours of image 2 differ"));
-        assert_true(held.result.reason_value[0] > 1.5 && held.result.reason_value[0] < 20.0);
+        assert_true(says(held, LENSPROF_REASON_WHITE_BALANCE_FIXED, "the colours of image 2 differ"));
+        assert_true(held.result.first.value[0] > 1.5 && held.result.first.value[0] < 20.0);
     }
 }
 
@@ -221,9 +222,9 @@ void test_a_misplaced_image_is_left_out(void **) {
     std::copy(first, first + 3, values.back());
     FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 1);
-    assert_int_equal(run.result.evens, 1);
+    assert_int_equal(run.result.equalizes, 1);
     assert_true(says(run, LENSPROF_REASON_IMAGES_LEFT_OUT, "including image 4)") && names(run, 4));
-    assert_close(run.result.reason_value[0], 1.0, 0.0);
+    assert_close(run.result.first.value[0], 1.0, 0.0);
     assert_int_equal(run.result.left_out, 1);
     for (uint32_t i = 0; i < s.images; i++) {
         assert_int_equal(run.quality[i].joined, i != 4);
@@ -264,7 +265,7 @@ void test_an_image_without_pairs_is_unconnected(void **) {
     FitRun run = run_fit(s);
     assert_int_equal(run.result.left_out, 1);
     assert_true(says(run, LENSPROF_REASON_IMAGES_UNCONNECTED, "including image 7;") && names(run, last));
-    assert_close(run.result.reason_value[0], 1.0, 0.0);
+    assert_close(run.result.first.value[0], 1.0, 0.0);
     lensprof_link links[] = {{{0, 1}, LENSPROF_LINK_VERIFIED, 100}, {{last - 1, last}, LENSPROF_LINK_CONTRADICTED, 0}};
     lensprof_fit_options options = default_fit();
     options.links = links, options.link_count = 1;
@@ -323,7 +324,7 @@ void test_a_broken_link_is_left_out_alone(void **) {
     assert_int_equal(run.result.left_out, 0);
     assert_int_equal(run.result.pairs, s.pairs.size() - of_link);
     assert_true(says(run, LENSPROF_REASON_LINKS_CONTRADICT, "1 of the links") && names(run, 2));
-    assert_int_equal(run.result.evens, 0);  // that seam stays
+    assert_int_equal(run.result.equalizes, 0);  // that seam stays
 }
 
 // The last image keeps seven pairs, five of which show something else; two agree on an exposure by chance.
@@ -344,7 +345,7 @@ void test_an_exposure_must_rest_on_pairs(void **) {
     // A given exposure needs no support from pairs.
     s.fit_images[last].free = 0;
     s.fit_images[last].exposure = s.exposures[last];
-    assert_int_not_equal(run_fit(s).result.reason_code, LENSPROF_REASON_FEW_BEHIND_EXPOSURE);
+    assert_int_not_equal(run_fit(s).result.first.code, LENSPROF_REASON_FEW_INLIERS);
 }
 
 // Exposures far apart depend on gamma; that alone does not make them uncertain, not even in grey pictures.
@@ -370,7 +371,7 @@ void test_linked_images_share_their_pairs(void **) {
     keep_of_last(s, 2);
     assert_true(says(run_fit(s), LENSPROF_REASON_IMAGES_LEFT_OUT, "including image 7)"));
     s.fit_images[last].ev_of = s.fit_images[last].red_of = s.fit_images[last].blue_of = last - 1;
-    assert_int_not_equal(run_fit(s).result.reason_code, LENSPROF_REASON_FEW_BEHIND_EXPOSURE);
+    assert_int_not_equal(run_fit(s).result.first.code, LENSPROF_REASON_FEW_INLIERS);
 }
 
 // Overlaps as in a panorama: neighbouring pixels in one frame are neighbours in the other.

@@ -259,7 +259,7 @@ void test_a_bad_image_within_tracks(void **) {
     FitRun run = run_radiance(s);
     assert_int_equal(run.result.left_out, 1);
     for (uint32_t i = 0; i < s.images; i++) assert_int_equal(std::isnan(run.exposures[i].ev), i == 2);
-    assert_int_equal(run.result.evens, 1);
+    assert_int_equal(run.result.equalizes, 1);
 }
 
 // Same input, same bytes: for any number of threads and any order of the observations.

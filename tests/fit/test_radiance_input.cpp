@@ -184,7 +184,7 @@ void test_degenerate_tracks_stay_finite(void **) {
             assert_true(is_finite(call));
             assert_true(is_monotone(call.result.response));
             if (kind != 4 && kind != 6) assert_int_equal(call.result.usable, 0);
-            if (!call.result.usable) assert_true(std::string(call.result.reason).size() > 20);
+            if (!call.result.usable) assert_true(std::string(call.result.first.text).size() > 20);
         }
 }
 

@@ -99,7 +99,7 @@ void test_numbers_are_names(void **) {
     assert_ok(other.fit(renamed, default_fit()));
     assert_memory_equal(run.exposures.data(), other.exposures.data(), s.images * sizeof run.exposures[0]);
     assert_int_equal(other.result.setting_count, 64);
-    for (lensprof_fit_result &r : run.settings) r.setting_count = 64, r.seconds = other.result.seconds;
+    for (FoundResult &r : run.settings) r.setting_count = 64, r.seconds = other.result.seconds;
     assert_memory_equal(&run.settings[0], &other.settings[63], sizeof run.settings[0]);
     assert_memory_equal(&run.settings[1], &other.settings[0], sizeof run.settings[0]);
     assert_int_equal(other.settings[5].images, 0);
@@ -116,7 +116,8 @@ void test_one_setting_is_as_ever(void **) {
     const FitRun named = run_fit(s);
     Run run(s);
     assert_ok(run.fit(s, default_fit()));
-    for (const lensprof_fit_result *r : {&named.result, static_cast<const lensprof_fit_result *>(&run.result)}) {
+    const FoundResult *const results[] = {&named.result, &run.result};
+    for (const FoundResult *r : results) {
         assert_memory_equal(r->vignetting, plain.result.vignetting, sizeof r->vignetting);
         assert_memory_equal(r->covariance, plain.result.covariance, sizeof r->covariance);
         assert_true(r->heldout_rms == plain.result.heldout_rms);
@@ -150,8 +151,8 @@ void test_verdicts_of_their_own(void **) {
     assert_int_equal(run.result.usable, 1);
     assert_int_equal(run.settings[0].usable, 1);
     assert_int_equal(run.settings[1].usable, 0);
-    assert_int_equal(run.settings[1].reason_code, LENSPROF_REASON_SMALL_RADIUS);
-    assert_int_equal(run.result.evens, 1);
+    assert_int_equal(run.settings[1].first.code, LENSPROF_REASON_SMALL_RADIUS);
+    assert_int_equal(run.result.equalizes, 1);
 }
 
 void test_profile_of_a_setting(void **) {

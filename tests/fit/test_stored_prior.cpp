@@ -27,7 +27,7 @@ Simulation sequence(uint64_t seed, uint32_t pairs = 2000) {
 }
 
 struct Found {
-    std::unique_ptr<lensprof_fit_result> result = std::make_unique<lensprof_fit_result>();
+    std::unique_ptr<FoundResult> result = std::make_unique<FoundResult>();
     std::vector<lensprof_exposure> exposures;
 };
 
@@ -129,7 +129,7 @@ void test_wrong_profile_is_overruled(void **) {
         assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_OVERRULED);
         assert_int_equal(found.result->usable, 1);
         assert_reason(*found.result, PRIOR_OVERRULED, "contradicts the pictures");
-        assert_int_equal(found.result->reason_values, 2);
+        assert_int_equal(found.result->first.value_count, 2);
         assert_memory_equal(found.result->vignetting, own.result->vignetting, sizeof own.result->vignetting);
         assert_memory_equal(&found.result->response, &own.result->response, sizeof own.result->response);
         assert_memory_equal(found.exposures.data(), own.exposures.data(), 2 * sizeof own.exposures[0]);

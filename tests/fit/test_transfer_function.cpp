@@ -154,7 +154,7 @@ void test_equal_exposures_are_refused(void **) {
     s.make(3000, 1.0, 0.0, 0.0, 42);
     FitRun run = run_fit(s, by_transfer_functions());
     assert_int_equal(run.result.usable, 0);
-    assert_reason(run.result, EXPOSURES_ALIKE, "differ by only 0.0");
+    assert_reason(run.result, EXPOSURES_EQUAL, "differ by only 0.0");
 }
 
 // Few pairs on many edges: almost no bin holds more than one.

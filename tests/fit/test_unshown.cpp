@@ -25,8 +25,8 @@ void assert_typical(const FitRun &run, uint32_t kind) {
     assert_ok(lensprof_response_set_typical(typical.get(), kind, covariance.data(), &sigma));
     const auto &r = run.result;
     assert_int_equal(r.usable, 1);
-    assert_int_equal(r.evens, 1);
-    assert_int_equal(r.reason_code, LENSPROF_REASON_RESPONSE_NOT_SHOWN);
+    assert_int_equal(r.equalizes, 1);
+    assert_int_equal(r.first.code, LENSPROF_REASON_RESPONSE_UNCONSTRAINED);
     assert_int_equal(r.response_from, LENSPROF_FIT_RESPONSE_KIND);
     assert_int_equal(r.gamma_from, LENSPROF_GAMMA_PRIOR);
     assert_close(r.gamma_sigma, sigma, 1e-12);
@@ -56,9 +56,9 @@ void test_equal_pictures_are_left_alone(void **) {
     for (uint64_t seed = 1; seed <= 8; seed++) {
         const FitRun run = run_fit(even(2.0, seed, 1.0));
         assert_int_equal(run.result.usable, 0);
-        assert_int_equal(run.result.evens, 0);
+        assert_int_equal(run.result.equalizes, 0);
         assert_int_equal(run.result.model, LENSPROF_FIT_MODEL_NOTHING);
-        assert_int_equal(run.result.reason_code, LENSPROF_REASON_NOTHING_BETTER);
+        assert_int_equal(run.result.first.code, LENSPROF_REASON_NOTHING_BETTER);
     }
 }
 
@@ -90,7 +90,7 @@ void test_little_light_shows_one(void **) {
     s.make(4000, 1.0, 0.0, 0.0, 42);
     const FitRun run = run_fit(s);
     assert_int_equal(run.result.response_from, LENSPROF_FIT_RESPONSE_PICTURES);
-    assert_true(run.result.light_spread_ev > 0.15 && run.result.light_spread_ev < 0.25);
+    assert_true(run.result.irradiance_spread_ev > 0.15 && run.result.irradiance_spread_ev < 0.25);
 }
 
 // A profile from other pictures provides the response.

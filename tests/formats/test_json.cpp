@@ -31,7 +31,7 @@ void test_round_trip(void **) {
     const Read read = read_json(text, nullptr);
     assert_int_equal(read.profiles.size(), 3);
     for (size_t i = 0; i < 3; i++) assert_same(*read.profiles[i], i == 1 ? *plain : *full);
-    assert_string_equal(write_json({}).c_str(), "{\"schema\":1,\"profiles\":[]}\n");
+    assert_string_equal(write_json({}).c_str(), "{\"schema\":2,\"profiles\":[]}\n");
     assert_int_equal(read_json(write_json({})).profiles.size(), 0);
 }
 
@@ -136,7 +136,7 @@ void test_refused(void **) {
         {with(kShort, "0.25", "250"), LENSPROF_ERROR_RESPONSE, "response.emor is not a response"},
         {with(kShort, "\"emor\",", "\"table\","), LENSPROF_ERROR_SYNTAX, "response has no \"values\""},
         {with(kShort, "\"emor\",", "\"gamma\","), LENSPROF_ERROR_SYNTAX, "response has no \"gamma\""},
-        {with(kShort, "{\"key\"", "{\"schema\":2,\"key\""), LENSPROF_ERROR_UNSUPPORTED, "schema is not 1"},
+        {with(kShort, "{\"key\"", "{\"schema\":3,\"key\""), LENSPROF_ERROR_UNSUPPORTED, "schema is not 1 or 2"},
         {with(one, "\"columns\":3", "\"columns\":4"), LENSPROF_ERROR_SYNTAX, "gain_grid.attenuation[0][0] has 3 items"},
         {with(one, "\"columns\":3", "\"columns\":4000000000"), LENSPROF_ERROR_SYNTAX,
          "gain_grid.columns is 4000000000"},

@@ -33,7 +33,7 @@ class WholeWay(unittest.TestCase):
         cls.response_error = np.abs(np.exp(found / cls.gamma) - np.exp(true)).max()
 
     def test_parameters_are_near_the_truth(self):
-        self.assertTrue(self.result.usable, self.result.reason)
+        self.assertTrue(self.result.usable, [f.text for f in self.result.findings])
         self.assertTrue(self.result.converged)
         self.assertLess(abs(self.gamma - 1), 0.1)
         self.assertLess(self.response_error, 0.01)
@@ -47,7 +47,7 @@ class WholeWay(unittest.TestCase):
         options = lp.FitOptions()
         options.method = lp.Method.TRANSFER_FUNCTION
         result = lp.fit_overlap(fit_images(), self.pairs, options)
-        self.assertTrue(result.usable, result.reason)
+        self.assertTrue(result.usable, [f.text for f in result.findings])
         found, true = result.exposures["ev"], np.array(EXPOSURES)
         np.testing.assert_allclose(found * ((true @ true) / (true @ found)), true, atol=0.05)
 
@@ -182,7 +182,7 @@ class Tracks(unittest.TestCase):
     def test_exposure_of_a_linear_pair(self):
         options = linear_options(method=lp.Method.RADIANCE)
         result = lp.fit_radiance(two_images(), self.observations(), options)
-        self.assertTrue(result.usable, result.reason)
+        self.assertTrue(result.usable, [f.text for f in result.findings])
         self.assertAlmostEqual(result.exposures["ev"][1], np.log2(1.5), places=4)
         self.assertEqual(result.profile(lp.ProfileKey(lens="test")).provenance.method, "radiance")
         of_pairs = lp.fit_overlap(two_images(), simple_pairs(), options)

@@ -10,12 +10,12 @@ WIDTH, HEIGHT = 240, 180
 LENS = lp.Vignetting(k=(-0.4, 0.1, -0.05), center=(0.02, -0.01))
 
 
-def card(turn_deg=0.0, ev=0.0, seed=1, channels=3):
+def card(rotation_deg=0.0, ev=0.0, seed=1, channels=3):
     """A card, lit more strongly on the right, photographed with a linear camera."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
     half = np.hypot(WIDTH, HEIGHT) / 2
     dx, dy = (x - (WIDTH - 1) / 2) / half, (y - (HEIGHT - 1) / 2) / half
-    turn = np.radians(turn_deg)
+    turn = np.radians(rotation_deg)
     r2 = (dx - LENS.center[0]) ** 2 + (dy - LENS.center[1]) ** 2
     m = 1 + LENS.k[0] * r2 + LENS.k[1] * r2**2 + LENS.k[2] * r2**3
     light = 0.5 * 2.0**ev * m * np.exp(0.06 * (np.cos(turn) * dx - np.sin(turn) * dy))
@@ -25,9 +25,9 @@ def card(turn_deg=0.0, ev=0.0, seed=1, channels=3):
 
 class Flat(unittest.TestCase):
     def test_turned_shots(self):
-        images = [lp.FlatImage(card(90 * i, seed=i), shot=i, turn_deg=90 * i) for i in range(3)]
+        images = [lp.FlatImage(card(90 * i, seed=i), shot=i, rotation_deg=90 * i) for i in range(3)]
         result = lp.fit_flat(images)
-        self.assertTrue(result.usable, result.reason)
+        self.assertTrue(result.usable, [f.text for f in result.findings])
         self.assertTrue(result.separated)
         self.assertEqual(len(result.vignetting), 1)
         np.testing.assert_allclose(result.vignetting[0].center, LENS.center, atol=0.003)
@@ -44,7 +44,7 @@ class Flat(unittest.TestCase):
         options = lp.FlatOptions(response=lp.Response.linear(), grid=lp.FlatGrid.ALWAYS, threads=1)
         images = [lp.FlatImage(card(ev=ev, seed=5), ev=ev) for ev in (-1.0, 0.5)]
         result = lp.fit_flat(images, options)
-        self.assertTrue(result.usable, result.reason)
+        self.assertTrue(result.usable, [f.text for f in result.findings])
         self.assertEqual(result.shots, 1)
         self.assertGreater(result.gain_grid.columns, 2)
         self.assertLess(abs(result.image_quality["ev_residual"]).max(), 0.02)

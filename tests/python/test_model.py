@@ -47,7 +47,7 @@ class Responses(unittest.TestCase):
             lp.emor_table(26)
 
     def test_typical(self):
-        response, covariance, sigma = lp.Response.typical(lp.CameraKind.CAMERA)
+        response, covariance, sigma = lp.Response.typical(lp.CameraKind.STILL)
         self.assertEqual((response.kind, covariance.shape), (lp.ResponseKind.EMOR, (25, 25)))
         self.assertTrue(np.linalg.eigvalsh(covariance).min() > 0 and 0.05 < sigma < 0.1)
         q = np.log(np.log(response.invert(208 / 255) / response.invert(48 / 255)))

@@ -23,7 +23,7 @@ class Keys(unittest.TestCase):
     def test_camera_kind(self):
         self.assertIs(lp.ProfileKey().camera_kind, lp.CameraKind.ANY)
         self.assertIs(lp.ProfileKey(camera_maker="Google", camera_model="Pixel 6").camera_kind, lp.CameraKind.PHONE)
-        self.assertIs(lp.ProfileKey(camera_model="EOS 6D").camera_kind, lp.CameraKind.CAMERA)
+        self.assertIs(lp.ProfileKey(camera_model="EOS 6D").camera_kind, lp.CameraKind.STILL)
         self.assertIs(lp.ProfileKey(processing=lp.Processing.RAW).camera_kind, lp.CameraKind.LINEAR)
 
     def test_texts(self):

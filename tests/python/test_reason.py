@@ -28,24 +28,32 @@ class Reasons(unittest.TestCase):
         pairs = pairs[pairs["image"][:, 0] != 1]  # images 0 and 1, and images 2 and 3
         result = lp.fit_overlap([lp.FitImage(i, 600, 400) for i in range(4)], pairs)
         self.assertFalse(result.usable)
-        self.assertIs(result.reason_code, lp.Reason.IMAGE_GROUPS)
-        self.assertEqual(result.reason_value, (2.0,))
-        item = result.reason_item
+        finding = result.findings[0]
+        self.assertIs(finding.code, lp.Reason.IMAGE_GROUPS)
+        self.assertIs(finding.severity, lp.Severity.REFUSAL)
+        self.assertEqual(finding.value, (2.0,))
+        item = finding.item
         self.assertEqual((item.kind, item.index), (lp.ItemKind.IMAGE, 2))
         end = item.text_begin + item.text_bytes
-        self.assertEqual(result.reason.encode()[item.text_begin:end], b"image 2")
-        self.assertIn("groups", lp.reason_text(result.reason_code))
+        self.assertEqual(finding.text.encode()[item.text_begin:end], b"image 2")
+        self.assertIn("groups", lp.reason_text(finding.code))
+        self.assertEqual(sorted(result.findings, key=lambda f: -f.severity), list(result.findings))
+        for rule in result.passed:
+            self.assertIs(rule.severity, lp.Severity.PASSED)
+            self.assertEqual((rule.text, np.isfinite([rule.measured, rule.limit]).all()), ("", True))
 
     def test_a_flat_field_states_its_reason(self):
         result = lp.fit_flat([lp.FlatImage(np.full((300, 400, 3), 251, dtype=np.uint8), white=1.0)])
-        self.assertIn(result.reason_code, list(lp.Reason))
-        self.assertEqual(result.reason == "", result.reason_code is lp.Reason.NONE)
+        self.assertTrue(all(f.code in list(lp.Reason) and f.text for f in result.findings))
+        self.assertTrue(result.passed)
         white = np.full((300, 400, 3), 128, dtype=np.uint8)
         white[:150] = 255
         result = lp.fit_flat([lp.FlatImage(white, shot=5)])
-        self.assertIs(result.reason_code, lp.Reason.FLAT_WHITE)
-        self.assertEqual((result.reason_item.kind, result.reason_item.index), (lp.ItemKind.SHOT, 5))
-        self.assertAlmostEqual(result.reason_value[0], 0.5, delta=0.05)
+        finding = result.findings[0]
+        self.assertIs(finding.code, lp.Reason.FLAT_WHITE)
+        self.assertEqual((finding.item.kind, finding.item.index), (lp.ItemKind.SHOT, 5))
+        self.assertAlmostEqual(finding.value[0], 0.5, delta=0.05)
+        self.assertEqual((finding.measured, finding.limit), (finding.value[0], 0.2))
 
     def test_an_error_names_its_item(self):
         pairs = grey_pairs(100, 3)
@@ -77,7 +85,8 @@ class Reasons(unittest.TestCase):
             self.assertEqual(lp.reason_name(reason), reason.name.lower())
 
     def test_the_documentation_lists_every_reason(self):
-        row = re.compile(r"^\| (\d+) \| `(\w+)` \| (.+?) \| .*? \| (.+?) \| (.+?) \|$", re.M)
+        severities = r"(?:(?:refusal|warning|note)(?:, )?)+"
+        row = re.compile(rf"^\| (\d+) \| `(\w+)` \| (?:{severities} \| )?(.+?) \| .*? \| (.+?) \| (.+?) \|$", re.M)
         rows = row.findall(DOCS.read_text(encoding="utf-8"))
         listed = {int(code): name for code, name, *_ in rows}
         self.assertEqual(len(rows), len(listed))

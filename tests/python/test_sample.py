@@ -56,7 +56,7 @@ class Sampling(unittest.TestCase):
         first = np.searchsorted(tracks["point"], tracks["point"])
         np.testing.assert_allclose(directions, directions[first], atol=1e-9)
         result = lp.fit_radiance(fit_images(), tracks)
-        self.assertTrue(result.usable, result.reason)
+        self.assertTrue(result.usable, [f.text for f in result.findings])
         self.assertLess(result.heldout_rms, 1)
 
     def test_links_reach_the_fit(self):
@@ -70,8 +70,8 @@ class Sampling(unittest.TestCase):
         self.assertLessEqual(set(links["state"]), set(lp.LinkState))
         links["state"] = lp.LinkState.UNVERIFIED
         result = lp.fit_overlap(fit_images(), pairs, lp.FitOptions(links=links))
-        self.assertTrue(result.usable and result.evens)
-        self.assertIn(result.reason_code, (lp.Reason.LINKS_UNVERIFIED, lp.Reason.MISSING_GREYS))
+        self.assertTrue(result.usable and result.equalizes)
+        self.assertTrue({f.code for f in result.findings} & {lp.Reason.LINKS_UNVERIFIED, lp.Reason.MISSING_GREYS})
         links["state"] = 7
         with refused(self, lp.Status.ERROR_ARGUMENT):
             lp.fit_overlap(fit_images(), pairs, lp.FitOptions(links=links))

@@ -291,7 +291,7 @@ class Stores(unittest.TestCase):
             self.assertAlmostEqual(profile.response[0].eval(0.25), 0.5, places=3)
             self.assertAlmostEqual(profile.vignetting[0].k[0], -0.3, places=3)
             profile, how = lenses.lookup(key)
-            self.assertEqual((how.response_from, how.camera_kind), (lp.ResponseFrom.KIND, lp.CameraKind.CAMERA))
+            self.assertEqual((how.response_from, how.camera_kind), (lp.ResponseFrom.KIND, lp.CameraKind.STILL))
             with refused(self, lp.Status.ERROR_NOT_FOUND):
                 lp.lookup_in([cameras, cameras][:1], key)
             with refused(self, lp.Status.ERROR_ARGUMENT):

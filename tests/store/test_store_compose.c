@@ -48,7 +48,7 @@ static void test_raw_rows_serve_jpeg(void **state) {
     const struct {
         const char *camera;
         uint32_t kind;
-    } cases[] = {{"EOS 5D", LENSPROF_CAMERA_CAMERA}, {"iPhone 12", LENSPROF_CAMERA_PHONE}, {"", LENSPROF_CAMERA_ANY}};
+    } cases[] = {{"EOS 5D", LENSPROF_CAMERA_STILL}, {"iPhone 12", LENSPROF_CAMERA_PHONE}, {"", LENSPROF_CAMERA_ANY}};
     for (int i = 0; i < 3; i++) {
         const lensprof_profile_key key = key_of(cases[i].camera, JPEG, 2.0);
         assert_ok(lensprof_response_set_typical(&typical, cases[i].kind, covariance, &sigma));

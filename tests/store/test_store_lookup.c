@@ -283,7 +283,7 @@ static void test_lone_distance(void **state) {
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     const lensprof_profile_key key = zoom_profile(zoom, 28, 2.4, LENSPROF_UNKNOWN)->key;
-    for (uint32_t rule = LENSPROF_DISTANCE_WEAKEST; rule <= LENSPROF_DISTANCE_USUAL; rule++) {
+    for (uint32_t rule = LENSPROF_DISTANCE_USUAL; rule <= LENSPROF_DISTANCE_FARTHEST; rule++) {
         options.distance_rule = rule;
         assert_ok(ask_with(store, &key, &options));
         assert_close(answered.vignetting[0].k[0], k, 0.0);

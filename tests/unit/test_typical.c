@@ -29,7 +29,7 @@ static void test_typical_curves_stand_where_measured_ones_do(void **state) {
 /* Current cameras reach mid grey at a sixth to a ninth of white, and render shadows darker than a pure power law. */
 static void test_cameras_have_a_tone_curve(void **state) {
     (void)state;
-    for (uint32_t kind = LENSPROF_CAMERA_CAMERA; kind <= LENSPROF_CAMERA_PHONE; kind++) {
+    for (uint32_t kind = LENSPROF_CAMERA_STILL; kind <= LENSPROF_CAMERA_PHONE; kind++) {
         lensprof_response r;
         assert_ok(lensprof_response_set_typical(&r, kind, NULL, NULL));
         double middle = lensprof_response_invert(&r, 128.0 / 255.0, NULL);
@@ -79,7 +79,7 @@ static void test_any_reaches_plain_curves(void **state) {
     lensprof_response any, plain;
     double sigma, of_camera;
     assert_ok(lensprof_response_set_typical(&any, LENSPROF_CAMERA_ANY, NULL, &sigma));
-    assert_ok(lensprof_response_set_typical(&plain, LENSPROF_CAMERA_CAMERA, NULL, &of_camera));
+    assert_ok(lensprof_response_set_typical(&plain, LENSPROF_CAMERA_STILL, NULL, &of_camera));
     assert_true(sigma > 2.0 * of_camera);
     const double gammas[5] = {1.0, 1.8, 2.0, 2.2, 2.6};
     for (int i = 0; i < 5; i++) {
@@ -175,7 +175,7 @@ static void test_cameras_by_name(void **state) {
                                       {"Algolux", "A1", ""}, /* lg occurs inside a word */
                                       {"", "Canon EOS 5D", ""}};
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++)
-        assert_kind(cameras[i][0], cameras[i][1], cameras[i][2], LENSPROF_CAMERA_CAMERA);
+        assert_kind(cameras[i][0], cameras[i][1], cameras[i][2], LENSPROF_CAMERA_STILL);
 }
 
 static void test_unnamed_may_be_anything(void **state) {

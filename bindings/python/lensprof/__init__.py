@@ -8,7 +8,7 @@ from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_
                    RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
                    FitModel, FitResponse, FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, LinkState,
                    Loss, MapSense, Method, Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind,
-                   SampleType, Sampling, Saturated, Status, StoreMode, StoreNames)
+                   SampleType, Sampling, Saturated, Severity, Status, StoreMode, StoreNames)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, LINK_DTYPE,
                       MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE)
@@ -21,21 +21,21 @@ from .formats import (FormatInfo, Pto, PtoImage, detect_format, export_profiles,
 from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
 from .profile import CameraModel, Profile, ProfileKey, Provenance
-from .reason import Item, reason_name, reason_text
+from .reason import Finding, Item, reason_name, reason_text
 from .sample import SampleImage, SampleOptions, sample_matches, sample_overlap, sample_tracks
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats, StoreSummary, lookup_in
 
 __all__ = [
     "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel",
     "CurveKind", "Direction", "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error",
-    "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitCamera", "FitImage",
+    "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "Finding", "FitCamera", "FitImage",
     "FitModel", "FitOptions", "FitResponse", "FitResult", "FixedPlan", "FlatGrid", "FlatImage",
     "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "Free", "GRID_SIDE", "GainGrid", "GammaFrom",
     "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE", "Layout", "LinkState", "Lookup", "LookupOptions",
     "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
     "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
     "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
-    "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreNames",
+    "SampleOptions", "SampleType", "Sampling", "Saturated", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames",
     "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "correct", "detect_format", "emor_table",
     "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles",
     "layout_channels", "layout_samples", "lensfun_read_cameras", "lookup_in", "map_read", "map_write", "points_read",

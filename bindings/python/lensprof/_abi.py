@@ -88,7 +88,7 @@ class CameraKind(IntEnum):
     ANY = 0
     FILM = 1
     DIGITAL = 2
-    CAMERA = 3
+    STILL = 3
     PHONE = 4
     LINEAR = 5
 
@@ -152,39 +152,31 @@ class Reason(IntEnum):
     IMAGE_GROUPS = 101
     FEW_PAIRS = 102
     FEW_AGREE = 103
-    STILL_FEW_AGREE = 104
-    SCATTER = 105
-    NOT_SETTLED = 106
-    UNDETERMINED = 107
-    FEW_BEHIND_EXPOSURE = 108
-    STILL_FEW_BEHIND_EXPOSURE = 109
-    IMAGE_DISAGREES = 110
-    STILL_IMAGE_DISAGREES = 111
-    PATTERNS = 112
-    PATTERNS_HELD = 113
-    STILL_PATTERNS = 114
-    IMAGE_ODD = 151
-    STILL_IMAGE_ODD = 152
-    WEAK_PATTERNS = 153
-    IMAGES_LEFT_OUT = 154
-    MANY_OUTLIERS = 155
-    SEAMS_STAY = 156
-    LINKS_UNVERIFIED = 157
-    LINKS_CONTRADICT = 158
-    IMAGES_UNCONNECTED = 159
+    SCATTER = 104
+    NOT_CONVERGED = 105
+    UNDETERMINED = 106
+    FEW_INLIERS = 107
+    IMAGE_DISAGREES = 108
+    PATTERNS = 109
+    IMAGE_INCONSISTENT = 110
+    IMAGES_LEFT_OUT = 111
+    IMAGES_UNCONNECTED = 112
+    MANY_OUTLIERS = 113
+    SEAMS_REMAIN = 114
+    LINKS_CONTRADICT = 115
+    LINKS_UNVERIFIED = 116
     EXPOSURE_UNCERTAIN = 201
-    EXPOSURES_ALIKE = 204
-    KNOWN_ORDER = 251
-    KNOWN_WRONG = 252
-    KNOWN_MORE_FROM = 253
-    KNOWN_LESS_FROM = 254
-    KNOWN_CONTRADICT = 255
-    GAMMA_UNFOLLOWED = 256
-    BALANCES_HELD = 257
+    EXPOSURES_EQUAL = 202
+    KNOWN_ORDER = 203
+    KNOWN_WRONG = 204
+    KNOWN_STEP = 205
+    KNOWN_CONTRADICT = 206
+    GAMMA_INCONSISTENT = 207
+    WHITE_BALANCE_FIXED = 208
     FEW_GREYS = 301
-    MISSING_GREYS = 351
-    UNUSUAL_RESPONSE = 352
-    RESPONSE_NOT_SHOWN = 353
+    MISSING_GREYS = 302
+    UNUSUAL_RESPONSE = 303
+    RESPONSE_UNCONSTRAINED = 304
     SMALL_RADIUS = 401
     CORNER_UNCERTAIN = 402
     FALLOFF_RISES = 403
@@ -193,37 +185,20 @@ class Reason(IntEnum):
     SAME_VIEW = 406
     EXPOSURES_ONLY = 407
     NOTHING_BETTER = 408
-    NOT_RADIAL = 451
-    FAR_CENTER = 452
-    FALLOFF_RISES_SOME = 453
+    NOT_RADIAL = 409
+    FAR_CENTER = 410
     FLAT_WHITE = 501
     FLAT_BLACK = 502
     FLAT_NO_CARD = 503
     FLAT_FEW_CELLS = 504
-    FLAT_SMALL_RADIUS = 505
-    FLAT_RESPONSE_STEP = 506
-    FLAT_RESPONSE_LEVEL = 507
-    FLAT_EXPOSURE_WRONG = 508
-    FLAT_TEXTURE = 509
-    FLAT_SHOTS_DIFFER = 510
-    FLAT_FEW_AGREE = 511
-    FLAT_STEEP = 512
-    FLAT_STEEP_ALONE = 513
-    FLAT_UNDETERMINED = 514
-    FLAT_CORNER_NOT_RADIAL = 515
-    FLAT_CORNER_UNCERTAIN = 516
-    FLAT_EXTRAPOLATED = 551
-    FLAT_SOME_WHITE = 552
-    FLAT_SOME_BLACK = 553
-    FLAT_EXPOSURE_DOUBTFUL = 554
-    FLAT_SHOTS_DIFFER_SOME = 555
-    FLAT_SOME_TEXTURE = 556
-    FLAT_SLANTED_LIGHT = 557
-    FLAT_NOT_RADIAL_GRID = 558
-    FLAT_NOT_RADIAL = 559
-    FLAT_FAR_CENTER = 560
-    FLAT_CENTER_BY_PRIOR = 561
-    FLAT_DUST = 562
+    FLAT_RESPONSE = 505
+    FLAT_EXPOSURE_WRONG = 506
+    FLAT_TEXTURE = 507
+    FLAT_SHOTS_DIFFER = 508
+    FLAT_STEEP = 509
+    FLAT_NOT_RADIAL = 510
+    FLAT_CENTER_BY_PRIOR = 511
+    FLAT_DUST = 512
     LOOKUP_NO_LENS = 601
     LOOKUP_NO_CAMERA = 602
     LOOKUP_OTHER_PROCESSING = 603
@@ -254,9 +229,17 @@ class Reason(IntEnum):
     LOOKUP_ON_OTHER_CAMERA = 662
     LOOKUP_TYPICAL_RESPONSE = 663
     LOOKUP_OTHER_STYLE = 664
-    PRIOR_OVERRULED = 751
-    PRIOR_RESPONSE_OVERRULED = 752
-    PRIOR_FALLOFF_OVERRULED = 753
+    PRIOR_OVERRULED = 701
+    PRIOR_RESPONSE_OVERRULED = 702
+    PRIOR_FALLOFF_OVERRULED = 703
+
+
+class Severity(IntEnum):
+    """lensprof_severity; see lensprof/reason.h."""
+    PASSED = 0
+    NOTE = 1
+    WARNING = 2
+    REFUSAL = 3
 
 
 class Projection(IntEnum):
@@ -406,9 +389,9 @@ class StoreMode(IntEnum):
 
 class DistanceRule(IntEnum):
     """lensprof_distance_rule; see lensprof/store.h."""
-    WEAKEST = 0
-    FARTHEST = 1
-    USUAL = 2
+    USUAL = 0
+    WEAKEST = 1
+    FARTHEST = 2
 
 
 class ResponseFrom(IntEnum):
@@ -614,6 +597,20 @@ class Plan(Structure):
     """Opaque."""
 
 
+class Finding(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("code", c_uint32),
+        ("severity", c_uint32),
+        ("value_count", c_uint32),
+        ("value", c_double * 2),
+        ("measured", c_double),
+        ("limit", c_double),
+        ("item", Item),
+        ("text", c_char * 256),
+    ]
+
+
 class Camera(Structure):
     _fields_ = [
         ("projection", c_uint32),
@@ -776,13 +773,11 @@ class FitResult(Structure):
         ("images", c_uint32),
         ("setting_pairs", c_uint32),
         ("usable", c_uint32),
-        ("reason", c_char * 256),
+        ("findings", c_uint32),
+        ("passed", c_uint32),
+        ("reserved", c_uint32),
         ("vignetting", Vignetting * 3),
         ("radius_ends", c_uint32 * 10),
-        ("reason_code", c_uint32),
-        ("reason_values", c_uint32),
-        ("reason_item", Item),
-        ("reason_value", c_double * 2),
         ("covariance", c_double * 1296),
         ("gamma_direction", c_double * 36),
         ("camera", c_uint32),
@@ -790,7 +785,7 @@ class FitResult(Structure):
         ("response", Response),
         ("vignettings", c_uint32),
         ("pairs", c_uint32),
-        ("evens", c_uint32),
+        ("equalizes", c_uint32),
         ("response_from", c_uint32),
         ("profile_prior", c_uint32),
         ("gamma_from", c_uint32),
@@ -802,7 +797,7 @@ class FitResult(Structure):
         ("inlier_share", c_double),
         ("frame_share", c_double),
         ("image_share", c_double),
-        ("light_spread_ev", c_double),
+        ("irradiance_spread_ev", c_double),
         ("grey_ends", c_uint32 * 10),
         ("converged", c_uint32),
         ("iterations", c_uint32),
@@ -816,7 +811,7 @@ class FitResult(Structure):
         ("components", c_uint32),
         ("setting_count", c_uint32),
         ("camera_count", c_uint32),
-        ("reserved", c_uint32),
+        ("reserved2", c_uint32),
         ("seconds", c_double),
     ]
 
@@ -828,7 +823,7 @@ class FitCamera(Structure):
         ("joined", c_uint32),
         ("shared_pairs", c_uint32),
         ("agreeing_share", c_double),
-        ("light_difference_ev", c_double),
+        ("irradiance_difference_ev", c_double),
         ("log_gamma", c_double),
         ("offset_sigma_ev", c_double),
         ("reference", c_uint32),
@@ -856,7 +851,7 @@ class FlatImage(Structure):
         ("black", c_double),
         ("white", c_double),
         ("ev", c_double),
-        ("turn_deg", c_double),
+        ("rotation_deg", c_double),
     ]
 
 
@@ -919,7 +914,8 @@ class FlatResult(Structure):
         ("usable", c_uint32),
         ("images", c_uint32),
         ("covariance_size", c_uint32),
-        ("reason", c_char * 256),
+        ("findings", c_uint32),
+        ("passed", c_uint32),
         ("vignetting", Vignetting * 3),
         ("vignettings", c_uint32),
         ("light", c_uint32),
@@ -941,10 +937,6 @@ class FlatResult(Structure):
         ("grid_residual", c_double),
         ("covariance", c_double * 1296),
         ("gain_grid", GainGrid),
-        ("reason_code", c_uint32),
-        ("reason_values", c_uint32),
-        ("reason_item", Item),
-        ("reason_value", c_double * 2),
     ]
 
 
@@ -1170,6 +1162,7 @@ ENUMS = {
     "LENSPROF_ENCODING_": Encoding,
     "LENSPROF_SATURATED_": Saturated,
     "LENSPROF_REASON_": Reason,
+    "LENSPROF_SEVERITY_": Severity,
     "LENSPROF_PROJECTION_": Projection,
     "LENSPROF_SAMPLING_": Sampling,
     "LENSPROF_LINK_": LinkState,
@@ -1207,6 +1200,7 @@ STRUCTS = {
     "lensprof_image": Image,
     "lensprof_target": Target,
     "lensprof_apply_options": ApplyOptions,
+    "lensprof_finding": Finding,
     "lensprof_camera": Camera,
     "lensprof_pair": Pair,
     "lensprof_observation": Observation,
@@ -1263,6 +1257,7 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     CameraModel: ("lensprof_camera_model_init", []),
     Profile: ("lensprof_profile_init_sized", [Profile]),
     ApplyOptions: ("lensprof_apply_options_init_sized", [ApplyOptions]),
+    Finding: ("lensprof_init_sized", [Finding]),
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
     FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
@@ -1276,7 +1271,7 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     PtoImage: ("lensprof_init_sized", [PtoImage]),
     ImportOptions: ("lensprof_import_options_init_sized", [ImportOptions]),
     ExportOptions: ("lensprof_export_options_init_sized", [ExportOptions]),
-    LookupOptions: ("lensprof_lookup_options_init_sized", [LookupOptions]),
+    LookupOptions: ("lensprof_init_sized", [LookupOptions]),
     Lookup: ("lensprof_init_sized", [Lookup]),
     StoreStats: ("lensprof_init_sized", [StoreStats]),
 }
@@ -1361,6 +1356,7 @@ FUNCTIONS = {
     "lensprof_fit_image_at": (c_int, [POINTER(Fit), c_uint32, POINTER(FitImageQuality), POINTER(ErrorText)]),
     "lensprof_fit_setting_at": (c_int, [POINTER(Fit), c_uint32, POINTER(FitResult), POINTER(ErrorText)]),
     "lensprof_fit_camera_at": (c_int, [POINTER(Fit), c_uint32, POINTER(FitCamera), POINTER(ErrorText)]),
+    "lensprof_fit_finding_at": (c_int, [POINTER(Fit), c_uint32, c_uint32, POINTER(Finding), POINTER(ErrorText)]),
     "lensprof_fit_profile": (c_int, [POINTER(Fit), c_uint32, POINTER(Profile), POINTER(ErrorText)]),
     "lensprof_fit_transfer_rms": (c_int, [POINTER(Fit), POINTER(Pair), c_uint32, POINTER(c_double), POINTER(c_double),
                                           POINTER(ErrorText)]),
@@ -1379,6 +1375,7 @@ FUNCTIONS = {
     "lensprof_flat_destroy": (None, [POINTER(Flat)]),
     "lensprof_flat_get": (c_int, [POINTER(Flat), POINTER(FlatResult), POINTER(ErrorText)]),
     "lensprof_flat_image_at": (c_int, [POINTER(Flat), c_uint32, POINTER(FlatImageQuality), POINTER(ErrorText)]),
+    "lensprof_flat_finding_at": (c_int, [POINTER(Flat), c_uint32, POINTER(Finding), POINTER(ErrorText)]),
     "lensprof_flat_profile": (c_int, [POINTER(Flat), POINTER(Profile), POINTER(ErrorText)]),
     # hugin.h
     "lensprof_pto_read": (c_int, [c_void_p, c_size_t, POINTER(POINTER(Pto)), POINTER(ErrorText)]),
@@ -1421,9 +1418,6 @@ FUNCTIONS = {
     "lensprof_store_put": (c_int, [POINTER(Store), POINTER(Profile), POINTER(c_int64), POINTER(ErrorText)]),
     "lensprof_store_find": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(Profile), POINTER(c_int64),
                                     POINTER(ErrorText)]),
-    "lensprof_lookup_options_init_sized": (None, [POINTER(LookupOptions), c_size_t]),
-    "lensprof_store_lookup": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(LookupOptions), POINTER(Profile),
-                                      POINTER(Lookup), POINTER(ErrorText)]),
     "lensprof_store_lookup_in": (c_int, [POINTER(POINTER(Store)), c_uint32, POINTER(ProfileKey), POINTER(LookupOptions),
                                          POINTER(Profile), POINTER(Lookup), POINTER(ErrorText)]),
     "lensprof_store_begin": (c_int, [POINTER(Store), POINTER(ErrorText)]),

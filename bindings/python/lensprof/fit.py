@@ -7,14 +7,14 @@ from typing import Any, Optional, Sequence
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import CameraKind, FitModel, FitResponse, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
+from ._abi import CameraKind, FitModel, FitResponse, Free, GammaFrom, Loss, Method, ProfilePrior
 from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
-from ._struct import (Curves, Enumerated, Flag, Nested, Numbers, OptionalReference, Struct, Text, Value, Vector,
+from ._struct import (Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Value, Vector,
                       integer)
 from .model import Exposure, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
-from .reason import Item
+from .reason import WithFindings
 
 
 class FitImage(Value, _abi.FitImage):
@@ -107,9 +107,9 @@ class FitCamera(Struct, _abi.FitCamera):
     images: images of this camera in its fit, 0 if no pairs connect two of them. attached: additional images, whose
     exposures follow from pairs with other cameras. joined: its exposures are relative to the reference, through pairs
     with other cameras; otherwise they are NaN. shared_pairs: pairs with another camera; agreeing_share: share of them
-    within 3 sigma of the residual; light_difference_ev: median difference of the light at their ends. log_gamma: shift
-    of its own fit to agree with the others. offset_sigma_ev: standard error of the offset of its exposures. reference:
-    image whose exposure was fixed in its own fit; setting: setting of that image.
+    within 3 sigma of the residual; irradiance_difference_ev: median difference of the light at their ends. log_gamma:
+    shift of its own fit to agree with the others. offset_sigma_ev: standard error of the offset of its exposures.
+    reference: image whose exposure was fixed in its own fit; setting: setting of that image.
     """
 
     images: int
@@ -117,7 +117,7 @@ class FitCamera(Struct, _abi.FitCamera):
     joined = Flag()
     shared_pairs: int
     agreeing_share: float
-    light_difference_ev: float
+    irradiance_difference_ev: float
     log_gamma: float
     offset_sigma_ev: float
     reference: int
@@ -151,27 +151,29 @@ class _Fit(Handle):
         result = FitResult()
         self.ask(lib.lensprof_fit_setting_at, setting, result)
         result._fit = self
+        with self._use() as fit:
+            result._take(_abi.FitResult, lambda *rest: lib.lensprof_fit_finding_at(fit, setting, *rest))
         return result
 
 
-class FitResult(Struct, _abi.FitResult):
+class FitResult(WithFindings, Struct, _abi.FitResult):
     """Result of a fit for one lens setting; fit_overlap returns that of the reference's. Arrays are views.
 
     Of the setting: images and setting_pairs in it (if images is 0, the others have no meaning). usable: a profile to
-    store; if False, `reason` states why; if True, `reason` may have a warning. reason_code: a Reason; reason_item: the
-    image concerned; reason_value: its numbers. vignetting: tuple of 1 (all channels) or 3. radius_ends: pair ends by
-    tenths of the half diagonal. covariance: n x n as in Profile; fixed parameters have zero rows. gamma_direction:
-    change of each parameter per unit of ln gamma.
+    store. findings: tuple of Finding, refusals first, then warnings and notes; passed: the rules that hold.
+    vignetting: tuple of 1 (all channels) or 3. radius_ends: pair ends by tenths of the half diagonal. covariance: n x
+    n as in Profile; fixed parameters have zero rows. gamma_direction: change of each parameter per unit of ln gamma.
 
-    Of its camera: response. pairs used. evens: the result evens out these pictures, whether or not it is a profile to
-    store. response_from: origin of the response; light_spread_ev: difference of the light between the ends of pairs.
-    gamma_from: what determined the exponent gamma; gamma_sigma: standard error of ln gamma. before_rms, heldout_rms,
-    heldout_median, noise_levels: levels of 255. frame_share, image_share: share of the residual variance that follows
-    one map over the frame, or a separate map per image. inlier_share: 0..1. grey_ends: pair ends by tenths of the grey
-    range. model: what the result consists of, the most complex description that predicts held-out pairs better than all
-    simpler ones. equal_exposures: no exposure was known and the pictures show no difference, so that all are taken as
-    equal. falloff_prior_distance, center_prior_distance: how far the pictures alone are from what lenses have in
-    common, in standard errors. error_inflation: variance of the falloff over that of independent pairs.
+    Of its camera: response. pairs used. equalizes: the result equalises these pictures, whether or not it is a
+    profile to store. response_from: origin of the response; irradiance_spread_ev: difference of the light between the
+    ends of pairs. gamma_from: what determined the exponent gamma; gamma_sigma: standard error of ln gamma.
+    before_rms, heldout_rms, heldout_median, noise_levels: levels of 255. frame_share, image_share: share of the
+    residual variance that follows one map over the frame, or a separate map per image. inlier_share: 0..1. grey_ends:
+    pair ends by tenths of the grey range. model: what the result consists of, the most complex description that
+    predicts held-out pairs better than all simpler ones. equal_exposures: no exposure was known and the pictures show
+    no difference, so that all are taken as equal. falloff_prior_distance, center_prior_distance: how far the pictures
+    alone are from what lenses have in common, in standard errors. error_inflation: variance of the falloff over that
+    of independent pairs.
 
     Of the whole fit: exposures: exposure and white balance of every image relative to the reference, EXPOSURE_DTYPE;
     image_quality: how well each image is determined, IMAGE_QUALITY_DTYPE. left_out: number of inconsistent images, with
@@ -183,7 +185,6 @@ class FitResult(Struct, _abi.FitResult):
     images: int
     setting_pairs: int
     usable = Flag()
-    reason = Text()
     response = Nested(Response)
     vignetting = Curves(Vignetting, "vignettings")
     vignettings: int
@@ -208,15 +209,11 @@ class FitResult(Struct, _abi.FitResult):
     profile_prior = Enumerated(ProfilePrior)
     covariance = Covariance()
     gamma_direction = Vector(writable=False)
-    reason_code = Enumerated(Reason)
-    reason_values: int
-    reason_item = Nested(Item)
-    reason_value = Numbers("reason_values")
-    evens = Flag()
+    equalizes = Flag()
     left_out: int
     reference: int
     response_from = Enumerated(FitResponse)
-    light_spread_ev: float
+    irradiance_spread_ev: float
     model = Enumerated(FitModel)
     falloff_prior_distance: float
     center_prior_distance: float

@@ -8,13 +8,13 @@ from typing import Any, Optional, Sequence
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import FlatGrid, FlatLight, Free, Layout, Reason
+from ._abi import FlatGrid, FlatLight, Free, Layout
 from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
-from ._struct import Count, Curves, Enumerated, Flag, Nested, Numbers, Referenced, Struct, Text, integer
+from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, integer
 from .model import GainGrid, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
-from .reason import Item
+from .reason import WithFindings
 
 
 @dataclass
@@ -22,15 +22,15 @@ class FlatImage:
     """A picture of a card; its arrays are read in place.
 
     array: (height, width) or (height, width, samples); in layouts with alpha, alpha below half = excluded. width,
-    height: of the full frame, px; by default those of the array times reduction. shot: pictures of one shot (same pose,
-    different exposure) have the same number. ev: known exposure, EV. turn_deg: rotation of the camera about its axis,
-    clockwise seen from the back of the camera. layout, reduction, mask, black, white: as in SampleImage.
+    height: of the full frame, px; by default those of the array times reduction. shot: pictures of one shot (same
+    pose, different exposure) have the same number. ev: known exposure, EV. rotation_deg: rotation of the camera about
+    its axis, clockwise seen from the back of the camera. layout, reduction, mask, black, white: as in SampleImage.
     """
 
     array: np.ndarray
     shot: int = 0
     ev: float = 0.0
-    turn_deg: float = 0.0
+    rotation_deg: float = 0.0
     width: Optional[int] = None
     height: Optional[int] = None
     layout: Optional[Layout] = None
@@ -48,7 +48,7 @@ class FlatImage:
         height = view.height * reduction if self.height is None else integer(self.height, "height")
         return initialised(_abi.FlatImage, view=view, width=integer(width, "width"), height=integer(height, "height"),
                            reduction=reduction, shot=integer(self.shot, "shot"), mask=mask, mask_row_bytes=row_bytes,
-                           black=self.black, white=self.white, ev=self.ev, turn_deg=self.turn_deg)
+                           black=self.black, white=self.white, ev=self.ev, rotation_deg=self.rotation_deg)
 
 
 class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
@@ -77,11 +77,11 @@ class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
     vignetting = Nested(Vignetting)
 
 
-class FlatResult(Struct, _abi.FlatResult):
+class FlatResult(WithFindings, Struct, _abi.FlatResult):
     """What a flat field fit found; shares are of the light.
 
-    usable: False with the `reason` in words; a usable result may have one as a caution. reason_code: what it states, a
-    Reason; reason_item: the image or shot that it names; reason_value: its numbers. vignetting: tuple of 1 (all channels)
+    usable: a profile to store. findings: tuple of Finding, refusals first, then warnings and notes; passed: the rules
+    that hold. vignetting: tuple of 1 (all channels)
     or 3. separated: the pictures tell the light's gradient from the centre. spot: dust, FLAT_SPOT_DTYPE.
     radius: largest r of a cell used. noise, residual, texture, frame_residual, shot_residual, grid_residual: of a cell.
     corner_sigma: standard error of M at r = 1. gain_grid: what the polynomial leaves. covariance: n x n as in Profile.
@@ -89,7 +89,6 @@ class FlatResult(Struct, _abi.FlatResult):
     """
 
     usable = Flag()
-    reason = Text()
     vignetting = Curves(Vignetting, "vignettings")
     vignettings: int
     light = Enumerated(FlatLight)
@@ -111,10 +110,6 @@ class FlatResult(Struct, _abi.FlatResult):
     covariance_size: int
     covariance = Covariance()
     gain_grid = Nested(GainGrid)
-    reason_code = Enumerated(Reason)
-    reason_values: int
-    reason_item = Nested(Item)
-    reason_value = Numbers("reason_values")
     images: int
     _flat: Any = None
 
@@ -149,6 +144,7 @@ class _Flat(Handle):
             check(lib.lensprof_flat_image_at(pointer, index, byref(quality), byref(error)), f"no image {index}", error)
             self.quality[index] = np.frombuffer(quality, dtype=_arrays.FLAT_QUALITY_DTYPE)[0]
         self.result._flat = self
+        self.result._take(_abi.FlatResult, lambda *rest: lib.lensprof_flat_finding_at(pointer, *rest))
 
 
 def fit_flat(images: Sequence[FlatImage], options: Optional[FlatOptions] = None) -> FlatResult:

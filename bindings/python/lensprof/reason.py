@@ -1,10 +1,13 @@
-"""Reason codes: why a result is not usable, or what is doubtful about it; see lensprof/reason.h."""
+"""Findings and their codes: what a result was checked for, and what came of it; see lensprof/reason.h."""
 from __future__ import annotations
 
+from ctypes import byref
+from typing import Any, Callable
+
 from . import _abi
-from ._abi import ItemKind, Reason
-from ._library import lib
-from ._struct import Enumerated, Value
+from ._abi import ItemKind, Reason, Severity
+from ._library import check, lib
+from ._struct import Enumerated, Nested, Numbers, Struct, Text, Value
 
 
 class Item(Value, _abi.Item):
@@ -15,6 +18,43 @@ class Item(Value, _abi.Item):
     index: int
     text_begin: int
     text_bytes: int
+
+
+class Finding(Struct, _abi.Finding):
+    """One finding. code: a Reason; severity: a Severity; value: the numbers that lensprof/reason.h lists for the code;
+    item: the image or shot concerned; text: a sentence of these. measured: the number that the rule compares with
+    `limit`; both are NaN for a finding without one."""
+
+    code = Enumerated(Reason)
+    severity = Enumerated(Severity)
+    value_count: int
+    value = Numbers("value_count")
+    measured: float
+    limit: float
+    item = Nested(Item)
+    text = Text()
+
+
+class WithFindings:
+    """A result with the findings on it: refusals, warnings and notes; and the rules that hold."""
+
+    _findings: tuple[Finding, ...] = ()
+
+    def _take(self, struct: Any, at: Callable[..., int]) -> None:
+        """at(index, finding, error) asks the library for one of those that the fields of the C struct count."""
+        count = struct.findings.__get__(self) + struct.passed.__get__(self)
+        self._findings = tuple(Finding() for _ in range(count))
+        for index, finding in enumerate(self._findings):
+            error = _abi.ErrorText()
+            check(at(index, byref(finding), byref(error)), f"no finding {index}", error)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return tuple(finding for finding in self._findings if finding.severity is not Severity.PASSED)
+
+    @property
+    def passed(self) -> tuple[Finding, ...]:
+        return tuple(finding for finding in self._findings if finding.severity is Severity.PASSED)
 
 
 def reason_name(reason: Reason) -> str:

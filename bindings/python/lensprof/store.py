@@ -173,14 +173,7 @@ class Store(Handle):
         """The profile for a setting, composed of the lens's falloff (stored or predicted from other settings) and the
         camera's response, and how it was found. Raises lensprof.Error NOT_FOUND, with the reason and, as `lookup`, its
         Lookup, if no profile is near enough."""
-        profile, how = Profile(), Lookup()
-        try:
-            self._call(lib.lensprof_store_lookup, byref(key), byref(options or LookupOptions()), byref(profile),
-                       byref(how))
-        except Error as error:
-            error.lookup = how  # type: ignore[attr-defined]
-            raise
-        return profile, how
+        return lookup_in([self], key, options)
 
     @contextmanager
     def transaction(self) -> Iterator[None]:

@@ -73,11 +73,11 @@ void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reaso
 // For the pictures of a panorama; those missing from its result get a reason.
 void plan_panorama(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     std::string failure;
-    if (panorama.evens()) {
+    if (panorama.equalizes()) {
         failure = failure_of([&] { plan_by_project(panorama, corrected, reasons); });
     } else {
         const Json &result = panorama.summary["result"];
-        failure = (result.is_object() ? result["reason"] : panorama.summary["not_stored"]).get<std::string>();
+        failure = result.is_object() ? first_text(result) : panorama.summary["not_stored"].get<std::string>();
     }
     if (failure.empty()) return;
     for (const InputPicture *picture : panorama.pictures)

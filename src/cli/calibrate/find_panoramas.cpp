@@ -234,9 +234,9 @@ std::string source_of(const Json &notes, const Group &group, const std::string &
 
 }  // namespace
 
-bool Panorama::evens() const {
+bool Panorama::equalizes() const {
     const Json &result = summary["result"];
-    return result.is_object() && (result["usable"] == true || result["evens"] == true);
+    return result.is_object() && (result["usable"] == true || result["equalizes"] == true);
 }
 
 Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger &ledger, Progress &progress) {

@@ -79,7 +79,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     Json result = Json::parse(out.str());
     result.erase("seconds");
     result.erase("schema");
-    if (!options.store.no_store && result["profile"].is_null()) panorama.summary["not_stored"] = result["reason"];
+    if (!options.store.no_store && result["profile"].is_null()) panorama.summary["not_stored"] = first_text(result);
     panorama.summary["key"] = key_json(key);
     panorama.summary["database"] = result["profile"].is_null() ? Json() : Json(store_path(options.store.db));
     panorama.summary["warnings"] = warnings_in(err.str());
@@ -195,7 +195,7 @@ void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledg
             panoramas.fitted++;
         }
         for (const Json &warning : panorama.summary["warnings"]) progress.warn(warning.get<std::string>());
-        if (!panorama.evens()) continue;
+        if (!panorama.equalizes()) continue;
         const std::string failure = failure_of([&] { draw_preview(panorama, ledger, progress); });
         panorama.summary["preview"] = failure.empty() ? Json(panorama.preview) : Json();
         if (failure.empty()) continue;

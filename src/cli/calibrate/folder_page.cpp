@@ -20,7 +20,7 @@ Json verdict_json(const Inputs &inputs, const Panoramas &panoramas, const Correc
                   const Json &summary, const std::vector<std::string> &unreadable) {
     Json details = Json::array();
     const auto doubtful = std::count_if(panoramas.list.begin(), panoramas.list.end(), [](const Panorama &panorama) {
-        return !panorama.evens() || (!panorama.page.is_null() && panorama.page["verdict"]["level"] != "good");
+        return !panorama.equalizes() || (!panorama.page.is_null() && panorama.page["verdict"]["level"] != "good");
     });
     if (doubtful)
         details.push_back(counted(static_cast<size_t>(doubtful), "panorama")
@@ -61,7 +61,7 @@ std::vector<std::string> add_views(const Panoramas &panoramas, const CorrectedPi
     const auto mosaic_side = static_cast<uint32_t>(
         std::clamp<size_t>(12800 / std::max<size_t>(panoramas.list.size(), 1), 200, 1600));  // px: hundreds need 10 MB
     for (const Panorama &panorama : panoramas.list) {
-        if (!panorama.evens() || views.size() == max_views) continue;
+        if (!panorama.equalizes() || views.size() == max_views) continue;
         failure_of([&] {
             Mosaic mosaic = read_preview(panorama.preview);
             views.push_back(view_json(panorama.name + ", unblended", upright_copy(mosaic.before, 1, mosaic_side),

@@ -33,7 +33,7 @@ struct Panorama {
     std::string key;       // hash of its pictures and the options
     Json summary;          // docs/json.md; `result` is null if the fit failed
     Json page;             // its part of a report, without pictures (fit_page_data); null if the fit failed
-    bool evens() const;
+    bool equalizes() const;
 };
 
 struct Panoramas {

@@ -50,7 +50,8 @@ std::vector<LeftOutPicture> all_left_out(const Inputs &inputs, const CorrectedPi
 
 void print_panoramas(const Panoramas &panoramas, std::ostream &out) {
     size_t members = 0, corrected = 0;
-    for (const Panorama &panorama : panoramas.list) members += panorama.pictures.size(), corrected += panorama.evens();
+    for (const Panorama &panorama : panoramas.list)
+        members += panorama.pictures.size(), corrected += panorama.equalizes();
     out << "panoramas " << panoramas.list.size();
     if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << corrected << " corrected";
     out << "\n";
@@ -65,8 +66,8 @@ std::string panorama_line(const Panorama &panorama) {
     const Json &summary = panorama.summary, &result = summary["result"];
     std::string text = panorama.name + " (" + counted(panorama.pictures.size(), "picture") + "): ";
     if (!result.is_object()) return text + "not fitted: " + summary["not_stored"].get<std::string>();
-    const std::string reason = result["reason"].get<std::string>();
-    if (!panorama.evens()) return text + "not usable: " + reason;
+    const std::string reason = first_text(result);
+    if (!panorama.equalizes()) return text + "not usable: " + reason;
     const std::string stored = stored_text(result);
     text += stored.empty() ? "corrected, no profile stored" : stored;
     const double corner = corner_of(result);
@@ -81,7 +82,7 @@ std::string panorama_line(const Panorama &panorama) {
 
 Json summary_json(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
                   const CorrectedPictures &pictures) {
-    Json json = {{"schema", 1},
+    Json json = {{"schema", json_schema},
                  {"software", std::string("lensprof ") + lensprof_version()},
                  {"inputs", o.inputs},
                  {"found", inputs.found},

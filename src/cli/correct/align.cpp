@@ -208,7 +208,7 @@ Json report(const Options &o, const lensprof_fit_result &r, const Verdict &verdi
         written[i]["white_balance"] = {w[0], w[1], w[2]};
     }
     auto known = [](double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); };
-    Json json = {{"schema", 1}, {"usable", r.usable != 0}, {"evens", r.evens != 0}};
+    Json json = {{"schema", json_schema}, {"usable", r.usable != 0}, {"equalizes", r.equalizes != 0}};
     add_verdict(verdict, json);
     json["to"] = targets[static_cast<size_t>(o.to)].first;
     json["frames"] = written;
@@ -243,8 +243,8 @@ int align(const Options &o, Streams &streams) {
     Progress progress(streams, o.progress);
     std::vector<double> white_shares;  // number of the project's pictures
     Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
-    Verdict verdict = verdict_of(fitted.result);
-    name_image(project.names, verdict);
+    Verdict verdict = fitted.verdict;
+    name_images(project.names, verdict);
     std::vector<lensprof_exposure> exposures;
     leave_out_unjoined(fitted, project, frames, jobs, streams);
     for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);
@@ -263,12 +263,14 @@ int align(const Options &o, Streams &streams) {
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
-    if (!fitted.corrects() && o.pto.empty()) verdict.text += "; frames of a moving camera need --project";
-    if (!verdict.text.empty()) {
-        if (fitted.corrects())
-            warn(streams, item + ": " + verdict.text);
-        else
-            print_message(streams, item + ": not usable: " + verdict.text + "; nothing written");
+    if (!fitted.corrects()) {
+        if (o.pto.empty() && !verdict.findings.empty())
+            verdict.findings[0].text += "; frames of a moving camera need --project";
+        print_message(streams, item + ": not usable: " + verdict.text() + "; nothing written");
+    } else if (fitted.result.usable) {
+        report_findings(verdict, item, streams);
+    } else {
+        warn(streams, item + ": " + verdict.text());
     }
     if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
     if (!o.json && !o.merge.empty() && !written.pictures.empty()) streams.out << o.merge << "\n";

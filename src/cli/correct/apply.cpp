@@ -178,7 +178,7 @@ int run(ApplyOptions &o, Streams &streams) {
     for (const auto &[file, failure] : written.failed)
         work.left_out.push_back({file, failure.what(), false, failure.code});
     if (o.json) {
-        Json json = {{"schema", 1}, {"pictures", written.pictures}, {"left_out", left_out_json(work)}};
+        Json json = {{"schema", json_schema}, {"pictures", written.pictures}, {"left_out", left_out_json(work)}};
         add_speed(written, json);
         print_json(json, streams.out);
     } else {

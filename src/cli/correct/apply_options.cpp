@@ -27,7 +27,7 @@ static void declare_keys(Command &command, ApplyOptions &o) {
                   "use ordered 8 x 8 dither instead of rounding in 8 bit pictures, to avoid banding");
     encoding.flag("exif-exposure", o.seed_exif,
                   "write the estimated exposure of each output into its EXIF (ExposureTime) and mark this in its XMP; "
-                  "needs --model; best with --set exposure=keep");
+                  "needs --model; recommended with --set exposure=keep");
 }
 
 static void declare_experts(Command command, ApplyOptions &o) {

@@ -150,21 +150,23 @@ void report_members(const std::vector<uint32_t> &members, const std::vector<lens
     report.quality = quality;
 }
 
-// The verdict of the members' fit in terms of the pictures, with the objections of this command.
-Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uint32_t> &members,
+// The verdict of the members' fit in terms of the pictures, with the remedies of this command.
+Verdict bracket_verdict(const Fitted &fitted, const std::vector<uint32_t> &members,
                         const std::vector<std::string> &names) {
-    Verdict verdict = verdict_of(result);
-    if (verdict.item.kind == LENSPROF_ITEM_IMAGE) verdict.item.index = members[verdict.item.index];
-    name_image(names, verdict);
-    switch (verdict.code) {
-    case LENSPROF_REASON_STILL_FEW_AGREE:
-    case LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE:
-    case LENSPROF_REASON_STILL_IMAGE_DISAGREES:
-    case LENSPROF_REASON_STILL_IMAGE_ODD:
-        verdict.text += "; use --fit black=NUMBER to exclude grey values of a raised black level";
-        break;
-    default: break;
+    Verdict verdict = fitted.verdict;
+    for (Finding &finding : verdict.findings) {
+        if (finding.item.kind == LENSPROF_ITEM_IMAGE) finding.item.index = members[finding.item.index];
+        switch (finding.code) {
+        case LENSPROF_REASON_FEW_AGREE:
+        case LENSPROF_REASON_FEW_INLIERS:
+        case LENSPROF_REASON_IMAGE_DISAGREES:
+        case LENSPROF_REASON_IMAGE_INCONSISTENT:
+            finding.text += "; use --fit black=NUMBER to exclude grey values of a raised black level";
+            break;
+        default: break;
+        }
     }
+    name_images(names, verdict);
     return verdict;
 }
 
@@ -212,9 +214,10 @@ BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::ve
     Fitted best = fit(input, input.options.reference, project.path, progress, &report.quality);
     progress.clear();
     report.fit = best.result, report.held = best.held;
-    report.verdict = bracket_verdict(best.result, members, project.names);
+    report.verdict = bracket_verdict(best, members, project.names);
+    name_sources(metadata, report.exposures_given, report.verdict);
     report_members(members, images, best, report, streams);
-    if (!report.fit.usable) report.fit.evens = 0;  // a bracket must determine a response
+    if (!report.fit.usable) report.fit.equalizes = 0;  // a bracket must determine a response
     if (!o.report.empty())
         page = fit_page_data({report, input, best, images, project, metadata, command_text(streams.words),
                               "Response from pictures of one scene", false},

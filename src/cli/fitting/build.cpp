@@ -99,7 +99,7 @@ void declare_build_fit(Command &command, BuildOptions &o) {
     keys.choice("sampling", o.sampling, {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
                 "selection of the pairs: balanced (default) or paper (d'Angelo 5.1)");
     declare_sampling(keys, o.pixels, "300 per image, at least 2000 (radiance: number of points, 150 per image)");
-    keys.file("truth", o.compare, "print estimated next to true values of this truth.json of `simulate`");
+    keys.file("truth", o.compare, "compare the estimates with the true values in truth.json of `simulate`");
 }
 
 void declare(Command &command, BuildOptions &o) {
@@ -157,7 +157,7 @@ void check_outputs(const BuildOptions &o, std::vector<std::string> reserved) {
 CameraKind default_kind(const lensprof_profile_key &key) {
     constexpr double min_phone_crop_factor = 4.5;
     const bool is_phone = key.crop_factor != LENSPROF_UNKNOWN && key.crop_factor >= min_phone_crop_factor;
-    return {is_phone ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_CAMERA, KindFrom::reconstruction};
+    return {is_phone ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_STILL, KindFrom::reconstruction};
 }
 
 BuildReport build(const BuildOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
@@ -307,9 +307,9 @@ int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Stre
                    {method_name(o.fit.method), project.path, o.json, true, o.report, &page, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     for (const std::string &file : {o.exposures_out, o.pto_out})
-        if (!report.fit.usable && !report.fit.evens && !file.empty() && !o.store.force)
+        if (!report.fit.usable && !report.fit.equalizes && !file.empty() && !o.store.force)
             print_message(streams, file + ": not written (use --force to write it anyway)");
-    if (!report.fit.usable && !report.fit.evens && !o.preview.empty())
+    if (!report.fit.usable && !report.fit.equalizes && !o.preview.empty())
         print_message(streams, o.preview + ": not written: the result corrects nothing");
     return code;
 }

@@ -249,6 +249,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
         throw Failure(ExitCode::usage, item + ": no parameter is estimated; give --fit free=all");
     check(status, item, &error);
     ask(*held, input.images, fitted, quality);
+    fitted.verdict = verdict_of(held);
     fitted.reference = std::isnan(fitted.exposures[reference].ev) ? fitted.result.reference : reference;
     fitted.exposures = relative_exposures(fitted.exposures, fitted.reference);
     return fitted;
@@ -266,18 +267,18 @@ BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure
     report.fit.gamma_sigma = LENSPROF_UNKNOWN;
     report.fit.vignettings = 1;
     report.quality.resize(names.size());
-    report.verdict.text = failure.what();
-    report.verdict.code = failure.reason;
+    report.verdict.refuse(failure.reason, failure.what());
     return report;
 }
 
 // Reports the other images with wrong known exposures; the verdict reports the worst.
-void warn_of_wrong_exposures(const BuildReport &report, Streams &streams) {
-    if (report.verdict.code != LENSPROF_REASON_KNOWN_WRONG) return;
+void note_wrong_exposures(const BuildReport &report, Streams &streams) {
+    const Finding *worst = report.verdict.find(LENSPROF_REASON_KNOWN_WRONG);
+    if (!worst) return;
     for (size_t i = 0; i < report.quality.size(); i++) {
         const auto &q = report.quality[i];
-        if (q.known_ev_left_out && i != report.verdict.item.index)
-            warn(streams, report.names[i]
+        if (q.known_ev_left_out && i != worst->item.index)
+            note(streams, report.names[i]
                               + format(": its exposure differs from the known one by %.1f EV; the known one is not "
                                        "used",
                                        std::fabs(q.known_ev_residual)));
@@ -301,8 +302,8 @@ static void warn_of_unjoined_cameras(const BuildReport &report, const std::strin
         if (!camera.found.images)
             warn(streams, left_out + "no two of its pictures overlap enough; give more of them, or use --one-lens to "
                                      "treat all as one camera");
-        else if (!camera.fit.evens && fitted_setting != report.settings.end() && !fitted_setting->found.usable)
-            warn(streams, left_out + "its pictures cannot be corrected: " + fitted_setting->verdict.text);
+        else if (!camera.fit.equalizes && fitted_setting != report.settings.end() && !fitted_setting->found.usable)
+            warn(streams, left_out + "its pictures cannot be corrected: " + fitted_setting->verdict.text());
         else
             warn(streams, left_out + "its overlap with pictures of the other cameras is too small or inconsistent; "
                                      "give more that overlap");
@@ -328,7 +329,7 @@ void warn_of_unjoined_images(const BuildReport &report, Streams &streams) {
 }
 
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {
-    return source + ": not usable: " + verdict.text
+    return source + ": not usable: " + verdict.text()
            + (store.force || store.no_store ? "" : "; nothing was stored (use --force to store it anyway)");
 }
 
@@ -394,20 +395,8 @@ void warn_of_unstored_settings(const BuildReport &report, const std::string &sou
     for (const SettingReport &setting : report.settings)
         if (!setting.found.usable && !setting.is_reference)
             warn(streams, source + ": " + setting.label
-                              + (setting.found.images ? ": not stored as a profile: " + setting.verdict.text
+                              + (setting.found.images ? ": not stored as a profile: " + setting.verdict.text()
                                                       : ": not stored: none of its pictures agrees with the others"));
-}
-
-// Warns if a result that corrects pictures without being a profile leaves much unexplained.
-void warn_of_misfit(const BuildReport &report, const std::string &source, Streams &streams) {
-    constexpr double max_outlier_share = 0.3, max_rms_levels = 15.0;  // the limits of the verdict for profiles
-    const double outliers = 1.0 - report.fit.inlier_share, rms = report.fit.heldout_rms;
-    if (outliers <= max_outlier_share && rms <= max_rms_levels) return;
-    warn(streams,
-         source
-             + format(": %.0f %% of the pairs disagree with the result, and the residual is %.1f levels RMS, because "
-                      "of parallax or moving objects; check the seams with --write preview=FILE",
-                      100.0 * outliers, rms));
 }
 
 bool is_any_usable(const BuildReport &report) {
@@ -418,22 +407,22 @@ bool is_any_usable(const BuildReport &report) {
 
 // Everything that is wrong with a result, on standard error. Whether the command succeeds.
 bool report_problems(const BuildReport &report, const StoreOptions &store, const Finish &finish, Streams &streams) {
-    if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
-    const bool evens = finish.evens_pictures && report.fit.evens;
-    if (report.fit.usable) warn_of_wrong_exposures(report, streams);
-    if (report.fit.usable || evens)
+    if (report.fit.usable) report_findings(report.verdict, finish.source, streams);
+    const bool equalizes = finish.equalizes_pictures && report.fit.equalizes;
+    if (report.fit.usable) note_wrong_exposures(report, streams);
+    if (report.fit.usable || equalizes)
         warn_of_unjoined_cameras(report, finish.source, streams), warn_of_unjoined_images(report, streams);
-    const bool is_good = is_any_usable(report) || (store.no_store && evens);
+    const bool is_good = is_any_usable(report) || (store.no_store && equalizes);
     if (!report.fit.usable && is_good)
         warn(streams, finish.source
-                          + (report.fit.evens ? ": corrects these pictures, but is not stored as a profile: "
-                                              : ": the setting of the reference is not stored as a profile: ")
-                          + report.verdict.text);
+                          + (report.fit.equalizes ? ": corrects these pictures, but is not stored as a profile: "
+                                                  : ": the setting of the reference is not stored as a profile: ")
+                          + report.verdict.text());
     if (is_good) warn_of_unstored_settings(report, finish.source, streams);
-    if (!report.fit.usable && is_good) warn_of_misfit(report, finish.source, streams);
     if (!is_good)
-        print_message(streams, not_usable_text(finish.source, report.verdict, store)
-                                   + (evens ? "; it does correct these pictures: use --no-store to accept it" : ""));
+        print_message(streams,
+                      not_usable_text(finish.source, report.verdict, store)
+                          + (equalizes ? "; it does correct these pictures: use --no-store to accept it" : ""));
     return is_good;
 }
 

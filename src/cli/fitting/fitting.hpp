@@ -84,6 +84,7 @@ struct FitInput {
 struct Fitted {
     std::shared_ptr<const lensprof_fit> held;   // NULL: not of a fit
     lensprof_fit_result result{};               // of the setting of the reference
+    Verdict verdict;                            // of it
     std::vector<lensprof_exposure> exposures;   // relative to the reference; ev is NaN for images left out
     std::vector<lensprof_fit_result> settings;  // indexed by the images' `setting`
     std::vector<uint32_t> setting_of;           // per image
@@ -93,7 +94,7 @@ struct Fitted {
     uint32_t reference = 0;                     // the requested one, or the result's own if that was left out
 
     // Whether the pictures can be corrected with it; storing a profile requires a usable result.
-    bool corrects() const { return result.usable || result.evens; }
+    bool corrects() const { return result.usable || result.equalizes; }
 
     // The falloff curves of an image, with the centre in the picture as stored, and their number in its camera's fit.
     std::array<lensprof_vignetting, 3> falloff_of(uint32_t image) const;
@@ -122,7 +123,7 @@ struct Finish {
     std::string method;  // for the provenance
     std::string source;  // the inputs
     bool json = false;
-    bool evens_pictures = false;            // a result that corrects the pictures counts as success if nothing is to be
+    bool equalizes_pictures = false;        // a result that corrects the pictures counts as success if nothing is to be
                                             // stored
     std::string report;                     // .html file that is written of the result; empty: none,
     Json *page = nullptr;                   // and what fit_page_data made for it

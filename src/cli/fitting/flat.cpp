@@ -62,7 +62,7 @@ void declare(Command &command, FlatCommand &o) {
         "--linear", o.linear,
         "the pictures are linear (developed from raw files without a tone curve); not needed for float TIFF or a "
         "colour profile with a linear tone curve");
-    command.numbers("--turned", o.turned_deg, {-360.0, 360.0},
+    command.numbers("--rotation", o.rotation_deg, {-360.0, 360.0},
                     "rotation of the camera about its optical axis per shot, degrees, clockwise seen from the back of "
                     "the camera; separates the light from the lens; default 0");
     command.file("--report", o.report, "write a report with charts as one .html file");
@@ -112,7 +112,7 @@ FlatReport begin_report(const FlatInput &input) {
     for (const auto &image : input.images) {
         report.shots.push_back(image.shot);
         report.ev.push_back(image.ev);
-        report.turned.push_back(image.turn_deg);
+        report.turned.push_back(image.rotation_deg);
     }
     report.quality.resize(input.images.size());
     lensprof_flat_result_init(&report.fit);
@@ -124,8 +124,7 @@ FlatReport failed_report(const FlatInput &input, const Failure &failure) {
     FlatReport report = begin_report(input);
     report.fit.vignettings = 1;
     report.fit.corner_sigma = NAN;
-    report.verdict.text = failure.what();
-    report.verdict.code = LENSPROF_REASON_FLAT_FEW_CELLS;
+    report.verdict.refuse(LENSPROF_REASON_FLAT_FEW_CELLS, failure.what());
     return report;
 }
 
@@ -154,9 +153,9 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
         check(lensprof_flat_image_at(flat, i, &report.quality[i], &error), "fit", &error);
     }
     report.solve_s = lap(clock);
-    report.verdict = verdict_of(report.fit);
-    name_image(report.names, report.verdict);
-    name_shot(report.names, report.shots, report.verdict);
+    report.verdict = verdict_of(flat);
+    name_images(report.names, report.verdict);
+    name_shots(report.names, report.shots, report.verdict);
     return report;
 }
 
@@ -206,7 +205,7 @@ int run(const FlatCommand &o, Streams &streams) {
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
-    if (report.fit.usable && !report.verdict.text.empty()) warn(streams, o.files.front() + ": " + report.verdict.text);
+    if (report.fit.usable) report_findings(report.verdict, o.files.front(), streams);
     if (!report.fit.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }
@@ -220,7 +219,7 @@ void declare_flat(Command &program) {
         "them.");
     auto o = std::make_shared<FlatCommand>();
     declare(command, *o);
-    command.example("lensprof flat card0.tif card90.tif --linear --turned 0,90 --camera \"EOS R5\"");
+    command.example("lensprof flat card0.tif card90.tif --linear --rotation 0,90 --camera \"EOS R5\"");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

@@ -20,7 +20,7 @@ struct FlatCommand {
     std::vector<std::string> files;
     std::vector<std::array<double, 4>> cards;  // x, y, width and height, px of the frame
     std::vector<uint32_t> shots;
-    std::vector<double> ev, turned_deg;
+    std::vector<double> ev, rotation_deg;
     uint32_t falloff_curves = 0, light = LENSPROF_FLAT_LIGHT_AUTO, grid = LENSPROF_FLAT_GRID_AUTO;
     bool free_center = true, linear = false, several = false, find_card = false, own_light = false, json = false,
          progress = false;

@@ -36,11 +36,11 @@ std::vector<double> rotations_of(const FlatCommand &o, const std::vector<uint32_
     for (uint32_t shot : shots)
         if (std::find(order.begin(), order.end(), shot) == order.end()) order.push_back(shot);
     std::vector<double> rotations(shots.size(), 0.0);
-    if (o.turned_deg.empty()) return rotations;
-    require_count(o.turned_deg.size(), "--turned", order.size(), "shot");
+    if (o.rotation_deg.empty()) return rotations;
+    require_count(o.rotation_deg.size(), "--rotation", order.size(), "shot");
     for (size_t i = 0; i < shots.size(); i++)
         rotations[i] =
-            o.turned_deg[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
+            o.rotation_deg[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
     return rotations;
 }
 
@@ -192,7 +192,7 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
         lensprof_flat_image_init(&image);
         image.shot = shots[i];
         image.ev = ev[i];
-        image.turn_deg = rotations[i];
+        image.rotation_deg = rotations[i];
         image.black = o.black;
         image.white = o.white;
         input.images.push_back(image);

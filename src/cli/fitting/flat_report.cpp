@@ -22,7 +22,7 @@ Json images_json(const FlatReport &report) {
         images.push_back({{"file", report.names[i]},
                           {"shot", report.shots[i]},
                           {"ev", report.ev[i]},
-                          {"turned_deg", report.turned[i]},
+                          {"rotation_deg", report.turned[i]},
                           {"card", {q.card[0], q.card[1], q.card[2], q.card[3]}},
                           {"cells", q.cells},
                           {"radius", q.radius},
@@ -62,11 +62,11 @@ Json grid_json(const lensprof_gain_grid &grid) {
 void print_images(const FlatReport &report, std::ostream &out) {
     size_t width = 5;
     for (const auto &name : report.names) width = std::max(width, name.size());
-    out << format("%-*s  %4s  %7s  %6s  %6s  %7s  %7s  %6s  %7s  %-13s\n", static_cast<int>(width), "image", "shot",
-                  "EV", "turned", "r", "white %", "black %", "noise", "resid %", "light right, down %");
+    out << format("%-*s  %4s  %7s  %7s  %6s  %7s  %7s  %6s  %7s  %-13s\n", static_cast<int>(width), "image", "shot",
+                  "EV", "rotated", "r", "white %", "black %", "noise", "resid %", "light right, down %");
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &q = report.quality[i];
-        out << format("%-*s  %4u  %+7.2f  %6g  %6.2f  %7.1f  %7.1f  %6.2f  %7.2f  %+6.1f %+6.1f\n",
+        out << format("%-*s  %4u  %+7.2f  %7g  %6.2f  %7.1f  %7.1f  %6.2f  %7.2f  %+6.1f %+6.1f\n",
                       static_cast<int>(width), report.names[i].c_str(), report.shots[i], report.ev[i], report.turned[i],
                       q.radius, 100.0 * q.white_share, 100.0 * q.black_share, q.noise_levels, 100.0 * q.residual,
                       100.0 * q.gradient[0], 100.0 * q.gradient[1]);
@@ -88,7 +88,7 @@ void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
 Json flat_json(const FlatReport &report) {
     const auto &fit = report.fit;
     Json json;
-    json["schema"] = 1;
+    json["schema"] = json_schema;
     json["method"] = "flat";
     json["usable"] = fit.usable != 0;
     add_verdict(report.verdict, json);
@@ -138,9 +138,9 @@ void print_flat(const FlatReport &report, std::ostream &out) {
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!fit.usable)
-        out << "NOT USABLE: " << report.verdict.text << "\n";
-    else if (!report.verdict.text.empty())
-        out << "warning   " << report.verdict.text << "\n";
+        out << "NOT USABLE: " << report.verdict.text() << "\n";
+    else
+        print_findings(report.verdict, out);
 }
 
 }  // namespace lensprof

@@ -13,6 +13,15 @@
 namespace lensprof {
 namespace {
 
+// "1/320 s, f/8, ISO 100", as far as EXIF states it.
+std::string exposure_text(const PictureMetadata &stated) {
+    const double time_s = *stated.exposure_time_s;
+    std::string text = time_s > 0.0 && time_s < 0.4 ? format("1/%.0f s", 1.0 / time_s) : format("%.3g s", time_s);
+    if (stated.f_number) text += format(", f/%.3g", *stated.f_number);
+    if (stated.iso) text += format(", ISO %.0f", *stated.iso);
+    return text;
+}
+
 constexpr double kRoundedSigma = 0.1, kRepeatedSigma = 0.03;  // EV
 constexpr double kMaxAbsEv = 40.0;           // EV relative to 1 s, f/1, ISO 100: no picture has such an exposure
 constexpr double kRelativeTolerance = 1e-3;  // relative tolerance of times, apertures and ISO
@@ -161,6 +170,18 @@ ExifUse add_known_exposures(const FitOptions &o, const Project &project, const s
     const ExifUse use = exif_use(exposures, metadata, project.names);
     if (!use.note.empty()) note(streams, project.path + ": " + use.note + " (--fit exif-sigma=0 ignores EXIF)");
     return use;
+}
+
+void name_sources(const std::vector<PictureMetadata> &metadata, bool is_from_options, Verdict &verdict) {
+    for (Finding &finding : verdict.findings) {
+        const bool is_known = finding.code == LENSPROF_REASON_KNOWN_WRONG || finding.code == LENSPROF_REASON_KNOWN_STEP;
+        if (!is_known || finding.item.index >= metadata.size()) continue;
+        const PictureMetadata &stated = metadata[finding.item.index];
+        if (is_from_options)
+            finding.text += "; it is that of --ev or --times";
+        else if (stated.exposure_time_s)
+            finding.text += "; EXIF states " + exposure_text(stated);
+    }
 }
 
 }  // namespace lensprof

@@ -30,4 +30,7 @@ ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetada
 ExifUse add_known_exposures(const FitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                             std::vector<lensprof_fit_image> &images, Streams &streams);
 
+// Adds to findings on the known exposure of a picture where it is from: what EXIF states, or the options.
+void name_sources(const std::vector<PictureMetadata> &metadata, bool is_from_options, Verdict &verdict);
+
 }  // namespace lensprof

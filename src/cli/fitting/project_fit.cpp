@@ -130,10 +130,11 @@ size_t links_of_state(const std::vector<lensprof_link> &links, uint32_t state) {
 bool explains_more(const Fitted &second, const std::vector<lensprof_link> &second_links, const Fitted &first,
                    const std::vector<lensprof_link> &first_links) {
     const auto ranking_of = [](const Fitted &fitted, const std::vector<lensprof_link> &links) {
-        return std::tuple(joined_images(fitted), fitted.result.evens != 0, fitted.result.usable != 0,
+        return std::tuple(joined_images(fitted), fitted.result.equalizes != 0, fitted.result.usable != 0,
                           links_of_state(links, LENSPROF_LINK_VERIFIED));
     };
-    const bool is_worse = joined_images(second) < joined_images(first) || second.result.evens < first.result.evens
+    const bool is_worse = joined_images(second) < joined_images(first)
+                          || second.result.equalizes < first.result.equalizes
                           || second.result.usable < first.result.usable;
     return !is_worse && ranking_of(second, second_links) > ranking_of(first, first_links);
 }
@@ -141,7 +142,7 @@ bool explains_more(const Fitted &second, const std::vector<lensprof_link> &secon
 // Whether links may connect images once response and falloff are known. Not with a refused result, whose irradiance is
 // wrong.
 bool may_connect_more(const ProjectFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
-    const bool is_trusted = first.corrects() || first.result.reason_code == LENSPROF_REASON_IMAGE_GROUPS;
+    const bool is_trusted = first.corrects() || first.verdict.code() == LENSPROF_REASON_IMAGE_GROUPS;
     const bool is_complete =
         joined_images(first) == first.exposures.size() && links_of_state(links, LENSPROF_LINK_CONTRADICTED) == 0;
     return o.sampling == LENSPROF_SAMPLING_BALANCED && is_trusted && !is_complete;
@@ -275,9 +276,8 @@ void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &
                         "alone; only the latter are returned");
     state.best = only;
     state.best.result.usable = 0;
-    state.best.result.reason_code = LENSPROF_REASON_NONE;
-    std::snprintf(state.best.result.reason, sizeof state.best.result.reason,
-                  "the pictures determine neither response nor falloff");
+    state.best.verdict = {};
+    state.best.verdict.refuse(LENSPROF_REASON_EXPOSURES_ONLY, "the pictures determine neither response nor falloff");
     state.settings.of_image.assign(state.settings.of_image.size(), 0), state.settings.first.resize(1);
     join_cameras(state.settings);
 }
@@ -292,19 +292,17 @@ void refuse_minority(const Project &project, ProjectFit &state) {
     const size_t all = images + (is_verified ? 0 : project.unlinked);
     if (2 * joined >= all) return;
     lensprof_fit_result &result = state.best.result;
-    result.usable = result.evens = 0;
-    result.reason_code = LENSPROF_REASON_IMAGE_GROUPS;
-    result.reason_item = {};
-    result.reason_values = 0;
-    std::snprintf(result.reason, sizeof result.reason,
-                  "only %zu of %zu pictures take part in the result%s; give pictures that overlap by a third", joined,
-                  all, is_verified ? "" : " and none of their overlaps shows the same content");
-    for (lensprof_fit_result &setting : state.best.settings) setting.usable = setting.evens = 0;
+    result.usable = result.equalizes = 0;
+    state.best.verdict.refuse(
+        LENSPROF_REASON_IMAGE_GROUPS,
+        format("only %zu of %zu pictures take part in the result%s; give pictures that overlap by a third", joined, all,
+               is_verified ? "" : " and none of their overlaps shows the same content"));
+    for (lensprof_fit_result &setting : state.best.settings) setting.usable = setting.equalizes = 0;
 }
 
 // Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
 // no more than those of a scene with glossy surfaces. With false matches they differ more regardless of the correction.
-bool evens_colours(const ColourVariance &variance) {
+bool equalizes_colours(const ColourVariance &variance) {
     constexpr double max_variance_ratio = 0.5,
                      max_variance = 200.0;  // levels of 255 squared: 20 levels between two pictures
     return variance.result < variance.before
@@ -317,7 +315,7 @@ void check_light(const LightGroups &groups, const Project &project) {
     throw Failure(
         ExitCode::not_usable,
         project.path + ": " + listed(groups.second, project.names)
-            + format(" show the scene in other light than the rest (colours differ %.0f times as much "
+            + format(" show the scene in different light from the rest (colours differ %.0f times as much "
                      "between these groups as within); fit each visit separately, with --reconstruction list=FILE",
                      groups.ratio),
         LENSPROF_REASON_IMAGE_GROUPS);
@@ -355,7 +353,7 @@ void fit_reconstruction(const Project &project, ProjectFit &state, Streams &stre
         state.gains.push_back({"this result", state.gains[1].variances});
     }
     state.best.result.seconds = first_s + lap(clock);
-    state.best.result.evens = evens_colours(report.variance);
+    state.best.result.equalizes = equalizes_colours(report.variance);
     check_light(light_groups(all, state.gains[2].variances, project.view_distances), project);
 }
 
@@ -387,8 +385,8 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         setting.is_reference = s == settings.of_image[state.best.result.reference];
         setting.number = s, setting.found = state.best.settings[s];
         setting.is_turn_unknown = settings.is_turn_unknown[s];
-        setting.verdict = verdict_of(setting.found);
-        name_image(project.names, setting.verdict);
+        setting.verdict = setting.found.images ? verdict_of(state.best.held.get(), s) : Verdict{};
+        name_images(project.names, setting.verdict);
         report.settings.push_back(setting);
     }
 }
@@ -512,11 +510,13 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     fit_reconstruction(project, state, streams);
     refuse_minority(project, state);
     report.fit = state.best.result, report.held = state.best.held;
-    report.verdict = verdict_of(state.best.result);
+    report.verdict = state.best.verdict;
     warn_of_few_images(o, project, state.best, streams);
-    if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
-        report.verdict.text += " (Er and Eb on the v lines, or --fit free=all)";
-    name_image(project.names, report.verdict);
+    for (Finding &finding : report.verdict.findings)
+        if (finding.code == LENSPROF_REASON_WHITE_BALANCE_FIXED)
+            finding.text += " (Er and Eb on the v lines, or --fit free=all)";
+    name_images(project.names, report.verdict);
+    if (o.points.empty()) name_sources(metadata, false, report.verdict);
     report_settings(o, project, metadata, state);
     report_cameras(project, metadata, state);
     report.exposures = state.best.exposures;

@@ -70,23 +70,28 @@ Json new_page(const std::string &kind, const std::string &title, const std::stri
             {"command", command}};
 }
 
-Json page_verdict(bool usable, bool evens, const std::string &text, const std::vector<std::string> &warnings) {
+Json page_verdict(bool usable, bool equalizes, const std::vector<std::string> &refusals,
+                  const std::vector<std::string> &warnings, const std::vector<std::string> &notes) {
     Json details = Json::array();
-    const bool is_repeated = std::any_of(warnings.begin(), warnings.end(), [&](const std::string &warning) {
-        return warning.find(text) != std::string::npos;
-    });
-    if (!text.empty() && !is_repeated) details.push_back(text);
+    for (const std::string &text : refusals) {
+        const bool is_repeated = std::any_of(warnings.begin(), warnings.end(), [&](const std::string &warning) {
+            return warning.find(text) != std::string::npos;
+        });
+        if (!is_repeated) details.push_back(text);
+    }
     for (const std::string &warning : warnings) details.push_back(warning);
     const bool is_good = usable && details.empty();
     const char *headline = is_good  ? "Usable: a profile that later pictures can rely on."
                            : usable ? "Usable, with a warning."
-                           : evens  ? "These pictures differ less after correction, but this is not a profile to store."
-                                    : "Not usable: do not correct pictures with this result.";
-    return {{"level", is_good           ? "good"
-                      : usable || evens ? "warn"
-                                        : "bad"},
+                           : equalizes
+                               ? "These pictures differ less after correction, but this is not a profile to store."
+                               : "Not usable: do not correct pictures with this result.";
+    return {{"level", is_good               ? "good"
+                      : usable || equalizes ? "warn"
+                                            : "bad"},
             {"headline", headline},
-            {"details", details}};
+            {"details", details},
+            {"notes", notes}};
 }
 
 std::string page_of(const Json &page) {

@@ -225,6 +225,7 @@ function closing(report) {
 function verdict(report) {
   const box = section(null, element('p', {}, element('strong', {}, report.verdict.headline)),
     ...report.verdict.details.map((text) => element('p', {}, text)),
+    ...(report.verdict.notes || []).map((text) => element('p', { class: 'quiet' }, 'Note: ' + text)),
     element('dl', { class: 'facts' }, ...report.facts.map(([name, value]) =>
       element('div', {}, element('dt', {}, name), element('dd', {}, value)))));
   box.className = 'verdict ' + report.verdict.level;
@@ -376,12 +377,12 @@ function databasePage(report) {
 function card(report) {
   const { images, gain_grid: grid } = report.result;
   const percent = (share) => fixed(100 * share, 1).replace('-', '−');
-  const rows = images.map((image) => [image.file, String(image.shot), signed(image.ev, 2), fixed(image.turned_deg, 0),
+  const rows = images.map((image) => [image.file, String(image.shot), signed(image.ev, 2), fixed(image.rotation_deg, 0),
     fixed(image.radius, 2), percent(image.white_share), percent(image.black_share), fixed(image.noise_levels, 2),
     fixed(100 * image.residual, 2), signed(100 * image.gradient[0], 1), signed(100 * image.gradient[1], 1)]);
   const parts = [section('Pictures of the card', element('p', { class: 'quiet' },
     'Radius: the largest that the card covers, in half diagonals. Gradient: of the light, per half diagonal.'),
-    table(['picture', 'shot', 'EV', 'turned by °', 'radius', 'white %', 'black %', 'noise, levels', 'residual %',
+    table(['picture', 'shot', 'EV', 'rotated by °', 'radius', 'white %', 'black %', 'noise, levels', 'residual %',
       'gradient right %', 'gradient down %'], rows))];
   if (grid) {
     const green = grid.attenuation[grid.attenuation.length === 3 ? 1 : 0].flat();

@@ -104,7 +104,7 @@ std::string profile_page(const StoredProfile &stored, const std::string &command
     add_response_curves(p, "this profile", page["responses"]);
     page["typical"] = p.response[0].kind == LENSPROF_RESPONSE_LINEAR
                           ? Json()
-                          : typical_band(*p.key.camera_model ? LENSPROF_CAMERA_CAMERA : LENSPROF_CAMERA_ANY);
+                          : typical_band(*p.key.camera_model ? LENSPROF_CAMERA_STILL : LENSPROF_CAMERA_ANY);
     page["images"] = Json::array();
     page["result"] = profile_json(stored.id, p);
     return page_of(page);

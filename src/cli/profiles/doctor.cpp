@@ -88,7 +88,8 @@ void print(const std::vector<DatabaseState> &databases, std::ostream &out) {
 }
 
 Json json_of(const std::vector<DatabaseState> &databases) {
-    Json json = {{"schema", 1}, {"version", lensprof_version()}, {"processors", std::thread::hardware_concurrency()}};
+    Json json = {
+        {"schema", json_schema}, {"version", lensprof_version()}, {"processors", std::thread::hardware_concurrency()}};
     for (const Part &part : optional_parts()) json["libraries"][part.library] = part.is_there;
     json["databases"] = Json::array();
     for (const DatabaseState &state : databases)

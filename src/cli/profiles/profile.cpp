@@ -59,7 +59,7 @@ void list_json(const Databases &databases, const std::vector<Rows> &all, std::os
                     {{"id", row.id}, {"key", key_json(row.key)}, {"provenance", provenance_json(row.provenance)}});
                 if (databases.size() > 1) profiles.back()["database"] = databases.file(i);
             }
-    print_json(Json{{"schema", 1}, {"profiles", profiles}, {"damaged", damaged}}, out);
+    print_json(Json{{"schema", json_schema}, {"profiles", profiles}, {"damaged", damaged}}, out);
 }
 
 void list_text(const Databases &databases, const std::vector<Rows> &all, std::ostream &out) {
@@ -122,7 +122,7 @@ void print_profiles(const std::vector<StoredProfile> &profiles, bool json, Strea
     } else {
         Json all = Json::array();
         for (const StoredProfile &stored : profiles) all.push_back(stored_json(stored));
-        print_json(Json{{"schema", 1}, {"profiles", all}}, streams.out);
+        print_json(Json{{"schema", json_schema}, {"profiles", all}}, streams.out);
     }
 }
 

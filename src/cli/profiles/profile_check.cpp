@@ -58,7 +58,7 @@ void print_groups(const char *title, const lensprof_store_group *groups, uint32_
 }
 
 Json stats_json(const std::string &file, const lensprof_store_stats &s) {
-    return {{"schema", 1},
+    return {{"schema", json_schema},
             {"file", file},
             {"layout", s.layout},
             {"bytes", s.bytes},
@@ -105,7 +105,8 @@ int run_check(const CheckOptions &o, Streams &streams) {
         Json list = Json::array();
         for (const Fault &fault : faults)
             list.push_back({{"id", fault.id ? Json(fault.id) : Json()}, {"reason", fault.reason}});
-        print_json(Json{{"schema", 1}, {"file", file}, {"profiles", profiles}, {"faults", list}}, streams.out);
+        print_json(Json{{"schema", json_schema}, {"file", file}, {"profiles", profiles}, {"faults", list}},
+                   streams.out);
     } else {
         for (const Fault &fault : faults)
             streams.out << (fault.id ? "profile " + std::to_string(fault.id) : std::string("file")) << ": "

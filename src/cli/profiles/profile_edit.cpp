@@ -26,7 +26,7 @@ void change_all(const std::string &db, lensprof_store *store, const std::vector<
 
 void print_changed(const std::vector<int64_t> &ids, const char *what, bool json, Streams &streams) {
     if (json)
-        print_json(Json{{"schema", 1}, {what, ids}}, streams.out);
+        print_json(Json{{"schema", json_schema}, {what, ids}}, streams.out);
     else if (ids.size() == 1)
         streams.out << what << " profile " << ids[0] << "\n";
     else

@@ -74,7 +74,7 @@ void export_blob(const ExportOptions &o, const StoredProfile &stored, Streams &s
     const lensprof_profile &profile = *stored.profile;
     const BlobStamp stamp = write_blob(profile, o.covariance, o.output);
     if (o.json) {
-        print_json(Json{{"schema", 1},
+        print_json(Json{{"schema", json_schema},
                         {"profile", stored.id},
                         {"blob", {{"file", o.output}, {"bytes", stamp.bytes}, {"crc32", stamp.crc32}}},
                         {"covariance_size", o.covariance ? profile.covariance_size : 0}},
@@ -126,7 +126,8 @@ void export_split(const ExportOptions &o, const ForeignRule &rule, const std::ve
         for (const StoredProfile *stored : file.profiles) ids.push_back(stored->id);
         list.push_back({{"file", file.path}, {"profiles", ids}});
     }
-    print_json(Json{{"schema", 1}, {"format", rule.name}, {"folder", o.output}, {"files", list}}, streams.out);
+    print_json(Json{{"schema", json_schema}, {"format", rule.name}, {"folder", o.output}, {"files", list}},
+               streams.out);
 }
 
 void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
@@ -142,7 +143,8 @@ void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::
     write_foreign(rule, o.output, o.foreign, profiles, names);
     note_means(rule, o, chosen, streams);
     if (o.json)
-        print_json(Json{{"schema", 1}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}}, streams.out);
+        print_json(Json{{"schema", json_schema}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}},
+                   streams.out);
     else
         streams.out << format("wrote %s: %zu profile%s as %s\n", o.output.c_str(), chosen.size(),
                               chosen.size() == 1 ? "" : "s", rule.name);

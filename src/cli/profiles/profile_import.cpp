@@ -268,7 +268,7 @@ int run(const ImportOptions &o, Streams &streams) {
     }
     progress.clear();
     if (o.json)
-        print_json(Json{{"schema", 1},
+        print_json(Json{{"schema", json_schema},
                         {"stored", import.stored},
                         {"known", import.known},
                         {"lenses", import.lenses.size()},

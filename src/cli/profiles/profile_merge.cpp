@@ -67,7 +67,7 @@ int run(const MergeOptions &o, Streams &streams) {
             streams.out << other.file << ": " << counted(other.added, "profile") << " added to " << store_path(o.db)
                         << ", " << other.known << (other.known == 1 ? " was" : " were") << " already there\n";
     }
-    if (o.json) print_json(Json{{"schema", 1}, {"merged", merged}}, streams.out);
+    if (o.json) print_json(Json{{"schema", json_schema}, {"merged", merged}}, streams.out);
     return 0;
 }
 

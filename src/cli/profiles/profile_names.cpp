@@ -57,7 +57,7 @@ Json names_json(const Databases &databases, const std::vector<Summaries> &all, b
         if (databases.size() > 1) entry["database"] = databases.file(index);
         list.push_back(entry);
     });
-    return Json{{"schema", 1}, {of_lenses ? "lenses" : "cameras", list}};
+    return Json{{"schema", json_schema}, {of_lenses ? "lenses" : "cameras", list}};
 }
 
 void print_names(const Databases &databases, const std::vector<Summaries> &all, bool of_lenses, std::ostream &out) {

@@ -114,7 +114,7 @@ void answer_range(const QueryOptions &o, const Databases &databases, const std::
             known.add(*profile);
         }
     if (o.json) {
-        print_json(Json{{"schema", 1},
+        print_json(Json{{"schema", json_schema},
                         {"id", nullptr},
                         {"found", true},
                         {"matches", count(all)},
@@ -192,7 +192,7 @@ int run(const QueryOptions &o, Streams &streams) {
         answer(o, refusal, streams);
     } catch (const Failure &failure) {
         if (o.json && failure.code == ExitCode::not_found)
-            print_json(Json{{"schema", 1},
+            print_json(Json{{"schema", json_schema},
                             {"id", nullptr},
                             {"found", false},
                             {"reason", failure.what()},

@@ -107,7 +107,7 @@ Json trial_json(const TrialReport &report) {
     Json none = figures_json(report.none);
     add_response(report.none, none);
     const bool is_any = report.is_any_better();
-    return {{"schema", 1},
+    return {{"schema", json_schema},
             {"file", report.file},
             {"against", report.path},
             {"images", report.images()},

@@ -12,7 +12,7 @@ namespace lensprof {
 using PicturePair = std::pair<uint32_t, uint32_t>;  // indices, the lower one first
 
 // All pairs if there are few pictures. For many, each picture with its neighbours in the sequence and with the most
-// similar ones, by vectors of locally aggregated descriptors (Jegou et al. 2010), so that the number of pairs grows
+// similar ones, by VLAD descriptors (Jegou et al. 2010), so that the number of pairs grows
 // linearly. Sorted.
 std::vector<PicturePair> candidate_pairs(const std::vector<Features> &pictures);
 

@@ -119,6 +119,14 @@ Json gamma_json(const BuildReport &report) {
     return json;
 }
 
+// Why the stored profile, or a part of it, was not used.
+std::string prior_reason(const BuildReport &report) {
+    for (const lensprof_reason code : {LENSPROF_REASON_PRIOR_OVERRULED, LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED,
+                                       LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED})
+        if (const Finding *finding = report.verdict.find(code)) return finding->text;
+    return report.no_prior;
+}
+
 // The stored profile used as the prior; null if none was requested.
 Json prior_json(const BuildReport &report) {
     static const Json overruled[] = {Json::array(), Json::array(), {"response", "falloff"}, {"response"}, {"falloff"}};
@@ -128,7 +136,7 @@ Json prior_json(const BuildReport &report) {
             {"composed", report.prior_is_composed},
             {"used", holds_prior(report.fit)},
             {"overruled", overruled[std::min<uint32_t>(verdict, LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED)]},
-            {"reason", verdict >= LENSPROF_PROFILE_PRIOR_OVERRULED ? report.verdict.text : report.no_prior}};
+            {"reason", prior_reason(report)}};
 }
 
 // What was used of the exposures in EXIF.
@@ -155,10 +163,10 @@ Json cameras_json(const BuildReport &report) {
         json["pairs"] = found.images ? Json(fit.pairs) : Json();
         json["shared_pairs"] = found.shared_pairs;
         json["agreeing_share"] = found.shared_pairs ? Json(found.agreeing_share) : Json();
-        json["light_difference_ev"] = found.shared_pairs ? Json(found.light_difference_ev) : Json();
+        json["irradiance_difference_ev"] = found.shared_pairs ? Json(found.irradiance_difference_ev) : Json();
         json["log_gamma"] = found.log_gamma;
         json["offset_sigma_ev"] = found.joined ? Json(found.offset_sigma_ev) : Json();
-        json["evens"] = found.images && fit.evens;
+        json["equalizes"] = found.images && fit.equalizes;
         json["response"] = found.images ? response_json(&fit.response, 1) : Json();
         if (found.images) json["response"]["from"] = response_from_name(fit.response_from);
         json["gamma_from"] = found.images ? Json(gamma_name(fit.gamma_from)) : Json();
@@ -174,9 +182,9 @@ Json cameras_json(const BuildReport &report) {
 Json build_json(const BuildReport &report) {
     const auto &fit = report.fit;
     Json json;
-    json["schema"] = 1;
+    json["schema"] = json_schema;
     json["usable"] = fit.usable != 0;
-    json["evens"] = fit.evens != 0;
+    json["equalizes"] = fit.equalizes != 0;
     json["model"] = model_name(fit.model);
     add_verdict(report.verdict, json);
     json["reference"] = report.reference;
@@ -186,7 +194,7 @@ Json build_json(const BuildReport &report) {
     json["cameras"] = cameras_json(report);
     json["response"] = response_json(&fit.response, 1);
     json["response"]["from"] = response_from_name(fit.response_from);
-    json["response"]["light_spread_ev"] = fit.light_spread_ev;
+    json["response"]["irradiance_spread_ev"] = fit.irradiance_spread_ev;
     json["residual"] = {{"before_rms", number_or_null(fit.before_rms)},
                         {"heldout_rms", number_or_null(fit.heldout_rms)},
                         {"heldout_median", number_or_null(fit.heldout_median)},

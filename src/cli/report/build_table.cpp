@@ -132,7 +132,7 @@ void print_responses(const BuildReport &report, std::ostream &out) {
             out << ", with the reference";
         else
             out << format("; the light of %u shared pairs differs by %.3f EV (median)", found.shared_pairs,
-                          found.light_difference_ev);
+                          found.irradiance_difference_ev);
         if (found.images && !camera.is_reference && camera.fit.heldout_rms != LENSPROF_UNKNOWN)
             out << format("; residual %.2f levels (RMS, held out)", camera.fit.heldout_rms);
         out << "\n";
@@ -167,12 +167,12 @@ void print_build(const BuildReport &report, std::ostream &out) {
     if (!report.links.empty()) out << links_row(report.links);
     if (report.register_s > 0.0) out << format("time      find overlaps %.2f s\n", report.register_s);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
-    if (!fit.usable && fit.evens && report.has_falloff)
-        out << "CORRECTS these pictures; not stored as a profile: " << report.verdict.text << "\n";
+    if (!fit.usable && fit.equalizes && report.has_falloff)
+        out << "CORRECTS these pictures; not stored as a profile: " << report.verdict.text() << "\n";
     else if (!fit.usable)
-        out << "NOT USABLE: " << report.verdict.text << "\n";
-    else if (!report.verdict.text.empty())
-        out << "warning   " << report.verdict.text << "\n";
+        out << "NOT USABLE: " << report.verdict.text() << "\n";
+    else
+        print_findings(report.verdict, out);
 }
 
 }  // namespace lensprof

@@ -203,7 +203,7 @@ Json chart_json(const Chart &chart) {
         json["ev"] = ev;
         curves.push_back(json);
     }
-    return {{"schema", 1}, {"title", chart.title}, {"note", chart.note}, {"curves", curves}};
+    return {{"schema", json_schema}, {"title", chart.title}, {"note", chart.note}, {"curves", curves}};
 }
 
 }  // namespace lensprof

@@ -105,6 +105,9 @@ bool holds_prior(const lensprof_fit_result &fit);
 // Whether the fit left out an image, which then has no exposure.
 bool is_left_out(const BuildReport &report, size_t image);
 
+// `schema` of the JSON of all commands. 2: findings instead of one reason.
+constexpr int json_schema = 2;
+
 // Prints one line. File names need not be UTF-8, but JSON must be: invalid bytes become U+FFFD, and a member `x` with
 // such a text is followed by `x_bytes`, its bytes in hexadecimal digits.
 void print_json(const Json &json, std::ostream &out);

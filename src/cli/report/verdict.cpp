@@ -1,35 +1,142 @@
 #include "cli/report/verdict.hpp"
 
 #include <algorithm>
+#include <array>
+#include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/program/library.hpp"
 
 namespace lensprof {
+namespace {
 
-void name_image(const std::vector<std::string> &names, Verdict &verdict) {
-    if (verdict.item.kind != LENSPROF_ITEM_IMAGE || verdict.item.index >= names.size()) return;
-    verdict.file = names[verdict.item.index];
-    verdict.text = with_name(verdict.text, verdict.item, verdict.file);
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char *, 4> severity_names = {"passed", "note", "warning", "refusal"};
+
+// at(index, finding) asks the library for one.
+template <class Result, class At>
+Verdict verdict_from(const Result &result, At at) {
+    Verdict verdict;
+    lensprof_error error{};
+    for (uint32_t i = 0; i < result.findings + result.passed; i++) {
+        lensprof_finding found;
+        lensprof_finding_init(&found);
+        check(at(i, &found, &error), "fit", &error);
+        Finding finding(found.code, found.severity, found.text, {found.value, found.value + found.value_count});
+        finding.item = found.item, finding.measured = found.measured, finding.limit = found.limit;
+        (i < result.findings ? verdict.findings : verdict.passed).push_back(finding);
+    }
+    return verdict;
 }
 
-void name_shot(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Verdict &verdict) {
-    const auto shot = std::find(shots.begin(), shots.end(), verdict.item.index);
-    if (verdict.item.kind != LENSPROF_ITEM_SHOT || shot == shots.end()) return;
-    verdict.file = names[static_cast<size_t>(shot - shots.begin())];
-    verdict.text = with_name(verdict.text, verdict.item, "the shot of " + verdict.file);
+auto end_of(std::vector<Finding> &findings, uint32_t severity, bool same) {
+    return std::find_if(findings.begin(), findings.end(), [=](const Finding &finding) {
+        return same ? finding.severity < severity : finding.severity <= severity;
+    });
 }
 
-void add_verdict(const Verdict &verdict, nlohmann::ordered_json &json) {
-    json["reason"] = verdict.text;
-    json["reason_code"] = lensprof_reason_name(verdict.code);
-    json["reason_item"] = nullptr;
-    if (verdict.item.kind != LENSPROF_ITEM_NONE)
-        json["reason_item"] = {{"kind", verdict.item.kind == LENSPROF_ITEM_SHOT ? "shot" : "image"},
-                               {"index", verdict.item.index},
-                               {"file", verdict.file}};
-    json["reason_values"] = verdict.values;
+Json number(double value) { return std::isnan(value) ? Json() : Json(value); }
+
+Json finding_json(const Finding &finding) {
+    Json json = {{"code", lensprof_reason_name(finding.code)},
+                 {"severity", severity_names[finding.severity]},
+                 {"text", finding.text},
+                 {"item", nullptr},
+                 {"values", finding.values},
+                 {"measured", number(finding.measured)},
+                 {"limit", number(finding.limit)}};
+    if (finding.item.kind != LENSPROF_ITEM_NONE)
+        json["item"] = {{"kind", finding.item.kind == LENSPROF_ITEM_SHOT ? "shot" : "image"},
+                        {"index", finding.item.index},
+                        {"file", finding.file}};
+    return json;
+}
+
+}  // namespace
+
+const Finding *Verdict::find(uint32_t wanted) const {
+    const auto found =
+        std::find_if(findings.begin(), findings.end(), [=](const Finding &f) { return f.code == wanted; });
+    return found == findings.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Verdict::texts(uint32_t severity) const {
+    std::vector<std::string> all;
+    for (const Finding &finding : findings)
+        if (finding.severity == severity) all.push_back(finding.text);
+    return all;
+}
+
+void Verdict::add_first(const Finding &finding) { findings.insert(end_of(findings, finding.severity, false), finding); }
+
+void Verdict::add_last(const Finding &finding) { findings.insert(end_of(findings, finding.severity, true), finding); }
+
+Verdict verdict_of(const lensprof_fit *fit, uint32_t setting) {
+    lensprof_fit_result result;
+    lensprof_fit_result_init(&result);
+    lensprof_error error{};
+    check(lensprof_fit_setting_at(fit, setting, &result, &error), "fit", &error);
+    return verdict_from(result, [=](uint32_t index, lensprof_finding *finding, lensprof_error *failure) {
+        return lensprof_fit_finding_at(fit, setting, index, finding, failure);
+    });
+}
+
+Verdict verdict_of(const lensprof_flat *flat) {
+    lensprof_flat_result result;
+    lensprof_flat_result_init(&result);
+    lensprof_error error{};
+    check(lensprof_flat_get(flat, &result, &error), "fit", &error);
+    return verdict_from(result, [=](uint32_t index, lensprof_finding *finding, lensprof_error *failure) {
+        return lensprof_flat_finding_at(flat, index, finding, failure);
+    });
+}
+
+void name_images(const std::vector<std::string> &names, Verdict &verdict) {
+    for (Finding &finding : verdict.findings) {
+        if (finding.item.kind != LENSPROF_ITEM_IMAGE || finding.item.index >= names.size()) continue;
+        finding.file = names[finding.item.index];
+        finding.text = with_name(finding.text, finding.item, finding.file);
+    }
+}
+
+void name_shots(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Verdict &verdict) {
+    for (Finding &finding : verdict.findings) {
+        const auto shot = std::find(shots.begin(), shots.end(), finding.item.index);
+        if (finding.item.kind != LENSPROF_ITEM_SHOT || shot == shots.end()) continue;
+        finding.file = names[static_cast<size_t>(shot - shots.begin())];
+        finding.text = with_name(finding.text, finding.item, "the shot of " + finding.file);
+    }
+}
+
+void add_verdict(const Verdict &verdict, Json &json) {
+    json["findings"] = Json::array();
+    for (const Finding &finding : verdict.findings) json["findings"].push_back(finding_json(finding));
+    json["passed"] = Json::array();
+    for (const Finding &rule : verdict.passed)
+        json["passed"].push_back({{"code", lensprof_reason_name(rule.code)},
+                                  {"measured", number(rule.measured)},
+                                  {"limit", number(rule.limit)}});
+}
+
+std::string first_text(const Json &json) {
+    const Json &findings = json["findings"];
+    return findings.empty() ? "" : findings[0]["text"].get<std::string>();
+}
+
+void print_findings(const Verdict &verdict, std::ostream &out) {
+    for (const Finding &finding : verdict.findings) {
+        if (finding.severity == LENSPROF_SEVERITY_WARNING) out << "warning   " << finding.text << "\n";
+        if (finding.severity == LENSPROF_SEVERITY_NOTE) out << "note      " << finding.text << "\n";
+    }
+}
+
+void report_findings(const Verdict &verdict, const std::string &source, Streams &streams) {
+    for (const Finding &finding : verdict.findings) {
+        if (finding.severity == LENSPROF_SEVERITY_WARNING) warn(streams, source + ": " + finding.text);
+        if (finding.severity == LENSPROF_SEVERITY_NOTE) note(streams, source + ": " + finding.text);
+    }
 }
 
 }  // namespace lensprof

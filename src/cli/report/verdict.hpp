@@ -1,40 +1,69 @@
-// The verdict of a fit as reported by the command: with files instead of image numbers.
+// The verdict of a result as the command reports it: findings with files instead of image numbers.
 #pragma once
 
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <lensprof/reason.h>
+#include <lensprof/fit.h>
+#include <lensprof/flat.h>
+
+#include "cli/program/message.hpp"
 
 namespace lensprof {
 
-struct Verdict {
-    std::string text;  // empty: usable, and no warning
-    uint32_t code = LENSPROF_REASON_NONE;
+struct Finding {
+    uint32_t code = LENSPROF_REASON_NONE, severity = LENSPROF_SEVERITY_REFUSAL;
+    std::string text;
     lensprof_item item{};
     std::string file;  // of the item; for a shot, its first picture
     std::vector<double> values;
+    double measured = NAN, limit = NAN;
+
+    Finding() = default;
+    Finding(uint32_t of, uint32_t how_severe, const std::string &sentence, std::vector<double> numbers = {})
+        : code(of), severity(how_severe), text(sentence), values(std::move(numbers)) {}
 };
 
-// The verdict of a result (lensprof_fit_result or lensprof_flat_result) as the library returns it.
-template <class Result>
-Verdict verdict_of(const Result &result) {
-    return {result.reason,
-            result.reason_code,
-            result.reason_item,
-            {},
-            {result.reason_value, result.reason_value + result.reason_values}};
-}
+struct Verdict {
+    std::vector<Finding> findings;  // refusals, then warnings, then notes
+    std::vector<Finding> passed;    // rules that hold
 
-// Replaces the number of an image by its file, if the verdict is about an image.
-void name_image(const std::vector<std::string> &names, Verdict &verdict);
+    // Of the most important finding; NONE and empty without findings.
+    uint32_t code() const { return findings.empty() ? uint32_t{LENSPROF_REASON_NONE} : findings[0].code; }
+    std::string text() const { return findings.empty() ? "" : findings[0].text; }
+    const Finding *find(uint32_t code) const;
+    std::vector<std::string> texts(uint32_t severity) const;
 
-// Replaces the number of a shot by its first picture, if the verdict is about a shot; `shots` has the shot per picture.
-void name_shot(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Verdict &verdict);
+    // Adds a finding, the first (or last) of its severity.
+    void add_first(const Finding &finding);
+    void add_last(const Finding &finding);
+    void refuse(uint32_t code, const std::string &text) { add_first({code, LENSPROF_SEVERITY_REFUSAL, text}); }
+};
 
-// Adds reason, reason_code, reason_item and reason_values to an object; docs/json.md describes them.
+// The findings that the library returns; of one lens setting.
+Verdict verdict_of(const lensprof_fit *fit, uint32_t setting = LENSPROF_FIT_REFERENCE);
+Verdict verdict_of(const lensprof_flat *flat);
+
+// Replaces the numbers of images by their files.
+void name_images(const std::vector<std::string> &names, Verdict &verdict);
+
+// Replaces the numbers of shots by their first pictures; `shots` has the shot per picture.
+void name_shots(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Verdict &verdict);
+
+// Adds `findings` and `passed` to an object; docs/json.md describes them.
 void add_verdict(const Verdict &verdict, nlohmann::ordered_json &json);
+
+// The text of the first finding in what add_verdict wrote; empty without findings.
+std::string first_text(const nlohmann::ordered_json &json);
+
+// The warnings and notes as lines of a table.
+void print_findings(const Verdict &verdict, std::ostream &out);
+
+// The warnings and notes on standard error.
+void report_findings(const Verdict &verdict, const std::string &source, Streams &streams);
 
 }  // namespace lensprof

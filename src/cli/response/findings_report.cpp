@@ -68,7 +68,7 @@ void print_file(const FileFindings &file, std::ostream &out) {
 
 Json response_report_json(const ResponseReport &report) {
     Json json;
-    json["schema"] = 1;
+    json["schema"] = json_schema;
     json["method"] = "response";
     json["usable"] = report.usable;
     add_verdict(report.verdict, json);
@@ -95,9 +95,9 @@ void print_response_report(const ResponseReport &report, std::ostream &out) {
                   report.shows_white ? "is measured" : "is extrapolated");
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!report.usable)
-        out << "NOT USABLE: " << report.verdict.text << "\n";
-    else if (!report.verdict.text.empty())
-        out << "warning   " << report.verdict.text << "\n";
+        out << "NOT USABLE: " << report.verdict.text() << "\n";
+    else
+        print_findings(report.verdict, out);
 }
 
 }  // namespace lensprof

@@ -14,7 +14,7 @@ constexpr double max_gamma_sigma = 0.1;
 
 void refuse(ResponseReport &report, uint32_t code, const std::string &text, std::vector<double> values) {
     report.usable = false;
-    report.verdict.code = code, report.verdict.text = text, report.verdict.values = std::move(values);
+    report.verdict.add_first({code, LENSPROF_SEVERITY_REFUSAL, text, std::move(values)});
 }
 
 double worst_noise(const ResponseReport &report) {
@@ -62,23 +62,21 @@ void judge(ResponseReport &report) {
                       format("the exponent is known only to %.0f %%; take a picture with all brightnesses",
                              100.0 * report.log_gamma_sigma),
                       {});
-    const auto add_warning = [&](uint32_t code, const std::string &text, std::vector<double> values) {
-        if (!report.verdict.text.empty()) return;
-        report.verdict.code = code, report.verdict.text = text, report.verdict.values = std::move(values);
+    const auto add = [&](uint32_t severity, uint32_t code, const std::string &text, std::vector<double> values) {
+        report.verdict.add_last({code, severity, text, std::move(values)});
     };
     if (pattern.pattern_levels > weak_pattern)
-        add_warning(
-            LENSPROF_REASON_WEAK_PATTERNS,
+        add(LENSPROF_SEVERITY_WARNING, LENSPROF_REASON_PATTERNS,
             named
                 + format("a map of %.1f levels over the frame remains; the camera may have mapped tones locally",
                          pattern.pattern_levels),
             {pattern.pattern_ev, pattern.pattern_levels});
     if (report.lowest > 48.0 || report.highest < 208.0)
-        add_warning(LENSPROF_REASON_MISSING_GREYS,
-                    format("only grey levels %.0f to %.0f are measured; beyond them the response is that of a typical "
-                           "camera, continued",
-                           report.lowest, report.highest),
-                    {report.lowest / 255.0, report.highest / 255.0});
+        add(LENSPROF_SEVERITY_WARNING, LENSPROF_REASON_MISSING_GREYS,
+            format("only grey levels %.0f to %.0f are measured; beyond them the response is that of a typical "
+                   "camera, continued",
+                   report.lowest, report.highest),
+            {report.lowest / 255.0, report.highest / 255.0});
 }
 
 }  // namespace lensprof

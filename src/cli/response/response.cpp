@@ -130,7 +130,7 @@ lensprof_response prior_of(const lensprof_profile_key &key) {
     const uint32_t kind = lensprof_camera_kind_of(&key);
     lensprof_response prior;
     check(lensprof_response_set_typical(
-              &prior, kind == LENSPROF_CAMERA_PHONE ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_CAMERA, nullptr, nullptr),
+              &prior, kind == LENSPROF_CAMERA_PHONE ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_STILL, nullptr, nullptr),
           "response");
     return prior;
 }
@@ -191,7 +191,7 @@ int finish(const Options &o, lensprof_profile_key key, ResponseReport &report, S
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(key) << "\n";
-    if (report.usable && !report.verdict.text.empty()) warn(streams, o.files.front() + ": " + report.verdict.text);
+    if (report.usable) report_findings(report.verdict, o.files.front(), streams);
     if (!report.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
     return static_cast<int>(report.usable ? ExitCode::done : ExitCode::not_usable);
 }
@@ -210,7 +210,7 @@ int run(const Options &o, Streams &streams) {
         measure(o, prior_of(key), report, streams);
     } catch (const Failure &failure) {
         if (o.json && failure.code == ExitCode::not_usable) {
-            report.verdict.text = failure.what(), report.verdict.code = failure.reason;
+            report.verdict.refuse(failure.reason, failure.what());
             report.files.clear();
             print_json(response_report_json(report), streams.out);
         }

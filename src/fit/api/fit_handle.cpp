@@ -14,9 +14,12 @@
 #include "fit/api/profile.hpp"
 #include "fit/methods/overlap.hpp"
 #include "fit/verdict/output.hpp"
+#include "fit/verdict/rules.hpp"
 
 namespace lensprof {
 namespace {
+
+constexpr size_t kFindingsMax = kRuleCount + 8;  // of one setting: of the rules, and of the methods
 
 // Numbers of the parts.
 struct Counts {
@@ -29,6 +32,11 @@ struct Counts {
         }
     }
 };
+
+// The findings on one setting.
+const Findings &findings_of(const FitCall &call, uint32_t setting) {
+    return call.settings.empty() ? call.result.verdict : call.settings[setting].verdict;
+}
 
 // The result for one setting: of the reference's, with the parts of the setting and its camera.
 lensprof_fit_result result_of(const FitCall &call, uint32_t setting, const Counts &counts) {
@@ -129,7 +137,8 @@ std::vector<double> levels_of(const lensprof_fit &fit, const lensprof_pair *pair
 
 size_t fit_bytes(const std::vector<lensprof_fit_image> &images) {
     const Counts counts(images);
-    return sizeof(lensprof_fit) + counts.settings * sizeof(lensprof_fit_result)
+    return sizeof(lensprof_fit)
+           + counts.settings * (sizeof(lensprof_fit_result) + kFindingsMax * sizeof(lensprof_finding))
            + counts.cameras * sizeof(lensprof_fit_camera)
            + counts.images
                  * (sizeof(lensprof_fit_image_quality) + sizeof(lensprof_fit_image) + sizeof(lensprof_exposure));
@@ -152,11 +161,16 @@ lensprof_fit *make_fit(const FitCall &call, const lensprof_exposure *exposures, 
         fit.prior_pairs = call.options.profile->provenance.pairs;
     }
     fit.results = take_block<lensprof_fit_result>(block, counts.settings);
+    fit.findings = take_block<lensprof_finding>(block, counts.settings * kFindingsMax);
     fit.cameras = take_block<lensprof_fit_camera>(block, counts.cameras);
     fit.quality = take_block<lensprof_fit_image_quality>(block, counts.images);
     fit.images = take_block<lensprof_fit_image>(block, counts.images);
     fit.exposures = take_block<lensprof_exposure>(block, counts.images);
-    for (uint32_t s = 0; s < counts.settings; s++) fit.results[s] = result_of(call, s, counts);
+    for (uint32_t s = 0; s < counts.settings; s++) {
+        fit.results[s] = result_of(call, s, counts);
+        const Findings none, &found = fit.results[s].images ? findings_of(call, s) : none;
+        hold_findings(found, kFindingsMax, fit.findings + s * kFindingsMax, fit.results[s]);
+    }
     for (uint32_t k = 0; k < counts.cameras; k++) fit.cameras[k] = camera_of(call, k);
     for (uint32_t i = 0; i < counts.images; i++) {
         fit.quality[i] = call.quality[i];
@@ -213,6 +227,15 @@ lensprof_status lensprof_fit_camera_at(const lensprof_fit *fit, uint32_t camera,
     return status == LENSPROF_OK
                ? give(fit->cameras[camera], result, LP_END_OF(lensprof_fit_camera, reserved), "fit", error)
                : status;
+}
+
+lensprof_status lensprof_fit_finding_at(const lensprof_fit *fit, uint32_t setting, uint32_t index,
+                                        lensprof_finding *finding, lensprof_error *error) {
+    const uint32_t number = setting_of(fit, setting);
+    const lensprof_status status = check_fit(fit, finding, number, fit ? fit->setting_count : 0, "setting", error);
+    if (status != LENSPROF_OK) return status;
+    return give_finding(fit->findings + size_t{number} * kFindingsMax, fit->results[number], index, finding, "fit",
+                        error);
 }
 
 lensprof_status lensprof_fit_profile(const lensprof_fit *fit, uint32_t setting, lensprof_profile *profile,

@@ -13,6 +13,7 @@ struct lensprof_fit {
     uint32_t reference_setting, method, channels;
     uint32_t prior_images, prior_pairs;  // of the profile that the result contains, if any
     lensprof_fit_result *results;        // per setting
+    lensprof_finding *findings;          // lensprof::kFindingsMax per setting
     lensprof_fit_camera *cameras;
     lensprof_fit_image_quality *quality;
     lensprof_fit_image *images;

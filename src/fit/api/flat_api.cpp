@@ -7,7 +7,7 @@
 #include "fit/api/profile.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/sized.hpp"
-#include "fit/flat/fit.hpp"
+#include "fit/flat/rules.hpp"
 
 using namespace lensprof;
 
@@ -15,6 +15,7 @@ struct lensprof_flat {
     uint32_t mark;  // kHeldFlat until the fit is released
     uint32_t is_own_memory, responses, reserved;
     lensprof_flat_result *result;
+    lensprof_finding *findings;   // lensprof::kFlatRuleCount
     lensprof_response *response;  // 3, of which `responses` are used
     lensprof_flat_image_quality *quality;
 };
@@ -24,7 +25,7 @@ namespace {
 constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr double kLargestTurn = 360.0;
 constexpr size_t kFirstFlatOptions = LP_END_OF(lensprof_flat_options, progress_user);
-constexpr size_t kFirstFlatImage = LP_END_OF(lensprof_flat_image, turn_deg);
+constexpr size_t kFirstFlatImage = LP_END_OF(lensprof_flat_image, rotation_deg);
 constexpr uint32_t kHeldFlat = 0x4c504643u;
 
 // The first option that is out of range, with its range; NULL if all are valid.
@@ -78,10 +79,10 @@ lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "a grey picture; set channels to 1");
     if (!(std::abs(image.ev) <= 64.0))
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error, "exposure beyond 64 EV");
-    if (!(std::abs(image.turn_deg) <= kLargestTurn))
+    if (!(std::abs(image.rotation_deg) <= kLargestTurn))
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "rotated by more than 360 degrees");
     for (uint32_t j = 0; j < i; j++)
-        if (images[j].shot == image.shot && images[j].turn_deg != image.turn_deg)
+        if (images[j].shot == image.shot && images[j].rotation_deg != image.rotation_deg)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "in the same shot as image %u, but rotated differently", j);
     return LENSPROF_OK;
@@ -134,9 +135,11 @@ lensprof_flat *make_flat(const Call &call, void *memory, bool is_own) {
     flat = {};
     flat.is_own_memory = is_own;
     flat.result = take_block<lensprof_flat_result>(block, 1);
+    flat.findings = take_block<lensprof_finding>(block, kFlatRuleCount);
     flat.response = take_block<lensprof_response>(block, 3);
     flat.quality = take_block<lensprof_flat_image_quality>(block, call.quality.size());
     *flat.result = call.result;
+    hold_findings(call.result.verdict, kFlatRuleCount, flat.findings, *flat.result);
     flat.responses = call.options.response ? call.options.responses : 1;
     lensprof_response_set_linear(&flat.response[0]);
     if (call.options.response) std::copy_n(call.options.response, flat.responses, flat.response);
@@ -168,8 +171,8 @@ void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t siz
 
 size_t lensprof_flat_bytes(uint32_t image_count) {
     if (image_count == 0 || image_count > LENSPROF_FLAT_IMAGES) return 0;
-    return sizeof(lensprof_flat) + sizeof(lensprof_flat_result) + 3 * sizeof(lensprof_response)
-           + image_count * sizeof(lensprof_flat_image_quality);
+    return sizeof(lensprof_flat) + sizeof(lensprof_flat_result) + kFlatRuleCount * sizeof(lensprof_finding)
+           + 3 * sizeof(lensprof_response) + image_count * sizeof(lensprof_flat_image_quality);
 }
 
 lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const lensprof_flat_image *images,
@@ -205,7 +208,7 @@ void lensprof_flat_destroy(lensprof_flat *flat) {
 lensprof_status lensprof_flat_get(const lensprof_flat *flat, lensprof_flat_result *result, lensprof_error *error) {
     const lensprof_status status = check_held(flat, result, kHeldFlat, "flat", error);
     return status == LENSPROF_OK
-               ? give(*flat->result, result, LP_END_OF(lensprof_flat_result, reason_value), "flat", error)
+               ? give(*flat->result, result, LP_END_OF(lensprof_flat_result, gain_grid), "flat", error)
                : status;
 }
 
@@ -216,6 +219,12 @@ lensprof_status lensprof_flat_image_at(const lensprof_flat *flat, uint32_t index
     return status == LENSPROF_OK
                ? give(flat->quality[index], quality, LP_END_OF(lensprof_flat_image_quality, card), "flat", error)
                : status;
+}
+
+lensprof_status lensprof_flat_finding_at(const lensprof_flat *flat, uint32_t index, lensprof_finding *finding,
+                                         lensprof_error *error) {
+    const lensprof_status status = check_held(flat, finding, kHeldFlat, "flat", error);
+    return status == LENSPROF_OK ? give_finding(flat->findings, *flat->result, index, finding, "flat", error) : status;
 }
 
 lensprof_status lensprof_flat_profile(const lensprof_flat *flat, lensprof_profile *profile, lensprof_error *error) {

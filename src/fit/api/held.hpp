@@ -1,11 +1,13 @@
 // What the fits that a caller holds have in common: blocks of memory, and answers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include <lensprof/base.h>
 
 #include "fit/base/sized.hpp"
+#include "fit/verdict/finding.hpp"
 
 namespace lensprof {
 
@@ -61,6 +63,26 @@ lensprof_status give(const T &found, T *given, size_t first, const char *what, l
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "%s: %s", what, wrong);
     lp_sized_copy(given, &found);
     return LENSPROF_OK;
+}
+
+// Copies findings into the block of a held fit, and counts them in its result.
+template <class Result>
+void hold_findings(const Findings &findings, size_t capacity, lensprof_finding *held, Result &result) {
+    const size_t count = std::min(findings.size(), capacity);
+    std::copy_n(findings.begin(), count, held);
+    result.findings = std::min(count_findings(findings), static_cast<uint32_t>(count));
+    result.passed = static_cast<uint32_t>(count) - result.findings;
+}
+
+// The finding with this index, of those of a result.
+template <class Result>
+lensprof_status give_finding(const lensprof_finding *held, const Result &result, uint32_t index,
+                             lensprof_finding *finding, const char *what, lensprof_error *error) {
+    const uint32_t count = result.findings + result.passed;
+    if (index >= count)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "%s: it has no finding %u, but %u, counted from 0", what, index,
+                    count);
+    return give(held[index], finding, LP_END_OF(lensprof_finding, text), what, error);
 }
 
 }  // namespace lensprof

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "fit/flat/solver.hpp"
+#include "fit/verdict/finding.hpp"
 
 namespace lensprof {
 
 // The result while it is made.
 struct FlatResult : lensprof_flat_result {
     lensprof_flat_image_quality *image_quality = nullptr;  // per picture
+    Findings verdict;
 };
 
 // All data of one call.
@@ -44,7 +46,7 @@ void normalise_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);
 // Fills everything except the verdict.
 void describe_flat(const FlatFit &fit, FlatResult &result);
 
-// Fills `usable` and `reason`.
+// Fills `usable` and `verdict`.
 void judge_flat(const FlatFit &fit, FlatResult &result);
 
 }  // namespace lensprof

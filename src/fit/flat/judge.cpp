@@ -1,27 +1,13 @@
-// The verdict on a flat field: why it is not usable, or the warning about it.
+// What the verdict on a flat field measures, and its rules.
 #include <algorithm>
 #include <cmath>
 
 #include "fit/base/quantile.hpp"
 #include "fit/flat/fit.hpp"
-#include "fit/verdict/reason.hpp"
+#include "fit/flat/rules.hpp"
 
 namespace lensprof {
 namespace {
-
-constexpr uint32_t kMinCells = 60;
-constexpr double kSmallestRadius = 0.6, kWholeRadius = 0.9;   // half diagonals
-constexpr double kMuchClipped = 0.2, kSomeClipped = 0.005;    // of the card, white or black in every exposure
-constexpr double kLargestCornerSigma = 0.01;                  // of M
-constexpr double kMuchTexture = 0.01, kSomeTexture = 0.005;   // of the light
-constexpr double kSteepAlone = 0.2, kSlantAlone = 0.1;        // of the light per half diagonal, not rotated:
-constexpr double kSteepTurned = 0.5;                          // its square is about the error of a plane
-constexpr double kMuchPerShot = 0.015, kSomePerShot = 0.004;  // of the light
-constexpr double kNotRadial = 0.003;                          // of the light
-constexpr double kWrongEv = 0.3, kDoubtfulEv = 0.1;           // EV, within a shot
-constexpr double kSteepest = 0.05, kFlattest = 20.0;          // d ln E / d ln B; of cameras .2 to 10
-constexpr double kFewInliers = 0.5;
-constexpr double kFarCentre = 0.1;  // half diagonals, as for the overlap fit
 
 // The worst of the shots in some respect.
 struct Worst {
@@ -82,88 +68,115 @@ double contrast_of_light(const FlatFit &fit, uint32_t image) {
     return contrasts.empty() ? 1.0 : median(contrasts);
 }
 
-// Whether the response has almost no gradation in the range of the picture's grey values.
-bool has_no_gradation(const FlatFit &fit, FlatResult &r) {
-    for (uint32_t i = 0; i < fit.count; i++) {
-        double contrast = contrast_of_light(fit, i);
-        if (contrast < kSteepest) return refuse(r, of_image(LENSPROF_REASON_FLAT_RESPONSE_STEP, i, {contrast}));
-        if (contrast > kFlattest) return refuse(r, of_image(LENSPROF_REASON_FLAT_RESPONSE_LEVEL, i, {contrast}));
-    }
-    return false;
-}
-
-bool lacks_light(const FlatFit &fit, FlatResult &r) {
-    Worst white = worst_share_in(fit, CellState::white), black = worst_share_in(fit, CellState::black);
-    if (white.value > kMuchClipped) return refuse(r, of_shot(LENSPROF_REASON_FLAT_WHITE, white.shot, {white.value}));
-    if (black.value > kMuchClipped) return refuse(r, of_shot(LENSPROF_REASON_FLAT_BLACK, black.shot, {black.value}));
-    uint32_t number;
-    if (lacks_card(fit, number)) return refuse(r, of_shot(LENSPROF_REASON_FLAT_NO_CARD, number));
-    if (r.cells < kMinCells) return refuse(r, {LENSPROF_REASON_FLAT_FEW_CELLS, {double(r.cells)}});
-    if (r.radius < kSmallestRadius) return refuse(r, {LENSPROF_REASON_FLAT_SMALL_RADIUS, {r.radius}});
-    return false;
-}
-
-bool contradicts_model(const FlatFit &fit, FlatResult &r) {
-    Worst wrong = wrong_exposure(fit, r), steep = steepest(fit);
-    if (wrong.value > kWrongEv)
-        return refuse(r, of_image(LENSPROF_REASON_FLAT_EXPOSURE_WRONG, wrong.shot, {wrong.value}));
-    if (r.texture > kMuchTexture) return refuse(r, {LENSPROF_REASON_FLAT_TEXTURE, {r.texture}});
-    if (r.shot_residual > kMuchPerShot) return refuse(r, {LENSPROF_REASON_FLAT_SHOTS_DIFFER, {r.shot_residual}});
-    if (r.inlier_share < kFewInliers) return refuse(r, {LENSPROF_REASON_FLAT_FEW_AGREE, {r.inlier_share}});
-    const bool plane = fit.problem.model.light_terms > 0;
-    if (plane && steep.value > (r.separated ? kSteepTurned : kSteepAlone))
-        return refuse(r, of_shot(r.separated ? LENSPROF_REASON_FLAT_STEEP : LENSPROF_REASON_FLAT_STEEP_ALONE,
-                                 steep.shot, {steep.value}));
-    return false;
-}
-
-bool is_undetermined(const FlatFit &fit, FlatResult &r) {
-    if (!r.converged) return refuse(r, {LENSPROF_REASON_NOT_SETTLED, {double(r.iterations)}});
-    if (fit.covariance.size() == 0) return refuse(r, {LENSPROF_REASON_FLAT_UNDETERMINED, {}});
-    // A residual that is not radial makes the polynomial uncertain, but not the product of polynomial and grid.
-    const bool radial = r.frame_residual < kNotRadial;
-    if (r.corner_sigma > kLargestCornerSigma && !radial && !r.gain_grid.columns)
-        return refuse(r, {LENSPROF_REASON_FLAT_CORNER_NOT_RADIAL, {r.frame_residual, r.corner_sigma}});
-    if (r.corner_sigma > kLargestCornerSigma && radial)
-        return refuse(r, {LENSPROF_REASON_FLAT_CORNER_UNCERTAIN, {r.corner_sigma}});
-    return false;
-}
-
-// The most important warning about the card and the pictures.
-bool warns_of_card(const FlatFit &fit, FlatResult &r) {
-    Worst wrong = wrong_exposure(fit, r), white = worst_share_in(fit, CellState::white),
-          black = worst_share_in(fit, CellState::black);
-    if (r.radius < kWholeRadius) return warn(r, {LENSPROF_REASON_FLAT_EXTRAPOLATED, {r.radius}});
-    if (white.value > kSomeClipped && white.value > black.value)
-        return warn(r, of_shot(LENSPROF_REASON_FLAT_SOME_WHITE, white.shot, {white.value}));
-    if (black.value > kSomeClipped) return warn(r, of_shot(LENSPROF_REASON_FLAT_SOME_BLACK, black.shot, {black.value}));
-    if (wrong.value > kDoubtfulEv)
-        return warn(r, of_image(LENSPROF_REASON_FLAT_EXPOSURE_DOUBTFUL, wrong.shot, {wrong.value}));
-    if (r.shot_residual > kSomePerShot) return warn(r, {LENSPROF_REASON_FLAT_SHOTS_DIFFER_SOME, {r.shot_residual}});
-    return r.texture > kSomeTexture && warn(r, {LENSPROF_REASON_FLAT_SOME_TEXTURE, {r.texture}});
-}
-
-// The most important warning about light and lens.
-bool warns_of_light(const FlatFit &fit, FlatResult &r) {
-    const auto &centre = r.vignetting[0].center;
-    const double off_centre = std::hypot(centre[0], centre[1]), slant = steepest(fit).value;
-    const bool by_prior =
-        fit.problem.model.light_terms > 0 && !r.separated && (fit.options.free & LENSPROF_FREE_CENTER);
-    if (by_prior && slant > kSlantAlone) return warn(r, {LENSPROF_REASON_FLAT_SLANTED_LIGHT, {slant}});
-    if (r.frame_residual > kNotRadial && r.gain_grid.columns)
-        return warn(r, {LENSPROF_REASON_FLAT_NOT_RADIAL_GRID, {r.frame_residual, r.grid_residual}});
-    if (r.frame_residual > kNotRadial) return warn(r, {LENSPROF_REASON_FLAT_NOT_RADIAL, {r.frame_residual}});
-    if (off_centre > kFarCentre) return warn(r, {LENSPROF_REASON_FLAT_FAR_CENTER, {off_centre}});
-    if (by_prior) return warn(r, {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, {}});
-    return r.spots && warn(r, {LENSPROF_REASON_FLAT_DUST, {double(r.spots)}});
+uint32_t state_of(const FlatFit &fit, const FlatResult &r) {
+    const bool is_sloped = fit.problem.model.light_terms > 0;
+    uint32_t state = r.separated ? kSeparated : kNotSeparated;
+    state |= r.gain_grid.columns ? kHasGrid : kHasNoGrid;
+    if (is_sloped) state |= kSloped;
+    if (is_sloped && !r.separated && (fit.options.free & LENSPROF_FREE_CENTER)) state |= kCenterByPrior;
+    return state;
 }
 
 }  // namespace
 
+JudgedFlat::JudgedFlat(const FlatFit &of, const FlatResult &result)
+    : fit(of), r(result), state(state_of(of, result)), wording(Wording::card) {}
+
+namespace measure {
+
+Measured white_share(const JudgedFlat &judged) {
+    const Worst white = worst_share_in(judged.fit, CellState::white);
+    return of_shot(of_value(white.value), white.shot);
+}
+
+Measured black_share(const JudgedFlat &judged) {
+    const Worst black = worst_share_in(judged.fit, CellState::black);
+    return of_shot(of_value(black.value), black.shot);
+}
+
+Measured has_card(const JudgedFlat &judged) {
+    uint32_t number = 0;
+    const double has = lacks_card(judged.fit, number) ? 0.0 : 1.0;
+    return of_shot({has, 0, {}}, number);
+}
+
+Measured cells(const JudgedFlat &judged) { return of_value(judged.r.cells); }
+
+Measured card_radius(const JudgedFlat &judged) { return of_value(judged.r.radius); }
+
+// Of the picture with the smallest (or largest) contrast of light.
+Measured least_contrast(const JudgedFlat &judged) {
+    Measured least{};
+    for (uint32_t i = 0; i < judged.fit.count; i++)
+        if (const double contrast = contrast_of_light(judged.fit, i); !(contrast >= least.value))
+            least = of_image(of_value(contrast), i);
+    return least;
+}
+
+Measured most_contrast(const JudgedFlat &judged) {
+    Measured most{};
+    for (uint32_t i = 0; i < judged.fit.count; i++)
+        if (const double contrast = contrast_of_light(judged.fit, i); !(contrast <= most.value))
+            most = of_image(of_value(contrast), i);
+    return most;
+}
+
+Measured exposure_distance(const JudgedFlat &judged) {
+    const Worst wrong = wrong_exposure(judged.fit, judged.r);
+    return of_image(of_value(wrong.value), wrong.shot);
+}
+
+Measured texture(const JudgedFlat &judged) { return of_value(judged.r.texture); }
+
+Measured shot_difference(const JudgedFlat &judged) { return of_value(judged.r.shot_residual); }
+
+Measured agreement(const JudgedFlat &judged) { return of_value(judged.r.inlier_share); }
+
+Measured slope(const JudgedFlat &judged) {
+    const Worst steep = steepest(judged.fit);
+    return of_shot(of_value(steep.value), steep.shot);
+}
+
+Measured convergence(const JudgedFlat &judged) {
+    return {double(judged.r.converged), 1, {double(judged.r.iterations)}};
+}
+
+Measured covariance(const JudgedFlat &judged) { return {double(judged.fit.covariance.size()), 0, {}}; }
+
+// A residual that is not radial makes the polynomial uncertain, but not the product of polynomial and grid.
+Measured corner_sigma(const JudgedFlat &judged) {
+    const FlatResult &r = judged.r;
+    if (r.frame_residual >= flat_limits::kNotRadial) return {};
+    return of_value(r.corner_sigma);
+}
+
+Measured corner_sigma_not_radial(const JudgedFlat &judged) {
+    const FlatResult &r = judged.r;
+    if (r.frame_residual < flat_limits::kNotRadial) return {};
+    return of_values(r.corner_sigma, r.corner_sigma, r.frame_residual);
+}
+
+Measured not_radial(const JudgedFlat &judged) { return of_value(judged.r.frame_residual); }
+
+Measured not_radial_grid(const JudgedFlat &judged) {
+    return of_values(judged.r.frame_residual, judged.r.frame_residual, judged.r.grid_residual);
+}
+
+Measured center_distance(const JudgedFlat &judged) {
+    const double *center = judged.r.vignetting[0].center;
+    return of_value(std::hypot(center[0], center[1]));
+}
+
+Measured center_by_prior(const JudgedFlat &) { return {1.0, 0, {}}; }
+
+Measured spots(const JudgedFlat &judged) { return of_value(judged.r.spots); }
+
+}  // namespace measure
+
 void judge_flat(const FlatFit &fit, FlatResult &r) {
-    if (lacks_light(fit, r) || has_no_gradation(fit, r) || contradicts_model(fit, r) || is_undetermined(fit, r)) return;
-    accept(r);
-    if (!warns_of_card(fit, r)) warns_of_light(fit, r);
+    r.verdict.clear();
+    apply_rules(kFlatRules, JudgedFlat(fit, r), r.verdict);
+    r.usable = is_usable(r.verdict);
 }
 
 }  // namespace lensprof

@@ -93,7 +93,7 @@ std::vector<Shot> group_shots(const lensprof_flat_image *images, uint32_t count)
             std::find_if(shots.begin(), shots.end(), [&](const Shot &s) { return s.number == images[i].shot; });
         if (entry == shots.end()) entry = shots.emplace(shots.end());
         entry->number = images[i].shot;
-        entry->turn = images[i].turn_deg * kPi / 180.0;
+        entry->turn = images[i].rotation_deg * kPi / 180.0;
         entry->images.push_back(i);
     }
     for (auto &shot : shots)

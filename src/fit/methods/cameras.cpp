@@ -17,8 +17,8 @@
 #include "fit/methods/join.hpp"
 #include "fit/methods/raised.hpp"
 #include "fit/problem/tracks.hpp"
+#include "fit/verdict/finding.hpp"
 #include "fit/verdict/output.hpp"
-#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -51,7 +51,7 @@ struct Camera {
     uint32_t attached = 0;  // images
 
     const FitResult &result() const { return *found->result; }
-    bool corrects() const { return is_fitted && (result().usable || result().evens); }
+    bool corrects() const { return is_fitted && (result().usable || result().equalizes); }
     uint32_t joined_images() const {
         return static_cast<uint32_t>(std::count_if(found->exposures.begin(), found->exposures.end(),
                                                    [](const lensprof_exposure &e) { return !std::isnan(e.ev); }));
@@ -111,7 +111,7 @@ void CamerasFit::fit_each(const FitCamera &fit, const FitResult &result) {
     }
 }
 
-// Chooses the camera that the others are joined to: that of the reference or, if its pictures are not evened out, the
+// Chooses the camera that the others are joined to: that of the reference or, if its pictures are not equalised, the
 // camera with the most images among those whose pictures are.
 uint32_t CamerasFit::choose_base() const {
     uint32_t base = camera_of_[options_.reference];
@@ -392,8 +392,9 @@ void CamerasFit::attach() {
 
 template <class Verdict>
 void renumber(const std::vector<uint32_t> &numbers, Verdict &verdict) {
-    if (verdict.reason_item.kind != LENSPROF_ITEM_IMAGE || verdict.reason_item.index >= numbers.size()) return;
-    verdict.reason_item.index = numbers[verdict.reason_item.index];
+    for (lensprof_finding &finding : verdict.verdict)
+        if (finding.item.kind == LENSPROF_ITEM_IMAGE && finding.item.index < numbers.size())
+            rename_item(numbers[finding.item.index], finding);
 }
 
 // Writes a camera and its settings to the result.
@@ -408,7 +409,7 @@ void CamerasFit::give_camera(uint32_t number, FitResult &r) const {
     if (!camera.is_fitted) return;
     to.shared_pairs = joint.pairs;
     to.agreeing_share = joint.inlier_share;
-    to.light_difference_ev = joint.residual / kLn2;
+    to.irradiance_difference_ev = joint.residual / kLn2;
     to.log_gamma = joint.log_gamma;
     to.offset_sigma_ev = joint.offset_sigma / kLn2;
     copy_camera(camera.result(), result);
@@ -437,16 +438,16 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
         static_cast<uint32_t>(std::find_if(exposures_.begin(), exposures_.end(), is_out) - exposures_.begin());
     const bool are_few = 2 * r.left_out > images_.size();  // that agree
     if (are_few) {
-        r.evens = 0;
-        for (uint32_t k = 0; k < r.camera_count; k++) r.cameras[k].evens = 0;
+        r.equalizes = 0;
+        for (uint32_t k = 0; k < r.camera_count; k++) r.cameras[k].equalizes = 0;
     }
     for_each_verdict(r, [&](auto &verdict) {
-        const uint32_t code = verdict.reason_code;
-        const bool is_lesser = code == LENSPROF_REASON_NONE || is_of_greys(code);
         if (are_few)
-            refuse(verdict, of_image(LENSPROF_REASON_IMAGE_GROUPS, left_out, {double(cameras_.size())}));
-        else if (verdict.usable && is_lesser && r.left_out)
-            warn(verdict, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, left_out, {double(r.left_out)}));
+            report_first(verdict, finding_of(LENSPROF_REASON_IMAGE_GROUPS, LENSPROF_SEVERITY_REFUSAL,
+                                             of_image(of_value(double(cameras_.size())), left_out)));
+        else if (r.left_out && !has_code(verdict.verdict, LENSPROF_REASON_IMAGES_LEFT_OUT))
+            report_last(verdict, finding_of(LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_SEVERITY_WARNING,
+                                            of_image(of_value(r.left_out), left_out)));
     });
     result = r;
 }

@@ -7,8 +7,9 @@
 #include <tuple>
 
 #include "fit/problem/loss.hpp"
+#include "fit/verdict/finding.hpp"
+#include "fit/verdict/limits.hpp"
 #include "fit/verdict/quality.hpp"
-#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -40,9 +41,9 @@ private:
     void note_quality(const FitResult &r);
     void describe(lensprof_exposure *exposures, FitResult &r) const;
     template <class Verdict>
-    void warn_of_links(const FitResult &all, Verdict &r) const;
+    void report_links(const FitResult &all, Verdict &verdict) const;
     bool disagrees(uint32_t image) const;
-    Reason left_out_reason(uint32_t all) const;
+    lensprof_finding left_out_finding(uint32_t all) const;
     uint32_t count_unverified(uint32_t &first) const;
     bool is_within(const std::array<uint32_t, 2> &link) const {
         return group_.joined[link[0]] && group_.joined[link[1]];
@@ -159,9 +160,9 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const FitResult &
 // The images that have the fault of the verdict, which is about the exposure of the first or worst of them.
 std::vector<uint32_t> GroupFit::undetermined(const lensprof_exposure *exposures, const FitResult &r) const {
     std::vector<uint32_t> images;
-    if (r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE)
+    if (first_code(r.verdict) == LENSPROF_REASON_FEW_INLIERS)
         for (const FewInliers &few : images_with_few_inliers(problem(group_.reference), r)) images.push_back(few.image);
-    if (r.reason_code == LENSPROF_REASON_EXPOSURE_UNCERTAIN)
+    if (first_code(r.verdict) == LENSPROF_REASON_EXPOSURE_UNCERTAIN)
         for (uint32_t i = 0; i < count_; i++)
             if (ev_sigma_of_pairs(r, i, exposures[i].ev - exposures[group_.reference].ev) > kLargestEvSigma)
                 images.push_back(i);
@@ -172,11 +173,11 @@ std::vector<uint32_t> GroupFit::undetermined(const lensprof_exposure *exposures,
 // same fault, unless most have: then the fault is the reference's. Returns whether the group changed.
 bool GroupFit::leave_out(const lensprof_exposure *exposures, const FitResult &r) {
     const bool any = break_links(exposures, r);
-    const bool is_image_reason = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE
-                                 || r.reason_code == LENSPROF_REASON_IMAGE_DISAGREES
-                                 || r.reason_code == LENSPROF_REASON_EXPOSURE_UNCERTAIN;
-    if (any || r.usable || !is_image_reason || r.reason_item.kind != LENSPROF_ITEM_IMAGE) return any;
-    banned_[r.reason_item.index] = true;
+    const lensprof_reason code = first_code(r.verdict);
+    const bool is_of_image = code == LENSPROF_REASON_FEW_INLIERS || code == LENSPROF_REASON_IMAGE_DISAGREES
+                             || code == LENSPROF_REASON_EXPOSURE_UNCERTAIN;
+    if (any || r.usable || !is_of_image) return any;
+    banned_[r.verdict[0].item.index] = true;
     const auto joined = static_cast<size_t>(std::count(group_.joined.begin(), group_.joined.end(), true));
     const std::vector<uint32_t> images = undetermined(exposures, r);
     for (uint32_t i : images) banned_[i] = banned_[i] || 2 * images.size() < joined;
@@ -210,13 +211,16 @@ bool GroupFit::disagrees(uint32_t image) const {
               });
 }
 
-// The reason that `all` images are left out: about those that disagree, if there are any.
-Reason GroupFit::left_out_reason(uint32_t all) const {
+// That `all` images are left out: about those that disagree, if there are any.
+lensprof_finding GroupFit::left_out_finding(uint32_t all) const {
     std::vector<uint32_t> disagree, unconnected;
     for (uint32_t i = 0; i < count_; i++)
         if (!group_.joined[i]) (disagrees(i) ? disagree : unconnected).push_back(i);
-    if (disagree.empty()) return of_image(LENSPROF_REASON_IMAGES_UNCONNECTED, unconnected[0], {double(all)});
-    return of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, disagree[0], {double(disagree.size())});
+    if (disagree.empty())
+        return finding_of(LENSPROF_REASON_IMAGES_UNCONNECTED, LENSPROF_SEVERITY_WARNING,
+                          of_image(of_value(all), unconnected[0]));
+    return finding_of(LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_SEVERITY_WARNING,
+                      of_image(of_value(double(disagree.size())), disagree[0]));
 }
 
 // Stores the quality that the last fit reports for its images.
@@ -241,40 +245,39 @@ void GroupFit::describe(lensprof_exposure *exposures, FitResult &r) const {
     }
     const bool has_broken =
         std::any_of(group_.broken.begin(), group_.broken.end(), [&](const auto &link) { return is_within(link); });
-    if (2 * r.left_out >= count_ || has_broken) r.evens = 0;
-    for_each_verdict(r, [&](auto &verdict) { warn_of_links(r, verdict); });
+    if (2 * r.left_out >= count_ || has_broken) r.equalizes = 0;
+    for_each_verdict(r, [&](auto &verdict) { report_links(r, verdict); });
 }
 
-// Rejects a group that is too small; otherwise warns about data that contradict each other.
+// Rejects a group that is too small; otherwise reports data that contradict each other.
 template <class Verdict>
-void GroupFit::warn_of_links(const FitResult &all, Verdict &r) const {
+void GroupFit::report_links(const FitResult &all, Verdict &verdict) const {
     const auto first = std::find(group_.joined.begin(), group_.joined.end(), false) - group_.joined.begin();
-    const auto image = static_cast<uint32_t>(first);
     if (2 * all.left_out >= count_) {
-        refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, image, {double(std::max(all.components, 2u))}));
+        report_first(verdict,
+                     finding_of(LENSPROF_REASON_IMAGE_GROUPS, LENSPROF_SEVERITY_REFUSAL,
+                                of_image(of_value(std::max(all.components, 2u)), static_cast<uint32_t>(first))));
         return;
     }
-    if (!r.usable) return;
+    const auto note = [&](lensprof_reason code, uint32_t image, size_t count) {
+        report_last(verdict, finding_of(code, LENSPROF_SEVERITY_NOTE, of_image(of_value(double(count)), image)));
+    };
     const auto is_in_group = [&](const auto &link) { return is_within(link); };
     const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_in_group);
-    if (r.reason_code != LENSPROF_REASON_NONE && !is_of_greys(r.reason_code)) return;
     // Links that sampling found to show something else have no pairs that could contradict the result.
     const auto is_contradicted = [&](const lensprof_link &link) {
         return link.state == LENSPROF_LINK_CONTRADICTED && group_.joined[link.image[0]] && group_.joined[link.image[1]];
     };
     const auto *links = options_.links, *end = links + options_.link_count;
     const auto *contradicted = std::find_if(links, end, is_contradicted);
-    uint32_t unverified = 0;
-    if (all.left_out)
-        warn(r, left_out_reason(all.left_out));
-    else if (broken != group_.broken.end())
-        warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, (*broken)[0],
-                         {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_in_group))}));
+    if (all.left_out) report_last(verdict, left_out_finding(all.left_out));
+    if (broken != group_.broken.end())
+        note(LENSPROF_REASON_LINKS_CONTRADICT, (*broken)[0],
+             std::count_if(group_.broken.begin(), group_.broken.end(), is_in_group));
     else if (contradicted != end)
-        warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, contradicted->image[0],
-                         {double(std::count_if(links, end, is_contradicted))}));
-    else if (const uint32_t count = count_unverified(unverified))
-        warn(r, of_image(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, {double(count)}));
+        note(LENSPROF_REASON_LINKS_CONTRADICT, contradicted->image[0], std::count_if(links, end, is_contradicted));
+    uint32_t unverified = 0;
+    if (const uint32_t count = count_unverified(unverified)) note(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, count);
 }
 
 void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, FitResult &result) {

@@ -10,9 +10,9 @@
 #include "fit/methods/overlap_fit.hpp"
 #include "fit/methods/simpler.hpp"
 #include "fit/methods/unshown.hpp"
+#include "fit/verdict/finding.hpp"
 #include "fit/verdict/output.hpp"
 #include "fit/verdict/quality.hpp"
-#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -91,9 +91,7 @@ private:
         }
         r.profile_prior = LENSPROF_PROFILE_PRIOR_OVERRULED;
         if (best) best->write(r, exposures);
-        for_each_verdict(r, [&](auto &verdict) {
-            if (verdict.usable) warn(verdict, reason_of(r.profile_prior, all));
-        });
+        for_each_verdict(r, [&](auto &verdict) { report_first(verdict, rejection_of(r.profile_prior, all)); });
     }
 
     // Stores the fit in `r` and `informed` if the pictures do not contradict this part of the profile.
@@ -113,12 +111,15 @@ private:
         return found;
     }
 
-    static Reason reason_of(uint32_t verdict, const Contradiction &all) {
-        if (verdict == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED)
-            return {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, {all.response, all.worse}};
-        if (verdict == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED)
-            return {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, {all.falloff, all.worse}};
-        return {LENSPROF_REASON_PRIOR_OVERRULED, {all.distance(), all.worse}};
+    static lensprof_finding rejection_of(uint32_t prior, const Contradiction &all) {
+        const auto found = [&](lensprof_reason code, double distance) {
+            return finding_of(code, LENSPROF_SEVERITY_WARNING, of_values(all.in_all(), distance, all.worse));
+        };
+        if (prior == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED)
+            return found(LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, all.response);
+        if (prior == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED)
+            return found(LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, all.falloff);
+        return found(LENSPROF_REASON_PRIOR_OVERRULED, all.distance());
     }
 
     const lensprof_fit_options &options_;

@@ -92,7 +92,7 @@ void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<
         ev_sigma = std::sqrt(gamma * gamma * of_data + std::pow(sigma * gamma * ev_offset, 2));
     }
     r.gamma_sigma = stated;
-    r.light_spread_ev *= gamma;
+    r.irradiance_spread_ev *= gamma;
 }
 
 void offset_exposures(const Offset &offset, uint32_t channels, std::vector<lensprof_exposure> &exposures,

@@ -6,8 +6,8 @@
 #include "core/covariance.h"
 #include "falloff/rise.hpp"
 #include "fit/methods/unshown.hpp"
+#include "fit/verdict/finding.hpp"
 #include "fit/verdict/output.hpp"
-#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -18,8 +18,8 @@ constexpr uint32_t kLensFlags = kFalloffFlags | LENSPROF_FREE_CENTER;
 // data: the group of images changes first (group.hpp). Few grey values show a falloff, but no response (unshown.hpp).
 bool may_be_simpler(const lensprof_fit_options &options, const FitResult &r) {
     if (!(options.prior_weight > 0.0) || !(options.free & (LENSPROF_FREE_RESPONSE | kLensFlags))) return false;
-    switch (r.reason_code) {
-    case LENSPROF_REASON_FEW_BEHIND_EXPOSURE:
+    switch (first_code(r.verdict)) {
+    case LENSPROF_REASON_FEW_INLIERS:
     case LENSPROF_REASON_IMAGE_DISAGREES:
     case LENSPROF_REASON_EXPOSURE_UNCERTAIN:
     case LENSPROF_REASON_FEW_GREYS:
@@ -90,7 +90,7 @@ void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposu
     if (full.is_still() || !may_be_simpler(data.options, r)) return;
     SimplerFit only(data, lensprof_vignetting{});
     const bool is_better = full.predicts_better_than(only.fit()) && full.predicts_better_than_nothing();
-    if (is_better && (r.usable || r.evens) && is_possible(data.options, r)) return;
+    if (is_better && (r.usable || r.equalizes) && is_possible(data.options, r)) return;
     Output simpler(r, exposures, data.image_count);
     FitResult &found = *simpler.result;
     std::unique_ptr<SimplerFit> of_lens;
@@ -99,18 +99,19 @@ void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposu
         of_lens->describe(data.image_count, LENSPROF_FIT_MODEL_LENS, simpler.exposures.data(), found);
     else if (only.fit().predicts_better_than_nothing()) {
         only.describe(data.image_count, LENSPROF_FIT_MODEL_EXPOSURES, simpler.exposures.data(), found);
-        if (!is_better && r.evens) found.evens = 1;  // predicts as well as a result that does
+        if (!is_better && r.equalizes) found.equalizes = 1;  // predicts as well as a result that does
     } else
-        found.evens = 0;
+        found.equalizes = 0;
     const Output refused(r, exposures, data.image_count);
-    if (found.evens) simpler.write(r, exposures);
-    r.evens = found.evens;
-    if (!found.evens) r.model = LENSPROF_FIT_MODEL_NOTHING;
+    if (found.equalizes) simpler.write(r, exposures);
+    r.equalizes = found.equalizes;
+    if (!found.equalizes) r.model = LENSPROF_FIT_MODEL_NOTHING;
     const auto keep_verdict = [&](auto &verdict, const auto &before) {
+        copy_verdict(before, verdict);
         if (before.usable)
-            refuse(verdict, {found.evens ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER, {}});
-        else
-            copy_verdict(before, verdict);
+            report_first(verdict,
+                         finding_of(found.equalizes ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER,
+                                    LENSPROF_SEVERITY_REFUSAL, Measured{}));
     };
     for (uint32_t n = 0; n < r.setting_count; n++)
         if (r.settings[n].images) keep_verdict(r.settings[n], refused.settings[n]);

@@ -13,7 +13,7 @@
 #include "core/covariance.h"
 #include "core/profile.h"
 #include "fit/base/constants.hpp"
-#include "fit/verdict/reason.hpp"
+#include "fit/verdict/finding.hpp"
 
 namespace lensprof {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 // EV. At .06 EV the differences between shapes of responses, some 5 levels, move grey values by .2 to .4 levels, as
 // much as rounding and interpolation do.
 constexpr double kSmallestLightSpread = 0.06;
-constexpr double kMinGreys = 2.0;  // tenths of the grey values: one determines nothing at all
+constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one determines nothing at all
 
 // The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
 template <class Part>  // the result, or one of its settings
@@ -79,17 +79,20 @@ void state_typical(double gamma_sigma, uint32_t image_count, const lensprof_expo
 
 void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
                                  lensprof_exposure *exposures, FitResult &r) {
-    const bool is_narrow = r.reason_code == LENSPROF_REASON_FEW_GREYS;
-    const bool is_even = r.light_spread_ev < kSmallestLightSpread && r.reason_code != LENSPROF_REASON_EXPOSURES_ALIKE;
+    const bool is_narrow = first_code(r.verdict) == LENSPROF_REASON_FEW_GREYS;
+    const bool is_even =
+        r.irradiance_spread_ev < kSmallestLightSpread && first_code(r.verdict) != LENSPROF_REASON_EXPOSURES_EQUAL;
     if (r.response_from != LENSPROF_FIT_RESPONSE_PICTURES || !(options.prior_weight > 0.0)) return;
-    if (is_narrow ? r.reason_value[0] < kMinGreys || !(options.free & kFalloffFlags) : !is_even) return;
+    if (is_narrow ? r.verdict[0].value[0] < kFewestGreys || !(options.free & kFalloffFlags) : !is_even) return;
+    const double spread_ev = r.irradiance_spread_ev;
     if (options.profile && holds_response(*options.profile, r))
         r.response_from = LENSPROF_FIT_RESPONSE_PROFILE;
     else
         hold_typical(options, image_count, fit, exposures, r);
     for_each_verdict(r, [&](auto &verdict) {
-        if (verdict.usable && verdict.reason_code == LENSPROF_REASON_NONE)
-            warn(verdict, {LENSPROF_REASON_RESPONSE_NOT_SHOWN, {r.light_spread_ev, r.gamma_sigma}});
+        report_last(verdict, finding_of(LENSPROF_REASON_RESPONSE_UNCONSTRAINED, LENSPROF_SEVERITY_NOTE,
+                                        of_values(is_narrow ? NAN : spread_ev, r.irradiance_spread_ev, r.gamma_sigma),
+                                        kSmallestLightSpread));
     });
 }
 

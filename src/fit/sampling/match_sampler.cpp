@@ -1,5 +1,5 @@
-// Correspondences at places that are known to match: the quietest place near each match at which both pictures show the
-// same.
+// Correspondences at places that are known to match: the patch with the lowest gradient near each match at which both
+// pictures show the same.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -47,7 +47,8 @@ Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_i
     number_edges();
 }
 
-// The quietest place around a match; false if none can be measured, or if the two pictures do not show the same there.
+// The patch with the lowest gradient around a match; false if none can be measured, or if the two pictures do not show
+// the same there.
 bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
     const bool has_map = match.map[0][0] != 0.0 || match.map[0][1] != 0.0;
     const int rings = has_map ? kRings : 0;

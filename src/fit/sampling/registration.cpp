@@ -19,8 +19,8 @@
 //
 // A wrong angle of view, distortion or a camera that was moved leave more than a rotation. If blocks do not match
 // under a rotation, the second frame is bent by a homography as well. Every block is searched for separately, over a
-// wide area; the similarity (of two blocks) that most others follow is the first guess. With places s = (u, v) of the
-// second frame in half diagonals, the change M of the homography moves them by
+// wide area; the similarity transform of two blocks that most other blocks support is the first guess. With places s =
+// (u, v) of the second frame in half diagonals, the change M of the homography moves them by
 //
 //     du = h1 u + h2 v + h3 + u (h7 u + h8 v),     dv = h4 u + h5 v + h6 + v (h7 u + h8 v),
 //

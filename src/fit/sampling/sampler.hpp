@@ -33,8 +33,8 @@ public:
     // d'Angelo 5.1: 5n random points, binned by radius; from each of 10 bins the n/10 of lowest gradient.
     std::vector<lensprof_pair> paper(uint32_t wanted);
 
-    // At places that match: the quietest place near each match, balanced as above. `match_of_pair`, if not NULL,
-    // receives the index of the match of each pair.
+    // At places that match: the patch with the lowest gradient near each match, balanced as above. `match_of_pair`, if
+    // not NULL, receives the index of the match of each pair.
     std::vector<lensprof_pair> of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted,
                                           uint32_t *match_of_pair);
 

@@ -6,7 +6,7 @@
 
 #include "fit/base/quantile.hpp"
 #include "fit/problem/residual.hpp"
-#include "fit/verdict/reason.hpp"
+#include "fit/verdict/limits.hpp"
 
 namespace lensprof {
 namespace {
@@ -16,20 +16,12 @@ constexpr double kEven = 2.0;     // between pictures that look alike,
 constexpr double kOfNoise = 1.5;  // this much above the effect of noise,
 constexpr double kMaxNoise = 4.0;
 constexpr double kUneven = 6.0;   // and between those that do not
-constexpr double kSeen = 3.0;     // a seam that is comparable to the texture around it,
-constexpr double kGrown = 1.25;   // or this many times its size before;
+constexpr double kGrown = 1.25;   // a seam that is visible, and this many times its size before;
 constexpr double kOddLink = 5.0;  // of a link that contradicts the result, and this many times the noise,
 constexpr double kOddNoise = 4.0;
-constexpr double kGain = 0.5;  // unless it is at most this many times its size before
-constexpr double kLargestRms = 15.0;
-constexpr double kMinInlierShare = 0.6;  // of all pairs: with fewer, only part of the picture is even;
-constexpr double kSmallestShare = 0.7;   // of the pairs that agree
+constexpr double kGain = 0.5;            // unless it is at most this many times its size before
+constexpr double kMinInlierShare = 0.6;  // of all pairs: with fewer, only part of the picture is even
 constexpr size_t kMinPairs = 20;         // of a link that is informative
-
-// Median difference of grey values, before and after the correction.
-struct Seam {
-    double before = 0.0, after = 0.0;
-};
 
 // For every pair, in their order: mean over the channels.
 std::vector<Seam> seams_of(const Problem &problem, const Estimate &estimate) {
@@ -70,32 +62,14 @@ std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &se
     return std::nullopt;
 }
 
-// Verdicts on the profile that do not affect how even the pictures are.
-bool is_of_profile(uint32_t reason) {
-    switch (reason) {
-    case LENSPROF_REASON_PATTERNS:
-    case LENSPROF_REASON_PATTERNS_HELD:
-    case LENSPROF_REASON_FEW_GREYS:
-    case LENSPROF_REASON_EXPOSURES_ALIKE:
-    case LENSPROF_REASON_SMALL_RADIUS: return true;
-    default: return false;
-    }
-}
-
 }  // namespace
 
-void judge_evenness(const Found &found, FitResult &r) {
-    r.evens = 0;
-    if (!r.usable && !is_of_profile(r.reason_code)) return;
+Seam judge_evenness(const Found &found, FitResult &r) {
     const std::vector<Seam> tested = seams_of(found.tested, found.train);
     const Seam overall = median_of(tested, 0, tested.size());
     const std::optional<Seam> odd = odd_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
-    r.evens = r.converged && r.inlier_share > kMinInlierShare && is_even(overall, r.noise_levels) && !odd;
-    if (!r.usable || r.reason_code != LENSPROF_REASON_NONE) return;
-    if (r.inlier_share < kSmallestShare || r.heldout_rms > kLargestRms)
-        warn(r, {LENSPROF_REASON_MANY_OUTLIERS, {1.0 - r.inlier_share, r.heldout_rms}});
-    else if (!r.evens)
-        warn(r, {LENSPROF_REASON_SEAMS_STAY, {odd.value_or(overall).after, odd.value_or(overall).before}});
+    r.equalizes = r.converged && r.inlier_share > kMinInlierShare && is_even(overall, r.noise_levels) && !odd;
+    return odd.value_or(overall);
 }
 
 }  // namespace lensprof

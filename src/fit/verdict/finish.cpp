@@ -3,23 +3,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "fit/verdict/evenness.hpp"
+#include "fit/verdict/judge.hpp"
 #include "fit/verdict/output.hpp"
 #include "fit/verdict/quality.hpp"
-#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 
 namespace {
-
-// The verdict on a result that holds the numbers of one setting.
-void judge_all(const Found &found, const std::function<void(FitResult &)> &judge_result, FitResult &r) {
-    judge(found.problem, found.estimate, r);
-    if (r.usable && r.reason_code == LENSPROF_REASON_NONE && found.gauge.oddness() > 1.0)
-        warn(r, {LENSPROF_REASON_UNUSUAL_RESPONSE, {found.gauge.oddness(), r.gamma_sigma}});
-    if (judge_result) judge_result(r);
-    judge_evenness(found, r);
-}
 
 bool has_pairs(const Problem &problem, int setting) {
     return std::any_of(problem.edges.begin(), problem.edges.end(), [&](const Edge &edge) {
@@ -54,14 +44,14 @@ void finish(const Found &found, const std::function<void(FitResult &)> &judge_re
     describe_model(found.problem, found.estimate, r);
     describe_heldout(found.tested, found.train, found.has_heldout, r);
     describe_quality(found.problem, found.gauge, found.noise, found.covariance, found.estimate, r);
-    uint32_t evens = 1;                                      // 1 if all settings with pictures are even
+    uint32_t equalizes = 1;                                  // 1 if all settings with pictures are even
     for (int s = found.problem.settings - 1; s >= 0; s--) {  // the first one last, because it stays in the result
         describe_setting(found.problem, found.gauge, found.covariance, found.estimate, s, r);
-        judge_all(found, judge_result, r);
-        if (has_pairs(found.problem, s)) evens = std::min(evens, r.evens);
+        judge(found, judge_result, r);
+        if (has_pairs(found.problem, s)) equalizes = std::min(equalizes, r.equalizes);
         if (r.settings) give_setting(found.problem, s, r);
     }
-    r.evens = evens;
+    r.equalizes = equalizes;
     r.image_quality = result.image_quality;
     write_exposures(found.problem, found.estimate, exposures);
     result = r;

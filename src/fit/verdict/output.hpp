@@ -16,11 +16,7 @@ namespace lensprof {
 template <class From, class To>
 void copy_verdict(const From &from, To &to) {
     to.usable = from.usable;
-    std::copy(std::begin(from.reason), std::end(from.reason), to.reason);
-    to.reason_code = from.reason_code;
-    to.reason_values = from.reason_values;
-    to.reason_item = from.reason_item;
-    std::copy(std::begin(from.reason_value), std::end(from.reason_value), to.reason_value);
+    to.verdict = from.verdict;
 }
 
 // Copies the fields that a result and each of its lens settings share: the verdict, and the numbers of one setting.
@@ -37,13 +33,15 @@ void copy_setting(const From &from, To &to) {
 template <class From, class To>
 void copy_camera(const From &from, To &to) {
     to.response = from.response;
-    to.vignettings = from.vignettings, to.pairs = from.pairs, to.evens = from.evens, to.gamma_from = from.gamma_from;
+    to.vignettings = from.vignettings, to.pairs = from.pairs, to.equalizes = from.equalizes,
+    to.gamma_from = from.gamma_from;
     to.response_from = from.response_from, to.profile_prior = from.profile_prior;
     to.covariance_size = from.covariance_size, to.converged = from.converged;
     to.gamma_sigma = from.gamma_sigma;
     to.before_rms = from.before_rms, to.heldout_rms = from.heldout_rms, to.heldout_median = from.heldout_median;
     to.noise_levels = from.noise_levels, to.inlier_share = from.inlier_share;
-    to.frame_share = from.frame_share, to.image_share = from.image_share, to.light_spread_ev = from.light_spread_ev;
+    to.frame_share = from.frame_share, to.image_share = from.image_share,
+    to.irradiance_spread_ev = from.irradiance_spread_ev;
     std::copy(std::begin(from.grey_ends), std::end(from.grey_ends), to.grey_ends);
     to.reference = from.reference;
     to.iterations = from.iterations, to.model = from.model, to.equal_exposures = from.equal_exposures;

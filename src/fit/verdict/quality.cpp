@@ -179,7 +179,7 @@ void describe_quality(const Problem &problem, const Gauge &gauge, double noise, 
     r.left_out = 0;
     r.gamma_from = gauge.from();
     r.gamma_sigma = gauge.from() == LENSPROF_GAMMA_NONE ? LENSPROF_UNKNOWN : gauge.sigma();
-    r.light_spread_ev = light_spread(problem, estimate);
+    r.irradiance_spread_ev = light_spread(problem, estimate);
     r.response_from = fits_response(problem, estimate) ? LENSPROF_FIT_RESPONSE_PICTURES : LENSPROF_FIT_RESPONSE_OPTIONS;
     describe_residuals(problem, estimate, noise, r);
     count_greys(problem, r);

@@ -1,4 +1,4 @@
-// The quality of a result: residuals, covariance, coverage, and in plain words why it is not usable.
+// The quality of a result: residuals, covariance and coverage.
 #pragma once
 
 #include "fit/base/quantile.hpp"
@@ -32,9 +32,7 @@ void describe_quality(const Problem &problem, const Gauge &gauge, double noise, 
 void describe_setting(const Problem &problem, const Gauge &gauge, const Covariance &found, const Estimate &estimate,
                       int setting, FitResult &result);
 
-// Root mean square difference, EV, of overlapping pictures, over pairs and channels. Below kSmallestSpread they do not
-// determine a response without falloff: their transfer functions are the identity.
-constexpr double kSmallestSpread = 0.15;
+// Root mean square difference, EV, of overlapping pictures, over pairs and channels.
 double exposure_spread(const Problem &problem, const Estimate &estimate);
 
 // The same for the light at the two ends of a pair, falloff included.
@@ -51,11 +49,7 @@ struct FewInliers {
 std::vector<FewInliers> images_with_few_inliers(const Problem &problem, const FitResult &result);
 
 // Standard error, EV, that the pairs alone leave to an image's exposure: without that of gamma. `ev`: its exposure
-// relative to the reference. Above the limit the exposure is not determined.
-constexpr double kLargestEvSigma = 0.3;
+// relative to the reference.
 double ev_sigma_of_pairs(const FitResult &result, uint32_t image, double ev);
-
-// Fills `usable` and `reason` from everything else.
-void judge(const Problem &problem, const Estimate &estimate, FitResult &result);
 
 }  // namespace lensprof

@@ -12,10 +12,6 @@
 #define FIRST_OPTIONS LP_END_OF(lensprof_lookup_options, any_processing)
 #define FIRST_LOOKUP LP_END_OF(lensprof_lookup, reason)
 
-void lensprof_lookup_options_init_sized(lensprof_lookup_options *options, size_t size) {
-    if (lp_sized_begin(options, size, FIRST_OPTIONS)) options->distance_rule = LENSPROF_DISTANCE_USUAL;
-}
-
 /* What a call works on. */
 typedef struct work {
     lensprof_store *const *stores;
@@ -250,7 +246,7 @@ static lensprof_status check_lookup(const lensprof_profile_key *key, const lensp
     if (wrong) return lp_store_fail_size("lensprof_lookup", wrong, error);
     const lensprof_status status = lp_store_check_size(profile, error);
     if (status != LENSPROF_OK) return status;
-    if (options->distance_rule > LENSPROF_DISTANCE_USUAL || options->with_doubt > 1 || options->any_processing > 1
+    if (options->distance_rule > LENSPROF_DISTANCE_FARTHEST || options->with_doubt > 1 || options->any_processing > 1
         || options->force_falloff > 1 || options->response_alone > 1)
         return lp_store_fail_argument("an option is unknown; see lensprof_lookup_options", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
@@ -281,10 +277,4 @@ lensprof_status lensprof_store_lookup_in(lensprof_store *const *stores, uint32_t
     if (lookup && (status == LENSPROF_OK || status == LENSPROF_ERROR_NOT_FOUND)) lp_sized_copy(lookup, &w->lookup);
     free(w);
     return status;
-}
-
-lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_profile_key *key,
-                                      const lensprof_lookup_options *options, lensprof_profile *profile,
-                                      lensprof_lookup *lookup, lensprof_error *error) {
-    return lensprof_store_lookup_in(&store, 1, key, options, profile, lookup, error);
 }

@@ -200,9 +200,9 @@ static lensprof_profile_key complete_key(const lensprof_profile_key *key, const 
 }
 
 static void add_unknown_reasons(const lp_falloff_node *target, uint32_t distance_rule, lensprof_lookup *lookup) {
-    static const lensprof_reason distances[] = {LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE,
-                                                LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE,
-                                                LENSPROF_REASON_LOOKUP_USUAL_DISTANCE};
+    static const lensprof_reason distances[] = {LENSPROF_REASON_LOOKUP_USUAL_DISTANCE,
+                                                LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE,
+                                                LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE};
     bool is_reported = false;
     for (uint32_t i = 0; i < LENSPROF_LOOKUP_REASONS; i++)
         is_reported |= lookup->reason_code[i] == LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR;

@@ -141,6 +141,7 @@ typedef struct parts {
     lensprof_fit_result *result;
     lensprof_fit_image_quality *quality;
     lensprof_fit_camera *camera;
+    lensprof_finding *finding;
 } parts;
 
 static lensprof_status fit(const lensprof_fit_options *options, const lensprof_fit_image *images, parts asked,
@@ -159,6 +160,8 @@ static lensprof_status fit(const lensprof_fit_options *options, const lensprof_f
         expect(asked.quality->pairs == 2 * PAIRS / IMAGES, "pairs of an image's quality");
     if (asked.camera) status = lensprof_fit_camera_at(held, 0, asked.camera, error);
     if (status == LENSPROF_OK && asked.camera) expect(asked.camera->images == IMAGES, "images of a camera");
+    if (asked.finding) status = lensprof_fit_finding_at(held, 0, 0, asked.finding, error);
+    if (status == LENSPROF_OK && asked.finding) expect(asked.finding->code != 0, "code of a finding");
     lensprof_fit_destroy(held);
     return status;
 }
@@ -186,6 +189,10 @@ static lensprof_status call_fit_image_quality(void *given, lensprof_error *error
 
 static lensprof_status call_fit_camera(void *given, lensprof_error *error) {
     return fit(&here.fit, here.images, (parts){.camera = given}, error);
+}
+
+static lensprof_status call_finding(void *given, lensprof_error *error) {
+    return fit(&here.fit, here.images, (parts){.finding = given}, error);
 }
 
 static lensprof_status flat(const lensprof_flat_options *options, const lensprof_flat_image *image,
@@ -411,7 +418,6 @@ INIT(sample_options)
 INIT(sample_image)
 INIT(apply_options)
 INIT(profile)
-INIT(lookup_options)
 INIT(import_options)
 INIT(export_options)
 
@@ -431,19 +437,20 @@ typedef struct growing {
 static const growing structs[] = {
     {"fit_options", sizeof(lensprof_fit_options), 160, 1, init_fit_options, call_fit_options, 1, 0},
     {"fit_image", sizeof(lensprof_fit_image), 104, IMAGES, init_fit_image, call_fit_images, 1, 0},
-    {"fit_result", sizeof(lensprof_fit_result), 19752, 1, init_zero, call_fit_result, 1, 1},
+    {"finding", sizeof(lensprof_finding), 320, 1, init_zero, call_finding, 1, 1},
+    {"fit_result", sizeof(lensprof_fit_result), 19472, 1, init_zero, call_fit_result, 1, 1},
     {"fit_image_quality", sizeof(lensprof_fit_image_quality), 96, 1, init_zero, call_fit_image_quality, 1, 1},
     {"fit_camera", sizeof(lensprof_fit_camera), 64, 1, init_zero, call_fit_camera, 1, 1},
     {"flat_options", sizeof(lensprof_flat_options), 128, 1, init_flat_options, call_flat_options, 1, 0},
     {"flat_image", sizeof(lensprof_flat_image), 104, 1, init_flat_image, call_flat_image, 1, 0},
-    {"flat_result", sizeof(lensprof_flat_result), 24488, 1, init_zero, call_flat_result, 1, 1},
+    {"flat_result", sizeof(lensprof_flat_result), 24200, 1, init_zero, call_flat_result, 1, 1},
     {"flat_image_quality", sizeof(lensprof_flat_image_quality), 88, 1, init_zero, call_flat_image_quality, 1, 1},
     {"sample_options", sizeof(lensprof_sample_options), 40, 1, init_sample_options, call_sample_options, 1, 0},
     {"sample_image", sizeof(lensprof_sample_image), 224, 2, init_sample_image, call_sample_images, 1, 0},
     {"apply_options", sizeof(lensprof_apply_options), 176, 1, init_apply_options, call_apply_options, 1, 0},
     {"profile as input", sizeof(lensprof_profile), 49312, 1, init_profile, call_profile_in, 1, 0},
     {"profile as output", sizeof(lensprof_profile), 49312, 1, init_profile, call_profile_out, 1, 1},
-    {"lookup_options", sizeof(lensprof_lookup_options), 16, 1, init_lookup_options, call_lookup_options, 1, 0},
+    {"lookup_options", sizeof(lensprof_lookup_options), 16, 1, init_zero, call_lookup_options, 1, 0},
     {"lookup", sizeof(lensprof_lookup), 680, 1, init_zero, call_lookup, 1, 1},
     {"store_stats", sizeof(lensprof_store_stats), 4336, 1, init_zero, call_stats, 1, 1},
     {"pto_image", sizeof(lensprof_pto_image), 312, 1, init_zero, call_pto_image, 1, 1},

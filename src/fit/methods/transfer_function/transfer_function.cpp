@@ -9,9 +9,10 @@
 #include "fit/methods/transfer_function/log_equations.hpp"
 #include "fit/problem/curve_shape.hpp"
 #include "fit/solver/start.hpp"
+#include "fit/verdict/finding.hpp"
 #include "fit/verdict/finish.hpp"
+#include "fit/verdict/limits.hpp"
 #include "fit/verdict/quality.hpp"
-#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -220,7 +221,9 @@ Estimate Fit::in_emor(const State &state) const {
 void Fit::judge_exposures(const State &state, FitResult &r) const {
     if ((!r.usable && r.converged) || !is_free_) return;  // with equal exposures, they do not converge either
     double usual = exposure_spread(all_, state.estimate);
-    if (usual < kSmallestSpread) refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {usual}});
+    if (usual < kSmallestSpread && !has_code(r.verdict, LENSPROF_REASON_EXPOSURES_EQUAL))
+        report_first(r, finding_of(LENSPROF_REASON_EXPOSURES_EQUAL, LENSPROF_SEVERITY_REFUSAL, of_value(usual),
+                                   kSmallestSpread));
 }
 
 // ln of the exponent that takes the exposures of an estimate to those of another, as nearly as one exponent can; 0 if

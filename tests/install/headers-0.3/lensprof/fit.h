@@ -1,6 +1,6 @@
 /* lensprof/fit.h - recover response, vignetting, exposure and white balance from correspondences.
  *
- * Example: self-calibration from three overlapping pictures, which are then corrected and evened out in place.
+ * Example: self-calibration from three overlapping pictures, which are then corrected and equalised in place.
  *
  *     static lensprof_pair pairs[2000];
  *     lensprof_sample_image samples[3]; lensprof_fit_image fitted[3]; lensprof_exposure exposures[3]; uint32_t count;
@@ -226,14 +226,12 @@ typedef struct lensprof_fit_result {
     /* The lens setting. */
     uint32_t images;        /* of this setting in the fit; if 0, the other members have no meaning */
     uint32_t setting_pairs; /* pairs with an end in these images */
-    uint32_t usable;        /* 1: response and vignetting are a profile to store; 0: not, as `reason` states */
-    char reason[256];       /* why not usable; if usable, a warning or empty */
+    uint32_t usable;        /* 1: response and vignetting are a profile to store; 0: not, as the findings state */
+    uint32_t findings;      /* number of lensprof_fit_finding_at: refusals, then warnings, then notes; */
+    uint32_t passed;        /* after them, the rules that hold */
+    uint32_t reserved;      /* 0 */
     lensprof_vignetting vignetting[3]; /* per channel; all equal if `vignettings` is 1; they share one centre */
     uint32_t radius_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in rings of r, each 1/10 half diagonal wide */
-    uint32_t reason_code;                         /* lensprof_reason that `reason` states */
-    uint32_t reason_values;                       /* number of reason_value, 0..2 */
-    lensprof_item reason_item;                    /* the image concerned */
-    double reason_value[2];                       /* numbers, in the units of reason.h */
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* includes the uncertainty of the data, of
                                                                              gamma and of a prior profile */
     double gamma_direction[LENSPROF_COVARIANCE_MAX]; /* change of each parameter per unit of ln gamma */
@@ -244,8 +242,8 @@ typedef struct lensprof_fit_result {
     lensprof_response response;
     uint32_t vignettings;   /* falloff curves: 1 or 3 */
     uint32_t pairs;         /* pairs used by the camera's fit */
-    uint32_t evens;         /* 1: the result evens out these pictures, whether or not it is a profile to store: held-out
-                               pairs differ far less than before, and no two images differ more */
+    uint32_t equalizes;     /* 1: the result equalises these pictures, whether or not it is a profile to store: held-out
+                           pairs differ far less than before, and no two images differ more */
     uint32_t response_from; /* lensprof_fit_response */
     uint32_t profile_prior; /* lensprof_profile_prior */
     uint32_t gamma_from;    /* main source of gamma: PRIOR, EXPOSURES, KNOWN, NONE, PROFILE, FALLOFF or CAMERAS */
@@ -259,8 +257,8 @@ typedef struct lensprof_fit_result {
                            not radial. 0 for pure noise */
     double image_share; /* further share explained by a separate map per image, which no camera model explains (local
                            tone mapping, changing light). 0 for pure noise */
-    double light_spread_ev; /* root mean square difference of the light at the two ends of a pair, EV; the response is
-                               estimated from these differences */
+    double irradiance_spread_ev; /* root mean square difference of the light at the two ends of a pair, EV; the response
+                               is estimated from these differences */
     uint32_t grey_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in tenths of the grey range, all channels */
     uint32_t converged;
     uint32_t iterations;
@@ -276,13 +274,13 @@ typedef struct lensprof_fit_result {
 
     /* The whole fit. */
     uint32_t reference;  /* image that fixes the gauge: that of the options; if that one was left out, the first of the
-                            group; if its camera's pictures are not evened out, one of the camera with the most images
+                            group; if its camera's pictures are not equalised, one of the camera with the most images
                             that are */
     uint32_t left_out;   /* images not in the largest consistent group, which the fit excludes */
     uint32_t components; /* connected groups of images; 1 if all are connected */
     uint32_t setting_count; /* lens settings: 1 + the largest number given */
     uint32_t camera_count;  /* cameras: 1 + the largest number given */
-    uint32_t reserved;      /* 0 */
+    uint32_t reserved2;     /* 0 */
     double seconds;         /* time taken by the solver */
 } lensprof_fit_result;
 
@@ -299,10 +297,10 @@ typedef struct lensprof_fit_camera {
     uint32_t images; /* images of this camera in its fit; if 0, no pairs connect two of its images */
     uint32_t joined; /* 1: its exposures are relative to the reference; 0: too few pairs with other cameras, or most of
                         these contradict it; the ev of its images is NaN */
-    uint32_t shared_pairs;      /* pairs between it and another camera that joined */
-    double agreeing_share;      /* share of the shared pairs within 3 sigma of the residual */
-    double light_difference_ev; /* median absolute difference of the light at their ends, EV */
-    double log_gamma;           /* shift of its own fit along its family, to agree with the others */
+    uint32_t shared_pairs;           /* pairs between it and another camera that joined */
+    double agreeing_share;           /* share of the shared pairs within 3 sigma of the residual */
+    double irradiance_difference_ev; /* median absolute difference of the light at their ends, EV */
+    double log_gamma;                /* shift of its own fit along its family, to agree with the others */
     double offset_sigma_ev; /* standard error of the offset of its exposures, mostly due to the light at white, which no
                                pair shows; 0 for the camera of the reference */
     uint32_t reference;     /* image whose exposure was fixed in its own fit */
@@ -323,7 +321,7 @@ LENSPROF_API size_t lensprof_fit_bytes(const lensprof_fit_image *images, uint32_
 /* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives exposure and white balance of
  * every image, relative to the reference. *fit receives the rest: in memory[size], 8-byte aligned, of at least
  * lensprof_fit_bytes, which must outlive it; or, if memory is NULL, in memory of its own. Release it with
- * lensprof_fit_destroy. A fit that ran returns OK even if the result is poor: see `usable` and `evens`. If not all
+ * lensprof_fit_destroy. A fit that ran returns OK even if the result is poor: see `usable` and `equalizes`. If not all
  * images are consistent, the fit uses the largest group that is; the ev of an image left out is NaN. Pictures of a
  * stationary camera are used all together or not at all. Method RADIANCE joins pairs that share an end (image, position
  * and values) into a track.
@@ -365,6 +363,11 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_setting_at(const len
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_camera_at(const lensprof_fit *fit, uint32_t camera,
                                                                       lensprof_fit_camera *result,
                                                                       lensprof_error *error);
+
+/* Finding `index` of a lens setting (or LENSPROF_FIT_REFERENCE): of `findings`, then of `passed`. Errors: as there. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_finding_at(const lensprof_fit *fit, uint32_t setting,
+                                                                       uint32_t index, lensprof_finding *finding,
+                                                                       lensprof_error *error);
 
 /* Makes the profile of a lens setting (or LENSPROF_FIT_REFERENCE), to be stored or applied: response, vignettings,
  * covariance, no gain grid, in an initialised *profile. Sets in the provenance: method, software, pictures and pairs

@@ -79,7 +79,7 @@ typedef enum lensprof_camera_kind {
     LENSPROF_CAMERA_ANY = 0,     /* unknown: a mixture of all kinds below and of gamma curves */
     LENSPROF_CAMERA_FILM = 1,    /* scanned film: 154 curves of the DoRF database */
     LENSPROF_CAMERA_DIGITAL = 2, /* digital and video cameras of the 1990s with a tone curve: 29 curves of DoRF */
-    LENSPROF_CAMERA_CAMERA = 3,  /* JPEG of today's digital cameras: 20 curves of 19 cameras */
+    LENSPROF_CAMERA_STILL = 3,   /* JPEG of today's digital cameras: 20 curves of 19 cameras */
     LENSPROF_CAMERA_PHONE = 4,   /* JPEG of phones: 5 curves of 4 phones */
     LENSPROF_CAMERA_LINEAR = 5   /* sensor data and pictures developed linearly from it */
 } lensprof_camera_kind;

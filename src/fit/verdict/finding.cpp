@@ -1,0 +1,286 @@
+#include "fit/verdict/finding.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <string>
+
+#include "fit/base/fail.hpp"
+
+namespace lensprof {
+namespace {
+
+// {item} is "image 3" or "shot 3"; {0} and {1} are the values, {0.2} with two decimals, {|0.2} without its sign, {0.1%}
+// a share as "3.4 %".
+struct Sentence {
+    lensprof_reason code;
+    Wording wording;
+    const char *text;
+};
+
+// clang-format off
+constexpr Sentence kSentences[] = {
+    {LENSPROF_REASON_IMAGE_GROUPS, Wording::usual,
+     "the images form {0} groups: no usable overlap connects {item} to the reference, even through other images; more than half of the images must be consistent: add pictures that connect them, or check the alignment"},
+    {LENSPROF_REASON_FEW_PAIRS, Wording::usual,
+     "{0} distinct pairs between black and white are too few for {1} unknowns; sample more pairs"},
+    {LENSPROF_REASON_FEW_AGREE, Wording::usual,
+     "only {0%} of the pairs agree with one camera model; check the alignment of the pictures"},
+    {LENSPROF_REASON_FEW_AGREE, Wording::still,
+     "only {0%} of the pairs agree with one response; check that the pictures show one scene, that the camera did not move, and that their black level is 0"},
+    {LENSPROF_REASON_FEW_AGREE, Wording::card,
+     "only {0%} of the cells agree with one falloff and one light; check that the light is even"},
+    {LENSPROF_REASON_SCATTER, Wording::usual,
+     "the pairs deviate by {0.1} levels from the best camera model; free more parameters, or check the alignment"},
+    {LENSPROF_REASON_NOT_CONVERGED, Wording::usual,
+     "the fit did not converge in {0} iterations; increase the limit, or sample more pairs"},
+    {LENSPROF_REASON_FEW_INLIERS, Wording::usual,
+     "the exposure of {item} depends on only {0} pairs that agree with the camera model; increase its overlap, or check its alignment"},
+    {LENSPROF_REASON_FEW_INLIERS, Wording::still,
+     "the exposure of {item} depends on only {0} pairs that agree with the response; increase its overlap, or check whether something moved, the light changed, or its black level is raised"},
+    {LENSPROF_REASON_IMAGE_DISAGREES, Wording::usual,
+     "only {0} of the {1} pairs of {item} agree with the camera model; check its alignment"},
+    {LENSPROF_REASON_IMAGE_DISAGREES, Wording::still,
+     "only {0} of the {1} pairs of {item} agree with the response; check whether something moved, the light changed, or its black level is raised"},
+    {LENSPROF_REASON_PATTERNS, Wording::usual,
+     "{0%} of the residual follows a different pattern in each image ({1.1} levels), which no response or falloff can explain: local tone mapping (HDR), or light that changed between the pictures"},
+    {LENSPROF_REASON_PATTERNS, Wording::held,
+     "{0%} of the residual follows a different pattern in each image ({1.1} levels), which the response and falloff do not explain: free them if they are fixed; otherwise local tone mapping (HDR), or light that changed between the pictures"},
+    {LENSPROF_REASON_PATTERNS, Wording::still,
+     "{0%} of the residual follows a different pattern in each image ({1.1} levels), which no response explains: the camera moved, the light changed, or local tone mapping (HDR); give plain exposures"},
+    {LENSPROF_REASON_PATTERNS, Wording::weak,
+     "{0%} of the residual follows a different pattern in each image ({1.1} levels), which suggests weak local tone mapping (HDR): exposures may be less accurate than stated"},
+    {LENSPROF_REASON_IMAGE_INCONSISTENT, Wording::usual,
+     "most pairs of {item} disagree with the camera model (median residual {0.1} levels): check its alignment, and whether something moved"},
+    {LENSPROF_REASON_IMAGE_INCONSISTENT, Wording::still,
+     "most pairs of {item} disagree with the response (median residual {0.1} levels): something moved, the light changed, or its black level is raised"},
+    {LENSPROF_REASON_IMAGES_LEFT_OUT, Wording::usual,
+     "inconsistent images were left out ({0}, including {item}); check their alignment, or leave them out of the project"},
+    {LENSPROF_REASON_IMAGES_UNCONNECTED, Wording::usual,
+     "no pairs connect {0} of the images, including {item}; add pictures that overlap them"},
+    {LENSPROF_REASON_MANY_OUTLIERS, Wording::usual,
+     "{0%} of the pairs disagree with the camera model (residual {1.1} levels RMS): check the alignment, and whether something moved"},
+    {LENSPROF_REASON_SEAMS_REMAIN, Wording::usual,
+     "overlapping pictures still differ by a median of {0.1} levels after correction ({1.1} before): check the alignment, and whether something moved"},
+    {LENSPROF_REASON_LINKS_CONTRADICT, Wording::usual,
+     "{0} of the links between images, the first of {item}, contradict the others and were left out: check the alignment there, and whether something moved"},
+    {LENSPROF_REASON_LINKS_UNVERIFIED, Wording::usual,
+     "{0} of the images, including {item}, overlap others only where there is too little texture to check the alignment: the alignment of the project is used there"},
+    {LENSPROF_REASON_EXPOSURE_UNCERTAIN, Wording::usual,
+     "the exposure of {item} is uncertain by {0.1} EV; increase its overlap"},
+    {LENSPROF_REASON_EXPOSURES_EQUAL, Wording::usual,
+     "the exposures of overlapping pictures differ by only {0.2} EV, too little to determine a response; take pictures with other exposures or, if the camera moved, use the method transfer"},
+    {LENSPROF_REASON_KNOWN_ORDER, Wording::usual,
+     "the known exposures do not match the pictures, which differ by {0.1} EV; check their order, and that they belong to these pictures"},
+    {LENSPROF_REASON_KNOWN_WRONG, Wording::usual,
+     "the exposure of {item} differs by {|0.1} EV from the known one: one of the two is wrong, or the light changed"},
+    {LENSPROF_REASON_KNOWN_STEP, Wording::usual,
+     "from {item} on, the known exposures are {|0.1} EV higher than the pictures show: ISO, aperture or the light changed there unnoticed"},
+    {LENSPROF_REASON_KNOWN_STEP, Wording::less,
+     "from {item} on, the known exposures are {|0.1} EV lower than the pictures show: ISO, aperture or the light changed there unnoticed"},
+    {LENSPROF_REASON_KNOWN_CONTRADICT, Wording::usual,
+     "the known exposures contradict each other: one is wrong by more than {0.1} EV, but it is unclear which; gamma is uncertain accordingly. Check them, or take more pictures"},
+    {LENSPROF_REASON_GAMMA_INCONSISTENT, Wording::usual,
+     "the known exposures require all exposures to be {0.2} times as large, but the modes of the response do not allow it; exposures, falloff and response have a different exponent"},
+    {LENSPROF_REASON_WHITE_BALANCE_FIXED, Wording::usual,
+     "the white balances are fixed, but the colours of {item} differ from those of its neighbours by {0.1} levels: free the white balances"},
+    {LENSPROF_REASON_FEW_GREYS, Wording::usual,
+     "the pairs cover only {0} tenths of the grey values, too little to determine a response; take pictures with other exposures, or fix a known response"},
+    {LENSPROF_REASON_MISSING_GREYS, Wording::usual,
+     "few pairs have grey values from {0.1} to {1.1} (of 1); there the response, and gamma, depend on the prior"},
+    {LENSPROF_REASON_UNUSUAL_RESPONSE, Wording::usual,
+     "the response is unlike those of measured cameras of this kind ({0.1} times their spread from the mean), so gamma is uncertain by {1%}; choose another kind of camera, give known exposures that differ, or fix a known response"},
+    {LENSPROF_REASON_RESPONSE_UNCONSTRAINED, Wording::usual,
+     "the light differs by {0.2} EV between the pictures, too little or over too few grey values to determine a response: the prior response is used, and gamma is uncertain by {1%}; take pictures with other exposures"},
+    {LENSPROF_REASON_SMALL_RADIUS, Wording::usual,
+     "the pairs reach only to {0.1} of the half diagonal, which does not determine the falloff in the corners; increase the overlap of the pictures, or fix the falloff"},
+    {LENSPROF_REASON_SMALL_RADIUS, Wording::card,
+     "the card reaches only to {0.2} of the half diagonal, which does not determine the falloff in the corners; add pictures with the card in the corners"},
+    {LENSPROF_REASON_SMALL_RADIUS, Wording::weak,
+     "the card reaches to {0.2} of the half diagonal: the falloff in the corners is extrapolated"},
+    {LENSPROF_REASON_CORNER_UNCERTAIN, Wording::usual,
+     "the falloff in the corners is uncertain by {0%}; sample more pairs, or increase the overlap"},
+    {LENSPROF_REASON_CORNER_UNCERTAIN, Wording::grid,
+     "{1.1%} of the light is not radial, which leaves the falloff in the corners uncertain by {0.1%}; request a gain grid"},
+    {LENSPROF_REASON_CORNER_UNCERTAIN, Wording::card,
+     "the falloff in the corners is uncertain by {0.1%}: too noisy, or the card is not visible there; average more pictures, or add some with the card in the corners"},
+    {LENSPROF_REASON_SAME_VIEW, Wording::usual,
+     "the pictures show almost the same view (r^2 changes by {0.3} between them), which determines no falloff; take pictures that overlap by half, or use bracket or align for plain exposures (no HDR) from a tripod"},
+    {LENSPROF_REASON_EXPOSURES_ONLY, Wording::usual,
+     "response and falloff predict held-out pairs no better than exposures and white balances alone; give pictures with larger overlaps or other exposures"},
+    {LENSPROF_REASON_NOTHING_BETTER, Wording::usual,
+     "no correction makes held-out pairs differ less than the pictures as they are: these match already, or differ by more than a camera does"},
+    {LENSPROF_REASON_NOT_RADIAL, Wording::usual,
+     "{0%} of the residual follows one pattern over the frame ({1.1} levels): the falloff is not radial"},
+    {LENSPROF_REASON_FALLOFF_RISES, Wording::usual,
+     "the falloff rises to {0%} of the light in the middle (+- {1%}), unlike any lens: negatives, misaligned pictures, or light that differs across the scene; correct the alignment, or fix the falloff"},
+    {LENSPROF_REASON_FALLOFF_RISES, Wording::weak,
+     "the falloff rises to {0%} of the light in the middle (+- {1%}): the camera may have corrected it already"},
+    {LENSPROF_REASON_FALLOFF_DARK, Wording::usual,
+     "the falloff leaves {0.1%} of the light at the edge, unlike any lens: grey values stretched or equalised in every picture, or a lens hood in the corners; give unprocessed pictures of the camera, or exclude the corners"},
+    {LENSPROF_REASON_CENTER_ON_LIMIT, Wording::usual,
+     "the centre of the falloff is on its limit, {0.2} half diagonals from the middle of the frame: the pairs do not determine it; fix the centre"},
+    {LENSPROF_REASON_FAR_CENTER, Wording::usual,
+     "the centre of the falloff lies {0.2} half diagonals from the middle of the frame; check whether the pictures are cropped, and their alignment"},
+    {LENSPROF_REASON_FAR_CENTER, Wording::card,
+     "the centre of the falloff lies {0.2} half diagonals from the middle of the frame; check whether the pictures are cropped or the light is uneven"},
+    {LENSPROF_REASON_FLAT_WHITE, Wording::usual,
+     "{0%} of the card in {item} is white in every exposure; take a shorter exposure"},
+    {LENSPROF_REASON_FLAT_WHITE, Wording::weak,
+     "{0.1%} of the card in {item} is white in every exposure and was left out"},
+    {LENSPROF_REASON_FLAT_BLACK, Wording::usual,
+     "{0%} of the card in {item} is black in every exposure; take a longer exposure"},
+    {LENSPROF_REASON_FLAT_BLACK, Wording::weak,
+     "{0.1%} of the card in {item} is black in every exposure and was left out"},
+    {LENSPROF_REASON_FLAT_NO_CARD, Wording::usual,
+     "no card was found in {item}: no even bright region is larger than a hundredth of the frame; specify where it is, or light the whole frame evenly"},
+    {LENSPROF_REASON_FLAT_FEW_CELLS, Wording::usual,
+     "{0} cells of even light are too few; use larger pictures, or show more of the card"},
+    {LENSPROF_REASON_FLAT_RESPONSE, Wording::less,
+     "the given response is a step at the grey values of {item}, which therefore do not determine the light; give the camera's own response, or another exposure"},
+    {LENSPROF_REASON_FLAT_RESPONSE, Wording::usual,
+     "the given response is flat at the grey values of {item}, which therefore do not determine the light; give the camera's own response, or another exposure"},
+    {LENSPROF_REASON_FLAT_EXPOSURE_WRONG, Wording::usual,
+     "{item} is {0.2} EV away from the others of its shot: the given exposures or response are wrong, or the light changed"},
+    {LENSPROF_REASON_FLAT_EXPOSURE_WRONG, Wording::weak,
+     "{item} is {0.2} EV away from the others of its shot: the given exposures or response are slightly wrong"},
+    {LENSPROF_REASON_FLAT_TEXTURE, Wording::usual,
+     "the card is not uniform: it has texture of {0.1%} above the noise; defocus, come closer, or use a diffuser"},
+    {LENSPROF_REASON_FLAT_TEXTURE, Wording::weak,
+     "the card has texture of {0.1%} above the noise; defocus or use a diffuser"},
+    {LENSPROF_REASON_FLAT_SHOTS_DIFFER, Wording::usual,
+     "the shots differ by {0.1%} in ways that one lens and one light do not explain: the light changed, a shadow fell on the card, or the angles of the rotated shots are wrong"},
+    {LENSPROF_REASON_FLAT_SHOTS_DIFFER, Wording::weak,
+     "the shots differ by {0.1%} in ways that one lens and one light do not explain"},
+    {LENSPROF_REASON_FLAT_STEEP, Wording::usual,
+     "the light of {item} varies by {0%} per half diagonal, which a plane does not describe; even it out"},
+    {LENSPROF_REASON_FLAT_STEEP, Wording::alone,
+     "the light of {item} varies by {0%} per half diagonal; without a rotated shot it cannot be separated from the lens; even it out, or add a shot with the camera rotated by 90 or 180 degrees"},
+    {LENSPROF_REASON_FLAT_STEEP, Wording::weak,
+     "the light varies by {0%} per half diagonal; without a rotated shot it cannot be separated from the lens: the centre depends on its prior; add a shot with the camera rotated by 90 or 180 degrees"},
+    {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::grid,
+     "{0.1%} of the light is not radial: the gain grid describes it, except for {1.1%}"},
+    {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::usual,
+     "{0.1%} of the light is not radial; request a gain grid"},
+    {LENSPROF_REASON_FLAT_DUST, Wording::usual,
+     "{0} spots of dust were left out"},
+    {LENSPROF_REASON_PRIOR_OVERRULED, Wording::usual,
+     "the profile given as the prior contradicts the pictures (it is off by {0.1}, held-out pairs by {1.1} standard errors) and was rejected; check that it is for this lens and setting"},
+    {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, Wording::usual,
+     "the response of the profile given as the prior contradicts the pictures (its shape is off by {0.1}, held-out pairs by {1.1} standard errors) and was rejected; its falloff was used"},
+    {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, Wording::usual,
+     "the falloff of the profile given as the prior contradicts the pictures (it is off by {0.1}, held-out pairs by {1.1} standard errors) and was rejected; its response was used"},
+    {LENSPROF_REASON_UNDETERMINED, Wording::usual,
+     "the pairs do not determine all parameters; fix some, or vary the exposure more"},
+    {LENSPROF_REASON_UNDETERMINED, Wording::card,
+     "the pictures do not determine all parameters: fix the centre, assume even light, or add a shot with the camera rotated"},
+};
+// clang-format on
+
+std::string sentence_of(lensprof_reason code, Wording wording) {
+    for (const Wording wanted : {wording, Wording::usual})
+        for (const Sentence &sentence : kSentences)
+            if (sentence.code == code && sentence.wording == wanted) return sentence.text;
+    return lensprof_reason_text(code);
+}
+
+// The value for a placeholder such as "0.1%" or "|0.2".
+std::string spell_value(std::string place, const double (&values)[2]) {
+    const bool is_size = place[0] == '|';
+    if (is_size) place.erase(0, 1);
+    const double given = values[static_cast<size_t>(place[0] - '0')], value = is_size ? std::abs(given) : given;
+    const size_t point = place.find('.');
+    const int decimals = point == std::string::npos ? 0 : place[point + 1] - '0';
+    const bool is_share = place.back() == '%';
+    char text[64];
+    std::snprintf(text, sizeof text, is_share ? "%.*f %%" : "%.*f", decimals, (is_share ? 100.0 : 1.0) * value);
+    return text;
+}
+
+// Writes the sentence into the finding, and notes where it names the item.
+void write_text(const std::string &wording, lensprof_finding &finding) {
+    std::string text;
+    for (size_t position = 0; position < wording.size();) {
+        if (wording[position] != '{') {
+            text += wording[position++];
+            continue;
+        }
+        const size_t end = wording.find('}', position);
+        const std::string place = wording.substr(position + 1, end - position - 1);
+        const size_t begin = text.size();
+        if (place == "item") {
+            text += item_word(finding.item.kind) + (" " + std::to_string(finding.item.index));
+            finding.item.text_begin = static_cast<uint32_t>(begin);
+            finding.item.text_bytes = static_cast<uint32_t>(text.size() - begin);
+        } else {
+            text += spell_value(place, finding.value);
+        }
+        position = end + 1;
+    }
+    std::snprintf(finding.text, sizeof finding.text, "%s", text.c_str());
+}
+
+// The end of the findings that are at least as severe as `severity`; `same`: including those of the same severity.
+Findings::const_iterator end_of(const Findings &findings, uint32_t severity, bool same) {
+    return std::find_if(findings.begin(), findings.end(), [=](const lensprof_finding &finding) {
+        return same ? finding.severity < severity : finding.severity <= severity;
+    });
+}
+
+}  // namespace
+
+lensprof_finding finding_of(lensprof_reason code, lensprof_severity severity, const Measured &measured, double limit,
+                            Wording wording) {
+    lensprof_finding finding;
+    lensprof_finding_init(&finding);
+    finding.code = code, finding.severity = severity;
+    finding.measured = measured.value, finding.limit = limit;
+    if (severity == LENSPROF_SEVERITY_PASSED) return finding;
+    finding.value_count = static_cast<uint32_t>(measured.count);
+    std::copy(std::begin(measured.values), std::end(measured.values), finding.value);
+    finding.item.kind = measured.kind, finding.item.index = measured.index;
+    write_text(sentence_of(code, wording), finding);
+    return finding;
+}
+
+void add_first(Findings &findings, const lensprof_finding &finding) {
+    findings.insert(end_of(findings, finding.severity, false), finding);
+}
+
+void add_last(Findings &findings, const lensprof_finding &finding) {
+    findings.insert(end_of(findings, finding.severity, true), finding);
+}
+
+void rename_item(uint32_t index, lensprof_finding &finding) {
+    lensprof_item &item = finding.item;
+    const std::string name = item_word(item.kind) + (" " + std::to_string(index)), old = finding.text;
+    item.index = index;
+    if (!item.text_bytes) return;
+    const std::string text = std::string(old).replace(item.text_begin, item.text_bytes, name);
+    item.text_bytes = static_cast<uint32_t>(name.size());
+    std::snprintf(finding.text, sizeof finding.text, "%s", text.c_str());
+}
+
+lensprof_reason first_code(const Findings &findings) {
+    return count_findings(findings) ? static_cast<lensprof_reason>(findings[0].code) : LENSPROF_REASON_NONE;
+}
+
+uint32_t count_findings(const Findings &findings) {
+    return static_cast<uint32_t>(end_of(findings, LENSPROF_SEVERITY_PASSED, false) - findings.begin());
+}
+
+uint32_t count_passed(const Findings &findings) {
+    return static_cast<uint32_t>(findings.size()) - count_findings(findings);
+}
+
+bool is_usable(const Findings &findings) {
+    return findings.empty() || findings[0].severity != LENSPROF_SEVERITY_REFUSAL;
+}
+
+bool has_code(const Findings &findings, lensprof_reason code) {
+    return std::any_of(findings.begin(), findings.end(), [=](const lensprof_finding &finding) {
+        return finding.code == static_cast<uint32_t>(code) && finding.severity != LENSPROF_SEVERITY_PASSED;
+    });
+}
+
+}  // namespace lensprof
