@@ -16,8 +16,8 @@
  * and the falloff is fitted to the result (equation 14):
  *     sum over cells of ( E - t L0 M(r) )^2,        M(0) = 1.
  * Beyond the paper: cells are weighted by their noise, outliers are down-weighted, channels get curves of their own if
- * they differ, the centre is free, the gradient of the light is estimated, and the result has a covariance and a reason
- * in words.
+ * they differ, the centre is free, the gradient of the light is estimated, and the result has a covariance and
+ * findings.
  *
  * Uneven light and a decentred falloff look alike in one picture. Shots with the camera rotated about its axis separate
  * them: the light stays with the scene, the falloff with the frame. A radially symmetric decrease of the light remains
@@ -197,7 +197,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_flat(const lensprof_
 LENSPROF_API void lensprof_flat_destroy(lensprof_flat *flat);
 
 /* What was found, and what picture `index` gave to it. The structs must be initialised. Errors: ARGUMENT for NULL, a
- * released fit and a number out of range; STRUCT_SIZE. */
+ * number out of range, and a fit released in the caller's memory (one in memory of its own must not be used again);
+ * STRUCT_SIZE. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_get(const lensprof_flat *flat,
                                                                  lensprof_flat_result *result, lensprof_error *error);
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_flat_image_at(const lensprof_flat *flat, uint32_t index,

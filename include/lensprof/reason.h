@@ -134,11 +134,13 @@ typedef enum lensprof_severity {
 /* One finding. The text names the item and has its numbers; it is empty for a rule that holds. */
 typedef struct lensprof_finding {
     uint32_t struct_size;
-    uint32_t code;        /* lensprof_reason */
-    uint32_t severity;    /* lensprof_severity */
-    uint32_t value_count; /* number of `value`, 0..2 */
-    double value[2];      /* as the comment on the code lists them */
-    double measured;      /* number that the rule compares with its limit, in the unit of that limit; NaN: none */
+    uint32_t code;          /* lensprof_reason */
+    uint32_t severity;      /* lensprof_severity */
+    uint32_t value_count;   /* number of `value`, 0..2 */
+    uint32_t rule_severity; /* of the rule: what it would find if it did not hold */
+    uint32_t reserved;      /* 0 */
+    double value[2];        /* as the comment on the code lists them */
+    double measured;        /* number that the rule compares with its limit, in the unit of that limit; NaN: none */
     double limit;
     lensprof_item item; /* the image or shot concerned; its position in the text */
     char text[256];     /* always terminated */

@@ -210,7 +210,8 @@ void check_schema(const JsonValue &object) {
     if (!schema) return;
     const int64_t version = schema.integer(INT64_MIN, INT64_MAX);
     if (version < 1 || version > kJsonSchema)
-        schema.fail("is not 1 or 2; use a newer lensprof", LENSPROF_ERROR_UNSUPPORTED);
+        schema.fail(version > kJsonSchema ? "is above 2; use a newer lensprof" : "is not 1 or 2",
+                    LENSPROF_ERROR_UNSUPPORTED);
 }
 
 void read_profile(const JsonValue &object, const char *source, lensprof_profile &profile) {

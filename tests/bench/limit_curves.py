@@ -24,7 +24,7 @@ def measures(records):
     for record in records:
         for rule in record["findings"] + record["passed"]:
             key = rule["code"], rule["limit"]
-            if key in refusing and rule["measured"] is not None:
+            if key in refusing and rule["severity"] == "refusal" and rule["measured"] is not None:
                 found.setdefault((*key, refusing[key]), []).append((record, rule["measured"]))
     return found
 

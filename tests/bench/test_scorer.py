@@ -511,11 +511,11 @@ class LimitCurves(unittest.TestCase):
 
     @staticmethod
     def record(kind, noise, others=()):
-        rule = {"code": "scatter", "measured": noise, "limit": 6.0}
+        rule = {"code": "scatter", "severity": "refusal", "measured": noise, "limit": 6.0}
         findings = [{"code": code, "severity": "refusal", "measured": None, "limit": None} for code in others]
         if noise > 6.0:
-            findings.append(dict(rule, severity="refusal"))
-        return {"kind": kind, "findings": findings, "passed": [{"code": "few_agree", "measured": 0.9, "limit": 0.3}]
+            findings.append(rule)
+        return {"kind": kind, "findings": findings, "passed": [{"code": "few_agree", "severity": "refusal", "measured": 0.9, "limit": 0.3}]
                 + ([] if noise > 6.0 else [rule])}
 
     def test_moving_a_limit_trades_one_error_for_the_other(self):

@@ -133,6 +133,8 @@ static void print_structs(void) {
     FIELD(lensprof_finding, code);
     FIELD(lensprof_finding, severity);
     FIELD(lensprof_finding, value_count);
+    FIELD(lensprof_finding, rule_severity);
+    FIELD(lensprof_finding, reserved);
     FIELD(lensprof_finding, value);
     FIELD(lensprof_finding, measured);
     FIELD(lensprof_finding, limit);

@@ -603,6 +603,8 @@ class Finding(Structure):
         ("code", c_uint32),
         ("severity", c_uint32),
         ("value_count", c_uint32),
+        ("rule_severity", c_uint32),
+        ("reserved", c_uint32),
         ("value", c_double * 2),
         ("measured", c_double),
         ("limit", c_double),

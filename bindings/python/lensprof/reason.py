@@ -21,12 +21,14 @@ class Item(Value, _abi.Item):
 
 
 class Finding(Struct, _abi.Finding):
-    """One finding. code: a Reason; severity: a Severity; value: the numbers that lensprof/reason.h lists for the code;
-    item: the image or shot concerned; text: a sentence of these. measured: the number that the rule compares with
+    """One finding. code: a Reason; severity: a Severity, PASSED if the rule holds; rule_severity: what it finds
+    otherwise. value: the numbers that lensprof/reason.h lists for the code; item: the image or shot concerned; text: a
+    sentence of these. measured: the number that the rule compares with
     `limit`; both are NaN for a finding without one."""
 
     code = Enumerated(Reason)
     severity = Enumerated(Severity)
+    rule_severity = Enumerated(Severity)
     value_count: int
     value = Numbers("value_count")
     measured: float

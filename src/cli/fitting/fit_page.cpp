@@ -131,9 +131,7 @@ Json fit_page_data(const FitPageInput &input, Progress &progress) {
 }
 
 void add_fit_verdict(Json &page, const BuildReport &report, const std::vector<std::string> &warnings) {
-    page["verdict"] =
-        page_verdict(report.fit.usable, report.fit.equalizes, report.verdict.texts(LENSPROF_SEVERITY_REFUSAL), warnings,
-                     report.verdict.texts(LENSPROF_SEVERITY_NOTE));
+    page["verdict"] = page_verdict(report.fit.usable, report.fit.equalizes, report.verdict, warnings);
     page["facts"] = facts_json(report);
 }
 

@@ -28,8 +28,7 @@ std::string flat_page(const FlatReport &report, const std::string &title, const 
                       const std::vector<std::string> &warnings) {
     const auto profile = profile_of(*report.held);
     Json page = new_page("card", title, "Falloff from pictures of a white card", command);
-    page["verdict"] = page_verdict(report.fit.usable, false, report.verdict.texts(LENSPROF_SEVERITY_REFUSAL), warnings,
-                                   report.verdict.texts(LENSPROF_SEVERITY_NOTE));
+    page["verdict"] = page_verdict(report.fit.usable, false, report.verdict, warnings);
     page["facts"] = flat_facts(report, *profile);
     page["falloffs"] = Json::array(), page["falloff_points"] = Json::array(), page["responses"] = Json::array();
     add_falloff_curves(*profile, "", page["falloffs"]);

@@ -137,10 +137,8 @@ void print_flat(const FlatReport &report, std::ostream &out) {
                       fit.gain_grid.rows, 100.0 * fit.grid_residual);
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
-    if (!fit.usable)
-        out << "NOT USABLE: " << report.verdict.text() << "\n";
-    else
-        print_findings(report.verdict, out);
+    if (!fit.usable) out << "NOT USABLE: " << report.verdict.text() << "\n";
+    print_findings(report.verdict, out);
 }
 
 }  // namespace lensprof

@@ -70,15 +70,15 @@ Json new_page(const std::string &kind, const std::string &title, const std::stri
             {"command", command}};
 }
 
-Json page_verdict(bool usable, bool equalizes, const std::vector<std::string> &refusals,
-                  const std::vector<std::string> &warnings, const std::vector<std::string> &notes) {
+Json page_verdict(bool usable, bool equalizes, const Verdict &verdict, const std::vector<std::string> &warnings) {
     Json details = Json::array();
-    for (const std::string &text : refusals) {
-        const bool is_repeated = std::any_of(warnings.begin(), warnings.end(), [&](const std::string &warning) {
-            return warning.find(text) != std::string::npos;
-        });
-        if (!is_repeated) details.push_back(text);
-    }
+    for (const uint32_t severity : {LENSPROF_SEVERITY_REFUSAL, LENSPROF_SEVERITY_WARNING})
+        for (const std::string &text : verdict.texts(severity)) {
+            const bool is_repeated = std::any_of(warnings.begin(), warnings.end(), [&](const std::string &warning) {
+                return warning.find(text) != std::string::npos;
+            });
+            if (!is_repeated) details.push_back(text);
+        }
     for (const std::string &warning : warnings) details.push_back(warning);
     const bool is_good = usable && details.empty();
     const char *headline = is_good  ? "Usable: a profile that later pictures can rely on."
@@ -91,7 +91,7 @@ Json page_verdict(bool usable, bool equalizes, const std::vector<std::string> &r
                                             : "bad"},
             {"headline", headline},
             {"details", details},
-            {"notes", notes}};
+            {"notes", verdict.texts(LENSPROF_SEVERITY_NOTE)}};
 }
 
 std::string page_of(const Json &page) {

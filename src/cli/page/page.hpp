@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/pictures/picture.hpp"
+#include "cli/report/verdict.hpp"
 
 namespace lensprof {
 
@@ -17,10 +18,10 @@ extern const char *const page_html, *const page_style, *const page_script;  // p
 nlohmann::ordered_json new_page(const std::string &kind, const std::string &title, const std::string &subtitle,
                                 const std::string &command);
 
-// The verdict of a result: its refusals, unless a warning repeats them, the warnings, and the notes. A result that is
-// not usable may still correct its own pictures (`equalizes`).
-nlohmann::ordered_json page_verdict(bool usable, bool equalizes, const std::vector<std::string> &refusals,
-                                    const std::vector<std::string> &warnings, const std::vector<std::string> &notes);
+// The verdict of a result: its refusals and warnings, unless one of `warnings`, which the command printed, repeats
+// them; these; and the notes. A result that is not usable may still correct its own pictures (`equalizes`).
+nlohmann::ordered_json page_verdict(bool usable, bool equalizes, const Verdict &verdict,
+                                    const std::vector<std::string> &warnings);
 
 // The bytes of the page; `page` is what report.js reads.
 std::string page_of(const nlohmann::ordered_json &page);

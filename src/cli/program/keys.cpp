@@ -28,7 +28,10 @@ std::string KeyTable::about() const {
 
 void KeyTable::read(const std::string &word) {
     std::vector<std::string> pairs;
-    for (const std::string &part : split(word)) {
+    for (std::string part : split(word)) {
+        if (pairs.empty() && part.empty() && !word.empty())
+            throw Failure(ExitCode::usage, option + ": a pair is missing before or after a comma in '" + word + "'");
+        if (part.find('=') != std::string::npos) part.erase(0, part.find_first_not_of(' '));
         if (pairs.empty() || part.find('=') != std::string::npos)
             pairs.push_back(part);
         else

@@ -171,8 +171,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
         out << "CORRECTS these pictures; not stored as a profile: " << report.verdict.text() << "\n";
     else if (!fit.usable)
         out << "NOT USABLE: " << report.verdict.text() << "\n";
-    else
-        print_findings(report.verdict, out);
+    print_findings(report.verdict, out);
 }
 
 }  // namespace lensprof

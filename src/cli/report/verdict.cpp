@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 
 namespace lensprof {
@@ -26,6 +27,7 @@ Verdict verdict_from(const Result &result, At at) {
         check(at(i, &found, &error), "fit", &error);
         Finding finding(found.code, found.severity, found.text, {found.value, found.value + found.value_count});
         finding.item = found.item, finding.measured = found.measured, finding.limit = found.limit;
+        if (i >= result.findings) finding.severity = found.rule_severity;
         (i < result.findings ? verdict.findings : verdict.passed).push_back(finding);
     }
     return verdict;
@@ -116,6 +118,7 @@ void add_verdict(const Verdict &verdict, Json &json) {
     json["passed"] = Json::array();
     for (const Finding &rule : verdict.passed)
         json["passed"].push_back({{"code", lensprof_reason_name(rule.code)},
+                                  {"severity", severity_names[rule.severity]},
                                   {"measured", number(rule.measured)},
                                   {"limit", number(rule.limit)}});
 }
@@ -126,10 +129,9 @@ std::string first_text(const Json &json) {
 }
 
 void print_findings(const Verdict &verdict, std::ostream &out) {
-    for (const Finding &finding : verdict.findings) {
-        if (finding.severity == LENSPROF_SEVERITY_WARNING) out << "warning   " << finding.text << "\n";
-        if (finding.severity == LENSPROF_SEVERITY_NOTE) out << "note      " << finding.text << "\n";
-    }
+    for (const Finding &finding : verdict.findings)
+        if (finding.severity != LENSPROF_SEVERITY_REFUSAL || &finding != &verdict.findings[0])
+            out << format("%-8s  ", severity_names[finding.severity]) << finding.text << "\n";
 }
 
 void report_findings(const Verdict &verdict, const std::string &source, Streams &streams) {

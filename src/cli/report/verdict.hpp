@@ -60,7 +60,7 @@ void add_verdict(const Verdict &verdict, nlohmann::ordered_json &json);
 // The text of the first finding in what add_verdict wrote; empty without findings.
 std::string first_text(const nlohmann::ordered_json &json);
 
-// The warnings and notes as lines of a table.
+// The findings as lines of a table, without the first refusal, which is the headline of a result that is not usable.
 void print_findings(const Verdict &verdict, std::ostream &out);
 
 // The warnings and notes on standard error.

@@ -191,7 +191,7 @@ extern "C" {
 size_t lensprof_fit_bytes(const lensprof_fit_image *images, uint32_t image_count) {
     try {
         std::vector<lensprof_fit_image> taken;
-        const bool is_valid = images && take_images(images, image_count, taken, nullptr) == LENSPROF_OK;
+        const bool is_valid = images && image_count && take_images(images, image_count, taken, nullptr) == LENSPROF_OK;
         return is_valid ? fit_bytes(taken) : 0;
     } catch (const std::exception &) {
         return 0;

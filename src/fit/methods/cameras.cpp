@@ -84,6 +84,7 @@ private:
     bool attach_image(uint32_t image, const std::vector<uint32_t> &pairs);
     void write(uint32_t base, lensprof_exposure *exposures, FitResult &result) const;
     void give_camera(uint32_t number, FitResult &r) const;
+    lensprof_finding left_out_finding(uint32_t count, bool are_few) const;
 
     const lensprof_fit_options &options_;
     const std::vector<lensprof_fit_image> &images_;
@@ -421,6 +422,39 @@ void CamerasFit::give_camera(uint32_t number, FitResult &r) const {
     }
 }
 
+// Whether a finding is on images that are left out: those of all cameras replace those of one.
+bool is_on_left_out(const lensprof_finding &finding) {
+    return finding.severity != LENSPROF_SEVERITY_REFUSAL && finding.severity != LENSPROF_SEVERITY_PASSED
+           && (finding.code == LENSPROF_REASON_IMAGES_LEFT_OUT || finding.code == LENSPROF_REASON_IMAGES_UNCONNECTED);
+}
+
+// That `count` images of all cameras are left out: about those that disagree, if there are any. `are_few`: those that
+// agree are too few.
+lensprof_finding CamerasFit::left_out_finding(uint32_t count, bool are_few) const {
+    uint32_t disagree = 0, first = UINT32_MAX;
+    for (uint32_t k = 0; k < cameras_.size(); k++) {
+        const Camera &camera = cameras_[k];
+        if (!camera.is_fitted) continue;
+        for (const lensprof_finding &finding : camera.result().verdict) {
+            if (finding.code != LENSPROF_REASON_IMAGES_LEFT_OUT) continue;
+            disagree += static_cast<uint32_t>(finding.value[0]);
+            first = std::min(first, camera.input.numbers[finding.item.index]);
+        }
+        if (joints_[k].joined || !joints_[k].pairs) continue;
+        disagree += camera.joined_images() + camera.attached;
+        first = std::min(first, camera.input.numbers[camera.result().reference]);
+    }
+    uint32_t out = 0;  // the first
+    while (out + 1 < exposures_.size() && !std::isnan(exposures_[out].ev)) out++;
+    if (are_few)
+        return finding_of(LENSPROF_REASON_IMAGE_GROUPS, LENSPROF_SEVERITY_REFUSAL,
+                          of_image(of_value(double(cameras_.size())), out));
+    if (disagree)
+        return finding_of(LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_SEVERITY_WARNING,
+                          of_image(of_value(disagree), first));
+    return finding_of(LENSPROF_REASON_IMAGES_UNCONNECTED, LENSPROF_SEVERITY_WARNING, of_image(of_value(count), out));
+}
+
 void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &result) const {
     const Camera &first = cameras_[base];
     FitResult r = first.result();
@@ -434,20 +468,17 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
     if (r.image_quality) std::copy(quality_.begin(), quality_.end(), r.image_quality);
     const auto is_out = [](const lensprof_exposure &exposure) { return std::isnan(exposure.ev); };
     r.left_out = static_cast<uint32_t>(std::count_if(exposures_.begin(), exposures_.end(), is_out));
-    const auto left_out =
-        static_cast<uint32_t>(std::find_if(exposures_.begin(), exposures_.end(), is_out) - exposures_.begin());
     const bool are_few = 2 * r.left_out > images_.size();  // that agree
     if (are_few) {
         r.equalizes = 0;
         for (uint32_t k = 0; k < r.camera_count; k++) r.cameras[k].equalizes = 0;
     }
+    const lensprof_finding left_out = left_out_finding(r.left_out, are_few);
     for_each_verdict(r, [&](auto &verdict) {
-        if (are_few)
-            report_first(verdict, finding_of(LENSPROF_REASON_IMAGE_GROUPS, LENSPROF_SEVERITY_REFUSAL,
-                                             of_image(of_value(double(cameras_.size())), left_out)));
-        else if (r.left_out && !has_code(verdict.verdict, LENSPROF_REASON_IMAGES_LEFT_OUT))
-            report_last(verdict, finding_of(LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_SEVERITY_WARNING,
-                                            of_image(of_value(r.left_out), left_out)));
+        Findings &own = verdict.verdict;
+        own.erase(std::remove_if(own.begin(), own.end(), is_on_left_out), own.end());
+        if (r.left_out && !has_code(own, static_cast<lensprof_reason>(left_out.code))) add_first(own, left_out);
+        verdict.usable = verdict.usable && is_usable(own);
     });
     result = r;
 }

@@ -1,5 +1,6 @@
 #include "fit/methods/simpler.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
@@ -107,11 +108,19 @@ void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposu
     r.equalizes = found.equalizes;
     if (!found.equalizes) r.model = LENSPROF_FIT_MODEL_NOTHING;
     const auto keep_verdict = [&](auto &verdict, const auto &before) {
-        copy_verdict(before, verdict);
-        if (before.usable)
-            report_first(verdict,
-                         finding_of(found.equalizes ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER,
-                                    LENSPROF_SEVERITY_REFUSAL, Measured{}));
+        if (!before.usable) {
+            copy_verdict(before, verdict);
+            return;
+        }
+        // the findings on the result that is returned, except that it has no lens
+        Findings &own = verdict.verdict;
+        own.erase(std::remove_if(
+                      own.begin(), own.end(),
+                      [](const lensprof_finding &finding) { return finding.severity == LENSPROF_SEVERITY_REFUSAL; }),
+                  own.end());
+        report_first(verdict,
+                     finding_of(found.equalizes ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER,
+                                LENSPROF_SEVERITY_REFUSAL, Measured{}));
     };
     for (uint32_t n = 0; n < r.setting_count; n++)
         if (r.settings[n].images) keep_verdict(r.settings[n], refused.settings[n]);

@@ -235,11 +235,19 @@ lensprof_finding finding_of(lensprof_reason code, lensprof_severity severity, co
     lensprof_finding_init(&finding);
     finding.code = code, finding.severity = severity;
     finding.measured = measured.value, finding.limit = limit;
-    if (severity == LENSPROF_SEVERITY_PASSED) return finding;
+    finding.rule_severity = severity;
     finding.value_count = static_cast<uint32_t>(measured.count);
     std::copy(std::begin(measured.values), std::end(measured.values), finding.value);
     finding.item.kind = measured.kind, finding.item.index = measured.index;
     write_text(sentence_of(code, wording), finding);
+    return finding;
+}
+
+lensprof_finding passed_of(lensprof_reason code, lensprof_severity severity, double measured, double limit) {
+    lensprof_finding finding;
+    lensprof_finding_init(&finding);
+    finding.code = code, finding.severity = LENSPROF_SEVERITY_PASSED, finding.rule_severity = severity;
+    finding.measured = measured, finding.limit = limit;
     return finding;
 }
 

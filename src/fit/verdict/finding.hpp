@@ -49,6 +49,9 @@ inline Measured of_shot(Measured measured, uint32_t number) {
 lensprof_finding finding_of(lensprof_reason code, lensprof_severity severity, const Measured &measured,
                             double limit = NAN, Wording wording = Wording::usual);
 
+// A rule that holds; `severity` is what it would find otherwise.
+lensprof_finding passed_of(lensprof_reason code, lensprof_severity severity, double measured, double limit);
+
 // Adds a finding before (or after) those of its severity.
 void add_first(Findings &findings, const lensprof_finding &finding);
 void add_last(Findings &findings, const lensprof_finding &finding);

@@ -38,10 +38,10 @@ constexpr double kOnLimit = 0.98;            // of the largest allowed offset of
 constexpr double kClearOfLimit = 3.0;        // standard errors
 
 // Exposures.
-constexpr double kLargestEvSigma = 0.3;  // EV, standard error: above it the exposure is not determined
-constexpr double kContradiction = 5.0;   // standard errors between an exposure and its known value
-constexpr int kMany = 12;                // known exposures, whose errors follow from their scatter
-constexpr double kUnfollowed = 0.05;     // of ln gamma
+constexpr double kLargestEvSigma = 0.3;      // EV, standard error: above it the exposure is not determined
+constexpr double kContradiction = 5.0;       // standard errors between an exposure and its known value
+constexpr int kMany = 12;                    // known exposures, whose errors follow from their scatter
+constexpr double kInconsistentGamma = 0.05;  // of ln gamma
 
 // Response.
 constexpr double kUnusual = 1.0;  // Gauge::oddness

@@ -95,9 +95,8 @@ bool is_joined(const Problem &problem, uint32_t image) {
     return problem.component[image] == problem.component[problem.reference];
 }
 
-bool leaves_out_any(const Judged &judged) {
-    const auto *quality = judged.r.image_quality;
-    return std::any_of(quality, quality + judged.problem().image_count,
+bool leaves_out_any(const Problem &problem, const FitResult &r) {
+    return std::any_of(r.image_quality, r.image_quality + problem.image_count,
                        [](const auto &q) { return q.known_ev_left_out != 0; });
 }
 
@@ -113,7 +112,7 @@ KnownExposures known_of(const Found &found, const FitResult &r) {
     return compare_known(found.problem, found.estimate, open);
 }
 
-uint32_t state_of(const Found &found, const Seam *seam) {
+uint32_t state_of(const Found &found, const FitResult &r, const Seam *seam) {
     const Problem &problem = found.problem;
     const Estimate &estimate = found.estimate;
     const bool is_equal = is_static(problem), is_still = is_equal && (problem.free & LENSPROF_FREE_RESPONSE),
@@ -125,6 +124,7 @@ uint32_t state_of(const Found &found, const Seam *seam) {
     if (fits_response(estimate)) state |= kFreesResponse;
     if (frees_falloff(problem)) state |= kFreesFalloff;
     if (problem.free & LENSPROF_FREE_CENTER) state |= kFreesCenter;
+    if (leaves_out_any(problem, r)) state |= kLeavesOutKnown;
     return seam ? state | kHasSeams : state;
 }
 
@@ -135,7 +135,7 @@ Judged::Judged(const Found &finished, const FitResult &result, const Seam *measu
       r(result),
       known(known_of(finished, result)),
       seam(measured),
-      state(state_of(finished, measured)),
+      state(state_of(finished, result, measured)),
       wording(state & kStatic ? Wording::still : Wording::usual) {}
 
 namespace measure {
@@ -326,12 +326,13 @@ Measured known_single(const Judged &judged) {
     return of_image({std::abs(judged.known.off_ev), 1, {judged.known.off_ev}}, judged.known.image);
 }
 
-// The image whose exposure is farthest from its known one, in standard errors. Considers only images that are left out,
-// if there are any.
+// The image whose exposure is farthest from its known one, in standard errors, of those that are left out, or else of
+// all that no other finding explains.
 Measured known_outlier(const Judged &judged) {
-    const bool any = leaves_out_any(judged),
-               is_explained =
-                   !any && judged.known.count <= kMany && judged.known.explanation != KnownExposures::Explanation::none;
+    using Explanation = KnownExposures::Explanation;
+    const bool any = judged.state & kLeavesOutKnown, is_step = judged.known.explanation == Explanation::step;
+    const bool is_explained =
+        !any && (is_step || (judged.known.count <= kMany && judged.known.explanation != Explanation::none));
     Measured worst = kNotMeasured;
     for (uint32_t i = 0; i < judged.problem().image_count && !is_explained; i++) {
         const auto &quality = judged.r.image_quality[i];
@@ -340,7 +341,6 @@ Measured known_outlier(const Judged &judged) {
         const double ev = -quality.known_ev_residual, off = std::abs(ev) / std::max(image.known_ev_sigma, kKnownSigma);
         if (!(off <= worst.value)) worst = of_image({off, 1, {ev}}, i);
     }
-    if (any && !std::isnan(worst.value)) worst.value = std::max(worst.value, 1.001 * kContradiction);
     return worst;
 }
 
@@ -356,7 +356,8 @@ Measured known_step_down(const Judged &judged) {
 
 // Not where images are left out: these are what contradicts.
 Measured known_any(const Judged &judged) {
-    if (!explains_known(judged, KnownExposures::Explanation::any) || leaves_out_any(judged)) return kNotMeasured;
+    if (!explains_known(judged, KnownExposures::Explanation::any) || (judged.state & kLeavesOutKnown))
+        return kNotMeasured;
     return of_value(judged.known.off_ev);
 }
 

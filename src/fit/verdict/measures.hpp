@@ -18,9 +18,10 @@ enum State : uint32_t {
     kFreesResponse = 16,
     kFreesFalloff = 32,
     kFreesCenter = 64,
-    kFreesAll = 128,  // response and falloff: nothing that is held can be what does not fit
-    kHolds = 256,     // one of them is held
-    kHasSeams = 512   // the last step, for results that may be used: the seams have been measured
+    kFreesAll = 128,        // response and falloff: nothing that is held can be what does not fit
+    kHolds = 256,           // one of them is held
+    kLeavesOutKnown = 512,  // known exposures that contradict the pictures and the others
+    kHasSeams = 1024        // the last step, for results that may be used: the seams have been measured
 };
 
 // A finished fit of one lens setting under judgement.

@@ -26,8 +26,9 @@ struct VerdictRule {
 template <class Subject>
 lensprof_finding apply_rule(const VerdictRule<Subject> &rule, const Subject &subject, const Measured &measured) {
     const bool is_found = rule.side == Side::above ? measured.value > rule.limit : measured.value < rule.limit;
+    if (!is_found) return passed_of(rule.code, rule.severity, measured.value, rule.limit);
     const Wording wording = rule.wording == Wording::usual ? subject.wording : rule.wording;
-    return finding_of(rule.code, is_found ? rule.severity : LENSPROF_SEVERITY_PASSED, measured, rule.limit, wording);
+    return finding_of(rule.code, rule.severity, measured, rule.limit, wording);
 }
 
 // Adds what the rules find, in their order, and those that hold. Of several rules with one code, the first that finds

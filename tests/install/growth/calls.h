@@ -437,7 +437,7 @@ typedef struct growing {
 static const growing structs[] = {
     {"fit_options", sizeof(lensprof_fit_options), 160, 1, init_fit_options, call_fit_options, 1, 0},
     {"fit_image", sizeof(lensprof_fit_image), 104, IMAGES, init_fit_image, call_fit_images, 1, 0},
-    {"finding", sizeof(lensprof_finding), 320, 1, init_zero, call_finding, 1, 1},
+    {"finding", sizeof(lensprof_finding), 328, 1, init_zero, call_finding, 1, 1},
     {"fit_result", sizeof(lensprof_fit_result), 19472, 1, init_zero, call_fit_result, 1, 1},
     {"fit_image_quality", sizeof(lensprof_fit_image_quality), 96, 1, init_zero, call_fit_image_quality, 1, 1},
     {"fit_camera", sizeof(lensprof_fit_camera), 64, 1, init_zero, call_fit_camera, 1, 1},

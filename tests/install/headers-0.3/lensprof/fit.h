@@ -143,7 +143,7 @@ typedef enum lensprof_fit_model {
 typedef enum lensprof_profile_prior {
     LENSPROF_PROFILE_PRIOR_NONE = 0,               /* no profile was given */
     LENSPROF_PROFILE_PRIOR_USED = 1,               /* combined with the pictures; the result supersedes it */
-    LENSPROF_PROFILE_PRIOR_OVERRULED = 2,          /* the pictures contradict it: not used, as stated in `reason` */
+    LENSPROF_PROFILE_PRIOR_OVERRULED = 2,          /* the pictures contradict it: not used, as a finding states */
     LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED = 3, /* only its response was not used; its falloff was */
     LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED = 4   /* only its falloff was not used; its response was */
 } lensprof_profile_prior;
@@ -352,8 +352,9 @@ LENSPROF_API void lensprof_fit_destroy(lensprof_fit *fit);
 #define LENSPROF_FIT_REFERENCE 0xFFFFFFFFu
 
 /* What was found for image `index`, lens setting `setting` (or LENSPROF_FIT_REFERENCE) and camera `camera`. The structs
- * must be initialised. A setting or camera that no image has is empty. Errors: ARGUMENT for NULL, a released fit and
- * numbers out of range; STRUCT_SIZE. */
+ * must be initialised. A setting or camera that no image has is empty. Errors: ARGUMENT for NULL,
+ * numbers out of range, and a fit released in the caller's memory (one in memory of its own must not be used again);
+ * STRUCT_SIZE. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_image_at(const lensprof_fit *fit, uint32_t index,
                                                                      lensprof_fit_image_quality *quality,
                                                                      lensprof_error *error);
