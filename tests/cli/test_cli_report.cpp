@@ -192,6 +192,11 @@ void test_flat(void **) {
     assert_true(page["result"]["usable"] == true);
     const Json &images = page["result"]["images"];
     assert_true(images.size() == 1 && contains(images[0]["file"], "card.png") && page["result"]["gain_grid"].is_null());
+    assert_true(page["verdict"]["level"] == "good" && page["verdict"]["details"].empty());
+    assert_true(contains(page["verdict"]["notes"].dump(), "the centre depends on its prior"));
+    must_exit(done, flat + Words{"--report", work("r.html"), "--card", "40,30,240,180"});
+    const Json part = data_of(work("r.html"))["verdict"];  // a warning
+    assert_true(part["level"] == "warn" && contains(part["details"].dump(), "extrapolated"));
     must_exit(done, flat + Words{"--report", work("r.html"), "--fit", "grid=always"});
     const Json grid = data_of(work("r.html"))["result"]["gain_grid"];
     const Json &rows = grid["attenuation"][0];
