@@ -153,7 +153,7 @@ public:
 
     const CLI::App &command() const { return *app_; }
     bool wants_help() const { return wants_help_; }
-    bool wants_all() const { return wants_all_; }  // of it, also the options of experts
+    bool wants_all() const { return wants_all_; }  // of it, also the expert options
 
     // In reverse order, as CLI11 expects.
     std::vector<std::string> reversed() const {
@@ -359,7 +359,7 @@ void Command::example(const std::string &command_line) {
 Program::Program(const std::string &name, const std::string &about)
     : app_(std::make_unique<CLI::App>(about, name)), actions_(std::make_unique<Actions>()) {
     app_->set_help_flag("-h,--help", "print this help");
-    app_->set_help_all_flag("--help-all", "print this help with the options of experts");
+    app_->set_help_all_flag("--help-all", "print this help with the expert options");
 }
 
 Program::~Program() = default;

@@ -77,7 +77,7 @@ public:
     // Prints help on request. Words that do not fit cause a Failure (usage) that suggests the nearest valid word.
     int run(const std::vector<std::string> &words, Streams &streams);
 
-    // Help of the command and verbs in `words`, or of the program for an empty list, without the options of experts;
+    // Help of the command and verbs in `words`, or of the program for an empty list, without the expert options;
     // Failure (usage).
     std::string help(const std::vector<std::string> &words) const;
 

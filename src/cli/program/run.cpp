@@ -31,7 +31,7 @@ void declare_root(Command &root, const Program &program) {
     auto version = std::make_shared<bool>(false);
     root.flag("--version", *version, "print the version");
     root.footer(
-        "Run `lensprof help COMMAND` for its options of everyday, `lensprof COMMAND --help-all` for all.\n"
+        "Run `lensprof help COMMAND` for its everyday options, `lensprof COMMAND --help-all` for all.\n"
         "exit codes: 0 done, 1 failed, 2 usage, 3 input unreadable, 4 fit not usable, 5 not found, 6 store,\n"
         "130 interrupted");
     root.run([version, &program](Streams &streams) {
