@@ -386,6 +386,9 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         setting.number = s, setting.found = state.best.settings[s];
         setting.is_turn_unknown = settings.is_turn_unknown[s];
         setting.verdict = setting.found.images ? verdict_of(state.best.held.get(), s) : Verdict{};
+        const bool is_refused = !setting.verdict.texts(LENSPROF_SEVERITY_REFUSAL).empty();
+        if (setting.found.images && !setting.found.usable && !is_refused)  // with all others
+            setting.verdict.add_first(state.best.verdict.findings.at(0));
         name_images(project.names, setting.verdict);
         report.settings.push_back(setting);
     }

@@ -72,7 +72,7 @@ void judge(ResponseReport &report) {
                          pattern.pattern_levels),
             {pattern.pattern_ev, pattern.pattern_levels});
     if (report.lowest > 48.0 || report.highest < 208.0)
-        add(LENSPROF_SEVERITY_WARNING, LENSPROF_REASON_MISSING_GREYS,
+        add(LENSPROF_SEVERITY_NOTE, LENSPROF_REASON_MISSING_GREYS,
             format("only grey levels %.0f to %.0f are measured; beyond them the response is that of a typical "
                    "camera, continued",
                    report.lowest, report.highest),
