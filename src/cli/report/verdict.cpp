@@ -33,11 +33,7 @@ Verdict verdict_from(const Result &result, At at) {
     return verdict;
 }
 
-auto end_of(std::vector<Finding> &findings, uint32_t severity, bool same) {
-    return std::find_if(findings.begin(), findings.end(), [=](const Finding &finding) {
-        return same ? finding.severity < severity : finding.severity <= severity;
-    });
-}
+bool is_more_severe(const Finding &a, const Finding &b) { return a.severity > b.severity; }
 
 Json number(double value) { return std::isnan(value) ? Json() : Json(value); }
 
@@ -71,9 +67,13 @@ std::vector<std::string> Verdict::texts(uint32_t severity) const {
     return all;
 }
 
-void Verdict::add_first(const Finding &finding) { findings.insert(end_of(findings, finding.severity, false), finding); }
+void Verdict::add_first(const Finding &finding) {
+    findings.insert(std::lower_bound(findings.begin(), findings.end(), finding, is_more_severe), finding);
+}
 
-void Verdict::add_last(const Finding &finding) { findings.insert(end_of(findings, finding.severity, true), finding); }
+void Verdict::add_last(const Finding &finding) {
+    findings.insert(std::upper_bound(findings.begin(), findings.end(), finding, is_more_severe), finding);
+}
 
 Verdict verdict_of(const lensprof_fit *fit, uint32_t setting) {
     lensprof_fit_result result;

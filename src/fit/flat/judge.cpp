@@ -80,7 +80,9 @@ uint32_t state_of(const FlatFit &fit, const FlatResult &r) {
 }  // namespace
 
 JudgedFlat::JudgedFlat(const FlatFit &of, const FlatResult &result)
-    : fit(of), r(result), state(state_of(of, result)), wording(Wording::card) {}
+    : fit(of), r(result), state(state_of(of, result)), wording(Wording::card) {
+    for (uint32_t i = 0; i < of.count; i++) contrasts.push_back(contrast_of_light(of, i));
+}
 
 namespace measure {
 
@@ -104,21 +106,15 @@ Measured cells(const JudgedFlat &judged) { return of_value(judged.r.cells); }
 
 Measured card_radius(const JudgedFlat &judged) { return of_value(judged.r.radius); }
 
-// Of the picture with the smallest (or largest) contrast of light.
+// Contrasts of light have the number of their picture.
 Measured least_contrast(const JudgedFlat &judged) {
-    Measured least{};
-    for (uint32_t i = 0; i < judged.fit.count; i++)
-        if (const double contrast = contrast_of_light(judged.fit, i); !(contrast >= least.value))
-            least = of_image(of_value(contrast), i);
-    return least;
+    const auto least = std::min_element(judged.contrasts.begin(), judged.contrasts.end());
+    return of_image(of_value(*least), static_cast<uint32_t>(least - judged.contrasts.begin()));
 }
 
 Measured most_contrast(const JudgedFlat &judged) {
-    Measured most{};
-    for (uint32_t i = 0; i < judged.fit.count; i++)
-        if (const double contrast = contrast_of_light(judged.fit, i); !(contrast <= most.value))
-            most = of_image(of_value(contrast), i);
-    return most;
+    const auto most = std::max_element(judged.contrasts.begin(), judged.contrasts.end());
+    return of_image(of_value(*most), static_cast<uint32_t>(most - judged.contrasts.begin()));
 }
 
 Measured exposure_distance(const JudgedFlat &judged) {

@@ -24,6 +24,7 @@ struct JudgedFlat {
     const FlatResult &r;
     uint32_t state;
     Wording wording;
+    std::vector<double> contrasts;  // of light, per picture
 
     JudgedFlat(const FlatFit &of, const FlatResult &result);
 };
@@ -57,51 +58,43 @@ Measured spots(const JudgedFlat &judged);
 }  // namespace measure
 
 // clang-format off
-#define REFUSES(code) LENSPROF_REASON_##code, LENSPROF_SEVERITY_REFUSAL
-#define WARNS(code)   LENSPROF_REASON_##code, LENSPROF_SEVERITY_WARNING
-#define NOTES(code)   LENSPROF_REASON_##code, LENSPROF_SEVERITY_NOTE
-
 constexpr FlatRule kFlatRules[] = {
     // The pictures show no card, or only a part of it.
-    {REFUSES(FLAT_WHITE),          kOfAll,                measure::white_share,              Side::above, flat_limits::kMuchClipped,         Wording::usual},
-    {REFUSES(FLAT_BLACK),          kOfAll,                measure::black_share,              Side::above, flat_limits::kMuchClipped,         Wording::usual},
-    {REFUSES(FLAT_NO_CARD),        kOfAll,                measure::has_card,                 Side::below, 1.0,                               Wording::usual},
-    {REFUSES(FLAT_FEW_CELLS),      kOfAll,                measure::cells,                    Side::below, flat_limits::kMinCells,            Wording::usual},
-    {REFUSES(SMALL_RADIUS),        kOfAll,                measure::card_radius,              Side::below, flat_limits::kSmallestRadius,      Wording::card},
+    {LENSPROF_REASON_FLAT_WHITE,           kRefuses, kOfAll,                measure::white_share,             Side::above, flat_limits::kMuchClipped,        Wording::usual},
+    {LENSPROF_REASON_FLAT_BLACK,           kRefuses, kOfAll,                measure::black_share,             Side::above, flat_limits::kMuchClipped,        Wording::usual},
+    {LENSPROF_REASON_FLAT_NO_CARD,         kRefuses, kOfAll,                measure::has_card,                Side::below, 1.0,                              Wording::usual},
+    {LENSPROF_REASON_FLAT_FEW_CELLS,       kRefuses, kOfAll,                measure::cells,                   Side::below, flat_limits::kMinCells,           Wording::usual},
+    {LENSPROF_REASON_SMALL_RADIUS,         kRefuses, kOfAll,                measure::card_radius,             Side::below, flat_limits::kSmallestRadius,     Wording::card},
     // They contradict the model.
-    {REFUSES(FLAT_RESPONSE),       kOfAll,                measure::least_contrast,           Side::below, flat_limits::kSteepest,            Wording::less},
-    {REFUSES(FLAT_RESPONSE),       kOfAll,                measure::most_contrast,            Side::above, flat_limits::kFlattest,            Wording::usual},
-    {REFUSES(FLAT_EXPOSURE_WRONG), kOfAll,                measure::exposure_distance,        Side::above, flat_limits::kWrongEv,             Wording::usual},
-    {REFUSES(FLAT_TEXTURE),        kOfAll,                measure::texture,                  Side::above, flat_limits::kMuchTexture,         Wording::usual},
-    {REFUSES(FLAT_SHOTS_DIFFER),   kOfAll,                measure::shot_difference,          Side::above, flat_limits::kMuchPerShot,         Wording::usual},
-    {REFUSES(FEW_AGREE),           kOfAll,                measure::agreement,                Side::below, flat_limits::kFewInliers,          Wording::card},
-    {REFUSES(FLAT_STEEP),          kSloped|kSeparated,    measure::slope,                    Side::above, flat_limits::kSteepRotated,        Wording::usual},
-    {REFUSES(FLAT_STEEP),          kSloped|kNotSeparated, measure::slope,                    Side::above, flat_limits::kSteepAlone,          Wording::alone},
+    {LENSPROF_REASON_FLAT_RESPONSE,        kRefuses, kOfAll,                measure::least_contrast,          Side::below, flat_limits::kSteepest,           Wording::less},
+    {LENSPROF_REASON_FLAT_RESPONSE,        kRefuses, kOfAll,                measure::most_contrast,           Side::above, flat_limits::kFlattest,           Wording::usual},
+    {LENSPROF_REASON_FLAT_EXPOSURE_WRONG,  kRefuses, kOfAll,                measure::exposure_distance,       Side::above, flat_limits::kWrongEv,            Wording::usual},
+    {LENSPROF_REASON_FLAT_TEXTURE,         kRefuses, kOfAll,                measure::texture,                 Side::above, flat_limits::kMuchTexture,        Wording::usual},
+    {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kRefuses, kOfAll,                measure::shot_difference,         Side::above, flat_limits::kMuchPerShot,        Wording::usual},
+    {LENSPROF_REASON_FEW_AGREE,            kRefuses, kOfAll,                measure::agreement,               Side::below, flat_limits::kFewInliers,         Wording::card},
+    {LENSPROF_REASON_FLAT_STEEP,           kRefuses, kSloped|kSeparated,    measure::slope,                   Side::above, flat_limits::kSteepRotated,       Wording::usual},
+    {LENSPROF_REASON_FLAT_STEEP,           kRefuses, kSloped|kNotSeparated, measure::slope,                   Side::above, flat_limits::kSteepAlone,         Wording::alone},
     // They do not determine it.
-    {REFUSES(NOT_CONVERGED),       kOfAll,                measure::convergence,              Side::below, 1.0,                               Wording::usual},
-    {REFUSES(UNDETERMINED),        kOfAll,                measure::covariance,               Side::below, 1.0,                               Wording::card},
-    {REFUSES(CORNER_UNCERTAIN),    kHasNoGrid,            measure::corner_sigma_not_radial,  Side::above, flat_limits::kLargestCornerSigma,  Wording::grid},
-    {REFUSES(CORNER_UNCERTAIN),    kOfAll,                measure::corner_sigma,             Side::above, flat_limits::kLargestCornerSigma,  Wording::card},
+    {LENSPROF_REASON_NOT_CONVERGED,        kRefuses, kOfAll,                measure::convergence,             Side::below, 1.0,                              Wording::usual},
+    {LENSPROF_REASON_UNDETERMINED,         kRefuses, kOfAll,                measure::covariance,              Side::below, 1.0,                              Wording::card},
+    {LENSPROF_REASON_CORNER_UNCERTAIN,     kRefuses, kHasNoGrid,            measure::corner_sigma_not_radial, Side::above, flat_limits::kLargestCornerSigma, Wording::grid},
+    {LENSPROF_REASON_CORNER_UNCERTAIN,     kRefuses, kOfAll,                measure::corner_sigma,            Side::above, flat_limits::kLargestCornerSigma, Wording::card},
     // The falloff may be wrong where people use it.
-    {WARNS(SMALL_RADIUS),          kOfAll,                measure::card_radius,              Side::below, flat_limits::kWholeRadius,         Wording::weak},
-    {WARNS(FLAT_EXPOSURE_WRONG),   kOfAll,                measure::exposure_distance,        Side::above, flat_limits::kDoubtfulEv,          Wording::weak},
-    {WARNS(FLAT_STEEP),            kCenterByPrior,        measure::slope,                    Side::above, flat_limits::kSlantAlone,          Wording::weak},
+    {LENSPROF_REASON_SMALL_RADIUS,         kWarns,   kOfAll,                measure::card_radius,             Side::below, flat_limits::kWholeRadius,        Wording::weak},
+    {LENSPROF_REASON_FLAT_EXPOSURE_WRONG,  kWarns,   kOfAll,                measure::exposure_distance,       Side::above, flat_limits::kDoubtfulEv,         Wording::weak},
+    {LENSPROF_REASON_FLAT_STEEP,           kWarns,   kCenterByPrior,        measure::slope,                   Side::above, flat_limits::kSlantAlone,         Wording::weak},
     // Worth knowing.
-    {NOTES(FLAT_WHITE),            kOfAll,                measure::white_share,              Side::above, flat_limits::kSomeClipped,         Wording::weak},
-    {NOTES(FLAT_BLACK),            kOfAll,                measure::black_share,              Side::above, flat_limits::kSomeClipped,         Wording::weak},
-    {NOTES(FLAT_SHOTS_DIFFER),     kOfAll,                measure::shot_difference,          Side::above, flat_limits::kSomePerShot,         Wording::weak},
-    {NOTES(FLAT_TEXTURE),          kOfAll,                measure::texture,                  Side::above, flat_limits::kSomeTexture,         Wording::weak},
-    {NOTES(FLAT_NOT_RADIAL),       kHasGrid,              measure::not_radial_grid,          Side::above, flat_limits::kNotRadial,           Wording::grid},
-    {NOTES(FLAT_NOT_RADIAL),       kHasNoGrid,            measure::not_radial,               Side::above, flat_limits::kNotRadial,           Wording::usual},
-    {NOTES(FAR_CENTER),            kOfAll,                measure::center_distance,          Side::above, flat_limits::kFarCenter,           Wording::card},
-    {NOTES(FLAT_CENTER_BY_PRIOR),  kCenterByPrior,        measure::center_by_prior,          Side::above, 0.0,                               Wording::usual},
-    {NOTES(FLAT_DUST),             kOfAll,                measure::spots,                    Side::above, 0.0,                               Wording::usual},
+    {LENSPROF_REASON_FLAT_WHITE,           kNotes,   kOfAll,                measure::white_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
+    {LENSPROF_REASON_FLAT_BLACK,           kNotes,   kOfAll,                measure::black_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
+    {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kNotes,   kOfAll,                measure::shot_difference,         Side::above, flat_limits::kSomePerShot,        Wording::weak},
+    {LENSPROF_REASON_FLAT_TEXTURE,         kNotes,   kOfAll,                measure::texture,                 Side::above, flat_limits::kSomeTexture,        Wording::weak},
+    {LENSPROF_REASON_FLAT_NOT_RADIAL,      kNotes,   kHasGrid,              measure::not_radial_grid,         Side::above, flat_limits::kNotRadial,          Wording::grid},
+    {LENSPROF_REASON_FLAT_NOT_RADIAL,      kNotes,   kHasNoGrid,            measure::not_radial,              Side::above, flat_limits::kNotRadial,          Wording::usual},
+    {LENSPROF_REASON_FAR_CENTER,           kNotes,   kOfAll,                measure::center_distance,         Side::above, flat_limits::kFarCenter,          Wording::card},
+    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, kNotes,   kCenterByPrior,        measure::center_by_prior,         Side::above, 0.0,                              Wording::usual},
+    {LENSPROF_REASON_FLAT_DUST,            kNotes,   kOfAll,                measure::spots,                   Side::above, 0.0,                              Wording::usual},
 };
 // clang-format on
 constexpr size_t kFlatRuleCount = sizeof kFlatRules / sizeof *kFlatRules;
-
-#undef REFUSES
-#undef WARNS
-#undef NOTES
 
 }  // namespace lensprof

@@ -424,8 +424,7 @@ void CamerasFit::give_camera(uint32_t number, FitResult &r) const {
 
 // Whether a finding is on images that are left out: those of all cameras replace those of one.
 bool is_on_left_out(const lensprof_finding &finding) {
-    return finding.severity != LENSPROF_SEVERITY_REFUSAL && finding.severity != LENSPROF_SEVERITY_PASSED
-           && (finding.code == LENSPROF_REASON_IMAGES_LEFT_OUT || finding.code == LENSPROF_REASON_IMAGES_UNCONNECTED);
+    return finding.code == LENSPROF_REASON_IMAGES_LEFT_OUT || finding.code == LENSPROF_REASON_IMAGES_UNCONNECTED;
 }
 
 // That `count` images of all cameras are left out: about those that disagree, if there are any. `are_few`: those that
@@ -477,8 +476,7 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
     for_each_verdict(r, [&](auto &verdict) {
         Findings &own = verdict.verdict;
         own.erase(std::remove_if(own.begin(), own.end(), is_on_left_out), own.end());
-        if (r.left_out && !has_code(own, static_cast<lensprof_reason>(left_out.code))) add_first(own, left_out);
-        verdict.usable = verdict.usable && is_usable(own);
+        if (r.left_out && !has_code(own, static_cast<lensprof_reason>(left_out.code))) report_first(verdict, left_out);
     });
     result = r;
 }

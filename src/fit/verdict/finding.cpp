@@ -220,28 +220,9 @@ void write_text(const std::string &wording, lensprof_finding &finding) {
     std::snprintf(finding.text, sizeof finding.text, "%s", text.c_str());
 }
 
-// The end of the findings that are at least as severe as `severity`; `same`: including those of the same severity.
-Findings::const_iterator end_of(const Findings &findings, uint32_t severity, bool same) {
-    return std::find_if(findings.begin(), findings.end(), [=](const lensprof_finding &finding) {
-        return same ? finding.severity < severity : finding.severity <= severity;
-    });
-}
+bool is_more_severe(const lensprof_finding &a, const lensprof_finding &b) { return a.severity > b.severity; }
 
 }  // namespace
-
-lensprof_finding finding_of(lensprof_reason code, lensprof_severity severity, const Measured &measured, double limit,
-                            Wording wording) {
-    lensprof_finding finding;
-    lensprof_finding_init(&finding);
-    finding.code = code, finding.severity = severity;
-    finding.measured = measured.value, finding.limit = limit;
-    finding.rule_severity = severity;
-    finding.value_count = static_cast<uint32_t>(measured.count);
-    std::copy(std::begin(measured.values), std::end(measured.values), finding.value);
-    finding.item.kind = measured.kind, finding.item.index = measured.index;
-    write_text(sentence_of(code, wording), finding);
-    return finding;
-}
 
 lensprof_finding passed_of(lensprof_reason code, lensprof_severity severity, double measured, double limit) {
     lensprof_finding finding;
@@ -251,12 +232,23 @@ lensprof_finding passed_of(lensprof_reason code, lensprof_severity severity, dou
     return finding;
 }
 
+lensprof_finding finding_of(lensprof_reason code, lensprof_severity severity, const Measured &measured, double limit,
+                            Wording wording) {
+    lensprof_finding finding = passed_of(code, severity, measured.value, limit);
+    finding.severity = severity;
+    finding.value_count = static_cast<uint32_t>(measured.count);
+    std::copy(std::begin(measured.values), std::end(measured.values), finding.value);
+    finding.item.kind = measured.kind, finding.item.index = measured.index;
+    write_text(sentence_of(code, wording), finding);
+    return finding;
+}
+
 void add_first(Findings &findings, const lensprof_finding &finding) {
-    findings.insert(end_of(findings, finding.severity, false), finding);
+    findings.insert(std::lower_bound(findings.begin(), findings.end(), finding, is_more_severe), finding);
 }
 
 void add_last(Findings &findings, const lensprof_finding &finding) {
-    findings.insert(end_of(findings, finding.severity, true), finding);
+    findings.insert(std::upper_bound(findings.begin(), findings.end(), finding, is_more_severe), finding);
 }
 
 void rename_item(uint32_t index, lensprof_finding &finding) {
@@ -274,11 +266,13 @@ lensprof_reason first_code(const Findings &findings) {
 }
 
 uint32_t count_findings(const Findings &findings) {
-    return static_cast<uint32_t>(end_of(findings, LENSPROF_SEVERITY_PASSED, false) - findings.begin());
+    return static_cast<uint32_t>(findings.size()) - count_passed(findings);
 }
 
 uint32_t count_passed(const Findings &findings) {
-    return static_cast<uint32_t>(findings.size()) - count_findings(findings);
+    return static_cast<uint32_t>(std::count_if(findings.begin(), findings.end(), [](const lensprof_finding &finding) {
+        return finding.severity == LENSPROF_SEVERITY_PASSED;
+    }));
 }
 
 bool is_usable(const Findings &findings) {

@@ -20,13 +20,15 @@ bool is_of_profile(lensprof_reason code) {
 
 void judge(const Found &found, const std::function<void(FitResult &)> &judge_result, FitResult &r) {
     r.verdict.clear();
-    apply_rules(kRules, Judged(found, r, nullptr), r.verdict);
+    Judged judged(found, r);
+    apply_rules(kRules, judged, r.verdict);
     r.usable = is_usable(r.verdict);
     if (judge_result) judge_result(r);
     r.equalizes = 0;
     if (!r.usable && !is_of_profile(first_code(r.verdict))) return;
-    const Seam seam = judge_evenness(found, r);
-    if (r.usable) apply_rules(kRules, Judged(found, r, &seam), r.verdict, kHasSeams);
+    judged.seam = judge_evenness(found, r);
+    judged.state |= kHasSeams;
+    if (r.usable) apply_rules(kRules, judged, r.verdict, kHasSeams);
 }
 
 }  // namespace lensprof

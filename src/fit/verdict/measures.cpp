@@ -112,7 +112,7 @@ KnownExposures known_of(const Found &found, const FitResult &r) {
     return compare_known(found.problem, found.estimate, open);
 }
 
-uint32_t state_of(const Found &found, const FitResult &r, const Seam *seam) {
+uint32_t state_of(const Found &found, const FitResult &r) {
     const Problem &problem = found.problem;
     const Estimate &estimate = found.estimate;
     const bool is_equal = is_static(problem), is_still = is_equal && (problem.free & LENSPROF_FREE_RESPONSE),
@@ -125,17 +125,16 @@ uint32_t state_of(const Found &found, const FitResult &r, const Seam *seam) {
     if (frees_falloff(problem)) state |= kFreesFalloff;
     if (problem.free & LENSPROF_FREE_CENTER) state |= kFreesCenter;
     if (leaves_out_any(problem, r)) state |= kLeavesOutKnown;
-    return seam ? state | kHasSeams : state;
+    return state;
 }
 
 }  // namespace
 
-Judged::Judged(const Found &finished, const FitResult &result, const Seam *measured)
+Judged::Judged(const Found &finished, const FitResult &result)
     : found(finished),
       r(result),
       known(known_of(finished, result)),
-      seam(measured),
-      state(state_of(finished, result, measured)),
+      state(state_of(finished, result)),
       wording(state & kStatic ? Wording::still : Wording::usual) {}
 
 namespace measure {
@@ -243,7 +242,7 @@ Measured heldout_rms(const Judged &judged) {
 
 Measured seam(const Judged &judged) {
     if (judged.r.equalizes) return kNotMeasured;
-    return of_values(judged.seam->after, judged.seam->after, judged.seam->before);
+    return of_values(judged.seam.after, judged.seam.after, judged.seam.before);
 }
 
 Measured convergence(const Judged &judged) { return {double(judged.r.converged), 1, {double(judged.r.iterations)}}; }

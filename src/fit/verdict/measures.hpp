@@ -29,11 +29,11 @@ struct Judged {
     const Found &found;
     const FitResult &r;
     KnownExposures known;
-    const Seam *seam;  // NULL until measured
+    Seam seam{};  // once the state has kHasSeams
     uint32_t state;
     Wording wording;  // of most rules
 
-    Judged(const Found &finished, const FitResult &result, const Seam *measured);
+    Judged(const Found &finished, const FitResult &result);
     const Problem &problem() const { return found.problem; }
     const Estimate &estimate() const { return found.estimate; }
 };

@@ -10,6 +10,10 @@ enum class Side {
     below
 };
 
+// Of the rows of a table.
+constexpr lensprof_severity kRefuses = LENSPROF_SEVERITY_REFUSAL, kWarns = LENSPROF_SEVERITY_WARNING,
+                            kNotes = LENSPROF_SEVERITY_NOTE;
+
 // What is found if the measure is above (or below) the limit. `Subject` is what is judged; its `state` has the bits of
 // all that is true of it.
 template <class Subject>

@@ -10,64 +10,56 @@
 namespace lensprof {
 
 // clang-format off
-#define REFUSES(code) LENSPROF_REASON_##code, LENSPROF_SEVERITY_REFUSAL
-#define WARNS(code)   LENSPROF_REASON_##code, LENSPROF_SEVERITY_WARNING
-#define NOTES(code)   LENSPROF_REASON_##code, LENSPROF_SEVERITY_NOTE
-
 constexpr FitRule kRules[] = {
     // Pairs are too few, too similar, or at places that carry no information.
-    {REFUSES(IMAGE_GROUPS),        kStatic,                 measure::groups,             Side::above, 1.0,                    Wording::usual},
-    {REFUSES(FEW_PAIRS),           kAlways,                 measure::pairs_per_unknown,  Side::below, kPairsPerUnknown,       Wording::usual},
-    {REFUSES(EXPOSURES_EQUAL),     kStatic|kFreesResponse,  measure::exposure_spread,    Side::below, kSmallestSpread,        Wording::usual},
-    {REFUSES(FEW_GREYS),           kFreesResponse,          measure::covered_greys,      Side::below, kMinGreys,              Wording::usual},
-    {REFUSES(SAME_VIEW),           kMoving|kFreesFalloff,   measure::radius_change,      Side::below, kSameView,              Wording::usual},
-    {REFUSES(SMALL_RADIUS),        kFreesFalloff,           measure::covered_radius,     Side::below, kSmallestRadius,        Wording::usual},
+    {LENSPROF_REASON_IMAGE_GROUPS,        kRefuses, kStatic,                measure::groups,              Side::above, 1.0,                     Wording::usual},
+    {LENSPROF_REASON_FEW_PAIRS,           kRefuses, kAlways,                measure::pairs_per_unknown,   Side::below, kPairsPerUnknown,        Wording::usual},
+    {LENSPROF_REASON_EXPOSURES_EQUAL,     kRefuses, kStatic|kFreesResponse, measure::exposure_spread,     Side::below, kSmallestSpread,         Wording::usual},
+    {LENSPROF_REASON_FEW_GREYS,           kRefuses, kFreesResponse,         measure::covered_greys,       Side::below, kMinGreys,               Wording::usual},
+    {LENSPROF_REASON_SAME_VIEW,           kRefuses, kMoving|kFreesFalloff,  measure::radius_change,       Side::below, kSameView,               Wording::usual},
+    {LENSPROF_REASON_SMALL_RADIUS,        kRefuses, kFreesFalloff,          measure::covered_radius,      Side::below, kSmallestRadius,         Wording::usual},
     // They contradict every camera.
-    {REFUSES(FEW_AGREE),           kStill,                  measure::still_agreement,    Side::below, kSmallestStillAgreement, Wording::still},
-    {REFUSES(FEW_AGREE),           kAlways,                 measure::agreement,          Side::below, kSmallestAgreement,     Wording::usual},
-    {REFUSES(PATTERNS),            kStill,                  measure::strong_pattern,     Side::above, kHarmfulStillPattern,   Wording::still},
-    {REFUSES(PATTERNS),            kNotStill|kFreesAll,     measure::strong_pattern,     Side::above, kHarmfulPattern,        Wording::usual},
-    {REFUSES(PATTERNS),            kNotStill|kHolds,        measure::strong_pattern,     Side::above, kSmallestPattern,       Wording::held},
-    {REFUSES(SCATTER),             kAlways,                 measure::noise,              Side::above, kLargestNoise,          Wording::usual},
+    {LENSPROF_REASON_FEW_AGREE,           kRefuses, kStill,                 measure::still_agreement,     Side::below, kSmallestStillAgreement, Wording::still},
+    {LENSPROF_REASON_FEW_AGREE,           kRefuses, kAlways,                measure::agreement,           Side::below, kSmallestAgreement,      Wording::usual},
+    {LENSPROF_REASON_PATTERNS,            kRefuses, kStill,                 measure::strong_pattern,      Side::above, kHarmfulStillPattern,    Wording::still},
+    {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kFreesAll,    measure::strong_pattern,      Side::above, kHarmfulPattern,         Wording::usual},
+    {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kHolds,       measure::strong_pattern,      Side::above, kSmallestPattern,        Wording::held},
+    {LENSPROF_REASON_SCATTER,             kRefuses, kAlways,                measure::noise,               Side::above, kLargestNoise,           Wording::usual},
     // They do not determine the result.
-    {REFUSES(NOT_CONVERGED),       kAlways,                 measure::convergence,        Side::below, 1.0,                    Wording::usual},
-    {REFUSES(UNDETERMINED),        kAlways,                 measure::covariance,         Side::below, 1.0,                    Wording::usual},
-    {REFUSES(CORNER_UNCERTAIN),    kAlways,                 measure::corner_sigma,       Side::above, kLargestCornerSigma,    Wording::usual},
-    {REFUSES(CENTER_ON_LIMIT),     kFreesCenter,            measure::center_on_axis,     Side::above, kOnLimit*kLargestCenter, Wording::usual},
-    {REFUSES(FALLOFF_RISES),       kAlways,                 measure::clear_rise,         Side::above, kLargestRise,           Wording::usual},
-    {REFUSES(FALLOFF_DARK),        kFreesFalloff,           measure::darkest,            Side::below, kSmallestM,             Wording::usual},
-    {REFUSES(FEW_INLIERS),         kAlways,                 measure::image_inliers,      Side::below, kMinInliers,            Wording::usual},
-    {REFUSES(IMAGE_DISAGREES),     kAlways,                 measure::image_agreement,    Side::below, kSmallestImageShare,    Wording::usual},
-    {REFUSES(EXPOSURE_UNCERTAIN),  kAlways,                 measure::exposure_sigma,     Side::above, kLargestEvSigma,        Wording::usual},
+    {LENSPROF_REASON_NOT_CONVERGED,       kRefuses, kAlways,                measure::convergence,         Side::below, 1.0,                     Wording::usual},
+    {LENSPROF_REASON_UNDETERMINED,        kRefuses, kAlways,                measure::covariance,          Side::below, 1.0,                     Wording::usual},
+    {LENSPROF_REASON_CORNER_UNCERTAIN,    kRefuses, kAlways,                measure::corner_sigma,        Side::above, kLargestCornerSigma,     Wording::usual},
+    {LENSPROF_REASON_CENTER_ON_LIMIT,     kRefuses, kFreesCenter,           measure::center_on_axis,      Side::above, kOnLimit*kLargestCenter, Wording::usual},
+    {LENSPROF_REASON_FALLOFF_RISES,       kRefuses, kAlways,                measure::clear_rise,          Side::above, kLargestRise,            Wording::usual},
+    {LENSPROF_REASON_FALLOFF_DARK,        kRefuses, kFreesFalloff,          measure::darkest,             Side::below, kSmallestM,              Wording::usual},
+    {LENSPROF_REASON_FEW_INLIERS,         kRefuses, kAlways,                measure::image_inliers,       Side::below, kMinInliers,             Wording::usual},
+    {LENSPROF_REASON_IMAGE_DISAGREES,     kRefuses, kAlways,                measure::image_agreement,     Side::below, kSmallestImageShare,     Wording::usual},
+    {LENSPROF_REASON_EXPOSURE_UNCERTAIN,  kRefuses, kAlways,                measure::exposure_sigma,      Side::above, kLargestEvSigma,         Wording::usual},
     // The pictures still show it, or a number that people use is wrong.
-    {WARNS(WHITE_BALANCE_FIXED),   kAlways,                 measure::held_white_balance, Side::above, 0.0,                    Wording::usual},
-    {WARNS(IMAGE_INCONSISTENT),    kAlways,                 measure::image_residual,     Side::above, kInconsistentImage,     Wording::usual},
-    {WARNS(KNOWN_ORDER),           kAlways,                 measure::known_order,        Side::above, 0.0,                    Wording::usual},
-    {WARNS(KNOWN_STEP),            kAlways,                 measure::known_step_up,      Side::above, 0.0,                    Wording::usual},
-    {WARNS(KNOWN_STEP),            kAlways,                 measure::known_step_down,    Side::above, 0.0,                    Wording::less},
-    {WARNS(GAMMA_INCONSISTENT),    kAlways,                 measure::gamma_inconsistency, Side::above, kInconsistentGamma,           Wording::usual},
-    {WARNS(PATTERNS),              kStill,                  measure::weak_pattern,       Side::above, kStillPattern,          Wording::weak},
-    {WARNS(PATTERNS),              kNotStill,               measure::weak_pattern,       Side::above, kSmallestPattern,       Wording::weak},
-    {WARNS(SEAMS_REMAIN),          kHasSeams,               measure::seam,               Side::above, kSeen,                  Wording::usual},
+    {LENSPROF_REASON_WHITE_BALANCE_FIXED, kWarns,   kAlways,                measure::held_white_balance,  Side::above, 0.0,                     Wording::usual},
+    {LENSPROF_REASON_IMAGE_INCONSISTENT,  kWarns,   kAlways,                measure::image_residual,      Side::above, kInconsistentImage,      Wording::usual},
+    {LENSPROF_REASON_KNOWN_ORDER,         kWarns,   kAlways,                measure::known_order,         Side::above, 0.0,                     Wording::usual},
+    {LENSPROF_REASON_KNOWN_STEP,          kWarns,   kAlways,                measure::known_step_up,       Side::above, 0.0,                     Wording::usual},
+    {LENSPROF_REASON_KNOWN_STEP,          kWarns,   kAlways,                measure::known_step_down,     Side::above, 0.0,                     Wording::less},
+    {LENSPROF_REASON_GAMMA_INCONSISTENT,  kWarns,   kAlways,                measure::gamma_inconsistency, Side::above, kInconsistentGamma,      Wording::usual},
+    {LENSPROF_REASON_PATTERNS,            kWarns,   kStill,                 measure::weak_pattern,        Side::above, kStillPattern,           Wording::weak},
+    {LENSPROF_REASON_PATTERNS,            kWarns,   kNotStill,              measure::weak_pattern,        Side::above, kSmallestPattern,        Wording::weak},
+    {LENSPROF_REASON_SEAMS_REMAIN,        kWarns,   kHasSeams,              measure::seam,                Side::above, kSeen,                   Wording::usual},
     // Worth knowing.
-    {NOTES(KNOWN_WRONG),           kAlways,                 measure::known_single,       Side::above, 0.0,                    Wording::usual},
-    {NOTES(KNOWN_WRONG),           kLeavesOutKnown,         measure::known_outlier,      Side::above, 0.0,                    Wording::usual},
-    {NOTES(KNOWN_WRONG),           kAlways,                 measure::known_outlier,      Side::above, kContradiction,         Wording::usual},
-    {NOTES(KNOWN_CONTRADICT),      kAlways,                 measure::known_any,          Side::above, 0.0,                    Wording::usual},
-    {NOTES(NOT_RADIAL),            kAlways,                 measure::frame_pattern,      Side::above, kSmallestPattern,       Wording::usual},
-    {NOTES(FALLOFF_RISES),         kAlways,                 measure::clear_rise,         Side::above, 1.0+kSmallRise,         Wording::weak},
-    {NOTES(FAR_CENTER),            kFreesCenter,            measure::center_distance,    Side::above, kFarCenter,             Wording::usual},
-    {NOTES(MISSING_GREYS),         kFreesResponse,          measure::missing_greys,      Side::below, kEnoughGreys,           Wording::usual},
-    {NOTES(UNUSUAL_RESPONSE),      kAlways,                 measure::response_oddness,   Side::above, kUnusual,               Wording::usual},
-    {NOTES(MANY_OUTLIERS),         kHasSeams,               measure::outliers,           Side::above, 1.0-kSmallestShare,         Wording::usual},
-    {NOTES(MANY_OUTLIERS),         kHasSeams,               measure::heldout_rms,        Side::above, kLargestRms,            Wording::usual},
-    {NOTES(SEAMS_REMAIN),          kHasSeams,               measure::seam,               Side::above, 0.0,                    Wording::usual},
+    {LENSPROF_REASON_KNOWN_WRONG,         kNotes,   kAlways,                measure::known_single,        Side::above, 0.0,                     Wording::usual},
+    {LENSPROF_REASON_KNOWN_WRONG,         kNotes,   kLeavesOutKnown,        measure::known_outlier,       Side::above, 0.0,                     Wording::usual},
+    {LENSPROF_REASON_KNOWN_WRONG,         kNotes,   kAlways,                measure::known_outlier,       Side::above, kContradiction,          Wording::usual},
+    {LENSPROF_REASON_KNOWN_CONTRADICT,    kNotes,   kAlways,                measure::known_any,           Side::above, 0.0,                     Wording::usual},
+    {LENSPROF_REASON_NOT_RADIAL,          kNotes,   kAlways,                measure::frame_pattern,       Side::above, kSmallestPattern,        Wording::usual},
+    {LENSPROF_REASON_FALLOFF_RISES,       kNotes,   kAlways,                measure::clear_rise,          Side::above, 1.0+kSmallRise,          Wording::weak},
+    {LENSPROF_REASON_FAR_CENTER,          kNotes,   kFreesCenter,           measure::center_distance,     Side::above, kFarCenter,              Wording::usual},
+    {LENSPROF_REASON_MISSING_GREYS,       kNotes,   kFreesResponse,         measure::missing_greys,       Side::below, kEnoughGreys,            Wording::usual},
+    {LENSPROF_REASON_UNUSUAL_RESPONSE,    kNotes,   kAlways,                measure::response_oddness,    Side::above, kUnusual,                Wording::usual},
+    {LENSPROF_REASON_MANY_OUTLIERS,       kNotes,   kHasSeams,              measure::outliers,            Side::above, 1.0-kSmallestShare,      Wording::usual},
+    {LENSPROF_REASON_MANY_OUTLIERS,       kNotes,   kHasSeams,              measure::heldout_rms,         Side::above, kLargestRms,             Wording::usual},
+    {LENSPROF_REASON_SEAMS_REMAIN,        kNotes,   kHasSeams,              measure::seam,                Side::above, 0.0,                     Wording::usual},
 };
 // clang-format on
 constexpr size_t kRuleCount = sizeof kRules / sizeof *kRules;
-
-#undef REFUSES
-#undef WARNS
-#undef NOTES
 
 }  // namespace lensprof
