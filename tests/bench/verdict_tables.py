@@ -23,7 +23,7 @@ def verdicts(results):
     if not results or not (results["records"] or results["skipped"]):
         return []
     lines = ["## Verdicts", "", READING_VERDICTS.format(tune=" --tune" if results["tune"] else ""), ""]
-    lines += header("kind", "sequences", "refused", "accepted without a word", "accepted with a warning", "evened",
+    lines += header("kind", "sequences", "refused", "accepted without a word", "accepted with a warning", "equalized",
                     "failed", "exposures within their standard error", "corners")
     for kind in GOOD + BAD:
         of = [r for r in results["records"] if r["kind"] == kind]
@@ -44,13 +44,13 @@ def verdicts(results):
 def verdict_row(kind, of, good, limits):
     accepted = [r for r in of if r["usable"]]
     wordless = count(accepted, lambda r: not r["reason"])
-    evened = [r["equalizes"] for r in of if r["equalizes"] is not None]
+    equalized = [r["equalizes"] for r in of if r["equalizes"] is not None]
     missed = len(of) - len(accepted) if good else wordless
     target = "%d (at most %.0f %%%s)" % (missed, 100 * limits[good],
                                          "" if missed <= limits[good] * len(of) else "; **not met**")
     holds = [held([z for r in accepted for z in r["z"][what]]) for what in ("ev", "corner")] if good else ["", ""]
     return row(kind, len(of), target if good else len(of) - len(accepted), wordless if good else target,
-               len(accepted) - wordless, sum(evened) if evened else "–", failures(accepted) if good else "", *holds)
+               len(accepted) - wordless, sum(equalized) if equalized else "–", failures(accepted) if good else "", *holds)
 
 
 def held(z):

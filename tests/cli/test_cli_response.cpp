@@ -150,6 +150,10 @@ void test_local_tones_are_refused(void **) {
     const Json json = json_of(respond(file), not_usable);
     assert_false(bool(json["usable"]));
     assert_string_equal(code_of(json).c_str(), "patterns");
+    assert_close(double(json["findings"][0]["limit"]), 1.2, 0.0);
+    assert_true(double(json["findings"][0]["measured"]) > 1.2);
+    assert_string_equal(std::string(json["passed"][0]["code"]).c_str(), "few_greys");
+    assert_close(double(json["passed"][0]["limit"]), 4.0, 0.0);
     assert_string_equal(std::string(json["files"][0]["tones"]["mapped"]).c_str(), "local");
     assert_refused(not_usable, {"response", file, "--db", work("a.db")}, {"mapped locally", "nothing was stored"});
     assert_false(fs::exists(work("a.db")));

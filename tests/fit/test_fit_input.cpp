@@ -51,6 +51,7 @@ void test_a_wrong_option_is_named(void **) {
         {[](lensprof_fit_options &o) { o.max_iterations = 0; }, "fit options: max_iterations must be 1..1000000"},
         {[](lensprof_fit_options &o) { o.vignettings = 2; }, "fit options: vignettings must be 0, 1 or 3"},
         {[](lensprof_fit_options &o) { o.refine = 2; }, "fit options: refine must be 0 or 1"},
+        {[](lensprof_fit_options &o) { o.moving_camera = 2; }, "fit options: moving_camera must be 0 or 1"},
     };
     for (const auto &one : cases) {
         Call call;

@@ -274,6 +274,42 @@ void test_an_image_without_pairs_is_unconnected(void **) {
     assert_true(says(run_fit(s, options), LENSPROF_REASON_IMAGES_LEFT_OUT, "(1, including image 7)"));
 }
 
+// Images that overlap nothing count against a result of which no overlap shows the same content.
+void test_a_minority_without_verified_links_is_refused(void **) {
+    Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
+    lensprof_link links[] = {{{0, 1}, LENSPROF_LINK_UNVERIFIED, 100}, {{1, 2}, LENSPROF_LINK_UNVERIFIED, 100}};
+    lensprof_fit_options options = default_fit();
+    options.unlinked_images = s.images;  // exactly half take part
+    options.links = links, options.link_count = 2;
+    assert_int_equal(run_fit(s, options).result.usable, 1);
+    options.unlinked_images = s.images + 1;
+    const FitRun run = run_fit(s, options);
+    assert_true(says(run, LENSPROF_REASON_IMAGES_MINORITY, "only 8 of 17 images"));
+    assert_int_equal(run.result.usable + run.result.equalizes, 0);
+    assert_close(run.result.first.measured, 8.0 / 17.0, 1e-12);
+    assert_close(run.result.first.limit, 0.5, 0.0);
+    options.link_count = 0;  // nothing is known of the links
+    assert_int_equal(run_fit(s, options).result.usable, 1);
+    links[1].state = LENSPROF_LINK_VERIFIED, options.link_count = 2;
+    assert_int_equal(run_fit(s, options).result.usable, 1);
+}
+
+// Few images of a camera that moved are a note, if the falloff is estimated.
+void test_few_images_of_a_moving_camera_are_noted(void **) {
+    Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
+    lensprof_fit_options options = default_fit();
+    assert_true(!says(run_fit(s, options), LENSPROF_REASON_FEW_IMAGES, ""));
+    options.moving_camera = 1;
+    const FitRun run = run_fit(s, options);
+    assert_int_equal(run.result.usable, 1);
+    assert_true(says(run, LENSPROF_REASON_FEW_IMAGES, "only 8 images of a moving camera"));
+    assert_int_equal(run.result.first.severity, LENSPROF_SEVERITY_NOTE);
+    assert_close(run.result.first.value[1], 12.0, 0.0);
+    options.free = LENSPROF_FREE_RESPONSE;
+    options.vignetting = s.vignetting;
+    assert_true(!says(run_fit(s, options), LENSPROF_REASON_FEW_IMAGES, ""));
+}
+
 // Two pairs for each of seven images: all are left out together, because they are more than the fits that are tried.
 void test_images_with_few_pairs_are_left_out_together(void **) {
     Simulation s;
@@ -475,6 +511,8 @@ int main() {
         cmocka_unit_test(test_a_misplaced_reference_is_replaced),
         cmocka_unit_test(test_an_image_without_pairs_is_unconnected),
         cmocka_unit_test(test_images_that_disagree_come_first),
+        cmocka_unit_test(test_a_minority_without_verified_links_is_refused),
+        cmocka_unit_test(test_few_images_of_a_moving_camera_are_noted),
         cmocka_unit_test(test_images_with_few_pairs_are_left_out_together),
         cmocka_unit_test(test_a_broken_link_is_left_out_alone),
         cmocka_unit_test(test_an_exposure_must_rest_on_pairs),

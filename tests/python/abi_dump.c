@@ -229,7 +229,7 @@ static void print_structs(void) {
     FIELD(lensprof_fit_options, threads);
     FIELD(lensprof_fit_options, method);
     FIELD(lensprof_fit_options, refine);
-    FIELD(lensprof_fit_options, reserved);
+    FIELD(lensprof_fit_options, moving_camera);
     FIELD(lensprof_fit_options, profile);
     FIELD(lensprof_fit_options, response);
     FIELD(lensprof_fit_options, vignetting);
@@ -237,7 +237,7 @@ static void print_structs(void) {
     FIELD(lensprof_fit_options, progress_user);
     FIELD(lensprof_fit_options, links);
     FIELD(lensprof_fit_options, link_count);
-    FIELD(lensprof_fit_options, reserved2);
+    FIELD(lensprof_fit_options, unlinked_images);
     STRUCT(lensprof_fit_image_quality);
     FIELD(lensprof_fit_image_quality, struct_size);
     FIELD(lensprof_fit_image_quality, joined);
@@ -638,6 +638,7 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_SEAMS_REMAIN);
     VALUE(LENSPROF_REASON_LINKS_CONTRADICT);
     VALUE(LENSPROF_REASON_LINKS_UNVERIFIED);
+    VALUE(LENSPROF_REASON_IMAGES_MINORITY);
     VALUE(LENSPROF_REASON_EXPOSURE_UNCERTAIN);
     VALUE(LENSPROF_REASON_EXPOSURES_EQUAL);
     VALUE(LENSPROF_REASON_KNOWN_ORDER);
@@ -660,6 +661,7 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_NOTHING_BETTER);
     VALUE(LENSPROF_REASON_NOT_RADIAL);
     VALUE(LENSPROF_REASON_FAR_CENTER);
+    VALUE(LENSPROF_REASON_FEW_IMAGES);
     VALUE(LENSPROF_REASON_FLAT_WHITE);
     VALUE(LENSPROF_REASON_FLAT_BLACK);
     VALUE(LENSPROF_REASON_FLAT_NO_CARD);

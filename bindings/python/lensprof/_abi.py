@@ -165,6 +165,7 @@ class Reason(IntEnum):
     SEAMS_REMAIN = 114
     LINKS_CONTRADICT = 115
     LINKS_UNVERIFIED = 116
+    IMAGES_MINORITY = 117
     EXPOSURE_UNCERTAIN = 201
     EXPOSURES_EQUAL = 202
     KNOWN_ORDER = 203
@@ -187,6 +188,7 @@ class Reason(IntEnum):
     NOTHING_BETTER = 408
     NOT_RADIAL = 409
     FAR_CENTER = 410
+    FEW_IMAGES = 411
     FLAT_WHITE = 501
     FLAT_BLACK = 502
     FLAT_NO_CARD = 503
@@ -735,7 +737,7 @@ class FitOptions(Structure):
         ("threads", c_uint32),
         ("method", c_uint32),
         ("refine", c_uint32),
-        ("reserved", c_uint32),
+        ("moving_camera", c_uint32),
         ("profile", POINTER(Profile)),
         ("response", POINTER(Response)),
         ("vignetting", Vignetting),
@@ -743,7 +745,7 @@ class FitOptions(Structure):
         ("progress_user", c_void_p),
         ("links", POINTER(Link)),
         ("link_count", c_uint32),
-        ("reserved2", c_uint32),
+        ("unlinked_images", c_uint32),
     ]
 
 

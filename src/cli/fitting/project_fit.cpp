@@ -254,21 +254,6 @@ CameraKind common_camera_kind(const ProjectFitOptions &o, const std::vector<Pict
     return of_reference;
 }
 
-// Objects look different from other sides, which with few pictures is mistaken for falloff.
-void warn_of_few_images(const ProjectFitOptions &o, const Project &project, const Fitted &fitted, Streams &streams) {
-    constexpr size_t min_images = 12;
-    size_t images = joined_images(fitted);  // or of the camera with fewest
-    for (const lensprof_fit_camera &camera : fitted.cameras)
-        if (camera.images) images = std::min<size_t>(images, camera.images);
-    const bool has_falloff = fitted.result.model == LENSPROF_FIT_MODEL_FULL;
-    if (!project.by_matches || !fitted.corrects() || !has_falloff || images >= min_images) return;
-    warn(streams, project.path
-                      + format(": the falloff is from only %zu pictures of a moving camera, in which objects that look "
-                               "different from another side resemble falloff; it may be off by twice the stated error. "
-                               "Give %zu pictures or more%s",
-                               images, min_images, o.store.no_store ? "" : ", or --no-store"));
-}
-
 // Uses only exposures as the result and stores no profile.
 void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &state, Streams &streams) {
     warn(streams, project.path
@@ -280,24 +265,6 @@ void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &
     state.best.verdict.refuse(LENSPROF_REASON_EXPOSURES_ONLY, "the pictures determine neither response nor falloff");
     state.settings.of_image.assign(state.settings.of_image.size(), 0), state.settings.first.resize(1);
     join_cameras(state.settings);
-}
-
-// A minority of the pictures may agree by chance. Pictures without overlap count if the others do not show the same
-// content either; otherwise a folder may hold more than one sequence.
-void refuse_minority(const Project &project, ProjectFit &state) {
-    if (project.is_reconstruction || !state.best.corrects()) return;
-    const size_t joined = joined_images(state.best), images = project.images.size();
-    const bool is_verified =
-        state.report.links.empty() || links_of_state(state.report.links, LENSPROF_LINK_VERIFIED) > 0;
-    const size_t all = images + (is_verified ? 0 : project.unlinked);
-    if (2 * joined >= all) return;
-    lensprof_fit_result &result = state.best.result;
-    result.usable = result.equalizes = 0;
-    state.best.verdict.refuse(
-        LENSPROF_REASON_IMAGE_GROUPS,
-        format("only %zu of %zu pictures take part in the result%s; give pictures that overlap by a third", joined, all,
-               is_verified ? "" : " and none of their overlaps shows the same content"));
-    for (lensprof_fit_result &setting : state.best.settings) setting.usable = setting.equalizes = 0;
 }
 
 // Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
@@ -499,6 +466,8 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     state.item = o.points.empty() ? project.path : o.points;
     set_settings(o, state, streams);
     set_lens_facts(metadata, input.images);
+    input.options.moving_camera = project.by_matches;
+    input.options.unlinked_images = static_cast<uint32_t>(project.is_reconstruction ? 0 : project.unlinked);
     if (o.points.empty()) report.exif = add_known_exposures(o.fit, project, metadata, input.images, streams);
     set_reference(report.reference, input);
     const auto setting_of = [&](uint32_t image) { return state.settings.of_image[image]; };
@@ -511,10 +480,8 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     if (has_one_camera && !pictures.empty() && may_connect_more(o, state.best, report.links))
         resample(o, project, pictures, state);
     fit_reconstruction(project, state, streams);
-    refuse_minority(project, state);
     report.fit = state.best.result, report.held = state.best.held;
     report.verdict = state.best.verdict;
-    warn_of_few_images(o, project, state.best, streams);
     for (Finding &finding : report.verdict.findings)
         if (finding.code == LENSPROF_REASON_WHITE_BALANCE_FIXED)
             finding.text += " (Er and Eb on the v lines, or --fit free=all)";

@@ -60,6 +60,12 @@ void add_verdict(const Verdict &verdict, nlohmann::ordered_json &json);
 // The text of the first finding in what add_verdict wrote; empty without findings.
 std::string first_text(const nlohmann::ordered_json &json);
 
+// The text with the name of its code, which docs/reasons.md explains: "... [few_pairs]".
+std::string with_code(const Finding &finding);
+
+// The line "NOT USABLE: ..." of a verdict that refuses.
+void print_refusal(const Verdict &verdict, std::ostream &out);
+
 // The findings as lines of a table, without the first refusal, which is the headline of a result that is not usable.
 void print_findings(const Verdict &verdict, std::ostream &out);
 

@@ -12,9 +12,6 @@
 
 namespace lensprof {
 
-// Limits of the map of residuals over the frame, levels of 255: above it tones were mapped locally, or may have been.
-constexpr double strong_pattern = 1.2, weak_pattern = 0.5;
-
 // Result for one raw file.
 struct FileFindings {
     std::string file, rendered;  // rendered: the separate JPEG; empty = embedded

@@ -4,13 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program/format.hpp"
-#include "cli/response/findings.hpp"
+#include "cli/response/rules.hpp"
 
 namespace lensprof {
 namespace {
 
 const char *tones_word(const FileFindings &file) {
-    return file.pattern_levels > strong_pattern ? "local" : file.pattern_levels > weak_pattern ? "doubtful" : "global";
+    return file.pattern_levels > kStrongMap ? "local" : file.pattern_levels > kWeakMap ? "doubtful" : "global";
 }
 
 Json file_json(const FileFindings &file) {
@@ -57,9 +57,9 @@ void print_file(const FileFindings &file, std::ostream &out) {
         "          falloff %s: %.3f +- %.3f of the sensor's light at r = %.2f; tones %s: a map of %.2f levels "
         "remains\n",
         file.is_corrected() ? "corrected by the camera" : "not corrected", file.corner, file.corner_sigma, file.radius,
-        file.pattern_levels > strong_pattern ? "locally mapped"
-        : file.pattern_levels > weak_pattern ? "possibly locally mapped"
-                                             : "globally mapped",
+        file.pattern_levels > kStrongMap ? "locally mapped"
+        : file.pattern_levels > kWeakMap ? "possibly locally mapped"
+                                         : "globally mapped",
         file.pattern_levels);
     out << format("          white %.2f EV below the saturation of the sensor\n", file.white_ev);
 }
@@ -94,7 +94,7 @@ void print_response_report(const ResponseReport &report, std::ostream &out) {
     out << format("levels    %.0f to %.0f of 255 are measured; white %s\n", report.lowest, report.highest,
                   report.shows_white ? "is measured" : "is extrapolated");
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
-    if (!report.usable) out << "NOT USABLE: " << report.verdict.text() << "\n";
+    if (!report.usable) print_refusal(report.verdict, out);
     print_findings(report.verdict, out);
 }
 

@@ -13,7 +13,7 @@
 namespace lensprof {
 
 // Sizes of the structs in the first version of the library.
-constexpr size_t kFirstOptions = LP_END_OF(lensprof_fit_options, reserved2);
+constexpr size_t kFirstOptions = LP_END_OF(lensprof_fit_options, unlinked_images);
 constexpr size_t kFirstImage = LP_END_OF(lensprof_fit_image, crop_factor);
 
 // All arguments and results of a call except pairs, observations and exposures, in this library's struct versions.

@@ -54,7 +54,7 @@ const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
         {o.camera_kind <= LENSPROF_CAMERA_LINEAR, "camera_kind must be one of lensprof_camera_kind, 0..5"},
         {o.method <= LENSPROF_METHOD_TRANSFER_FUNCTION, "method must be one of lensprof_fit_method, 0..2"},
         {o.refine <= 1, "refine must be 0 or 1"},
-        {!o.reserved && !o.reserved2, "reserved and reserved2 must be 0"},
+        {o.moving_camera <= 1, "moving_camera must be 0 or 1"},
         {o.links || !o.link_count, "links must not be NULL if link_count is not 0"},
     };
     return first_broken(rules);

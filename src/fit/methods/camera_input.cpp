@@ -108,6 +108,7 @@ std::vector<CameraInput> part_cameras(const CamerasData &data, const std::vector
     for (CameraInput &input : inputs) {
         link_images(data.images, input);
         input.options = data.options;
+        input.options.unlinked_images = 0;  // judged for all cameras together
         input.options.links = input.links.data();
         input.options.link_count = static_cast<uint32_t>(input.links.size());
         const uint32_t setting = data.images[data.options.reference].setting;

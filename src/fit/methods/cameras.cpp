@@ -14,10 +14,12 @@
 #include "core/response.h"
 #include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
+#include "fit/methods/group.hpp"
 #include "fit/methods/join.hpp"
 #include "fit/methods/raised.hpp"
 #include "fit/problem/tracks.hpp"
 #include "fit/verdict/finding.hpp"
+#include "fit/verdict/judge.hpp"
 #include "fit/verdict/output.hpp"
 
 namespace lensprof {
@@ -445,13 +447,9 @@ lensprof_finding CamerasFit::left_out_finding(uint32_t count, bool are_few) cons
     }
     uint32_t out = 0;  // the first
     while (out + 1 < exposures_.size() && !std::isnan(exposures_[out].ev)) out++;
-    if (are_few)
-        return finding_of(LENSPROF_REASON_IMAGE_GROUPS, LENSPROF_SEVERITY_REFUSAL,
-                          of_image(of_value(double(cameras_.size())), out));
-    if (disagree)
-        return finding_of(LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_SEVERITY_WARNING,
-                          of_image(of_value(disagree), first));
-    return finding_of(LENSPROF_REASON_IMAGES_UNCONNECTED, LENSPROF_SEVERITY_WARNING, of_image(of_value(count), out));
+    if (are_few) return found_by_method(LENSPROF_REASON_IMAGE_GROUPS, of_image(of_value(double(cameras_.size())), out));
+    if (disagree) return found_by_method(LENSPROF_REASON_IMAGES_LEFT_OUT, of_image(of_value(disagree), first));
+    return found_by_method(LENSPROF_REASON_IMAGES_UNCONNECTED, of_image(of_value(count), out));
 }
 
 void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &result) const {
@@ -468,7 +466,8 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
     const auto is_out = [](const lensprof_exposure &exposure) { return std::isnan(exposure.ev); };
     r.left_out = static_cast<uint32_t>(std::count_if(exposures_.begin(), exposures_.end(), is_out));
     const bool are_few = 2 * r.left_out > images_.size();  // that agree
-    if (are_few) {
+    const bool are_minority = is_minority(options_, static_cast<uint32_t>(images_.size()), r.left_out);
+    if (are_few || are_minority) {
         r.equalizes = 0;
         for (uint32_t k = 0; k < r.camera_count; k++) r.cameras[k].equalizes = 0;
     }
@@ -477,6 +476,8 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
         Findings &own = verdict.verdict;
         own.erase(std::remove_if(own.begin(), own.end(), is_on_left_out), own.end());
         if (r.left_out && !has_code(own, static_cast<lensprof_reason>(left_out.code))) report_first(verdict, left_out);
+        if (are_minority)
+            report_first(verdict, minority_finding(options_, static_cast<uint32_t>(images_.size()), r.left_out));
     });
     result = r;
 }

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "fit/problem/loss.hpp"
-#include "fit/verdict/finding.hpp"
+#include "fit/verdict/judge.hpp"
 #include "fit/verdict/limits.hpp"
 #include "fit/verdict/quality.hpp"
 
@@ -217,10 +217,8 @@ lensprof_finding GroupFit::left_out_finding(uint32_t all) const {
     for (uint32_t i = 0; i < count_; i++)
         if (!group_.joined[i]) (disagrees(i) ? disagree : unconnected).push_back(i);
     if (disagree.empty())
-        return finding_of(LENSPROF_REASON_IMAGES_UNCONNECTED, LENSPROF_SEVERITY_WARNING,
-                          of_image(of_value(all), unconnected[0]));
-    return finding_of(LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_SEVERITY_WARNING,
-                      of_image(of_value(double(disagree.size())), disagree[0]));
+        return found_by_method(LENSPROF_REASON_IMAGES_UNCONNECTED, of_image(of_value(all), unconnected[0]));
+    return found_by_method(LENSPROF_REASON_IMAGES_LEFT_OUT, of_image(of_value(double(disagree.size())), disagree[0]));
 }
 
 // Stores the quality that the last fit reports for its images.
@@ -245,7 +243,7 @@ void GroupFit::describe(lensprof_exposure *exposures, FitResult &r) const {
     }
     const bool has_broken =
         std::any_of(group_.broken.begin(), group_.broken.end(), [&](const auto &link) { return is_within(link); });
-    if (2 * r.left_out >= count_ || has_broken) r.equalizes = 0;
+    if (2 * r.left_out >= count_ || is_minority(options_, count_, r.left_out) || has_broken) r.equalizes = 0;
     for_each_verdict(r, [&](auto &verdict) { report_links(r, verdict); });
 }
 
@@ -255,12 +253,14 @@ void GroupFit::report_links(const FitResult &all, Verdict &verdict) const {
     const auto first = std::find(group_.joined.begin(), group_.joined.end(), false) - group_.joined.begin();
     if (2 * all.left_out >= count_) {
         report_first(verdict,
-                     finding_of(LENSPROF_REASON_IMAGE_GROUPS, LENSPROF_SEVERITY_REFUSAL,
-                                of_image(of_value(std::max(all.components, 2u)), static_cast<uint32_t>(first))));
+                     found_by_method(LENSPROF_REASON_IMAGE_GROUPS,
+                                     of_image(of_value(std::max(all.components, 2u)), static_cast<uint32_t>(first))));
         return;
     }
+    if (is_minority(options_, count_, all.left_out))
+        report_first(verdict, minority_finding(options_, count_, all.left_out));
     const auto note = [&](lensprof_reason code, uint32_t image, size_t count) {
-        report_last(verdict, finding_of(code, LENSPROF_SEVERITY_NOTE, of_image(of_value(double(count)), image)));
+        report_last(verdict, found_by_method(code, of_image(of_value(double(count)), image)));
     };
     const auto is_in_group = [&](const auto &link) { return is_within(link); };
     const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_in_group);
@@ -304,7 +304,24 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, FitResult 
     describe(exposures, result);
 }
 
+// Share of the images of the set that take part in the result.
+double share_of_set(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out) {
+    return (image_count - left_out) / (double(image_count) + options.unlinked_images);
+}
+
 }  // namespace
+
+bool is_minority(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out) {
+    const bool is_verified = std::any_of(options.links, options.links + options.link_count,
+                                         [](const auto &link) { return link.state == LENSPROF_LINK_VERIFIED; });
+    return options.link_count && !is_verified && share_of_set(options, image_count, left_out) < kSmallestPart;
+}
+
+lensprof_finding minority_finding(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out) {
+    return found_by_method(LENSPROF_REASON_IMAGES_MINORITY,
+                           of_values(share_of_set(options, image_count, left_out), image_count - left_out,
+                                     double(image_count) + options.unlinked_images));
+}
 
 void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                        const PairsWithin &pairs_within, const FitGroup &fit, lensprof_exposure *exposures,

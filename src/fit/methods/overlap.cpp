@@ -10,7 +10,7 @@
 #include "fit/methods/overlap_fit.hpp"
 #include "fit/methods/simpler.hpp"
 #include "fit/methods/unshown.hpp"
-#include "fit/verdict/finding.hpp"
+#include "fit/verdict/judge.hpp"
 #include "fit/verdict/output.hpp"
 #include "fit/verdict/quality.hpp"
 
@@ -46,10 +46,7 @@ struct Contradiction {
 
     double distance() const { return std::max(falloff, response); }
     double in_all() const { return std::max(worse, gamma); }
-    bool is_significant() const {
-        constexpr double kClearly = 3.0, kFarApart = 5.0;
-        return worse > kClearly || distance() > kFarApart;
-    }
+    bool is_significant() const { return worse > kClearlyWorse || distance() > kFarFromPrior; }
 };
 
 // Fits, and if a profile is the prior, also fits without it. If the pictures contradict the profile, tries its falloff
@@ -113,7 +110,7 @@ private:
 
     static lensprof_finding rejection_of(uint32_t prior, const Contradiction &all) {
         const auto found = [&](lensprof_reason code, double distance) {
-            return finding_of(code, LENSPROF_SEVERITY_WARNING, of_values(all.in_all(), distance, all.worse));
+            return found_by_method(code, of_values(all.in_all(), distance, all.worse));
         };
         if (prior == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED)
             return found(LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, all.response);

@@ -7,7 +7,7 @@
 #include "core/covariance.h"
 #include "falloff/rise.hpp"
 #include "fit/methods/unshown.hpp"
-#include "fit/verdict/finding.hpp"
+#include "fit/verdict/judge.hpp"
 #include "fit/verdict/output.hpp"
 
 namespace lensprof {
@@ -118,9 +118,9 @@ void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposu
                       own.begin(), own.end(),
                       [](const lensprof_finding &finding) { return finding.severity == LENSPROF_SEVERITY_REFUSAL; }),
                   own.end());
-        report_first(verdict,
-                     finding_of(found.equalizes ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER,
-                                LENSPROF_SEVERITY_REFUSAL, Measured{}));
+        report_first(
+            verdict,
+            found_by_method(found.equalizes ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER, {}));
     };
     for (uint32_t n = 0; n < r.setting_count; n++)
         if (r.settings[n].images) keep_verdict(r.settings[n], refused.settings[n]);

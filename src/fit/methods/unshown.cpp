@@ -13,15 +13,11 @@
 #include "core/covariance.h"
 #include "core/profile.h"
 #include "fit/base/constants.hpp"
-#include "fit/verdict/finding.hpp"
+#include "fit/verdict/judge.hpp"
+#include "fit/verdict/limits.hpp"
 
 namespace lensprof {
 namespace {
-
-// EV. At .06 EV the differences between shapes of responses, some 5 levels, move grey values by .2 to .4 levels, as
-// much as rounding and interpolation do.
-constexpr double kSmallestLightSpread = 0.06;
-constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one determines nothing at all
 
 // The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
 template <class Part>  // the result, or one of its settings
@@ -90,9 +86,9 @@ void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t i
     else
         hold_typical(options, image_count, fit, exposures, r);
     for_each_verdict(r, [&](auto &verdict) {
-        report_last(verdict, finding_of(LENSPROF_REASON_RESPONSE_UNCONSTRAINED, LENSPROF_SEVERITY_NOTE,
-                                        of_values(is_narrow ? NAN : spread_ev, r.irradiance_spread_ev, r.gamma_sigma),
-                                        kSmallestLightSpread));
+        report_last(verdict,
+                    found_by_method(LENSPROF_REASON_RESPONSE_UNCONSTRAINED,
+                                    of_values(is_narrow ? NAN : spread_ev, r.irradiance_spread_ev, r.gamma_sigma)));
     });
 }
 

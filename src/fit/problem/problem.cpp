@@ -146,6 +146,7 @@ Problem empty_problem(const lensprof_fit_options &options, const lensprof_fit_im
     problem.channels = static_cast<int>(options.channels);
     problem.reference = options.reference;
     problem.free = options.free;
+    problem.moving_camera = options.moving_camera;
     problem.images = images;
     problem.image_count = image_count;
     problem.threads = options.threads;

@@ -79,6 +79,7 @@ struct Problem {
 
     // Method `radiance`: minimises tracks instead of pairs; the pairs are then those derived from the tracks.
     bool by_radiance = false;
+    bool moving_camera = false;
     Tracks tracks;
     std::vector<Range> track_chunks;             // tracks per chunk
     std::vector<std::array<uint32_t, 2>> links;  // images with a track in common, sorted, the lower one first

@@ -11,17 +11,7 @@
 namespace lensprof {
 namespace {
 
-// Levels of 255.
-constexpr double kEven = 2.0;     // between pictures that look alike,
-constexpr double kOfNoise = 1.5;  // this much above the effect of noise,
-constexpr double kMaxNoise = 4.0;
-constexpr double kUneven = 6.0;   // and between those that do not
-constexpr double kGrown = 1.25;   // a seam that is visible, and this many times its size before;
-constexpr double kOddLink = 5.0;  // of a link that contradicts the result, and this many times the noise,
-constexpr double kOddNoise = 4.0;
-constexpr double kGain = 0.5;            // unless it is at most this many times its size before
-constexpr double kMinInlierShare = 0.6;  // of all pairs: with fewer, only part of the picture is even
-constexpr size_t kMinPairs = 20;         // of a link that is informative
+constexpr size_t kMinPairs = 20;  // of a link that is informative
 
 // For every pair, in their order: mean over the channels.
 std::vector<Seam> seams_of(const Problem &problem, const Estimate &estimate) {
@@ -46,7 +36,7 @@ Seam median_of(const std::vector<Seam> &seams, size_t first, size_t last) {
 
 bool is_even(const Seam &seam, double noise_levels) {
     return seam.after <= std::clamp(kOfNoise * noise_levels, kEven, kMaxNoise)
-           || (seam.after <= kGain * seam.before && seam.after <= kUneven);
+           || (seam.after <= kMuchLess * seam.before && seam.after <= kUneven);
 }
 
 // The first link that looks worse after the correction, or keeps a seam that the other links do not have.
@@ -56,7 +46,7 @@ std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &se
         if (edge.last - edge.first < kMinPairs) continue;
         const Seam seam = median_of(seams, edge.first, edge.last);
         if (seam.after > std::max(kGrown * seam.before, kSeen)
-            || (seam.after > max_residual && seam.after > kGain * seam.before))
+            || (seam.after > max_residual && seam.after > kMuchLess * seam.before))
             return seam;
     }
     return std::nullopt;
@@ -68,7 +58,7 @@ Seam judge_evenness(const Found &found, FitResult &r) {
     const std::vector<Seam> tested = seams_of(found.tested, found.train);
     const Seam overall = median_of(tested, 0, tested.size());
     const std::optional<Seam> odd = odd_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
-    r.equalizes = r.converged && r.inlier_share > kMinInlierShare && is_even(overall, r.noise_levels) && !odd;
+    r.equalizes = r.converged && r.inlier_share > kEvenShare && is_even(overall, r.noise_levels) && !odd;
     return odd.value_or(overall);
 }
 

@@ -8,13 +8,12 @@
 #include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/problem/residual.hpp"
+#include "fit/verdict/limits.hpp"
 
 namespace lensprof {
 namespace {
 
 constexpr size_t kMinBalancePairs = 30;  // of a link
-constexpr double kClearLevels = 1.5;     // of 255, and this many standard errors of a median
-constexpr double kClearBalance = 5.0;
 constexpr double kMedianError = 1.2533;  // sqrt(pi / 2): standard error of a median relative to that of a mean
 
 bool is_held(const Problem &problem, uint32_t image, size_t channel) {

@@ -1,5 +1,8 @@
 #include "fit/verdict/judge.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "fit/verdict/rules.hpp"
 
 namespace lensprof {
@@ -29,6 +32,12 @@ void judge(const Found &found, const std::function<void(FitResult &)> &judge_res
     judged.seam = judge_evenness(found, r);
     judged.state |= kHasSeams;
     if (r.usable) apply_rules(kRules, judged, r.verdict, kHasSeams);
+}
+
+lensprof_finding found_by_method(lensprof_reason code, const Measured &measured) {
+    const auto *rule = std::find_if(std::begin(kMethodRules), std::end(kMethodRules),
+                                    [=](const MethodRule &candidate) { return candidate.code == code; });
+    return finding_of(code, rule->severity, measured, rule->limit);
 }
 
 }  // namespace lensprof

@@ -11,4 +11,7 @@ namespace lensprof {
 // the rules.
 void judge(const Found &found, const std::function<void(FitResult &)> &judge_result, FitResult &r);
 
+// What a method finds by itself, with the severity and the limit of its row in rules.hpp.
+lensprof_finding found_by_method(lensprof_reason code, const Measured &measured);
+
 }  // namespace lensprof

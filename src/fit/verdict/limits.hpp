@@ -22,16 +22,18 @@ constexpr double kStillMedian = 1.5;             // and levels of 255 that half 
 constexpr double kLargestNoise = 6.0;            // above the noise of any camera, so the model does not fit
 constexpr double kMinInliers = 3.0;              // of an image: fewer agree by chance,
 constexpr double kSmallestImageShare = 0.2;      // or a smaller share of its pairs
+constexpr double kSmallestPart = 0.5;            // of the images of a set: fewer agree by chance
 constexpr double kInconsistentImage = 5.0;       // median residual of an image, and four times the noise
 
 // Patterns per image: share of the residual's variance, and levels of 255. Noise and moving things stay below the
 // share; rounding and JPEG below the levels.
 constexpr double kLargestImageShare = 0.2, kSuspiciousImageShare = 0.1;
-constexpr double kHarmfulPattern = 0.5, kSmallestPattern = 0.3;
+constexpr double kHarmfulPattern = 0.4, kWeakPattern = 0.15, kSmallestPattern = 0.3;
 constexpr double kHarmfulStillPattern = 2.0, kStillPattern = 1.0;  // the same if no falloff can be biased
 constexpr double kNotRadial = 0.3;                                 // share explained by one map over the frame
 
 // Falloff and centre.
+constexpr double kMovingImages = 12.0;       // of a moving camera
 constexpr double kLargestCornerSigma = 0.1;  // of M
 constexpr double kFarCenter = 0.1;           // half diagonals: five standard errors of its prior
 constexpr double kOnLimit = 0.98;            // of the largest allowed offset of the centre
@@ -42,13 +44,36 @@ constexpr double kLargestEvSigma = 0.3;      // EV, standard error: above it the
 constexpr double kContradiction = 5.0;       // standard errors between an exposure and its known value
 constexpr int kMany = 12;                    // known exposures, whose errors follow from their scatter
 constexpr double kInconsistentGamma = 0.05;  // of ln gamma
+constexpr double kReportableEv = 0.1;        // EV: less is not seen
+constexpr double kClearSpread = 0.7;         // EV, from the darkest to the brightest: visible in any pictures
+constexpr double kFlatSlope = 0.1;           // of the known exposures against the found ones: they belong elsewhere
+constexpr double kClearlyBetter = 4.0;       // in chi-squared, than the next explanation: two standard errors
 
 // Response.
-constexpr double kUnusual = 1.0;  // Gauge::oddness
+constexpr double kUnusual = 1.0, kVeryUnusual = 2.0;  // Gauge::oddness
+// EV. At .06 EV the differences between shapes of responses, some 5 levels, move grey values by .2 to .4 levels, as
+// much as rounding and interpolation do.
+constexpr double kSmallestLightSpread = 0.06;
+constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one determines nothing at all
+
+// Held white balances. Levels of 255, and standard errors of a median.
+constexpr double kClearLevels = 1.5, kClearBalance = 5.0;
+
+// A prior profile. Standard errors by which held-out pairs are worse with it, and by which it deviates.
+constexpr double kClearlyWorse = 3.0, kFarFromPrior = 5.0;
 
 // Seams. Levels of 255; kSeen is comparable to the texture around a seam.
 constexpr double kSmallestShare = 0.7;  // of the pairs that agree
 constexpr double kLargestRms = 15.0;
 constexpr double kSeen = 3.0;
+constexpr double kEven = 2.0;       // between pictures that look alike,
+constexpr double kOfNoise = 1.5;    // this much above the effect of noise,
+constexpr double kMaxNoise = 4.0;   // at most;
+constexpr double kUneven = 6.0;     // and between those that do not
+constexpr double kGrown = 1.25;     // a seam that is visible, and this many times its size before;
+constexpr double kOddLink = 5.0;    // of a link that contradicts the result, and this many times the noise,
+constexpr double kOddNoise = 4.0;   //
+constexpr double kMuchLess = 0.5;   // unless it is at most this many times its size before
+constexpr double kEvenShare = 0.6;  // of all pairs that agree: with fewer, only part of the picture is even
 
 }  // namespace lensprof

@@ -124,6 +124,7 @@ uint32_t state_of(const Found &found, const FitResult &r) {
     if (fits_response(estimate)) state |= kFreesResponse;
     if (frees_falloff(problem)) state |= kFreesFalloff;
     if (problem.free & LENSPROF_FREE_CENTER) state |= kFreesCenter;
+    if (problem.moving_camera && frees_falloff(problem)) state |= kMoved;
     if (leaves_out_any(problem, r)) state |= kLeavesOutKnown;
     return state;
 }
@@ -200,6 +201,12 @@ Measured frame_pattern(const Judged &judged) {
     const double share = judged.r.frame_share,
                  levels = share > kNotRadial ? judged.r.noise_levels * std::sqrt(share) : 0.0;
     return of_values(levels, share, levels);
+}
+
+Measured joined_images(const Judged &judged) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < judged.problem().image_count; i++) count += is_joined(judged.problem(), i);
+    return of_values(count, count, kMovingImages);
 }
 
 Measured image_inliers(const Judged &judged) {

@@ -1,9 +1,9 @@
 // What the verdict on a fit measures: one number for each rule.
 #pragma once
 
-#include "fit/prior/known_exposures.hpp"
 #include "fit/verdict/evenness.hpp"
 #include "fit/verdict/finish.hpp"
+#include "fit/verdict/known_exposures.hpp"
 #include "fit/verdict/rule.hpp"
 
 namespace lensprof {
@@ -21,7 +21,8 @@ enum State : uint32_t {
     kFreesAll = 128,        // response and falloff: nothing that is held can be what does not fit
     kHolds = 256,           // one of them is held
     kLeavesOutKnown = 512,  // known exposures that contradict the pictures and the others
-    kHasSeams = 1024        // the last step, for results that may be used: the seams have been measured
+    kMoved = 1024,          // the camera did, between the images, and the falloff is free
+    kHasSeams = 2048        // the last step, for results that may be used: the seams have been measured
 };
 
 // A finished fit of one lens setting under judgement.
@@ -56,6 +57,7 @@ Measured noise(const Judged &judged);
 Measured strong_pattern(const Judged &judged);
 Measured weak_pattern(const Judged &judged);
 Measured frame_pattern(const Judged &judged);
+Measured joined_images(const Judged &judged);
 Measured image_inliers(const Judged &judged);
 Measured image_agreement(const Judged &judged);
 Measured image_residual(const Judged &judged);

@@ -27,6 +27,14 @@ struct VerdictRule {
     Wording wording;
 };
 
+// What a method finds by itself: how severe it is, and the limit of its measure (NaN: two models are compared).
+struct MethodRule {
+    lensprof_reason code;
+    lensprof_severity severity;
+    Side side;
+    double limit;
+};
+
 template <class Subject>
 lensprof_finding apply_rule(const VerdictRule<Subject> &rule, const Subject &subject, const Measured &measured) {
     const bool is_found = rule.side == Side::above ? measured.value > rule.limit : measured.value < rule.limit;

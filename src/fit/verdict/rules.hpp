@@ -1,5 +1,5 @@
 // The verdict on fits: all rules, the most important first within a severity. `limits.hpp` states where a limit
-// comes from.
+// comes from. Table one: what a finished fit is measured for. Table two: what a method finds on the way to it.
 #pragma once
 
 #include "falloff/rise.hpp"
@@ -43,7 +43,8 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_KNOWN_STEP,          kWarns,   kAlways,                measure::known_step_down,     Side::above, 0.0,                     Wording::less},
     {LENSPROF_REASON_GAMMA_INCONSISTENT,  kWarns,   kAlways,                measure::gamma_inconsistency, Side::above, kInconsistentGamma,      Wording::usual},
     {LENSPROF_REASON_PATTERNS,            kWarns,   kStill,                 measure::weak_pattern,        Side::above, kStillPattern,           Wording::weak},
-    {LENSPROF_REASON_PATTERNS,            kWarns,   kNotStill,              measure::weak_pattern,        Side::above, kSmallestPattern,        Wording::weak},
+    {LENSPROF_REASON_PATTERNS,            kWarns,   kNotStill,              measure::weak_pattern,        Side::above, kWeakPattern,            Wording::weak},
+    {LENSPROF_REASON_UNUSUAL_RESPONSE,    kWarns,   kAlways,                measure::response_oddness,    Side::above, kVeryUnusual,            Wording::usual},
     {LENSPROF_REASON_SEAMS_REMAIN,        kWarns,   kHasSeams,              measure::seam,                Side::above, kSeen,                   Wording::usual},
     // Worth knowing.
     {LENSPROF_REASON_KNOWN_WRONG,         kNotes,   kAlways,                measure::known_single,        Side::above, 0.0,                     Wording::usual},
@@ -52,6 +53,7 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_KNOWN_CONTRADICT,    kNotes,   kAlways,                measure::known_any,           Side::above, 0.0,                     Wording::usual},
     {LENSPROF_REASON_NOT_RADIAL,          kNotes,   kAlways,                measure::frame_pattern,       Side::above, kSmallestPattern,        Wording::usual},
     {LENSPROF_REASON_FALLOFF_RISES,       kNotes,   kAlways,                measure::clear_rise,          Side::above, 1.0+kSmallRise,          Wording::weak},
+    {LENSPROF_REASON_FEW_IMAGES,          kNotes,   kMoved,                 measure::joined_images,       Side::below, kMovingImages,           Wording::usual},
     {LENSPROF_REASON_FAR_CENTER,          kNotes,   kFreesCenter,           measure::center_distance,     Side::above, kFarCenter,              Wording::usual},
     {LENSPROF_REASON_MISSING_GREYS,       kNotes,   kFreesResponse,         measure::missing_greys,       Side::below, kEnoughGreys,            Wording::usual},
     {LENSPROF_REASON_UNUSUAL_RESPONSE,    kNotes,   kAlways,                measure::response_oddness,    Side::above, kUnusual,                Wording::usual},
@@ -59,7 +61,29 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_MANY_OUTLIERS,       kNotes,   kHasSeams,              measure::heldout_rms,         Side::above, kLargestRms,             Wording::usual},
     {LENSPROF_REASON_SEAMS_REMAIN,        kNotes,   kHasSeams,              measure::seam,                Side::above, 0.0,                     Wording::usual},
 };
-// clang-format on
 constexpr size_t kRuleCount = sizeof kRules / sizeof *kRules;
+
+// The methods measure; whether something is found is part of how they choose images, models and priors.
+constexpr MethodRule kMethodRules[] = {
+    // methods/group.cpp, cameras.cpp: which images take part
+    {LENSPROF_REASON_IMAGE_GROUPS,            kRefuses, Side::above, 1.0},
+    {LENSPROF_REASON_IMAGES_MINORITY,         kRefuses, Side::below, kSmallestPart},
+    {LENSPROF_REASON_IMAGES_LEFT_OUT,         kWarns,   Side::above, 0.0},
+    {LENSPROF_REASON_IMAGES_UNCONNECTED,      kWarns,   Side::above, 0.0},
+    {LENSPROF_REASON_LINKS_CONTRADICT,        kNotes,   Side::above, 0.0},
+    {LENSPROF_REASON_LINKS_UNVERIFIED,        kNotes,   Side::above, 0.0},
+    // methods/transfer_function: equal exposures have the identity as their transfer functions
+    {LENSPROF_REASON_EXPOSURES_EQUAL,         kRefuses, Side::below, kSmallestSpread},
+    // methods/simpler.cpp: which model held-out pairs prefer; of reconstructions, the command compares colours
+    {LENSPROF_REASON_NOTHING_BETTER,          kRefuses, Side::above, NAN},
+    {LENSPROF_REASON_EXPOSURES_ONLY,          kRefuses, Side::above, NAN},
+    // methods/overlap.cpp: whether the pictures contradict a profile that is the prior
+    {LENSPROF_REASON_PRIOR_OVERRULED,         kWarns,   Side::above, kClearlyWorse},
+    {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, kWarns,  Side::above, kClearlyWorse},
+    {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, kWarns,   Side::above, kClearlyWorse},
+    // methods/unshown.cpp: whether they show the response at all
+    {LENSPROF_REASON_RESPONSE_UNCONSTRAINED,  kNotes,   Side::below, kSmallestLightSpread},
+};
+// clang-format on
 
 }  // namespace lensprof

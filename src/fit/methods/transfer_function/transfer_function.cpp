@@ -9,8 +9,8 @@
 #include "fit/methods/transfer_function/log_equations.hpp"
 #include "fit/problem/curve_shape.hpp"
 #include "fit/solver/start.hpp"
-#include "fit/verdict/finding.hpp"
 #include "fit/verdict/finish.hpp"
+#include "fit/verdict/judge.hpp"
 #include "fit/verdict/limits.hpp"
 #include "fit/verdict/quality.hpp"
 
@@ -222,8 +222,7 @@ void Fit::judge_exposures(const State &state, FitResult &r) const {
     if ((!r.usable && r.converged) || !is_free_) return;  // with equal exposures, they do not converge either
     double usual = exposure_spread(all_, state.estimate);
     if (usual < kSmallestSpread && !has_code(r.verdict, LENSPROF_REASON_EXPOSURES_EQUAL))
-        report_first(r, finding_of(LENSPROF_REASON_EXPOSURES_EQUAL, LENSPROF_SEVERITY_REFUSAL, of_value(usual),
-                                   kSmallestSpread));
+        report_first(r, found_by_method(LENSPROF_REASON_EXPOSURES_EQUAL, of_value(usual)));
 }
 
 // ln of the exponent that takes the exposures of an estimate to those of another, as nearly as one exponent can; 0 if

@@ -163,10 +163,11 @@ typedef struct lensprof_fit_options {
     uint32_t camera_kind; /* lensprof_camera_kind: selects the exponents of the prior. LINEAR fixes a linear response */
     uint32_t threads;     /* maximum number, including the caller's; 0 = one per core. Does not affect the result */
     uint32_t method;      /* lensprof_fit_method */
-    uint32_t refine;   /* 1: the response leaves the EMoR modes, is free at every grey level and becomes a TABLE, unless
-                          held-out pairs get clearly worse. Requires pairs of all grey levels. Only for TRANSFER with at
-                          most 256 images and at least 100 pairs, otherwise no effect. 0 = EMoR only */
-    uint32_t reserved; /* 0 */
+    uint32_t refine; /* 1: the response leaves the EMoR modes, is free at every grey level and becomes a TABLE, unless
+                        held-out pairs get clearly worse. Requires pairs of all grey levels. Only for TRANSFER with at
+                        most 256 images and at least 100 pairs, otherwise no effect. 0 = EMoR only */
+    uint32_t moving_camera; /* 1: the camera moved between the images, so that pairs show objects from other sides,
+                               which resembles falloff: a finding warns of few images. 0 = it only turned */
     const lensprof_profile *profile;   /* profile of the same camera, lens and setting from other pictures; replaces the
                                           prior of all cameras. Used are its falloff and EMoR response if they have a
                                           covariance, and a TABLE response if gamma_sigma is above 0, as for refined
@@ -182,7 +183,8 @@ typedef struct lensprof_fit_options {
     const lensprof_link *links; /* links reported by sampling: a usable result warns of images connected only by links
                                    without texture. NULL = unknown. Read during the call */
     uint32_t link_count;
-    uint32_t reserved2; /* 0 */
+    uint32_t unlinked_images; /* images of the same set that overlap none of these and are not among them: if there are
+                                 links and none is verified, they count against a result of fewer images. 0 = none */
 } lensprof_fit_options;
 
 /* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,

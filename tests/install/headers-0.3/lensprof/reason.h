@@ -40,6 +40,7 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_SEAMS_REMAIN = 114,       /* median residual; median residual before the fit; levels of 255 */
     LENSPROF_REASON_LINKS_CONTRADICT = 115,   /* image of the first link: number of links */
     LENSPROF_REASON_LINKS_UNVERIFIED = 116,   /* first image: number of images */
+    LENSPROF_REASON_IMAGES_MINORITY = 117,    /* images that take part; images of the set */
 
     /* Exposures, and the exponent gamma, which pictures alone do not determine. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201,  /* image: standard error, EV */
@@ -69,6 +70,7 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_NOTHING_BETTER = 408,   /* no model predicts held-out pairs better than no correction */
     LENSPROF_REASON_NOT_RADIAL = 409,       /* share of the residual's variance; levels of 255 */
     LENSPROF_REASON_FAR_CENTER = 410,       /* distance, half diagonals */
+    LENSPROF_REASON_FEW_IMAGES = 411,       /* images of a moving camera; images needed */
 
     /* Flat fields. */
     LENSPROF_REASON_FLAT_WHITE = 501,          /* shot: share of the card */

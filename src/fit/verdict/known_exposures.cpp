@@ -1,4 +1,4 @@
-#include "fit/prior/known_exposures.hpp"
+#include "fit/verdict/known_exposures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,10 @@
 #include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/prior/gauge.hpp"
+#include "fit/verdict/limits.hpp"
 
 namespace lensprof {
 namespace {
-
-constexpr double kReportableEv = 0.1;   // EV
-constexpr double kClearSpread = 0.7;    // EV, from the darkest to the brightest: visible in any pictures
-constexpr double kFlatSlope = 0.1;      // of the known exposures against the found ones: they belong to something else
-constexpr double kClearlyBetter = 4.0;  // in chi-squared, than the next explanation
 
 struct Line {
     double chi2, slope, step, largest;
