@@ -152,7 +152,7 @@ void test_two_visits(void **) {
     const Words outputs = {"--write", "exposures=" + work("exposures.json"), "--write",
                            "gain-chart=" + work("gain.svg")};
     fs::remove(work("exposures.json"));
-    assert_refused(not_usable, both + outputs, {"visits.csv", "other light", "--reconstruction list"});
+    assert_refused(not_usable, both + outputs, {"visits.csv", "in different light", "--reconstruction list"});
     std::string first;
     for (size_t i = 0; i < images / 2; i++) first += shared().scene.file(i) + "\n";
     save_text(work("first.txt"), first);

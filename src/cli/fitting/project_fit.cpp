@@ -1,6 +1,7 @@
 #include "cli/fitting/project_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -254,15 +255,17 @@ CameraKind common_camera_kind(const ProjectFitOptions &o, const std::vector<Pict
     return of_reference;
 }
 
-// Uses only exposures as the result and stores no profile.
-void use_exposures_only(const Fitted &only, const Project &project, ProjectFit &state, Streams &streams) {
-    warn(streams, project.path
-                      + ": response and falloff do not explain the pictures better than exposures and white balances "
-                        "alone; only the latter are returned");
+// Uses only exposures as the result and stores no profile: the rule `exposures_only` of a reconstruction, with the
+// findings on which images take part.
+void use_exposures_only(const Fitted &only, ProjectFit &state) {
+    constexpr std::array on_images{LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_REASON_IMAGES_UNCONNECTED,
+                                   LENSPROF_REASON_LINKS_CONTRADICT, LENSPROF_REASON_LINKS_UNVERIFIED};
     state.best = only;
     state.best.result.usable = 0;
     state.best.verdict = {};
-    state.best.verdict.refuse(LENSPROF_REASON_EXPOSURES_ONLY, "the pictures determine neither response nor falloff");
+    for (const lensprof_reason code : on_images)
+        if (const Finding *finding = only.verdict.find(code)) state.best.verdict.add_last(*finding);
+    state.best.verdict.refuse(LENSPROF_REASON_EXPOSURES_ONLY, lensprof_reason_text(LENSPROF_REASON_EXPOSURES_ONLY));
     state.settings.of_image.assign(state.settings.of_image.size(), 0), state.settings.first.resize(1);
     join_cameras(state.settings);
 }
@@ -290,7 +293,7 @@ void check_light(const LightGroups &groups, const Project &project) {
 
 // For a reconstruction: fits without glossy points, measures the improvement and, if response and falloff explain the
 // pairs no better than exposures alone, uses only exposures, because undetermined parameters do harm.
-void fit_reconstruction(const Project &project, ProjectFit &state, Streams &streams) {
+void fit_reconstruction(const Project &project, ProjectFit &state) {
     BuildReport &report = state.report;
     const bool is_by_pairs = state.input.observations.empty() && state.input.options.free != 0;
     if (!project.is_reconstruction || !is_by_pairs) return;
@@ -314,7 +317,7 @@ void fit_reconstruction(const Project &project, ProjectFit &state, Streams &stre
     if (is_better) {
         add_errors_by_halves(state.input, state.points, state.best, state.item, state.progress, report.quality);
     } else {
-        use_exposures_only(only, project, state, streams);
+        use_exposures_only(only, state);
         report.quality = quality, report.variance.result = report.variance.exposures_only;
         state.gains.resize(2);
         state.gains.push_back({"this result", state.gains[1].variances});
@@ -479,7 +482,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     const bool has_one_camera = !state.settings.has_several_cameras();  // irradiance is compared with one response
     if (has_one_camera && !pictures.empty() && may_connect_more(o, state.best, report.links))
         resample(o, project, pictures, state);
-    fit_reconstruction(project, state, streams);
+    fit_reconstruction(project, state);
     report.fit = state.best.result, report.held = state.best.held;
     report.verdict = state.best.verdict;
     for (Finding &finding : report.verdict.findings)
