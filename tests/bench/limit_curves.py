@@ -21,8 +21,9 @@ def rules_found(record, severity):
 
 def measures(records, severity):
     """{(code, limit, found above it): [(record, measured)]} of the rules of a severity."""
+    # without rules of methods, which state no limit, and those whose limit is 0
     found_by = {(f["code"], f["limit"]): f["measured"] > f["limit"] for r in records for f in r["findings"]
-                if f["severity"] == severity and f["limit"] is not None and f["measured"] is not None}
+                if f["severity"] == severity and f["limit"] and f["measured"] is not None}
     found = {}
     for record in records:
         for rule in record["findings"] + record["passed"]:

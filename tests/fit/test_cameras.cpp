@@ -384,6 +384,26 @@ void test_exposures_of_references(void **) {
     }
 }
 
+// A set of which fewer than half take part is refused once for all cameras, and the camera with the fewest images is
+// stated.
+void test_what_is_judged_for_all_cameras(void **) {
+    const auto s = alternating<Simulation>();
+    const lensprof_link link{{0, 1}, LENSPROF_LINK_UNVERIFIED, 100};
+    lensprof_fit_options options = default_fit();
+    options.links = &link, options.link_count = 1;
+    options.moving_camera = 1, options.unlinked_images = s.images;  // half take part
+    Run run(s);
+    assert_ok(run.fit(s, options));
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.first.code, LENSPROF_REASON_FEW_IMAGES);
+    assert_close(run.result.first.measured, s.images / 2.0, 0.0);
+    options.unlinked_images++;
+    assert_ok(run.fit(s, options));
+    assert_int_equal(run.result.usable + run.result.equalizes, 0);
+    assert_int_equal(run.result.first.code, LENSPROF_REASON_IMAGES_MINORITY);
+    assert_close(run.result.first.measured, s.images / (2.0 * s.images + 1.0), 1e-12);
+}
+
 // Unknowns linked across cameras are shared only within each camera.
 void test_links_end_at_cameras(void **) {
     auto s = alternating<Simulation>();
@@ -485,6 +505,7 @@ int main() {
         cmocka_unit_test(test_groups_of_a_camera),
         cmocka_unit_test(test_any_reference),
         cmocka_unit_test(test_exposures_of_references),
+        cmocka_unit_test(test_what_is_judged_for_all_cameras),
         cmocka_unit_test(test_links_end_at_cameras),
         cmocka_unit_test(test_threads_change_nothing),
         cmocka_unit_test(test_progress_rises),

@@ -385,6 +385,8 @@ void test_an_unusual_response_is_said(void **) {
         assert_int_equal(run.result.usable, 1);
         assert_int_equal(run.result.first.code, LENSPROF_REASON_UNUSUAL_RESPONSE);
         assert_true(run.result.first.value[0] > 1.0);
+        assert_int_equal(run.result.first.severity,
+                         run.result.first.value[0] > 2.0 ? LENSPROF_SEVERITY_WARNING : LENSPROF_SEVERITY_NOTE);
         assert_close(run.result.first.value[1], run.result.gamma_sigma, 0.0);
         assert_true(run.result.gamma_sigma > 2.0 * GammaPrior(LENSPROF_CAMERA_STILL).sigma());
         assert_true(std::abs(std::log(s.gamma(run.exposures))) <= 2.0 * run.result.gamma_sigma);

@@ -61,7 +61,9 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     one per core; does not affect the result. profile: of the same camera, lens and setting, from other pictures;
     replaces the prior of all cameras, and the result supersedes it unless FitResult.profile_prior is OVERRULED. links:
     those of SampleOptions, so that the result warns of images connected only where there is no texture to check the
-    alignment; None = unknown.
+    alignment; None = unknown. moving_camera: the camera moved between the images, so that a finding notes few of them.
+    unlinked_images: images of the same set that overlap none of these; if there are links and none is verified, they
+    count against a result of fewer images.
 
     progress: called repeatedly during a fit with the fraction done (0..1). The fit is cancelled if it returns True or
     raises an exception, which then propagates from fit_overlap.
@@ -81,9 +83,11 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     threads: int
     method = Enumerated(Method)
     refine = Flag()
+    moving_camera = Flag()
     profile = OptionalReference(Profile)
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
+    unlinked_images: int
     _links: Optional[np.ndarray] = None
 
     @property

@@ -143,7 +143,9 @@ bool explains_more(const Fitted &second, const std::vector<lensprof_link> &secon
 // Whether links may connect images once response and falloff are known. Not with a refused result, whose irradiance is
 // wrong.
 bool may_connect_more(const ProjectFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
-    const bool is_trusted = first.corrects() || first.verdict.code() == LENSPROF_REASON_IMAGE_GROUPS;
+    const uint32_t code = first.verdict.code();
+    const bool is_trusted =
+        first.corrects() || code == LENSPROF_REASON_IMAGE_GROUPS || code == LENSPROF_REASON_IMAGES_MINORITY;
     const bool is_complete =
         joined_images(first) == first.exposures.size() && links_of_state(links, LENSPROF_LINK_CONTRADICTED) == 0;
     return o.sampling == LENSPROF_SAMPLING_BALANCED && is_trusted && !is_complete;

@@ -19,7 +19,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kFindingsMax = kRuleCount + 8;  // of one setting: of the rules, and of the methods
+constexpr size_t kFindingsMax = kRuleCount + kMethodRuleCount;  // of one setting
 
 // Numbers of the parts.
 struct Counts {

@@ -86,6 +86,7 @@ private:
     bool attach_image(uint32_t image, const std::vector<uint32_t> &pairs);
     void write(uint32_t base, lensprof_exposure *exposures, FitResult &result) const;
     void give_camera(uint32_t number, FitResult &r) const;
+    void report_fewest_images(FitResult &r) const;
     lensprof_finding left_out_finding(uint32_t count, bool are_few) const;
 
     const lensprof_fit_options &options_;
@@ -452,6 +453,22 @@ lensprof_finding CamerasFit::left_out_finding(uint32_t count, bool are_few) cons
     return found_by_method(LENSPROF_REASON_IMAGES_UNCONNECTED, of_image(of_value(count), out));
 }
 
+// What the falloff of one camera is from is stated for the whole result: for the camera with the fewest images.
+void CamerasFit::report_fewest_images(FitResult &r) const {
+    const lensprof_finding *fewest = nullptr;
+    for (uint32_t k = 0; k < cameras_.size(); k++) {
+        if (!joints_[k].joined) continue;
+        for (const lensprof_finding &finding : cameras_[k].result().verdict)
+            if (finding.code == LENSPROF_REASON_FEW_IMAGES && finding.severity != LENSPROF_SEVERITY_PASSED
+                && (!fewest || finding.measured < fewest->measured))
+                fewest = &finding;
+    }
+    if (!fewest) return;
+    const auto is_same = [](const lensprof_finding &finding) { return finding.code == LENSPROF_REASON_FEW_IMAGES; };
+    r.verdict.erase(std::remove_if(r.verdict.begin(), r.verdict.end(), is_same), r.verdict.end());
+    report_last(r, *fewest);
+}
+
 void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &result) const {
     const Camera &first = cameras_[base];
     FitResult r = first.result();
@@ -466,7 +483,7 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
     const auto is_out = [](const lensprof_exposure &exposure) { return std::isnan(exposure.ev); };
     r.left_out = static_cast<uint32_t>(std::count_if(exposures_.begin(), exposures_.end(), is_out));
     const bool are_few = 2 * r.left_out > images_.size();  // that agree
-    const bool are_minority = is_minority(options_, static_cast<uint32_t>(images_.size()), r.left_out);
+    const bool are_minority = !are_few && is_minority(options_, static_cast<uint32_t>(images_.size()), r);
     if (are_few || are_minority) {
         r.equalizes = 0;
         for (uint32_t k = 0; k < r.camera_count; k++) r.cameras[k].equalizes = 0;
@@ -476,9 +493,9 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
         Findings &own = verdict.verdict;
         own.erase(std::remove_if(own.begin(), own.end(), is_on_left_out), own.end());
         if (r.left_out && !has_code(own, static_cast<lensprof_reason>(left_out.code))) report_first(verdict, left_out);
-        if (are_minority)
-            report_first(verdict, minority_finding(options_, static_cast<uint32_t>(images_.size()), r.left_out));
+        if (are_minority) report_first(verdict, minority_finding(options_, static_cast<uint32_t>(images_.size()), r));
     });
+    report_fewest_images(r);
     result = r;
 }
 

@@ -15,8 +15,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kMaxFits = 6;
-constexpr size_t kMinPairs = 10;        // of a link that is able to contradict the others
-constexpr double kSmallestShare = 0.2;  // of a link's pairs that agree
+constexpr size_t kMinPairs = 10;  // of a link that is able to contradict the others
 
 class GroupFit {
 public:
@@ -150,7 +149,7 @@ bool GroupFit::break_links(const lensprof_exposure *exposures, const FitResult &
         size_t agree = 0;
         for (size_t p = edge.first; p < edge.last; p++) agree += chi2[p] < inlier_limit(judged.channels);
         const size_t pairs = edge.last - edge.first;
-        if (pairs < kMinPairs || static_cast<double>(agree) > kSmallestShare * static_cast<double>(pairs)) continue;
+        if (pairs < kMinPairs || static_cast<double>(agree) > kSmallestLinkShare * static_cast<double>(pairs)) continue;
         group_.broken.insert({edge.image[0], edge.image[1]});
         any = true;
     }
@@ -243,8 +242,12 @@ void GroupFit::describe(lensprof_exposure *exposures, FitResult &r) const {
     }
     const bool has_broken =
         std::any_of(group_.broken.begin(), group_.broken.end(), [&](const auto &link) { return is_within(link); });
-    if (2 * r.left_out >= count_ || is_minority(options_, count_, r.left_out) || has_broken) r.equalizes = 0;
-    for_each_verdict(r, [&](auto &verdict) { report_links(r, verdict); });
+    const bool is_few = is_minority(options_, count_, r);
+    if (2 * r.left_out >= count_ || is_few || has_broken) r.equalizes = 0;
+    for_each_verdict(r, [&](auto &verdict) {
+        report_links(r, verdict);
+        if (is_few) report_first(verdict, minority_finding(options_, count_, r));
+    });
 }
 
 // Rejects a group that is too small; otherwise reports data that contradict each other.
@@ -257,8 +260,6 @@ void GroupFit::report_links(const FitResult &all, Verdict &verdict) const {
                                      of_image(of_value(std::max(all.components, 2u)), static_cast<uint32_t>(first))));
         return;
     }
-    if (is_minority(options_, count_, all.left_out))
-        report_first(verdict, minority_finding(options_, count_, all.left_out));
     const auto note = [&](lensprof_reason code, uint32_t image, size_t count) {
         report_last(verdict, found_by_method(code, of_image(of_value(double(count)), image)));
     };
@@ -305,21 +306,22 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, FitResult 
 }
 
 // Share of the images of the set that take part in the result.
-double share_of_set(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out) {
-    return (image_count - left_out) / (double(image_count) + options.unlinked_images);
+double share_of_set(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r) {
+    return (image_count - r.left_out) / (double(image_count) + options.unlinked_images);
 }
 
 }  // namespace
 
-bool is_minority(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out) {
+bool is_minority(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r) {
     const bool is_verified = std::any_of(options.links, options.links + options.link_count,
                                          [](const auto &link) { return link.state == LENSPROF_LINK_VERIFIED; });
-    return options.link_count && !is_verified && share_of_set(options, image_count, left_out) < kSmallestPart;
+    return options.unlinked_images && options.link_count && !is_verified && (r.usable || r.equalizes)
+           && share_of_set(options, image_count, r) < kSmallestPart;
 }
 
-lensprof_finding minority_finding(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out) {
+lensprof_finding minority_finding(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r) {
     return found_by_method(LENSPROF_REASON_IMAGES_MINORITY,
-                           of_values(share_of_set(options, image_count, left_out), image_count - left_out,
+                           of_values(share_of_set(options, image_count, r), image_count - r.left_out,
                                      double(image_count) + options.unlinked_images));
 }
 

@@ -29,9 +29,10 @@ using PairsWithin = std::function<std::vector<lensprof_pair>(const Group &group)
 using FitGroup = std::function<void(const lensprof_fit_options &options, const Group &group,
                                     lensprof_exposure *exposures, FitResult &result)>;
 
-// Whether fewer than half of the images of the set take part: without a verified link, also those that overlap none.
-bool is_minority(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out);
-lensprof_finding minority_finding(const lensprof_fit_options &options, uint32_t image_count, uint32_t left_out);
+// Whether fewer than half of the images of the set, with those that overlap none, take part in a result that corrects
+// pictures, and no link is verified.
+bool is_minority(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r);
+lensprof_finding minority_finding(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r);
 
 // Fits all images. If links contradict the others, or the result cannot determine an image's exposure, fits again
 // without them, using the largest group of images that is still connected. Images outside of it have an ev of NaN. A

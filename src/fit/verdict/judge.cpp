@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 
 #include "fit/verdict/rules.hpp"
 
@@ -37,6 +38,7 @@ void judge(const Found &found, const std::function<void(FitResult &)> &judge_res
 lensprof_finding found_by_method(lensprof_reason code, const Measured &measured) {
     const auto *rule = std::find_if(std::begin(kMethodRules), std::end(kMethodRules),
                                     [=](const MethodRule &candidate) { return candidate.code == code; });
+    if (rule == std::end(kMethodRules)) throw std::logic_error("no rule for this finding");
     return finding_of(code, rule->severity, measured, rule->limit);
 }
 

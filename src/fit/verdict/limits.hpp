@@ -26,6 +26,7 @@ constexpr double kStillMedian = 1.5;             // and levels of 255 that half 
 constexpr double kLargestNoise = 6.0;            // above the noise of any camera. Gallery 1/18, 1/20, 1/20
 constexpr double kMinInliers = 3.0;              // of an image: fewer agree by chance,
 constexpr double kSmallestImageShare = 0.2;      // or a smaller share of its pairs
+constexpr double kSmallestLinkShare = 0.2;       // of a link, or the link is broken
 constexpr double kSmallestPart = 0.5;            // of the images of a set: fewer agree by chance
 constexpr double kInconsistentImage = 5.0;       // median residual, and four times the noise. Gallery 18/5, 12/5, 6/6
 
@@ -73,13 +74,13 @@ constexpr double kClearlyWorse = 3.0, kFarFromPrior = 5.0;
 constexpr double kSmallestShare = 0.7;  // of the pairs that agree
 constexpr double kLargestRms = 15.0;
 constexpr double kSeen = 3.0;
-constexpr double kEven = 2.0;       // between pictures that look alike,
-constexpr double kOfNoise = 1.5;    // this much above the effect of noise,
-constexpr double kMaxNoise = 4.0;   // at most;
-constexpr double kUneven = 6.0;     // and between those that do not
-constexpr double kGrown = 1.25;     // a seam that is visible, and this many times its size before;
-constexpr double kOddLink = 5.0;    // of a link that contradicts the result, and this many times the noise,
-constexpr double kOddNoise = 4.0;   //
+constexpr double kEven = 2.0;      // between pictures that look alike,
+constexpr double kOfNoise = 1.5;   // this much above the effect of noise,
+constexpr double kMaxNoise = 4.0;  // at most;
+constexpr double kUneven = 6.0;    // and between those that do not
+constexpr double kGrown = 1.25;    // a seam that is visible, and this many times its size before;
+constexpr double kOddLink = 5.0;   // of a link that contradicts the result, and this many times the noise,
+constexpr double kOddNoise = 4.0;
 constexpr double kMuchLess = 0.5;   // unless it is at most this many times its size before
 constexpr double kEvenShare = 0.6;  // of all pairs that agree: with fewer, only part of the picture is even
 

@@ -27,11 +27,10 @@ struct VerdictRule {
     Wording wording;
 };
 
-// What a method finds by itself: how severe it is, and the limit of its measure (NaN: two models are compared).
+// What a method finds by itself. The limit of its measure is NaN if more than one number decides.
 struct MethodRule {
     lensprof_reason code;
     lensprof_severity severity;
-    Side side;
     double limit;
 };
 

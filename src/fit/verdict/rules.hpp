@@ -53,7 +53,7 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_KNOWN_CONTRADICT,    kNotes,   kAlways,                measure::known_any,           Side::above, 0.0,                     Wording::usual},
     {LENSPROF_REASON_NOT_RADIAL,          kNotes,   kAlways,                measure::frame_pattern,       Side::above, kSmallestPattern,        Wording::usual},
     {LENSPROF_REASON_FALLOFF_RISES,       kNotes,   kAlways,                measure::clear_rise,          Side::above, 1.0+kSmallRise,          Wording::weak},
-    {LENSPROF_REASON_FEW_IMAGES,          kNotes,   kMoved,                 measure::joined_images,       Side::below, kMovingImages,           Wording::usual},
+    {LENSPROF_REASON_FEW_IMAGES,          kNotes,   kFromSides,                 measure::joined_images,       Side::below, kMovingImages,           Wording::usual},
     {LENSPROF_REASON_FAR_CENTER,          kNotes,   kFreesCenter,           measure::center_distance,     Side::above, kFarCenter,              Wording::usual},
     {LENSPROF_REASON_MISSING_GREYS,       kNotes,   kFreesResponse,         measure::missing_greys,       Side::below, kEnoughGreys,            Wording::usual},
     {LENSPROF_REASON_UNUSUAL_RESPONSE,    kNotes,   kAlways,                measure::response_oddness,    Side::above, kUnusual,                Wording::usual},
@@ -63,27 +63,28 @@ constexpr FitRule kRules[] = {
 };
 constexpr size_t kRuleCount = sizeof kRules / sizeof *kRules;
 
-// The methods measure; whether something is found is part of how they choose images, models and priors.
+// The methods decide what is found, as part of choosing images, models and priors. A limit, if one number decides.
 constexpr MethodRule kMethodRules[] = {
     // methods/group.cpp, cameras.cpp: which images take part
-    {LENSPROF_REASON_IMAGE_GROUPS,            kRefuses, Side::above, 1.0},
-    {LENSPROF_REASON_IMAGES_MINORITY,         kRefuses, Side::below, kSmallestPart},
-    {LENSPROF_REASON_IMAGES_LEFT_OUT,         kWarns,   Side::above, 0.0},
-    {LENSPROF_REASON_IMAGES_UNCONNECTED,      kWarns,   Side::above, 0.0},
-    {LENSPROF_REASON_LINKS_CONTRADICT,        kNotes,   Side::above, 0.0},
-    {LENSPROF_REASON_LINKS_UNVERIFIED,        kNotes,   Side::above, 0.0},
+    {LENSPROF_REASON_IMAGE_GROUPS,             kRefuses, NAN},
+    {LENSPROF_REASON_IMAGES_MINORITY,          kRefuses, kSmallestPart},
+    {LENSPROF_REASON_IMAGES_LEFT_OUT,          kWarns,   NAN},
+    {LENSPROF_REASON_IMAGES_UNCONNECTED,       kWarns,   NAN},
+    {LENSPROF_REASON_LINKS_CONTRADICT,         kNotes,   NAN},
+    {LENSPROF_REASON_LINKS_UNVERIFIED,         kNotes,   NAN},
     // methods/transfer_function: equal exposures have the identity as their transfer functions
-    {LENSPROF_REASON_EXPOSURES_EQUAL,         kRefuses, Side::below, kSmallestSpread},
+    {LENSPROF_REASON_EXPOSURES_EQUAL,          kRefuses, kSmallestSpread},
     // methods/simpler.cpp: which model held-out pairs prefer; of reconstructions, the command compares colours
-    {LENSPROF_REASON_NOTHING_BETTER,          kRefuses, Side::above, NAN},
-    {LENSPROF_REASON_EXPOSURES_ONLY,          kRefuses, Side::above, NAN},
-    // methods/overlap.cpp: whether the pictures contradict a profile that is the prior
-    {LENSPROF_REASON_PRIOR_OVERRULED,         kWarns,   Side::above, kClearlyWorse},
-    {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, kWarns,  Side::above, kClearlyWorse},
-    {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, kWarns,   Side::above, kClearlyWorse},
-    // methods/unshown.cpp: whether they show the response at all
-    {LENSPROF_REASON_RESPONSE_UNCONSTRAINED,  kNotes,   Side::below, kSmallestLightSpread},
+    {LENSPROF_REASON_NOTHING_BETTER,           kRefuses, NAN},
+    {LENSPROF_REASON_EXPOSURES_ONLY,           kRefuses, NAN},
+    // methods/overlap.cpp: whether the pictures contradict a profile that is the prior (kClearlyWorse, kFarFromPrior)
+    {LENSPROF_REASON_PRIOR_OVERRULED,          kWarns,   NAN},
+    {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, kWarns,   NAN},
+    {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED,  kWarns,   NAN},
+    // methods/unshown.cpp: whether they show the response at all (also kFewestGreys)
+    {LENSPROF_REASON_RESPONSE_UNCONSTRAINED,   kNotes,   kSmallestLightSpread},
 };
 // clang-format on
+constexpr size_t kMethodRuleCount = sizeof kMethodRules / sizeof *kMethodRules;
 
 }  // namespace lensprof
