@@ -124,9 +124,12 @@ void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panora
         for (size_t i = 0; i < shown; i++) out << entry(left_out[i].reason);
         if (shown < left_out.size()) out << "  and " << left_out.size() - shown << " more\n";
     }
+    const bool has_mosaics = std::any_of(panoramas.list.begin(), panoramas.list.end(), [](const auto &panorama) {
+        return panorama.summary.value("preview", Json()).is_string();
+    });
     out << one_line("written   to " + o.output + ": " + summary_name + " (with all reasons)"
                     + (pictures.list.empty() ? "" : ", calibrate_sheet.jpg")
-                    + (panoramas.list.empty() ? "" : ", panorama_*.pto, panorama_*.jpg"))
+                    + (panoramas.list.empty() ? "" : ", panorama_*.pto") + (has_mosaics ? ", panorama_*.jpg" : ""))
         << "\n";
     if (!o.report.empty()) out << one_line("report    " + o.report) << "\n";
 }

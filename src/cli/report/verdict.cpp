@@ -142,8 +142,8 @@ void print_findings(const Verdict &verdict, std::ostream &out) {
 
 void report_findings(const Verdict &verdict, const std::string &source, Streams &streams) {
     for (const Finding &finding : verdict.findings) {
-        if (finding.severity == LENSPROF_SEVERITY_WARNING) warn(streams, source + ": " + finding.text);
-        if (finding.severity == LENSPROF_SEVERITY_NOTE) note(streams, source + ": " + finding.text);
+        if (finding.severity == LENSPROF_SEVERITY_WARNING) warn(streams, source + ": " + with_code(finding));
+        if (finding.severity == LENSPROF_SEVERITY_NOTE) note(streams, source + ": " + with_code(finding));
     }
 }
 

@@ -51,10 +51,12 @@ constexpr double kLargestEvSigma = 0.3;      // EV, standard error. Gallery 4/19
 constexpr double kContradiction = 5.0;       // standard errors between an exposure and its known value
 constexpr int kMany = 12;                    // known exposures, whose errors follow from their scatter
 constexpr double kInconsistentGamma = 0.05;  // of ln gamma
-constexpr double kReportableEv = 0.1;        // EV: less is not seen
-constexpr double kClearSpread = 0.7;         // EV, from the darkest to the brightest: visible in any pictures
-constexpr double kFlatSlope = 0.1;           // of the known exposures against the found ones: they belong elsewhere
-constexpr double kClearlyBetter = 4.0;       // in chi-squared, than the next explanation: two standard errors
+// EV between known exposures that contradict each other: EXIF is rounded to a third; a real panorama has .29.
+constexpr double kWrongByAStop = 1.0;
+constexpr double kReportableEv = 0.1;   // EV: less is not seen
+constexpr double kClearSpread = 0.7;    // EV, from the darkest to the brightest: visible in any pictures
+constexpr double kFlatSlope = 0.1;      // of the known exposures against the found ones: they belong elsewhere
+constexpr double kClearlyBetter = 4.0;  // in chi-squared, than the next explanation: two standard errors
 
 // Response.
 // Gauge::oddness: 1 = the spread of measured cameras. Twice it: gallery 39/2, 2/5, 0/7; real panoramas reach 1.9.

@@ -244,6 +244,7 @@ Measured outliers(const Judged &judged) {
 }
 
 Measured heldout_rms(const Judged &judged) {
+    if (judged.r.heldout_rms == LENSPROF_UNKNOWN) return kNotMeasured;
     return of_values(judged.r.heldout_rms, 1.0 - judged.r.inlier_share, judged.r.heldout_rms);
 }
 

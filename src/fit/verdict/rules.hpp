@@ -41,6 +41,7 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_KNOWN_ORDER,         kWarns,   kAlways,                measure::known_order,         Side::above, 0.0,                     Wording::usual},
     {LENSPROF_REASON_KNOWN_STEP,          kWarns,   kAlways,                measure::known_step_up,       Side::above, 0.0,                     Wording::usual},
     {LENSPROF_REASON_KNOWN_STEP,          kWarns,   kAlways,                measure::known_step_down,     Side::above, 0.0,                     Wording::less},
+    {LENSPROF_REASON_KNOWN_CONTRADICT,    kWarns,   kAlways,                measure::known_any,           Side::above, kWrongByAStop,           Wording::usual},
     {LENSPROF_REASON_GAMMA_INCONSISTENT,  kWarns,   kAlways,                measure::gamma_inconsistency, Side::above, kInconsistentGamma,      Wording::usual},
     {LENSPROF_REASON_PATTERNS,            kWarns,   kStill,                 measure::weak_pattern,        Side::above, kStillPattern,           Wording::weak},
     {LENSPROF_REASON_PATTERNS,            kWarns,   kNotStill,              measure::weak_pattern,        Side::above, kWeakPattern,            Wording::weak},
