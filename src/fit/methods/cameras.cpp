@@ -464,8 +464,7 @@ void CamerasFit::report_fewest_images(FitResult &r) const {
                 fewest = &finding;
     }
     if (!fewest) return;
-    const auto is_same = [](const lensprof_finding &finding) { return finding.code == LENSPROF_REASON_FEW_IMAGES; };
-    r.verdict.erase(std::remove_if(r.verdict.begin(), r.verdict.end(), is_same), r.verdict.end());
+    remove_findings(r.verdict, [](const auto &finding) { return finding.code == LENSPROF_REASON_FEW_IMAGES; });
     report_last(r, *fewest);
 }
 
@@ -491,7 +490,7 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
     const lensprof_finding left_out = left_out_finding(r.left_out, are_few);
     for_each_verdict(r, [&](auto &verdict) {
         Findings &own = verdict.verdict;
-        own.erase(std::remove_if(own.begin(), own.end(), is_on_left_out), own.end());
+        remove_findings(own, is_on_left_out);
         if (r.left_out && !has_code(own, static_cast<lensprof_reason>(left_out.code))) report_first(verdict, left_out);
         if (are_minority) report_first(verdict, minority_finding(options_, static_cast<uint32_t>(images_.size()), r));
     });

@@ -84,11 +84,6 @@ bool has_falloff(const FitData &data, const FitResult &r) {
     return first < profile->covariance_size && profile->covariance[first * profile->covariance_size + first] > 0.0;
 }
 
-void drop(lensprof_reason code, Findings &findings) {
-    const auto is_code = [=](const lensprof_finding &finding) { return finding.code == uint32_t{code}; };
-    findings.erase(std::remove_if(findings.begin(), findings.end(), is_code), findings.end());
-}
-
 }  // namespace
 
 void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposure *exposures, FitResult &r) {
@@ -115,15 +110,14 @@ void prefer_simpler(const FitData &data, const OverlapFit &full, lensprof_exposu
     const auto keep_verdict = [&](auto &verdict, const auto &before) {
         if (!before.usable) {
             copy_verdict(before, verdict);
-            drop(LENSPROF_REASON_FEW_IMAGES, verdict.verdict);  // of a falloff that is not returned
+            remove_findings(verdict.verdict, [](const auto &finding) {  // of a falloff that is not returned
+                return finding.code == LENSPROF_REASON_FEW_IMAGES;
+            });
             return;
         }
         // the findings on the result that is returned, except that it has no lens
-        Findings &own = verdict.verdict;
-        own.erase(std::remove_if(
-                      own.begin(), own.end(),
-                      [](const lensprof_finding &finding) { return finding.severity == LENSPROF_SEVERITY_REFUSAL; }),
-                  own.end());
+        remove_findings(verdict.verdict,
+                        [](const auto &finding) { return finding.severity == LENSPROF_SEVERITY_REFUSAL; });
         report_first(
             verdict,
             found_by_method(found.equalizes ? LENSPROF_REASON_EXPOSURES_ONLY : LENSPROF_REASON_NOTHING_BETTER, {}));

@@ -1,6 +1,7 @@
 // Findings: what a result was checked for, as data and as a sentence made from it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -55,6 +56,12 @@ lensprof_finding passed_of(lensprof_reason code, lensprof_severity severity, dou
 // Adds a finding before (or after) those of its severity.
 void add_first(Findings &findings, const lensprof_finding &finding);
 void add_last(Findings &findings, const lensprof_finding &finding);
+
+// Removes what is_one(finding) selects.
+template <class Is>
+void remove_findings(Findings &findings, Is is_one) {
+    findings.erase(std::remove_if(findings.begin(), findings.end(), is_one), findings.end());
+}
 
 // Gives the item another number, in the text as well.
 void rename_item(uint32_t index, lensprof_finding &finding);
