@@ -440,6 +440,7 @@ void test_a_camera_that_moved(void **) {
 
     const Words calibrate{"calibrate", work("moved"), "-o", work("moved_out"), "--no-store"};
     assert_string_equal(code_of(parsed(run.out)).c_str(), "few_images");
+    assert_true(contains(run.out, "the falloff is from only 5 images of a moving camera"));
     must_exit(done, calibrate);
     must_exit(done, calibrate);  // from the records
     const Json first = parsed(text_of(work("moved_out/calibrate.json")));

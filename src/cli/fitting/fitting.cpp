@@ -329,7 +329,7 @@ void warn_of_unjoined_images(const BuildReport &report, Streams &streams) {
 }
 
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {
-    return source + ": not usable: " + (verdict.findings.empty() ? "" : with_code(verdict.findings[0]))
+    return source + ": not usable: " + verdict.headline()
            + (store.force || store.no_store ? "" : "; nothing was stored (use --force to store it anyway)");
 }
 

@@ -137,7 +137,7 @@ void print_flat(const FlatReport &report, std::ostream &out) {
                       fit.gain_grid.rows, 100.0 * fit.grid_residual);
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
-    if (!fit.usable) print_refusal(report.verdict, out);
+    if (!fit.usable) out << "NOT USABLE: " << report.verdict.headline() << "\n";
     print_findings(report.verdict, out);
 }
 

@@ -167,10 +167,10 @@ void print_build(const BuildReport &report, std::ostream &out) {
     if (!report.links.empty()) out << links_row(report.links);
     if (report.register_s > 0.0) out << format("time      find overlaps %.2f s\n", report.register_s);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
-    if (!fit.usable && fit.equalizes && report.has_falloff && !report.verdict.findings.empty())
-        out << "CORRECTS these pictures; not stored as a profile: " << with_code(report.verdict.findings[0]) << "\n";
+    if (!fit.usable && fit.equalizes && report.has_falloff)
+        out << "CORRECTS these pictures; not stored as a profile: " << report.verdict.headline() << "\n";
     else if (!fit.usable)
-        print_refusal(report.verdict, out);
+        out << "NOT USABLE: " << report.verdict.headline() << "\n";
     print_findings(report.verdict, out);
 }
 

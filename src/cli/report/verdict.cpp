@@ -130,10 +130,6 @@ std::string first_text(const Json &json) {
 
 std::string with_code(const Finding &finding) { return finding.text + " [" + lensprof_reason_name(finding.code) + "]"; }
 
-void print_refusal(const Verdict &verdict, std::ostream &out) {
-    out << "NOT USABLE: " << (verdict.findings.empty() ? "" : with_code(verdict.findings[0])) << "\n";
-}
-
 void print_findings(const Verdict &verdict, std::ostream &out) {
     for (const Finding &finding : verdict.findings)
         if (finding.severity != LENSPROF_SEVERITY_REFUSAL || &finding != &verdict.findings[0])

@@ -28,6 +28,9 @@ struct Finding {
         : code(of), severity(how_severe), text(sentence), values(std::move(numbers)) {}
 };
 
+// The text with the name of its code, which docs/reasons.md explains: "... [few_pairs]".
+std::string with_code(const Finding &finding);
+
 struct Verdict {
     std::vector<Finding> findings;  // refusals, then warnings, then notes
     std::vector<Finding> passed;    // rules that hold
@@ -35,6 +38,7 @@ struct Verdict {
     // Of the most important finding; NONE and empty without findings.
     uint32_t code() const { return findings.empty() ? uint32_t{LENSPROF_REASON_NONE} : findings[0].code; }
     std::string text() const { return findings.empty() ? "" : findings[0].text; }
+    std::string headline() const { return findings.empty() ? "" : with_code(findings[0]); }
     const Finding *find(uint32_t code) const;
     std::vector<std::string> texts(uint32_t severity) const;
 
@@ -59,12 +63,6 @@ void add_verdict(const Verdict &verdict, nlohmann::ordered_json &json);
 
 // The text of the first finding in what add_verdict wrote; empty without findings.
 std::string first_text(const nlohmann::ordered_json &json);
-
-// The text with the name of its code, which docs/reasons.md explains: "... [few_pairs]".
-std::string with_code(const Finding &finding);
-
-// The line "NOT USABLE: ..." of a verdict that refuses.
-void print_refusal(const Verdict &verdict, std::ostream &out);
 
 // The findings as lines of a table, without the first refusal, which is the headline of a result that is not usable.
 void print_findings(const Verdict &verdict, std::ostream &out);

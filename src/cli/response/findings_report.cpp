@@ -94,7 +94,7 @@ void print_response_report(const ResponseReport &report, std::ostream &out) {
     out << format("levels    %.0f to %.0f of 255 are measured; white %s\n", report.lowest, report.highest,
                   report.shows_white ? "is measured" : "is extrapolated");
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
-    if (!report.usable) print_refusal(report.verdict, out);
+    if (!report.usable) out << "NOT USABLE: " << report.verdict.headline() << "\n";
     print_findings(report.verdict, out);
 }
 

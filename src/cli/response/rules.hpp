@@ -22,7 +22,7 @@ constexpr double kFewestTenths = 4.0;
 constexpr double kMostNoise = 6.0;
 // Map of residuals over the frame, levels of 255. Rounding leaves up to half a level.
 constexpr double kStrongMap = 1.2, kWeakMap = 0.5;
-// Standard error of ln gamma: more than a prior of the kind of camera would need to be useful.
+// Standard error of ln gamma: 10 % of the exponent.
 constexpr double kLargestGammaSigma = 0.1;
 // Grey levels of 255 that are missing at the dark or the bright end.
 constexpr double kMissingLevels = 48.0;

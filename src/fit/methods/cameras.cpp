@@ -482,8 +482,8 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
     const auto is_out = [](const lensprof_exposure &exposure) { return std::isnan(exposure.ev); };
     r.left_out = static_cast<uint32_t>(std::count_if(exposures_.begin(), exposures_.end(), is_out));
     const bool are_few = 2 * r.left_out > images_.size();  // that agree
-    const bool are_minority = !are_few && is_minority(options_, static_cast<uint32_t>(images_.size()), r);
-    if (are_few || are_minority) {
+    const auto minority = minority_finding(options_, static_cast<uint32_t>(images_.size()), r);
+    if (are_few || minority) {
         r.equalizes = 0;
         for (uint32_t k = 0; k < r.camera_count; k++) r.cameras[k].equalizes = 0;
     }
@@ -492,7 +492,7 @@ void CamerasFit::write(uint32_t base, lensprof_exposure *exposures, FitResult &r
         Findings &own = verdict.verdict;
         remove_findings(own, is_on_left_out);
         if (r.left_out && !has_code(own, static_cast<lensprof_reason>(left_out.code))) report_first(verdict, left_out);
-        if (are_minority) report_first(verdict, minority_finding(options_, static_cast<uint32_t>(images_.size()), r));
+        if (minority && !are_few) report_first(verdict, *minority);
     });
     report_fewest_images(r);
     result = r;

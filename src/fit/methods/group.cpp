@@ -242,11 +242,11 @@ void GroupFit::describe(lensprof_exposure *exposures, FitResult &r) const {
     }
     const bool has_broken =
         std::any_of(group_.broken.begin(), group_.broken.end(), [&](const auto &link) { return is_within(link); });
-    const bool is_few = is_minority(options_, count_, r);
-    if (2 * r.left_out >= count_ || is_few || has_broken) r.equalizes = 0;
+    const auto minority = minority_finding(options_, count_, r);
+    if (2 * r.left_out >= count_ || minority || has_broken) r.equalizes = 0;
     for_each_verdict(r, [&](auto &verdict) {
         report_links(r, verdict);
-        if (is_few) report_first(verdict, minority_finding(options_, count_, r));
+        if (minority) report_first(verdict, *minority);
     });
 }
 
@@ -305,24 +305,17 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, FitResult 
     describe(exposures, result);
 }
 
-// Share of the images of the set that take part in the result.
-double share_of_set(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r) {
-    return (image_count - r.left_out) / (double(image_count) + options.unlinked_images);
-}
-
 }  // namespace
 
-bool is_minority(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r) {
+std::optional<lensprof_finding> minority_finding(const lensprof_fit_options &options, uint32_t image_count,
+                                                 const FitResult &r) {
     const bool is_verified = std::any_of(options.links, options.links + options.link_count,
                                          [](const auto &link) { return link.state == LENSPROF_LINK_VERIFIED; });
-    return options.unlinked_images && options.link_count && !is_verified && (r.usable || r.equalizes)
-           && share_of_set(options, image_count, r) < kSmallestPart;
-}
-
-lensprof_finding minority_finding(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r) {
-    return found_by_method(LENSPROF_REASON_IMAGES_MINORITY,
-                           of_values(share_of_set(options, image_count, r), image_count - r.left_out,
-                                     double(image_count) + options.unlinked_images));
+    const double joined = image_count - r.left_out, all = double(image_count) + options.unlinked_images;
+    const bool is_found = options.unlinked_images && options.link_count && !is_verified && (r.usable || r.equalizes)
+                          && joined / all < kSmallestPart;
+    if (!is_found) return std::nullopt;
+    return found_by_method(LENSPROF_REASON_IMAGES_MINORITY, of_values(joined / all, joined, all));
 }
 
 void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,

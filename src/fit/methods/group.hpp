@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -29,10 +30,10 @@ using PairsWithin = std::function<std::vector<lensprof_pair>(const Group &group)
 using FitGroup = std::function<void(const lensprof_fit_options &options, const Group &group,
                                     lensprof_exposure *exposures, FitResult &result)>;
 
-// Whether fewer than half of the images of the set, with those that overlap none, take part in a result that corrects
-// pictures, and no link is verified.
-bool is_minority(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r);
-lensprof_finding minority_finding(const lensprof_fit_options &options, uint32_t image_count, const FitResult &r);
+// What is found if fewer than half of the images of the set, with those that overlap none, take part in a result that
+// corrects pictures, and no link is verified.
+std::optional<lensprof_finding> minority_finding(const lensprof_fit_options &options, uint32_t image_count,
+                                                 const FitResult &r);
 
 // Fits all images. If links contradict the others, or the result cannot determine an image's exposure, fits again
 // without them, using the largest group of images that is still connected. Images outside of it have an ev of NaN. A

@@ -124,7 +124,7 @@ uint32_t state_of(const Found &found, const FitResult &r) {
     if (fits_response(estimate)) state |= kFreesResponse;
     if (frees_falloff(problem)) state |= kFreesFalloff;
     if (problem.free & LENSPROF_FREE_CENTER) state |= kFreesCenter;
-    if (problem.moving_camera && !is_equal && frees_falloff(problem)) state |= kFromSides;
+    if (problem.moving_camera) state |= kMovingCamera;
     if (leaves_out_any(problem, r)) state |= kLeavesOutKnown;
     return state;
 }

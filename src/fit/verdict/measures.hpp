@@ -21,7 +21,7 @@ enum State : uint32_t {
     kFreesAll = 128,        // response and falloff: nothing that is held can be what does not fit
     kHolds = 256,           // one of them is held
     kLeavesOutKnown = 512,  // known exposures that contradict the pictures and the others
-    kFromSides = 1024,      // the camera did, between the images, and the falloff is free
+    kMovingCamera = 1024,   // it did not only turn
     kHasSeams = 2048        // the last step, for results that may be used: the seams have been measured
 };
 

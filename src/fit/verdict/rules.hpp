@@ -54,7 +54,7 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_KNOWN_CONTRADICT,    kNotes,   kAlways,                measure::known_any,           Side::above, 0.0,                     Wording::usual},
     {LENSPROF_REASON_NOT_RADIAL,          kNotes,   kAlways,                measure::frame_pattern,       Side::above, kSmallestPattern,        Wording::usual},
     {LENSPROF_REASON_FALLOFF_RISES,       kNotes,   kAlways,                measure::clear_rise,          Side::above, 1.0+kSmallRise,          Wording::weak},
-    {LENSPROF_REASON_FEW_IMAGES,          kNotes,   kFromSides,                 measure::joined_images,       Side::below, kMovingImages,           Wording::usual},
+    {LENSPROF_REASON_FEW_IMAGES,          kNotes,   kMoving|kMovingCamera|kFreesFalloff, measure::joined_images, Side::below, kMovingImages,           Wording::usual},
     {LENSPROF_REASON_FAR_CENTER,          kNotes,   kFreesCenter,           measure::center_distance,     Side::above, kFarCenter,              Wording::usual},
     {LENSPROF_REASON_MISSING_GREYS,       kNotes,   kFreesResponse,         measure::missing_greys,       Side::below, kEnoughGreys,            Wording::usual},
     {LENSPROF_REASON_UNUSUAL_RESPONSE,    kNotes,   kAlways,                measure::response_oddness,    Side::above, kUnusual,                Wording::usual},
