@@ -411,12 +411,17 @@ void test_linked_images_share_their_pairs(void **) {
 }
 
 // Overlaps as in a panorama: neighbouring pixels in one frame are neighbours in the other.
-FitRun panorama(double local_ev, double frame_ev, double outliers = 0.0, uint64_t seed = 42) {
+Simulation overlaps(double local_ev, double frame_ev, double outliers = 0.0, uint64_t seed = 42) {
     Simulation s;
     s.response = srgb_response();
     s.images = 8, s.reach = 3, s.shift = 0.25;
     s.local_ev = local_ev, s.frame_ev = frame_ev;
     s.make(2000, 1.0, outliers, 1.0, seed);
+    return s;
+}
+
+FitRun panorama(double local_ev, double frame_ev, double outliers = 0.0, uint64_t seed = 42) {
+    Simulation s = overlaps(local_ev, frame_ev, outliers, seed);
     return run_fit(s);
 }
 
@@ -434,6 +439,20 @@ void test_local_processing_is_refused(void **) {
         assert_int_equal(run.result.usable, local_ev < 0.03);
         if (!run.result.usable) assert_true(says(run, LENSPROF_REASON_PATTERNS, "a different pattern in each image"));
     }
+}
+
+// Weak patterns and an unusual response: each alone may be a camera's, both together are not.
+void test_patterns_and_an_unusual_response_are_refused(void **) {
+    for (const uint32_t kind : {LENSPROF_CAMERA_ANY, LENSPROF_CAMERA_STILL})
+        for (const double local_ev : {0.0, 0.03}) {
+            Simulation s = overlaps(local_ev, 0.0);
+            lensprof_fit_options options = default_fit();
+            options.camera_kind = kind;
+            const FitRun run = run_fit(s, options);
+            const bool is_refused = kind == LENSPROF_CAMERA_STILL && local_ev > 0.0;
+            assert_int_equal(run.result.usable, !is_refused);
+            if (is_refused) assert_true(says(run, LENSPROF_REASON_PATTERNS, "unlike those of measured cameras"));
+        }
 }
 
 // One pattern in all pictures is not a radial falloff, but it belongs to the camera: the result is usable, and a reason
@@ -519,6 +538,7 @@ int main() {
         cmocka_unit_test(test_gamma_is_no_doubt_of_an_exposure),
         cmocka_unit_test(test_linked_images_share_their_pairs),
         cmocka_unit_test(test_local_processing_is_refused),
+        cmocka_unit_test(test_patterns_and_an_unusual_response_are_refused),
         cmocka_unit_test(test_a_falloff_that_is_not_radial_is_told),
         cmocka_unit_test(test_noise_and_outliers_are_no_pattern),
         cmocka_unit_test(test_a_falloff_of_each_channel),

@@ -197,6 +197,13 @@ Measured strong_pattern(const Judged &judged) { return image_pattern(judged, kLa
 
 Measured weak_pattern(const Judged &judged) { return image_pattern(judged, kSuspiciousImageShare); }
 
+// The oddness of the response, where the residual follows patterns as well: each alone may be a camera's.
+Measured pattern_oddness(const Judged &judged) {
+    Measured pattern = weak_pattern(judged);
+    pattern.value = pattern.value > kWeakPattern ? response_oddness(judged).value : 0.0;
+    return pattern;
+}
+
 Measured frame_pattern(const Judged &judged) {
     const double share = judged.r.frame_share,
                  levels = share > kNotRadial ? judged.r.noise_levels * std::sqrt(share) : 0.0;

@@ -56,6 +56,7 @@ Measured still_agreement(const Judged &judged);
 Measured noise(const Judged &judged);
 Measured strong_pattern(const Judged &judged);
 Measured weak_pattern(const Judged &judged);
+Measured pattern_oddness(const Judged &judged);
 Measured frame_pattern(const Judged &judged);
 Measured joined_images(const Judged &judged);
 Measured image_inliers(const Judged &judged);

@@ -24,6 +24,7 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_PATTERNS,            kRefuses, kStill,                 measure::strong_pattern,      Side::above, kHarmfulStillPattern,    Wording::still},
     {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kFreesAll,    measure::strong_pattern,      Side::above, kHarmfulPattern,         Wording::usual},
     {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kHolds,       measure::strong_pattern,      Side::above, kSmallestPattern,        Wording::held},
+    {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kFreesResponse, measure::pattern_oddness, Side::above, kUnusual,                Wording::odd},
     {LENSPROF_REASON_SCATTER,             kRefuses, kAlways,                measure::noise,               Side::above, kLargestNoise,           Wording::usual},
     // They do not determine the result.
     {LENSPROF_REASON_NOT_CONVERGED,       kRefuses, kAlways,                measure::convergence,         Side::below, 1.0,                     Wording::usual},
@@ -82,7 +83,7 @@ constexpr MethodRule kMethodRules[] = {
     {LENSPROF_REASON_PRIOR_OVERRULED,          kWarns,   NAN},
     {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, kWarns,   NAN},
     {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED,  kWarns,   NAN},
-    // methods/unshown.cpp: whether they show the response at all (also kFewestGreys)
+    // methods/unconstrained.cpp: whether they show the response at all (also kFewestGreys)
     {LENSPROF_REASON_RESPONSE_UNCONSTRAINED,   kNotes,   kSmallestLightSpread},
 };
 // clang-format on
