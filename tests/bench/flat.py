@@ -1,7 +1,8 @@
 """The paper's figure 6 (Goldman & Chen 2005): falloff from a white card compared with that from overlapping pictures.
 
-One simulated lens per seed. The card: three 16 bit linear pictures, turned by 0, 90 and 180 degrees, under a light with
-a gradient, with the noise of the sequence. The sequence: rendered by `lensprof simulate`, measured by `lensprof build`.
+One simulated lens per seed. The card: three 16 bit linear pictures, rotated by 0, 90 and 180 degrees, under a light
+with a gradient, with the noise of the sequence. The sequence: rendered by `lensprof simulate`, measured by `lensprof
+build`.
 """
 import json
 import shutil

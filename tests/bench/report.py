@@ -196,7 +196,7 @@ def flat(records):
         return []
     lines = ["## By a card and by a sequence", "", "Goldman & Chen 2005, figure 6, simulated: largest difference of M"
              " from the truth over the half diagonal, raw, noise of 2 levels. Card: three linear pictures of 640 x 480,"
-             " turned by 90 degrees, under a light with a gradient (`flat`). Sequence: six overlapping pictures of the"
+             " rotated by 90 degrees, under a light with a gradient (`flat`). Sequence: six overlapping pictures of the"
              " same lens with EXIF exposures (`build`). Card beside sequence: largest difference between the two.", ""]
     lines += header("seed", "falloff", "card", "sequence", "card beside sequence")
     for r in records:

@@ -258,11 +258,11 @@ void test_cameras_that_share_nothing(void **) {
     // Instead of many masks, the other camera's pictures are flipped, so that they show something else.
     for (size_t i = 1; i < kImages; i += 2) {
         Picture picture = read_picture(folder + "/" + numbered(i));
-        Picture turned = picture;
+        Picture rotated = picture;
         for (uint32_t y = 0; y < picture.height; y++)
             std::copy_n(picture.pixels.data() + (picture.height - 1 - y) * picture.row_bytes, picture.row_bytes,
-                        turned.pixels.data() + y * picture.row_bytes);
-        write_picture(folder + "/" + numbered(i), turned);
+                        rotated.pixels.data() + y * picture.row_bytes);
+        write_picture(folder + "/" + numbered(i), rotated);
         state_camera(folder + "/" + numbered(i), "Other", "Other X100");
     }
     const Outcome outcome = run_words({"build", folder + "/pano.pto", "--db", db, "--json"});

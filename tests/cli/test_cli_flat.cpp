@@ -66,12 +66,12 @@ double corner_error(const Json &json) {
     return lensprof_vignetting_eval(&found, 1.0, nullptr) - lensprof_vignetting_eval(&lens, 1.0, nullptr);
 }
 
-void test_turned_shots_are_measured_and_stored(void **) {
+void test_rotated_shots_are_measured_and_stored(void **) {
     Words files;
     for (int turn : {0, 90, 180}) {
         Card card;
         card.rotation_deg = turn;
-        files.push_back(shoot("turned" + std::to_string(turn) + ".tif", card));
+        files.push_back(shoot("rotated" + std::to_string(turn) + ".tif", card));
     }
     const std::string db = in_folder("flat.db");
     const Words words = flat(files) + Words{"--linear", "--rotation", "0,90,180", "--camera", "Box", "--db", db};
@@ -89,7 +89,7 @@ void test_turned_shots_are_measured_and_stored(void **) {
     assert_string_equal(stored["key"]["processing"].get<std::string>().c_str(), "raw");
     assert_true(stored["vignetting"] == json["vignetting"]);
     const std::string table = must_exit(done, words);
-    for (const char *part : {"falloff", "separated from the lens", "stored    profile 2", "residual", "turned180.tif"})
+    for (const char *part : {"falloff", "separated from the lens", "stored    profile 2", "residual", "rotated180.tif"})
         assert_true(contains(table, part));
 }
 
@@ -137,7 +137,7 @@ void test_the_card_is_corrected(void **) {
     }
 }
 
-// The picture turned by 90 degrees, as another program saves it: higher than wide, without an orientation.
+// The picture rotated by 90 degrees, as another program saves it: higher than wide, without an orientation.
 std::string stand_up(const std::string &file, const std::string &name) {
     Picture lying = read_picture(file), standing = make_noise(height, width, LENSPROF_SAMPLE_U16, lying.layout);
     const auto *from = reinterpret_cast<const uint16_t *>(lying.pixels.data());
@@ -149,7 +149,7 @@ std::string stand_up(const std::string &file, const std::string &name) {
     return in_folder(name);
 }
 
-// A profile is stored in the frame of the sensor, which is wider than high: of a card that was turned either way, what
+// A profile is stored in the frame of the sensor, which is wider than high: of a card that was rotated either way, what
 // the turn does not change. Pictures of both shapes are then even but for what differs between opposite sides.
 void test_portrait_cards(void **) {
     Card card;
@@ -159,7 +159,7 @@ void test_portrait_cards(void **) {
                 setting = {"--camera", "Box 1", "--lens", "Box lens", "--focal", "35", "--aperture", "2"};
     const Outcome run = run_words(flat({standing, "--linear"}) + setting + db);
     assert_int_equal(run.code, done);
-    assert_true(contains(run.err, "no orientation states which way this portrait picture was turned"));
+    assert_true(contains(run.err, "no orientation states which way this portrait picture was rotated"));
     const Json stored = json_of(Words{"profile", "show", "1", "--json"} + db)["vignetting"];
     assert_true(stored["center"] == Json({0.0, 0.0}));
     for (const std::string &file : {lying, standing}) {
@@ -319,7 +319,7 @@ void test_refused(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_turned_shots_are_measured_and_stored),
+        CLI_TEST(test_rotated_shots_are_measured_and_stored),
         CLI_TEST(test_the_card_is_corrected),
         CLI_TEST(test_portrait_cards),
         CLI_TEST(test_exposures_come_from_exif_or_the_command_line),

@@ -93,8 +93,8 @@ void test_light_beyond_white(void **) {
     assert_true(rms < 0.02 && largest < 0.2);
     assert_true(brightest > 1.5);  // out of 2.76, up to gamma
     // Another order samples other pairs.
-    const Words turned = {frames[0], frames[3], frames[2], frames[1]};
-    must_exit(done, Words{"align", "--merge", work("again.tif"), "--to", "first"} + turned);
+    const Words rotated = {frames[0], frames[3], frames[2], frames[1]};
+    must_exit(done, Words{"align", "--merge", work("again.tif"), "--to", "first"} + rotated);
     double again[3];
     errors_of(read_picture(work("again.tif")), again[0], again[1], again[2]);
     assert_true(again[0] < 0.2 && again[1] < 0.02);

@@ -296,10 +296,10 @@ void test_changed_pictures_are_named(void **) {
     make_project();
     const Json right = json_of(merging + Words{work("in/pano.pto"), "--json", "-o", work("right")})["pictures"];
     for (const Json &picture : right) assert_true(picture["agreement"] > 0.9);
-    Picture turned = read_picture(file_of(0));
-    auto *codes = reinterpret_cast<uint16_t *>(turned.pixels.data());
+    Picture rotated = read_picture(file_of(0));
+    auto *codes = reinterpret_cast<uint16_t *>(rotated.pixels.data());
     std::reverse(codes, codes + size_t(width) * height * 3);
-    write_picture(file_of(0), turned);
+    write_picture(file_of(0), rotated);
     const Outcome run = run_words(merging + Words{work("in/pano.pto"), "--json", "-o", work("out")});
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "p0.tif: agrees with the overlapping pictures"));

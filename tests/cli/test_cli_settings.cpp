@@ -3,7 +3,7 @@
 
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
-#include "cli/pictures/turned_profile.hpp"
+#include "cli/pictures/rotated_profile.hpp"
 #include "cli_runs.hpp"
 
 namespace {
@@ -193,7 +193,7 @@ double centre_error(const Json &centre, double x, double y) {
     return std::hypot(centre[0].get<double>() - x, centre[1].get<double>() - y);
 }
 
-// Frames that a program has turned share the falloff of the others, whose centre turns with them.
+// Frames that a program has rotated share the falloff of the others, whose centre turns with them.
 void test_turned_frames(void **) {
     const std::string pto = off_centre(), out = work("open/result.pto");
     for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, true);
@@ -229,7 +229,7 @@ void test_turned_frames(void **) {
     }
 }
 
-// Centre and grid of a profile for a picture that orientation 6 or 8 turns back, or that may have been turned either
+// Centre and grid of a profile for a picture that orientation 6 or 8 turns back, or that may have been rotated either
 // way.
 void test_turned_profile(void **) {
     const struct {
@@ -263,7 +263,7 @@ void test_frames_turned_either_way(void **) {
     const Outcome run = run_words(Words{"build", pto} + quietly);
     const Json json = parsed(run.out);
     assert_int_equal(run.code, done);
-    assert_true(contains(run.err, "which way the portrait pictures were turned"));
+    assert_true(contains(run.err, "which way the portrait pictures were rotated"));
     assert_true(json["settings"].empty());
     assert_true(centre_error(json["vignetting"]["center"], 0.0, 0.0) == 0.0);
     assert_true(falloff_error(json["vignetting"]["k"][0], kOpenFalloff) < 0.01);

@@ -155,7 +155,7 @@ void test_sensor_of_a_crop(void **) {
     }
     assert_close(crop_of_pitch("2400", "1600", 1201, 800, "27"), 1.5, 1e-9);   // resized
     assert_close(crop_of_pitch("2400", "1600", 3000, 800, "27"), 1.5, 1e-9);   // stitched
-    assert_close(crop_of_pitch("2400", "1600", 1600, 2400, "27"), 1.5, 1e-9);  // turned
+    assert_close(crop_of_pitch("2400", "1600", 1600, 2400, "27"), 1.5, 1e-9);  // rotated
 }
 
 // Nikon's codes of the AF-S Zoom-Nikkor 24-70mm f/2.8G ED.

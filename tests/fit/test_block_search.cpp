@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWidth = 70, kHeight = 60, kReach = 4;
 constexpr double kPixel = 4.0;  // px of the full frame
-constexpr double kTurned[2][2] = {{0.9531, -0.1973}, {0.1517, 1.0479}};
+constexpr double kRotated[2][2] = {{0.9531, -0.1973}, {0.1517, 1.0479}};
 
 GreyLevels::Level random_level(uint32_t seed) {
     std::mt19937 random(seed);
@@ -23,13 +23,13 @@ GreyLevels::Level random_level(uint32_t seed) {
     return level;
 }
 
-// Whether the square about column u and row v, turned by kTurned, is in the level; its values.
+// Whether the square about column u and row v, rotated by kRotated, is in the level; its values.
 bool read_square(const GreyLevels::Level &level, double u, double v, std::vector<double> &values) {
     values.clear();
     for (int b = -kReach; b <= kReach; b++)
         for (int a = -kReach; a <= kReach; a++) {
-            const double column = std::floor(u + kTurned[0][0] * a + kTurned[0][1] * b);
-            const double row = std::floor(v + kTurned[1][0] * a + kTurned[1][1] * b);
+            const double column = std::floor(u + kRotated[0][0] * a + kRotated[0][1] * b);
+            const double row = std::floor(v + kRotated[1][0] * a + kRotated[1][1] * b);
             if (!(column >= 0 && row >= 0 && column < kWidth && row < kHeight)) return false;
             values.push_back(level.grey[static_cast<size_t>(row * kWidth + column)]);
         }
@@ -77,10 +77,10 @@ void compare(const GreyLevels::Level &level, double u, double v, const Shifts &s
     const GreyLevels::Level other = random_level(7);
     Block<kReach> block;
     std::vector<double> own, values;
-    assert_true(block.cut_flat(other, 30 * kPixel, 30 * kPixel, kPixel, kTurned));
+    assert_true(block.cut_flat(other, 30 * kPixel, 30 * kPixel, kPixel, kRotated));
     assert_true(read_square(other, 30 + 0.5 / kPixel, 30 + 0.5 / kPixel, own));
     const Sight sight{
-        u * kPixel - 0.5, v * kPixel - 0.5, {{kTurned[0][0], kTurned[0][1]}, {kTurned[1][0], kTurned[1][1]}}};
+        u * kPixel - 0.5, v * kPixel - 0.5, {{kRotated[0][0], kRotated[0][1]}, {kRotated[1][0], kRotated[1][1]}}};
     const std::vector<double> found = correlations_around(block, level, sight, kPixel, shifts);
     assert_int_equal(found.size(), shifts.count());
     for (size_t k = 0; k < found.size(); k++) {

@@ -63,13 +63,13 @@ static void check(const char *what, const Coverage &c) {
 }
 
 static void stated_errors_of_one_shot(void **) { check("one shot", simulate(1, 0.0, 1)); }
-static void stated_errors_of_turned_shots(void **) { check("turned", simulate(3, 0.0, 3)); }
+static void stated_errors_of_rotated_shots(void **) { check("rotated", simulate(3, 0.0, 3)); }
 static void stated_errors_on_a_card_with_texture(void **) { check("texture", simulate(1, 0.006, 1)); }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stated_errors_of_one_shot),
-        cmocka_unit_test(stated_errors_of_turned_shots),
+        cmocka_unit_test(stated_errors_of_rotated_shots),
         cmocka_unit_test(stated_errors_on_a_card_with_texture),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -174,7 +174,7 @@ void test_the_same_view_shows_no_falloff(void **) {
 }
 
 // A camera that corrects its lens: exposures alone are the result.
-void test_exposures_alone(void **) {
+void test_exposures_only(void **) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
         Simulation s;
         assert_ok(lensprof_response_set_typical(&s.response, LENSPROF_CAMERA_STILL, nullptr, nullptr));
@@ -205,7 +205,7 @@ int main() {
         cmocka_unit_test(test_a_crop_moves_the_centre),
         cmocka_unit_test(test_corners_that_are_not_seen),
         cmocka_unit_test(test_the_same_view_shows_no_falloff),
-        cmocka_unit_test(test_exposures_alone),
+        cmocka_unit_test(test_exposures_only),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

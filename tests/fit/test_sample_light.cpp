@@ -91,7 +91,7 @@ void test_other_pictures_stay_apart(void **) {
     detail = 0.07;
     FarApart pictures;
     detail = 0.0;
-    std::reverse(pictures.data[1].begin(), pictures.data[1].end());  // turned by 180 degrees
+    std::reverse(pictures.data[1].begin(), pictures.data[1].end());  // rotated by 180 degrees
     lensprof_response linear;
     lensprof_response_set_linear(&linear);
     std::vector<lensprof_pair> pairs;

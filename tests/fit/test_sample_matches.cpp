@@ -98,7 +98,7 @@ void test_pairs_show_one_scene_point(void **) {
 }
 
 // With a map of the surroundings, pairs come from quieter places near the matches.
-void test_the_quietest_place_near_a_match(void **) {
+void test_the_flattest_place_near_a_match(void **) {
     const Moved pictures(2);
     double step[2] = {};
     for (const bool with_map : {false, true}) {
@@ -186,7 +186,7 @@ int main() {
     const CMUnitTest tests[] = {
         cmocka_unit_test(test_matches_of_pairs),
         cmocka_unit_test(test_pairs_show_one_scene_point),
-        cmocka_unit_test(test_the_quietest_place_near_a_match),
+        cmocka_unit_test(test_the_flattest_place_near_a_match),
         cmocka_unit_test(test_wrong_matches_are_found),
         cmocka_unit_test(test_the_same_on_any_number_of_threads),
         cmocka_unit_test(test_no_camera_is_needed),

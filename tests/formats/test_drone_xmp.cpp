@@ -111,11 +111,11 @@ void test_dji(void **) {
 // Sentera writes the highest power first, which OpenDroneMap also assumes, under both of its names. The maker is
 // identified by tiff:Make, by any property of its namespace, or by the key given to the import.
 void test_sentera(void **) {
-    const std::vector<double> turned(kMicaSense.rbegin(), kMicaSense.rend());
+    const std::vector<double> reversed(kMicaSense.rbegin(), kMicaSense.rend());
     const std::string declared = "xmlns:Sentera=\"http://sentera.com/camera/1.0/\" ",
-                      camera = list("Camera:VignettingPolynomial", turned)
+                      camera = list("Camera:VignettingPolynomial", reversed)
                                + list("Camera:VignettingCenter", {623.6301, 464.4527}),
-                      own = list("Sentera:VignettingPolynomial", turned)
+                      own = list("Sentera:VignettingPolynomial", reversed)
                             + list("Sentera:VignettingCenter", {623.6301, 464.4527}),
                       blanks =
                           "<Sentera:VignettingPolynomial>-1.0e-19 5.0e-16 -8.5e-13 3.4e-10 -5.1e-7 -3.0e-5"

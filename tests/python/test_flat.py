@@ -24,7 +24,7 @@ def card(rotation_deg=0.0, ev=0.0, seed=1, channels=3):
 
 
 class Flat(unittest.TestCase):
-    def test_turned_shots(self):
+    def test_rotated_shots(self):
         images = [lp.FlatImage(card(90 * i, seed=i), shot=i, rotation_deg=90 * i) for i in range(3)]
         result = lp.fit_flat(images)
         self.assertTrue(result.usable, [f.text for f in result.findings])

@@ -43,7 +43,7 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
         throw Failure(ExitCode::failed, "internal error: matches of pictures are not finite; please report this");
     group.facts = {{"camera", found.kind == SceneKind::still   ? camera_stationary
                               : found.kind == SceneKind::plane ? "moved over a plane"
-                                                               : "turned about one point"},
+                                                               : "rotated about one point"},
                    {"links", found.links},
                    {"links_unfit", found.unfit},
                    {"by_matches", found.by_matches},
@@ -79,14 +79,14 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
     for (const CopiedPicture &picture : found.copies)
         groups.copies[files[picture.copy]] =
             files[picture.copy] + ": a copy of " + all[picture.original]->name + picture.how;
-    for (const uint32_t number : found.alone)
+    for (const uint32_t number : found.isolated)
         groups.unjoined[files[number]] = files[number] + ": no overlap with another picture found";
-    for (const uint32_t number : found.foreign)
+    for (const uint32_t number : found.other_camera)
         groups.unjoined[files[number]] = files[number] + ": overlaps others, but "
                                          + (o.one_lens ? "it is the only camera raw file among them, or the only "
                                                          "other picture"
                                                        : no_overlap_within_camera);
-    for (const uint32_t number : found.apart)
+    for (const uint32_t number : found.disconnected)
         groups.unjoined[files[number]] = files[number] + ": " + linked_by_other_camera;
     for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));
     std::stable_sort(groups.list.begin(), groups.list.end(),

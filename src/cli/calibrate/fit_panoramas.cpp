@@ -79,7 +79,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     Json result = Json::parse(out.str());
     result.erase("seconds");
     result.erase("schema");
-    if (!options.store.no_store && result["profile"].is_null()) panorama.summary["not_stored"] = first_text(result);
+    if (result["profile"].is_null() && (!options.store.no_store || !state.report.fit.usable))
+        panorama.summary["not_stored"] = first_text(result);
     panorama.summary["key"] = key_json(key);
     panorama.summary["database"] = result["profile"].is_null() ? Json() : Json(store_path(options.store.db));
     panorama.summary["warnings"] = warnings_in(err.str());

@@ -266,11 +266,11 @@ int align(const Options &o, Streams &streams) {
     if (!fitted.corrects()) {
         if (o.pto.empty() && !verdict.findings.empty())
             verdict.findings[0].text += "; frames of a moving camera need --project";
-        print_message(streams, item + ": not usable: " + verdict.text() + "; nothing written");
+        print_message(streams, item + ": not usable: " + verdict.headline() + "; nothing written");
     } else if (fitted.result.usable) {
         report_findings(verdict, item, streams);
     } else {
-        warn(streams, item + ": " + verdict.text());
+        warn(streams, item + ": " + verdict.headline());
     }
     if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
     if (!o.json && !o.merge.empty() && !written.pictures.empty()) streams.out << o.merge << "\n";
@@ -288,7 +288,7 @@ int run(const Options &o, Streams &streams) {
                       "--merge: writes one picture, but --output is a folder for frames; give one of them");
     if (!o.merge.empty() && !o.pto.empty())
         throw Failure(ExitCode::usage,
-                      "--merge: needs a stationary camera, but --project is for one that turned; give one of them");
+                      "--merge: needs a stationary camera, but --project is for one that rotated; give one of them");
     try {
         return align(o, streams);
     } catch (const Failure &failure) {

@@ -6,8 +6,8 @@
 
 #include "cli/correct/falloff_doubt.hpp"
 #include "cli/pictures/orientation.hpp"
+#include "cli/pictures/rotated_profile.hpp"
 #include "cli/pictures/sensor.hpp"
-#include "cli/pictures/turned_profile.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/paths.hpp"

@@ -11,7 +11,7 @@
 #include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/pictures/orientation.hpp"
-#include "cli/pictures/turned_profile.hpp"
+#include "cli/pictures/rotated_profile.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
@@ -194,19 +194,19 @@ static void turn_place(uint16_t turn, const lensprof_fit_image &stored, Number x
 }
 
 // All pictures in the frames of their settings.
-static FitInput turned_input(const FitInput &input) {
-    FitInput turned = input;
-    turned.turn_of.clear();
-    for (lensprof_pair &pair : turned.pairs)
+static FitInput rotated_input(const FitInput &input) {
+    FitInput rotated = input;
+    rotated.turn_of.clear();
+    for (lensprof_pair &pair : rotated.pairs)
         for (int side = 0; side < 2; side++)
             turn_place(input.turn_of[pair.image[side]], input.images[pair.image[side]], pair.xy[side]);
-    for (lensprof_observation &observation : turned.observations)
+    for (lensprof_observation &observation : rotated.observations)
         turn_place(input.turn_of[observation.image], input.images[observation.image], observation.xy);
-    for (size_t i = 0; i < turned.images.size(); i++)
-        if (swaps_sides(input.turn_of[i])) std::swap(turned.images[i].width, turned.images[i].height);
-    double *centre = turned.options.vignetting.center;  // of the reference
+    for (size_t i = 0; i < rotated.images.size(); i++)
+        if (swaps_sides(input.turn_of[i])) std::swap(rotated.images[i].width, rotated.images[i].height);
+    double *centre = rotated.options.vignetting.center;  // of the reference
     turn_upright(input.turn_of[input.options.reference], centre[0], centre[1]);
-    return turned;
+    return rotated;
 }
 
 std::array<lensprof_vignetting, 3> Fitted::falloff_of(uint32_t image) const {
@@ -222,8 +222,8 @@ std::array<lensprof_vignetting, 3> Fitted::falloff_of(uint32_t image) const {
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
            std::vector<lensprof_fit_image_quality> *quality) {
     if (!input.turn_of.empty()) {
-        FitInput turned = turned_input(input);
-        Fitted in_settings = fit(turned, reference, item, progress, quality);
+        FitInput rotated = rotated_input(input);
+        Fitted in_settings = fit(rotated, reference, item, progress, quality);
         in_settings.turn_of = input.turn_of;
         return in_settings;
     }
@@ -303,7 +303,7 @@ static void warn_of_unjoined_cameras(const BuildReport &report, const std::strin
             warn(streams, left_out + "no two of its pictures overlap enough; give more of them, or use --one-lens to "
                                      "treat all as one camera");
         else if (!camera.fit.equalizes && fitted_setting != report.settings.end() && !fitted_setting->found.usable)
-            warn(streams, left_out + "its pictures cannot be corrected: " + fitted_setting->verdict.text());
+            warn(streams, left_out + "its pictures cannot be corrected: " + fitted_setting->verdict.headline());
         else
             warn(streams, left_out + "its overlap with pictures of the other cameras is too small or inconsistent; "
                                      "give more that overlap");
@@ -395,7 +395,7 @@ void warn_of_unstored_settings(const BuildReport &report, const std::string &sou
     for (const SettingReport &setting : report.settings)
         if (!setting.found.usable && !setting.is_reference)
             warn(streams, source + ": " + setting.label
-                              + (setting.found.images ? ": not stored as a profile: " + setting.verdict.text()
+                              + (setting.found.images ? ": not stored as a profile: " + setting.verdict.headline()
                                                       : ": not stored: none of its pictures agrees with the others"));
 }
 
@@ -417,7 +417,7 @@ bool report_problems(const BuildReport &report, const StoreOptions &store, const
         warn(streams, finish.source
                           + (report.fit.equalizes ? ": corrects these pictures, but is not stored as a profile: "
                                                   : ": the setting of the reference is not stored as a profile: ")
-                          + report.verdict.text());
+                          + report.verdict.headline());
     if (is_good) warn_of_unstored_settings(report, finish.source, streams);
     if (!is_good)
         print_message(streams,

@@ -76,7 +76,7 @@ struct FitInput {
     std::vector<lensprof_observation> observations;  // tracks, for the method radiance
 
     // Per image, the orientation that turns the picture into the frame of its setting (pictures/orientation.hpp);
-    // empty: no picture is turned. Places of pairs and tracks are those of the pictures as stored.
+    // empty: no picture is rotated. Places of pairs and tracks are those of the pictures as stored.
     std::vector<uint16_t> turn_of;
 };
 

@@ -9,7 +9,7 @@
 
 #include "cli/fitting/fitting.hpp"
 #include "cli/pictures/orientation.hpp"
-#include "cli/pictures/turned_profile.hpp"
+#include "cli/pictures/rotated_profile.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
@@ -112,7 +112,7 @@ FlatReport begin_report(const FlatInput &input) {
     for (const auto &image : input.images) {
         report.shots.push_back(image.shot);
         report.ev.push_back(image.ev);
-        report.turned.push_back(image.rotation_deg);
+        report.rotated.push_back(image.rotation_deg);
     }
     report.quality.resize(input.images.size());
     lensprof_flat_result_init(&report.fit);
@@ -166,7 +166,7 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
     const lensprof_flat_image &frame = input.images.front();
     const uint16_t turn = sensor_orientation(frame.width, frame.height, input.pictures.front().traits.orientation);
     if (!turn)
-        note(streams, o.files.front() + ": no orientation states which way this portrait picture was turned: the "
+        note(streams, o.files.front() + ": no orientation states which way this portrait picture was rotated: the "
                                         "profile is stored with its centre in the middle of the frame, and without "
                                         "what differs between opposite sides; give the pictures as the camera wrote "
                                         "them");

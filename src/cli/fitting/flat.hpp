@@ -56,7 +56,7 @@ void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input);
 struct FlatReport {
     std::vector<std::string> names;
     std::vector<uint32_t> shots;  // of the pictures
-    std::vector<double> ev, turned;
+    std::vector<double> ev, rotated;
     std::vector<lensprof_flat_image_quality> quality;
     std::vector<lensprof_response> response;
     std::shared_ptr<const lensprof_flat> held;  // NULL without a fit

@@ -22,7 +22,7 @@ Json images_json(const FlatReport &report) {
         images.push_back({{"file", report.names[i]},
                           {"shot", report.shots[i]},
                           {"ev", report.ev[i]},
-                          {"rotation_deg", report.turned[i]},
+                          {"rotation_deg", report.rotated[i]},
                           {"card", {q.card[0], q.card[1], q.card[2], q.card[3]}},
                           {"cells", q.cells},
                           {"radius", q.radius},
@@ -67,9 +67,9 @@ void print_images(const FlatReport &report, std::ostream &out) {
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &q = report.quality[i];
         out << format("%-*s  %4u  %+7.2f  %7g  %6.2f  %7.1f  %7.1f  %6.2f  %7.2f  %+6.1f %+6.1f\n",
-                      static_cast<int>(width), report.names[i].c_str(), report.shots[i], report.ev[i], report.turned[i],
-                      q.radius, 100.0 * q.white_share, 100.0 * q.black_share, q.noise_levels, 100.0 * q.residual,
-                      100.0 * q.gradient[0], 100.0 * q.gradient[1]);
+                      static_cast<int>(width), report.names[i].c_str(), report.shots[i], report.ev[i],
+                      report.rotated[i], q.radius, 100.0 * q.white_share, 100.0 * q.black_share, q.noise_levels,
+                      100.0 * q.residual, 100.0 * q.gradient[0], 100.0 * q.gradient[1]);
     }
 }
 

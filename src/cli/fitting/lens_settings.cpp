@@ -112,7 +112,7 @@ void number_cameras(const Project &project, const std::vector<PictureMetadata> &
 bool is_portrait(const lensprof_pto_image &image) { return image.camera.height > image.camera.width; }
 
 // The turns of all images, unless that of some image of a setting is unknown while others are not. Pictures that may
-// all have been turned stay as they are.
+// all have been rotated stay as they are.
 void set_turns(const Project &project, const std::vector<PictureMetadata> &metadata, LensSettings &settings) {
     std::vector<uint16_t> &turns = settings.turn_of_image;
     for (size_t i = 0; i < metadata.size(); i++) {

@@ -17,10 +17,10 @@ struct LensSettings {
     std::vector<uint32_t> camera_of_image, first_of_camera;
 
     // Per image, the orientation that turns the picture into the frame of the others of its setting
-    // (pictures/orientation.hpp). Centres are in that frame; unknown: some pictures may have been turned either way.
+    // (pictures/orientation.hpp). Centres are in that frame; unknown: some pictures may have been rotated either way.
     std::vector<uint16_t> turn_of_image;
     bool are_centres_unknown = false;
-    std::vector<bool> is_turn_unknown;  // per setting: it has pictures that may have been turned either way
+    std::vector<bool> is_turn_unknown;  // per setting: it has pictures that may have been rotated either way
 
     bool has_turned_images() const;
     bool has_several_settings() const { return first.size() > 1; }
@@ -34,7 +34,7 @@ struct LensSettings {
 LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
                            const StoreOptions &store, bool one_lens);
 
-// Images whose pictures have the same falloff: of one setting, and turned in the same way. Numbered in the order of
+// Images whose pictures have the same falloff: of one setting, and rotated in the same way. Numbered in the order of
 // their images; `first` is that of the setting, if possible.
 struct FalloffGroups {
     std::vector<uint32_t> of_image, first;

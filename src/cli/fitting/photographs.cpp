@@ -71,7 +71,7 @@ void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::stri
 std::string reason_left_out(const FoundProject &other, const FoundProject &project) {
     if (other.kind == SceneKind::still)
         return "part of another group, whose camera did not move; use `lensprof bracket` or `lensprof align` for it";
-    if (other.whole == project.whole) return std::string("part of another group: ") + linked_by_other_camera;
+    if (other.group == project.group) return std::string("part of another group: ") + linked_by_other_camera;
     return "part of another group that overlaps none of these pictures; give that group's pictures alone";
 }
 
@@ -91,7 +91,7 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
                       project.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
                                                          "points"
                                                        : "a rotating camera"));
-    const size_t cameras = std::set<uint32_t>(project.bodies.begin(), project.bodies.end()).size();
+    const size_t cameras = std::set<uint32_t>(project.camera_ids.begin(), project.camera_ids.end()).size();
     if (cameras > 1)
         note(streams,
              label
@@ -101,9 +101,10 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
     if (!project.cameras_fit()) warn(streams, label + poor_cameras_note);
     for (size_t n = 1; n < found.projects.size(); n++)
         leave_out(found.projects[n].pictures, names, reason_left_out(found.projects[n], project), left_out, streams);
-    if (!found.foreign.empty()) leave_out(found.foreign, names, no_overlap_within_camera, left_out, streams);
-    if (!found.apart.empty()) leave_out(found.apart, names, linked_by_other_camera, left_out, streams);
-    if (!found.alone.empty()) leave_out(found.alone, names, "no overlap with another picture found", left_out, streams);
+    if (!found.other_camera.empty()) leave_out(found.other_camera, names, no_overlap_within_camera, left_out, streams);
+    if (!found.disconnected.empty()) leave_out(found.disconnected, names, linked_by_other_camera, left_out, streams);
+    if (!found.isolated.empty())
+        leave_out(found.isolated, names, "no overlap with another picture found", left_out, streams);
 }
 
 }  // namespace
@@ -172,7 +173,7 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
         throw Failure(ExitCode::not_usable,
                       label + ": has only one photograph and copies of it; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (found.projects.empty() && !found.foreign.empty())
+    if (found.projects.empty() && !found.other_camera.empty())
         throw Failure(ExitCode::not_usable,
                       label + ": no two pictures of the same camera, size and processing overlap; give more pictures "
                               "per camera, or use --one-lens to treat all as one",
@@ -187,7 +188,7 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
     report_found(found, names, label, project.left_out, streams);
 
     const FoundProject &largest = found.projects[0];
-    project.unlinked = found.alone.size();
+    project.unlinked = found.isolated.size();
     project.path = label;
     for (const uint32_t picture : largest.pictures) {
         project.names.push_back(names[picture]);
@@ -201,8 +202,8 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
 std::string text_of_found(const FoundProject &found) {
     std::vector<ProjectImage> images;
     for (size_t n = 0; n < found.pictures.size(); n++)
-        images.push_back(
-            {found.cameras[n], format("image%zu", n), found.bodies[n], found.lenses[n]});  // a name may contain quotes
+        images.push_back({found.cameras[n], format("image%zu", n), found.camera_ids[n],
+                          found.lenses[n]});  // a name may contain quotes
     return new_project_text("found by lensprof build", images, found.points);
 }
 

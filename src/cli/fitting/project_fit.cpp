@@ -207,7 +207,7 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &state, Streams &stream
     if (!settings.are_centres_unknown || !(options.free & LENSPROF_FREE_CENTER)) return;
     options.free &= ~uint32_t(LENSPROF_FREE_CENTER);
     options.vignetting.center[0] = options.vignetting.center[1] = 0.0;
-    note(streams, state.item + ": no orientation states which way the portrait pictures were turned; portrait and "
+    note(streams, state.item + ": no orientation states which way the portrait pictures were rotated; portrait and "
                                "landscape pictures share a falloff around the middle of the frame");
 }
 

@@ -126,11 +126,11 @@ HeifProperties combine(const std::vector<Box> &properties, const std::vector<siz
         if (number == 0 || number > properties.size()) continue;
         Box box = properties[number - 1];
         combined.is_grey |= states_grey(box);
-        if (box.is("irot")) orientation = turned_anticlockwise(orientation, box.content.number(1) & 3);
+        if (box.is("irot")) orientation = rotated_anticlockwise(orientation, box.content.number(1) & 3);
         if (!box.is("imir")) continue;
         orientation = mirrored(orientation);
         // 0: the axis is upright, as libheif takes it; 1: it lies, which is a half turn more
-        if (box.content.number(1) & 1) orientation = turned_anticlockwise(orientation, 2);
+        if (box.content.number(1) & 1) orientation = rotated_anticlockwise(orientation, 2);
     }
     return combined;
 }
@@ -139,7 +139,7 @@ HeifProperties combine(const std::vector<Box> &properties, const std::vector<siz
 
 // EXIF orientations as optional mirroring left and right (2, 4, 5, 7) followed by a clockwise rotation of 0, 90, 180 or
 // 270 degrees.
-uint16_t turned_anticlockwise(uint16_t orientation, unsigned quarters) {
+uint16_t rotated_anticlockwise(uint16_t orientation, unsigned quarters) {
     static constexpr uint16_t plain[] = {1, 8, 3, 6}, mirror[] = {2, 5, 4, 7};
     for (const auto &circle : {plain, mirror})
         for (unsigned i = 0; i < 4; i++)

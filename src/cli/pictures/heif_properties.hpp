@@ -27,7 +27,7 @@ HeifContents heif_contents(const std::string &path);
 
 // EXIF orientation after rotating by `quarters` quarter turns anticlockwise, or mirroring left and right, a picture
 // that already has `orientation`.
-uint16_t turned_anticlockwise(uint16_t orientation, unsigned quarters);
+uint16_t rotated_anticlockwise(uint16_t orientation, unsigned quarters);
 uint16_t mirrored(uint16_t orientation);
 
 }  // namespace codec

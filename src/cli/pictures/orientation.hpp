@@ -15,8 +15,8 @@ uint16_t inverse_orientation(uint16_t orientation);
 void turn_upright(uint16_t orientation, double &x, double &y);
 
 // The orientation that turns a stored picture into the frame of the sensor, which is wider than high; 0 if unknown.
-// Cameras store what the sensor sees, and an orientation of how they were held. A picture higher than wide was turned
-// later: with an orientation that turns it back, this is the sensor's frame, otherwise it may have been turned either
+// Cameras store what the sensor sees, and an orientation of how they were held. A picture higher than wide was rotated
+// later: with an orientation that turns it back, this is the sensor's frame, otherwise it may have been rotated either
 // way.
 uint16_t sensor_orientation(uint32_t width, uint32_t height, uint16_t orientation);
 

@@ -95,8 +95,8 @@ public:
     uint16_t orientation() const { return properties_.orientation; }
     bool is_grey() const { return properties_.is_grey; }
     bool is_sideways() const { return properties_.orientation >= 5; }
-    uint32_t width() const { return is_sideways() ? turned_height() : turned_width(); }  // before rotation
-    uint32_t height() const { return is_sideways() ? turned_width() : turned_height(); }
+    uint32_t width() const { return is_sideways() ? rotated_height() : rotated_width(); }  // before rotation
+    uint32_t height() const { return is_sideways() ? rotated_width() : rotated_height(); }
 
     int bits() const {
         return std::max(heif_image_handle_get_luma_bits_per_pixel(handle()),
@@ -113,8 +113,8 @@ public:
     Owned<const heif_image> decode(heif_chroma chroma);
 
 private:
-    uint32_t turned_width() const { return static_cast<uint32_t>(std::max(heif_image_handle_get_width(handle()), 0)); }
-    uint32_t turned_height() const {
+    uint32_t rotated_width() const { return static_cast<uint32_t>(std::max(heif_image_handle_get_width(handle()), 0)); }
+    uint32_t rotated_height() const {
         return static_cast<uint32_t>(std::max(heif_image_handle_get_height(handle()), 0));
     }
     void take_transfer(heif_color_profile_nclx *nclx);
@@ -190,11 +190,11 @@ Owned<const heif_image> HeifFile::decode(heif_chroma chroma) {
 
 // Positions of the pixels of the unrotated picture in the rotated one: `start`, and the steps per column and per row,
 // in pixels and rows of the rotated one.
-struct Turned {
+struct Rotated {
     int64_t start_x, start_y, column_x, column_y, row_x, row_y;
 };
 
-Turned turned(uint16_t orientation, int64_t width, int64_t height) {
+Rotated rotated(uint16_t orientation, int64_t width, int64_t height) {
     switch (orientation) {
     case 2: return {width - 1, 0, -1, 0, 0, 1};
     case 3: return {width - 1, height - 1, -1, 0, 0, -1};
@@ -269,7 +269,7 @@ void HeifSource::decode() {
 template <class Sample>
 void HeifSource::copy_row(Sample *row) const {
     constexpr uint32_t full = sizeof(Sample) == 1 ? 255 : 65535;
-    const Turned t = turned(heif_.orientation(), header_.frame_width, header_.frame_height);
+    const Rotated t = rotated(heif_.orientation(), header_.frame_width, header_.frame_height);
     const int64_t pixel = static_cast<int64_t>(samples_ * sizeof(Sample));
     const int64_t step = t.column_x * pixel + t.column_y * row_bytes_;
     const uint8_t *from = pixels_ + (t.start_x + t.row_x * next_) * pixel + (t.start_y + t.row_y * next_) * row_bytes_;

@@ -1,4 +1,4 @@
-// Small copies of pictures, turned as EXIF's orientation states.
+// Small copies of pictures, rotated as EXIF's orientation states.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ public:
     // Adds the picture's next rows, of any sample type and layout.
     void add(const lensprof_image &rows);
 
-    // 8 bit RGB without gaps, turned as EXIF's orientation states.
+    // 8 bit RGB without gaps, rotated as EXIF's orientation states.
     Picture upright(uint16_t orientation) const;
 
 private:

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "cli/profiles/exposures_alone.hpp"
+#include "cli/profiles/exposures_only.hpp"
 #include "cli/program/joined_sets.hpp"
 #include "cli/program/mixed_bits.hpp"
 

@@ -446,7 +446,7 @@ FoundCameras CameraFit::run() {
     find_angles_of_view();
     start(first_hfov_);
     fit(false);
-    const std::vector<lensprof_camera> turned = cameras_;
+    const std::vector<lensprof_camera> rotated = cameras_;
     const std::vector<double> off = residuals();
     if (median(off) > fitting_residual) {
         const double by_turns = fit(true);
@@ -456,7 +456,7 @@ FoundCameras CameraFit::run() {
         if (by_turns < fit(true)) cameras_ = moved;
         const std::vector<double> current = residuals();
         if (median(current) < 0.6 * median(off)) return {SceneKind::plane, cameras_, current};
-        cameras_ = turned;
+        cameras_ = rotated;
     }
     level();
     return {SceneKind::panorama, cameras_, off};

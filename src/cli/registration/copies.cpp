@@ -23,7 +23,7 @@ constexpr double max_aspect_change = 0.02, max_time_change = 0.01;
 constexpr int orientations = 8;
 constexpr int is_flipped_x = 1, is_flipped_y = 2, is_transposed = 4;  // bits of an orientation
 
-cv::Mat turned(const cv::Mat &square, int orientation) {
+cv::Mat rotated(const cv::Mat &square, int orientation) {
     cv::Mat result = square.clone();
     if (orientation & is_transposed) result = result.t();
     if (orientation & is_flipped_x) cv::flip(result, result, 1);
@@ -78,14 +78,14 @@ bool may_be_copies(const CopyCandidate &a, const CopyCandidate &b, int orientati
 // The orientation of `b` in which it shows `a`; upright first.
 std::optional<int> orientation_between(const CopyCandidate &a, const CopyCandidate &b) {
     for (int o = 0; o < orientations; o++)
-        if (may_be_copies(a, b, o) && has_same_detail(a.picture->detail, turned(b.picture->detail, o))) return o;
+        if (may_be_copies(a, b, o) && has_same_detail(a.picture->detail, rotated(b.picture->detail, o))) return o;
     return std::nullopt;
 }
 
 bool is_mirrored(int orientation) { return ((orientation & 1) + (orientation >> 1 & 1) + (orientation >> 2 & 1)) % 2; }
 
 std::string describe(int orientation, bool is_resized) {
-    std::string text = is_mirrored(orientation) ? ", mirrored" : orientation ? ", turned" : "";
+    std::string text = is_mirrored(orientation) ? ", mirrored" : orientation ? ", rotated" : "";
     return is_resized ? text + ", resized" : text;
 }
 
@@ -102,7 +102,7 @@ std::vector<uint32_t> first_copies(const std::vector<CopyCandidate> &pictures) {
         const cv::Mat &detail = pictures[i].picture->detail;
         if (detail.empty() || i == 0) return true;
         Rows versions(orientations, all.cols());
-        for (int o = 0; o < orientations; o++) versions.row(o) = coarse_row(turned(detail, o));
+        for (int o = 0; o < orientations; o++) versions.row(o) = coarse_row(rotated(detail, o));
         const Eigen::RowVectorXf likeness = (versions * all.topRows(i).transpose()).colwise().maxCoeff();
         for (uint32_t j = 0; j < i && first[i] == none; j++)
             if (likeness[j] > coarse_like && orientation_between(pictures[j], pictures[i])) first[i] = j;

@@ -1,4 +1,4 @@
-// Copies of one photograph: turned, mirrored, resized or compressed again.
+// Copies of one photograph: rotated, mirrored, resized or compressed again.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct CopyCandidate {
 
 struct PictureCopy {
     uint32_t copy, original;
-    std::string how;  // "", ", turned", ", mirrored, resized"
+    std::string how;  // "", ", rotated", ", mirrored, resized"
     bool is_mirrored = false;
 };
 

@@ -125,21 +125,21 @@ std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, P
     return pictures;
 }
 
-// Numbers bodies: pictures with the same camera, processing and size, upright or not, have one number, in order of
+// Numbers cameras: pictures with the same camera, processing and size, upright or not, have one number, in order of
 // appearance; with `as_one` all raw files have one, and all others.
-std::vector<uint32_t> bodies_of(const std::vector<std::string> &files, const std::vector<RegisteredPicture> &pictures,
-                                bool as_one) {
+std::vector<uint32_t> camera_ids_of(const std::vector<std::string> &files,
+                                    const std::vector<RegisteredPicture> &pictures, bool as_one) {
     std::map<std::tuple<bool, std::string, std::string, uint32_t, uint32_t, uint32_t>, uint32_t> found;
-    std::vector<uint32_t> bodies;
+    std::vector<uint32_t> camera_ids;
     for (size_t i = 0; i < pictures.size(); i++) {
         const lensprof_profile_key &key = pictures[i].metadata.key;
         const auto [shorter, longer] = std::minmax(pictures[i].features.width, pictures[i].features.height);
         std::tuple body(raw_kind(files[i]).has_value(), std::string(key.camera_maker), std::string(key.camera_model),
                         key.processing, shorter, longer);
         if (as_one) body = {std::get<0>(body), "", "", 0, 0, 0};
-        bodies.push_back(found.emplace(body, static_cast<uint32_t>(found.size())).first->second);
+        camera_ids.push_back(found.emplace(body, static_cast<uint32_t>(found.size())).first->second);
     }
-    return bodies;
+    return camera_ids;
 }
 
 // Numbers lenses: pictures with the same camera, lens, focal length, processing and size have one number, in order of
@@ -174,25 +174,25 @@ std::vector<PictureOptics> optics_of(const std::vector<RegisteredPicture> &pictu
 // The pictures in projects, and their groups: a body takes part in a group if two of its pictures in it overlap.
 class Grouping {
 public:
-    Grouping(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links)
-        : takes_(bodies.size(), true), groups_(groups_of(bodies.size(), links)) {
-        while (drop(bodies, links))
-            groups_ = groups_of(bodies.size(), links, [this](const PictureLink &link) { return takes_both(link); });
+    Grouping(const std::vector<uint32_t> &camera_ids, const std::vector<PictureLink> &links)
+        : takes_(camera_ids.size(), true), groups_(groups_of(camera_ids.size(), links)) {
+        while (drop(camera_ids, links))
+            groups_ = groups_of(camera_ids.size(), links, [this](const PictureLink &link) { return takes_both(link); });
     }
 
     bool takes(uint32_t picture) const { return takes_[picture]; }
     uint32_t group(uint32_t picture) const { return groups_[picture]; }
 
 private:
-    // Removes pictures of bodies that do not take part in their group; false if not found. This may split groups.
-    bool drop(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links) {
-        std::set<std::pair<uint32_t, uint32_t>> parts;  // groups and bodies
+    // Removes pictures of cameras that do not take part in their group; false if not found. This may split groups.
+    bool drop(const std::vector<uint32_t> &camera_ids, const std::vector<PictureLink> &links) {
+        std::set<std::pair<uint32_t, uint32_t>> parts;  // groups and cameras
         for (const PictureLink &link : links)
-            if (takes_both(link) && bodies[link.picture[0]] == bodies[link.picture[1]])
-                parts.insert({groups_[link.picture[0]], bodies[link.picture[0]]});
+            if (takes_both(link) && camera_ids[link.picture[0]] == camera_ids[link.picture[1]])
+                parts.insert({groups_[link.picture[0]], camera_ids[link.picture[0]]});
         bool any = false;
         for (uint32_t i = 0; i < takes_.size(); i++) {
-            if (!takes_[i] || parts.count({groups_[i], bodies[i]})) continue;
+            if (!takes_[i] || parts.count({groups_[i], camera_ids[i]})) continue;
             takes_[i] = false, any = true;
         }
         return any;
@@ -276,14 +276,17 @@ private:
 };
 
 // Pictures in no project, by what they overlap.
-void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, const std::vector<bool> &is_linked,
+void name_single(const Grouping &grouping, const std::vector<uint32_t> &camera_ids, const std::vector<bool> &is_linked,
                  const std::vector<RegisteredPicture> &pictures, Registration &result) {
-    std::set<uint32_t> taken;  // bodies
-    for (uint32_t i = 0; i < bodies.size(); i++)
-        if (grouping.takes(i)) taken.insert(bodies[i]);
-    for (uint32_t i = 0; i < bodies.size(); i++) {
+    std::set<uint32_t> taken;  // cameras
+    for (uint32_t i = 0; i < camera_ids.size(); i++)
+        if (grouping.takes(i)) taken.insert(camera_ids[i]);
+    for (uint32_t i = 0; i < camera_ids.size(); i++) {
         if (grouping.takes(i) || !pictures[i].failure.empty() || pictures[i].is_copy) continue;
-        (!is_linked[i] ? result.alone : taken.count(bodies[i]) ? result.apart : result.foreign).push_back(i);
+        (!is_linked[i]                ? result.isolated
+         : taken.count(camera_ids[i]) ? result.disconnected
+                                      : result.other_camera)
+            .push_back(i);
     }
 }
 
@@ -293,20 +296,20 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Prog
     for (uint32_t i = 0; i < pictures.size(); i++)
         if (!pictures[i].failure.empty()) result.unreadable.emplace_back(i, pictures[i].failure);
     std::vector<PictureLink> links = Overlaps(files, pictures).find(progress, result.copies);
-    const std::vector<uint32_t> bodies = bodies_of(files, pictures, as_one);
+    const std::vector<uint32_t> camera_ids = camera_ids_of(files, pictures, as_one);
     const std::vector<uint32_t> components = groups_of(pictures.size(), links);
     const std::vector<bool> is_linked = find_linked(pictures.size(), links);
     part_raw(files, links);
-    const Grouping grouping(bodies, links);
-    name_single(grouping, bodies, is_linked, pictures, result);
+    const Grouping grouping(camera_ids, links);
+    name_single(grouping, camera_ids, is_linked, pictures, result);
     std::map<uint32_t, std::vector<uint32_t>> members;
     for (uint32_t i = 0; i < pictures.size(); i++)
         if (grouping.takes(i)) members[grouping.group(i)].push_back(i);
     for (const auto &[group, numbers] : members) {
         progress.update("finding cameras", static_cast<double>(group) / static_cast<double>(members.size()));
         result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
-        result.projects.back().whole = components[numbers[0]];
-        for (const uint32_t i : numbers) result.projects.back().bodies.push_back(bodies[i]);
+        result.projects.back().group = components[numbers[0]];
+        for (const uint32_t i : numbers) result.projects.back().camera_ids.push_back(camera_ids[i]);
     }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
         const bool a_still = a.kind == SceneKind::still, b_still = b.kind == SceneKind::still;

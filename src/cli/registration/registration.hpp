@@ -15,7 +15,7 @@
 namespace lensprof {
 
 enum class SceneKind {
-    panorama,  // the camera turned about one point
+    panorama,  // the camera rotated about one point
     plane,     // it moved over a scene that is nearly a plane
     still      // neither: frames from a tripod or a bracket, which do not show the falloff
 };
@@ -27,7 +27,7 @@ struct FoundProject {
     SceneKind kind = SceneKind::panorama;
     std::vector<lensprof_camera> cameras;
     std::vector<uint32_t> lenses;      // equal for pictures of one camera and size, with one lens at one focal length
-    std::vector<uint32_t> bodies;      // equal for pictures of one camera, processing and size (upright or not)
+    std::vector<uint32_t> camera_ids;  // equal for pictures of one camera, processing and size (upright or not)
     std::vector<ControlPoint> points;  // a few per link that the cameras explain
     std::vector<lensprof_match> matches;  // of the links that the cameras do not explain, or of all links
     bool by_matches = false;              // pictures are compared at these matches, not through the cameras
@@ -35,7 +35,7 @@ struct FoundProject {
                                           // explain
     double residual = 0.0;                // median over the links that fit, as a share of the longer side
 
-    uint32_t whole = 0;  // equal for groups that are connected only by pictures of no group
+    uint32_t group = 0;  // equal for groups that are connected only by pictures of no group
 
     bool cameras_fit() const { return 2 * unfit <= links; }
 };
@@ -43,14 +43,14 @@ struct FoundProject {
 // A picture that repeats another one.
 struct CopiedPicture {
     uint32_t copy, original;
-    std::string how;  // ", turned, resized", or ""
+    std::string how;  // ", rotated, resized", or ""
 };
 
 struct Registration {
     std::vector<FoundProject> projects;  // largest first; stationary cameras last
-    std::vector<uint32_t> alone;         // pictures that overlap no other,
+    std::vector<uint32_t> isolated;      // pictures that overlap no other,
     // And those that overlap only pictures of other cameras: with a camera whose own pictures do not overlap, or do.
-    std::vector<uint32_t> foreign, apart;
+    std::vector<uint32_t> other_camera, disconnected;
     std::vector<std::pair<uint32_t, std::string>> unreadable;  // and the reasons
     std::vector<CopiedPicture> copies;                         // in no project
 };

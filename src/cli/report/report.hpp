@@ -42,7 +42,7 @@ struct SettingReport {
     int64_t profile_id = 0;        // 0 = not stored
     bool has_same_key = false;     // the key of the stored setting
     std::string no_key;            // why camera and lens are unknown; empty: they are known
-    bool is_turn_unknown = false;  // its frames are higher than wide, and may have been turned either way
+    bool is_turn_unknown = false;  // its frames are higher than wide, and may have been rotated either way
 };
 
 // The result for one of several cameras.

@@ -63,7 +63,7 @@ const Finding *Verdict::find(uint32_t wanted) const {
 std::vector<std::string> Verdict::texts(uint32_t severity) const {
     std::vector<std::string> all;
     for (const Finding &finding : findings)
-        if (finding.severity == severity) all.push_back(finding.text);
+        if (finding.severity == severity) all.push_back(with_code(finding));
     return all;
 }
 

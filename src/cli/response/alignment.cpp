@@ -257,7 +257,7 @@ Alignment align_pictures(const Picture &raw, const Picture &rendered) {
     return alignment;
 }
 
-Picture turned(const Picture &picture, int quarters) {
+Picture rotated(const Picture &picture, int quarters) {
     if (quarters % 4 == 0) return picture;
     Picture out = picture;
     const size_t bytes = picture.layout == LENSPROF_LAYOUT_GREY ? 1 : 3;

@@ -39,6 +39,6 @@ Alignment align_pictures(const Picture &raw, const Picture &rendered);
 Alignment align_coarsely(const Picture &raw, const Picture &rendered);
 
 // `picture` (8 bit) rotated clockwise by `quarters` quarter turns.
-Picture turned(const Picture &picture, int quarters);
+Picture rotated(const Picture &picture, int quarters);
 
 }  // namespace lensprof

@@ -198,7 +198,7 @@ int find_turn(const Picture &raw, const Picture &rendered) {
     int best = 0;
     double min_correlation = as_is.correlation + 0.1;
     for (int quarters = 1; quarters < 4; quarters++) {
-        const double correlation = align_coarsely(raw, turned(rendered, quarters)).correlation;
+        const double correlation = align_coarsely(raw, rotated(rendered, quarters)).correlation;
         if (correlation > min_correlation) min_correlation = correlation, best = quarters;
     }
     return best;
@@ -225,7 +225,7 @@ PlacesOf places_of(const Picture &raw, Picture rendered, uint32_t picture, const
     PlacesOf found;
     found.channels = raw.layout == LENSPROF_LAYOUT_GREY ? 1 : 3;
     found.quarter_turns = find_turn(raw, rendered);
-    rendered = turned(rendered, found.quarter_turns);
+    rendered = rotated(rendered, found.quarter_turns);
     found.width = rendered.width, found.height = rendered.height;
     found.alignment = align_pictures(raw, rendered);
     if (found.alignment.texture >= min_texture && found.alignment.correlation < min_agreement)

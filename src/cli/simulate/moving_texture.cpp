@@ -30,8 +30,8 @@ void add_grain(const Grain &grain, double u_m, double v_m, double footprint_m, d
         if (fade <= 0.0) return;
         const double noise = noise2(u, v, grain.seed + static_cast<uint32_t>(o) * 1013u);
         for (int c = 0; c < 3; c++) rgb[c] *= 1.0 + grain.amplitude * fade * noise * kTints[o % 4][c];
-        const double turned = 2.0 * (0.8 * u - 0.6 * v);  // so that no lattice shows
-        v = 2.0 * (0.6 * u + 0.8 * v), u = turned;
+        const double rotated = 2.0 * (0.8 * u - 0.6 * v);  // so that no lattice shows
+        v = 2.0 * (0.6 * u + 0.8 * v), u = rotated;
     }
 }
 

@@ -70,7 +70,7 @@ Hit middle_of(const Hit (&hits)[kSamples]) {
     return middle;
 }
 
-Vector3 turned(const Vector3 &v, const Vector3 &axis, double degrees) {
+Vector3 rotated(const Vector3 &v, const Vector3 &axis, double degrees) {
     const double angle = degrees * kPi / 180.0;
     return std::cos(angle) * v + std::sin(angle) * cross(axis, v) + (1.0 - std::cos(angle)) * dot(axis, v) * axis;
 }
@@ -92,7 +92,7 @@ Pose pose_towards(const Vector3 &centre_m, const Vector3 &forward, const std::ar
     std::array<Vector3, 3> axes = {right, cross(ahead, right), ahead};
     for (size_t turn = 0; turn < 3; turn++) {
         const Vector3 axis = axes[turn];
-        for (Vector3 &a : axes) a = turned(a, axis, jitter_deg[turn]);
+        for (Vector3 &a : axes) a = rotated(a, axis, jitter_deg[turn]);
     }
     return {centre_m, axes};
 }

@@ -23,7 +23,7 @@ struct lensprof_flat {
 namespace {
 
 constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
-constexpr double kLargestTurn = 360.0;
+constexpr double kLargestRotation = 360.0;
 constexpr size_t kFirstFlatOptions = LP_END_OF(lensprof_flat_options, progress_user);
 constexpr size_t kFirstFlatImage = LP_END_OF(lensprof_flat_image, rotation_deg);
 constexpr uint32_t kHeldFlat = 0x4c504643u;
@@ -79,7 +79,7 @@ lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "a grey picture; set channels to 1");
     if (!(std::abs(image.ev) <= 64.0))
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error, "exposure beyond 64 EV");
-    if (!(std::abs(image.rotation_deg) <= kLargestTurn))
+    if (!(std::abs(image.rotation_deg) <= kLargestRotation))
         return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "rotated by more than 360 degrees");
     for (uint32_t j = 0; j < i; j++)
         if (images[j].shot == image.shot && images[j].rotation_deg != image.rotation_deg)

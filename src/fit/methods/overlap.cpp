@@ -9,7 +9,7 @@
 #include "core/covariance.h"
 #include "fit/methods/overlap_fit.hpp"
 #include "fit/methods/simpler.hpp"
-#include "fit/methods/unshown.hpp"
+#include "fit/methods/unconstrained.hpp"
 #include "fit/verdict/judge.hpp"
 #include "fit/verdict/output.hpp"
 #include "fit/verdict/quality.hpp"

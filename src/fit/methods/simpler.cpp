@@ -6,7 +6,7 @@
 
 #include "core/covariance.h"
 #include "falloff/rise.hpp"
-#include "fit/methods/unshown.hpp"
+#include "fit/methods/unconstrained.hpp"
 #include "fit/verdict/judge.hpp"
 #include "fit/verdict/output.hpp"
 
@@ -16,7 +16,8 @@ namespace {
 constexpr uint32_t kLensFlags = kFalloffFlags | LENSPROF_FREE_CENTER;
 
 // Whether a simpler description is possible, and may explain the verdict. Verdicts about single images are about the
-// data: the group of images changes first (group.hpp). Few grey values show a falloff, but no response (unshown.hpp).
+// data: the group of images changes first (group.hpp). Few grey values show a falloff, but no response
+// (unconstrained.hpp).
 bool may_be_simpler(const lensprof_fit_options &options, const FitResult &r) {
     if (!(options.prior_weight > 0.0) || !(options.free & (LENSPROF_FREE_RESPONSE | kLensFlags))) return false;
     switch (first_code(r.verdict)) {

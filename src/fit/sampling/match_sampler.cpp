@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kMatchesPerPiece = 32;  // matches that a thread processes as a unit
 constexpr size_t kMatchesPerWanted = 16;   // matches examined per wanted pair
 // Features lie on edges and corners, where a misplacement of one pixel is visible. Places at this distance, view
-// pixels, may be quieter; the map of the surroundings is valid at that distance for any scene.
+// pixels, may have a lower gradient; the map of the surroundings is valid at that distance for any scene.
 constexpr int kRings = 2;
 constexpr double kRing = 4.0;
 
@@ -49,7 +49,7 @@ Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_i
 
 // The patch with the lowest gradient around a match; false if none can be measured, or if the two pictures do not show
 // the same there.
-bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
+bool Sampler::flattest_place(const lensprof_match &match, MatchCandidate &found) {
     const bool has_map = match.map[0][0] != 0.0 || match.map[0][1] != 0.0;
     const int rings = has_map ? kRings : 0;
     const double step = kRing * views_[match.image[0]].image().reduction;
@@ -75,10 +75,10 @@ bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
             }
             if (good) places.push_back(p);
         }
-    const auto quietest = std::min_element(places.begin(), places.end(),
+    const auto flattest = std::min_element(places.begin(), places.end(),
                                            [](const Place &a, const Place &b) { return a.gradient() < b.gradient(); });
-    if (quietest == places.end()) return false;
-    const Place &p = *quietest;
+    if (flattest == places.end()) return false;
+    const Place &p = *flattest;
     if (has_map) {
         const auto &map = match.map;
         const Sight sight{p.xy[1][0], p.xy[1][1], {{map[0][0], map[0][1]}, {map[1][0], map[1][1]}}};
@@ -114,7 +114,7 @@ std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, ui
              n < std::min(kept.size(), (size_t{piece} + 1) * kMatchesPerPiece); n++) {
             MatchCandidate candidate;
             candidate.match = kept[n];
-            if (quiet_place(matches[kept[n]], candidate)) found[piece].push_back(candidate);
+            if (flattest_place(matches[kept[n]], candidate)) found[piece].push_back(candidate);
         }
         done++;
     };

@@ -320,10 +320,10 @@ bool Matcher::refine(size_t n, const std::array<int, 2> &shift, Rotation &rotati
     auto is_lost = [&](Match &m) {
         m.rows.resize(2, 3);
         for (int d = 0; d < 3; d++) {
-            Rotation turned = rotation;
-            turned[static_cast<size_t>(d)] += kDerivativeStep;
+            Rotation rotated = rotation;
+            rotated[static_cast<size_t>(d)] += kDerivativeStep;
             double moved[2];
-            if (!place_of(first, second, {turned, {}}, Way::forward, m.place->x, m.place->y, moved)) return true;
+            if (!place_of(first, second, {rotated, {}}, Way::forward, m.place->x, m.place->y, moved)) return true;
             m.rows.col(d) << (moved[0] - m.expected.x) / kDerivativeStep, (moved[1] - m.expected.y) / kDerivativeStep;
         }
         return false;
@@ -431,12 +431,12 @@ bool Matcher::is_better(const Correction &correction, const Correlations &correl
 bool Matcher::is_in_place(const Correlations &uncorrected) const {
     size_t compared;
     const double mean = mean_of(uncorrected, compared);
-    Rotation turned{};
-    Correction bent{turned, Bend(Eigen::Matrix3d::Identity())};
-    if (compared < kMinBlocks || !(mean > kInPlace) || !refine(1, kNoShift, turned) || !refine_bend(1, bent))
+    Rotation rotated{};
+    Correction bent{rotated, Bend(Eigen::Matrix3d::Identity())};
+    if (compared < kMinBlocks || !(mean > kInPlace) || !refine(1, kNoShift, rotated) || !refine_bend(1, bent))
         return false;
     const double max_shift = kSmallestShift * second_grey.level[1].pixel;
-    return median_shift({}, {turned, {}}) < max_shift && median_shift({}, bent) < max_shift;
+    return median_shift({}, {rotated, {}}) < max_shift && median_shift({}, bent) < max_shift;
 }
 
 std::optional<Rotation> Matcher::rotation(const std::array<int, 2> &shift) const {

@@ -27,7 +27,7 @@ public:
     Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
             const lensprof_match *matches, uint32_t match_count);
 
-    // The quietest candidates first, balanced over image pairs, radius and grey level.
+    // The candidates of lowest gradient first, balanced over image pairs, radius and grey level.
     std::vector<lensprof_pair> balanced(uint32_t wanted);
 
     // d'Angelo 5.1: 5n random points, binned by radius; from each of 10 bins the n/10 of lowest gradient.
@@ -39,8 +39,8 @@ public:
                                           uint32_t *match_of_pair);
 
     // Points spread evenly over the area that the pictures see, each in every picture that sees it (kLongestTrack at
-    // most). Saturated channels have the value 1. Takes the quietest of nearby points, balanced over radius and grey
-    // level.
+    // most). Saturated channels have the value 1. Takes the point of lowest gradient nearby, balanced over radius and
+    // grey level.
     std::vector<lensprof_observation> balanced_tracks(uint32_t wanted);
 
     // Goldman & Chen, section 5: points uniform in a cylindrical system, without selection.
@@ -124,7 +124,7 @@ private:
     std::vector<Candidate> candidates(size_t wanted);
     template <class Any>
     std::vector<Any> balanced_choice(std::vector<Any> all, uint32_t wanted);
-    bool quiet_place(const lensprof_match &match, MatchCandidate &found);
+    bool flattest_place(const lensprof_match &match, MatchCandidate &found);
     std::vector<lensprof_pair> pairs_of(const std::vector<Candidate> &chosen);
     bool are_neighbours(uint32_t i, uint32_t j) const;
     uint32_t edge_of(uint32_t i, uint32_t j) const;  // of neighbours
@@ -153,8 +153,8 @@ private:
     double shown_ = 0.0;  // the last fraction reported to the caller
 };
 
-// The quietest candidates of links that are not contradicted, as long as no image pair, radius or grey level exceeds
-// its share; the shares grow until enough are found.
+// The candidates of lowest gradient of links that are not contradicted, as long as no image pair, radius or grey level
+// exceeds its share; the shares grow until enough are found.
 template <class Any>
 std::vector<Any> Sampler::balanced_choice(std::vector<Any> all, uint32_t wanted) {
     const auto edge = [&](const Candidate &c) { return edge_of(c.image[0], c.image[1]); };

@@ -17,7 +17,7 @@ constexpr uint32_t kRound = 4096;         // and all threads together, before co
 constexpr uint32_t kMaxEmptyRounds = 64;  // rounds without any track
 constexpr uint32_t kMaxRounds = 4096;
 constexpr size_t kCandidatesPerWanted = 8;        // candidates per wanted point,
-constexpr double kCells = 2.0;                    // and cells; each cell contributes its quietest candidates
+constexpr double kCells = 2.0;                    // and cells; each cell contributes the candidates of lowest gradient
 constexpr double kBinSlack = 1.5;                 // an even spread has priority over a balance of radius and grey level
 constexpr double kSteepest = 80.0 * kPi / 180.0;  // latitude at which a cylinder ends
 
@@ -160,7 +160,7 @@ std::vector<lensprof_observation> Sampler::balanced_tracks(uint32_t wanted) {
     std::sort(all.begin(), all.end(), [](const TrackCandidate &a, const TrackCandidate &b) {
         return a.cell != b.cell ? a.cell < b.cell : a.gradient < b.gradient;
     });
-    std::vector<uint32_t> rank(all.size(), 0);  // within a cell: every cell's quietest are first
+    std::vector<uint32_t> rank(all.size(), 0);  // within a cell: those of lowest gradient are first
     for (size_t n = 1; n < all.size(); n++) rank[n] = all[n].cell == all[n - 1].cell ? rank[n - 1] + 1 : 0;
     size_t ends = 0;
     for (const TrackCandidate &c : all) ends += c.visits.size();

@@ -40,7 +40,7 @@ bool is_even(const Seam &seam, double noise_levels) {
 }
 
 // The first link that looks worse after the correction, or keeps a seam that the other links do not have.
-std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &seams, double noise_levels) {
+std::optional<Seam> worst_link(const Problem &problem, const std::vector<Seam> &seams, double noise_levels) {
     const double max_residual = std::max(kOddLink, kOddNoise * noise_levels);
     for (const Edge &edge : problem.edges) {
         if (edge.last - edge.first < kMinPairs) continue;
@@ -57,9 +57,10 @@ std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &se
 Seam judge_evenness(const Found &found, FitResult &r) {
     const std::vector<Seam> tested = seams_of(found.tested, found.train);
     const Seam overall = median_of(tested, 0, tested.size());
-    const std::optional<Seam> odd = odd_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
-    r.equalizes = r.converged && r.inlier_share > kEvenShare && is_even(overall, r.noise_levels) && !odd;
-    return odd.value_or(overall);
+    const std::optional<Seam> worst =
+        worst_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
+    r.equalizes = r.converged && r.inlier_share > kEvenShare && is_even(overall, r.noise_levels) && !worst;
+    return worst.value_or(overall);
 }
 
 }  // namespace lensprof

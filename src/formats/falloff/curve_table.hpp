@@ -1,4 +1,4 @@
-// Responses as other programs tabulate them: mostly turned round, as the irradiances of evenly spaced grey values.
+// Responses as other programs tabulate them: mostly inverted, as the irradiances of evenly spaced grey values.
 #pragma once
 
 #include <string>

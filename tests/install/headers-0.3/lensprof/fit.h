@@ -167,7 +167,7 @@ typedef struct lensprof_fit_options {
                         held-out pairs get clearly worse. Requires pairs of all grey levels. Only for TRANSFER with at
                         most 256 images and at least 100 pairs, otherwise no effect. 0 = EMoR only */
     uint32_t moving_camera; /* 1: the camera moved between the images, so that pairs show objects from other sides,
-                               which resembles falloff: a finding notes few images. 0 = it only turned */
+                               which resembles falloff: a finding notes few images. 0 = it only rotated */
     const lensprof_profile *profile;   /* profile of the same camera, lens and setting from other pictures; replaces the
                                           prior of all cameras. Used are its falloff and EMoR response if they have a
                                           covariance, and a TABLE response if gamma_sigma is above 0, as for refined

@@ -1,4 +1,4 @@
-#include "cli/profiles/exposures_alone.hpp"
+#include "cli/profiles/exposures_only.hpp"
 
 #include <algorithm>
 #include <cmath>

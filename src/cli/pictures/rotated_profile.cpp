@@ -1,4 +1,4 @@
-#include "cli/pictures/turned_profile.hpp"
+#include "cli/pictures/rotated_profile.hpp"
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ float &node(lensprof_gain_grid &grid, uint32_t channel, uint32_t column, uint32_
 }
 
 // Nodes become nodes, because they reach from the first to the last pixel.
-lensprof_gain_grid turned_grid(lensprof_gain_grid &sensor, uint16_t turn) {
+lensprof_gain_grid rotated_grid(lensprof_gain_grid &sensor, uint16_t turn) {
     lensprof_gain_grid grid;
     lensprof_gain_grid_init(&grid);
     const bool is_swapped = swaps_sides(turn);
@@ -41,8 +41,8 @@ void turn_profile(uint16_t turn, lensprof_profile &profile) {
         if (!turn) centre[0] = centre[1] = 0.0;
     }
     if (!profile.grid.columns || turn == 1) return;
-    const lensprof_gain_grid other = turned_grid(profile.grid, turn ? turn : kOtherWay);
-    profile.grid = turned_grid(profile.grid, turn ? turn : kOneWay);
+    const lensprof_gain_grid other = rotated_grid(profile.grid, turn ? turn : kOtherWay);
+    profile.grid = rotated_grid(profile.grid, turn ? turn : kOneWay);
     const uint32_t nodes = other.channels * other.rows * other.columns;
     for (uint32_t n = 0; n < nodes; n++)
         profile.grid.attenuation[n] = 0.5f * (profile.grid.attenuation[n] + other.attenuation[n]);

@@ -1,4 +1,4 @@
-// Profiles are in the frame of the sensor, pictures may have been turned since.
+// Profiles are in the frame of the sensor, pictures may have been rotated since.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 namespace lensprof {
 
 // Turns centre and gain grid of a profile for a picture. `turn` is the sensor_orientation of the picture; if it is
-// unknown, 0, the picture may have been turned either way: the centre is then in the middle, and the grid the mean of
+// unknown, 0, the picture may have been rotated either way: the centre is then in the middle, and the grid the mean of
 // both.
 void turn_profile(uint16_t turn, lensprof_profile &profile);
 

@@ -2,7 +2,7 @@
 // except for noise, a fit finds the response that best explains rounding and interpolation, and its errors are not
 // valid. The response is therefore held at what cameras of the kind have in common, with their differences as the
 // covariance.
-#include "fit/methods/unshown.hpp"
+#include "fit/methods/unconstrained.hpp"
 
 #include <algorithm>
 #include <cmath>
