@@ -521,12 +521,12 @@ class LimitCurves(unittest.TestCase):
     def test_moving_a_limit_trades_one_error_for_the_other(self):
         records = [self.record("smooth", 3.5), self.record("hard", 8.0), self.record("noise", 7.0),
                    self.record("noise", 5.5), self.record("misplaced", 1.0, ["few_greys"])]
-        lines = limit_curves.curves(records)
+        lines = limit_curves.curves(records, verdicts.GOOD, verdicts.BAD)
         self.assertEqual(len([line for line in lines if "few_agree" in line]), 0)  # it refuses none of them
         cells = [c.strip() for c in lines[-1].strip("|").split("|")]
         self.assertEqual(cells[:2], ["`scatter`", "> 6"])
         self.assertEqual(cells[2:], ["2 / 0", "1 / 0", "1 / 0", "1 / 1", "1 / 2", "0 / 2", "0 / 2"])
-        self.assertEqual(limit_curves.curves([]), [])
+        self.assertEqual(limit_curves.curves([], verdicts.GOOD, verdicts.BAD), [])
 
 
 if __name__ == "__main__":

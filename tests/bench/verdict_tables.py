@@ -31,7 +31,7 @@ def verdicts(results):
             lines.append(verdict_row(kind, of, kind in GOOD, LIMITS))
         elif kind in results["skipped"]:
             lines.append(row(kind, "SKIPPED: no OpenCV", *[""] * 7))
-    lines += limit_curves.curves(results["records"])
+    lines += limit_curves.curves(results["records"], GOOD, BAD)
     lines += open_table(results["records"])
     missed = [r for r in results["records"] if is_missed(r)]
     if missed:
