@@ -24,15 +24,15 @@ def falloff(k, r2):
     return 1.0 + k[0] * r2 + k[1] * r2**2 + k[2] * r2**3
 
 
-def write_png16(path, values):
+def write_png(path, values, bits=16):
     """Values 0..1 of shape (height, width, 3)."""
-    rows = np.rint(np.clip(values, 0.0, 1.0) * 65535.0).astype(">u2")
+    rows = np.rint(np.clip(values, 0.0, 1.0) * (2**bits - 1)).astype(">u2" if bits == 16 else np.uint8)
     raw = b"".join(b"\0" + row.tobytes() for row in rows)
 
     def chunk(name, data):
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
 
-    head = struct.pack(">IIBBBBB", rows.shape[1], rows.shape[0], 16, 2, 0, 0, 0)
+    head = struct.pack(">IIBBBBB", rows.shape[1], rows.shape[0], bits, 2, 0, 0, 0)
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(raw, 1))
                      + chunk(b"IEND", b""))
 
@@ -62,7 +62,7 @@ def measure(seed, lens):
     names = []
     for turn in (0, 90, 180):
         names.append(folder / ("card%d.png" % turn))
-        write_png16(names[-1], card(truth["k"][0], truth["center"], turn, 1000 * seed + turn))
+        write_png(names[-1], card(truth["k"][0], truth["center"], turn, 1000 * seed + turn))
     curves = {"card": call("flat", *names, "--linear", "--rotation", "0,90,180", "--no-store", "--json"),
               "sequence": call("build", folder / "pano.pto", "--no-store", "--json")}
     shutil.rmtree(folder)

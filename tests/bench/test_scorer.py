@@ -16,6 +16,7 @@ import cases
 import colmap
 import colours
 import drone
+import flat
 import gallery
 import lensfun_rule
 import real
@@ -23,6 +24,8 @@ import report
 import scorer
 import seams
 import tools
+import card_tables
+import cards
 import limit_curves
 import verdict_tables
 import verdicts
@@ -364,6 +367,61 @@ class Verdicts(unittest.TestCase):
                          ["refused", "failed", None])
         self.assertEqual([missed("noise", True), missed("noise", True, "careful"), missed("noise", False, "no")],
                          ["accepted", None, None])
+
+
+class Cards(unittest.TestCase):
+    CARD = {"size": [480, 360], "k": [-0.3, 0.05, -0.15], "cosine": False, "center": [0.02, -0.01]}
+
+    def test_drawing_repeats_and_tuning_has_other_seeds(self):
+        def drawn(quick, tune):
+            return {card["name"]: json.dumps(card) for card in cards.cards(quick, tune)}
+
+        report_on, tune, quick = drawn(False, False), drawn(False, True), drawn(True, False)
+        self.assertEqual(report_on, drawn(False, False))
+        self.assertEqual(len(report_on), 4 * 50 + 10 * 20)
+        self.assertEqual(report_on.keys(), tune.keys())
+        self.assertFalse([name for name in tune if tune[name] == report_on[name]])
+        self.assertEqual(quick, {name: report_on[name] for name in quick})
+
+    def test_all_lists_have_one_entry_per_shot(self):
+        for card in cards.cards(False, False):
+            lengths = {len(card[key]) for key in ("turns", "stated_turns", "drift", "gradients")}
+            self.assertEqual(lengths, {len(card["turns"])})
+
+    def test_a_picture_repeats_and_shows_the_falloff(self):
+        card = next(c for c in cards.cards(True, False) if c["kind"] == "even")
+        card.update(self.CARD, texture=[0.0, 1.0], gradients=[[0.0, 0.0]] * len(card["turns"]))
+        light = cards.card_light(card, 0)
+        np.testing.assert_array_equal(light, cards.card_light(card, 0))
+        x, y = (np.array([479.0, 359.0]) / 2.0) / 300.0
+        self.assertAlmostEqual(light[-1, -1], flat.falloff(card["k"], (x - 0.02)**2 + (y + 0.01)**2), 9)
+
+    def test_errors_of_a_falloff(self):
+        def errors(k, center, grid=None):
+            return cards.errors(self.CARD, {"vignetting": {"k": k, "center": center}, "gain_grid": grid})
+
+        k, center = self.CARD["k"], self.CARD["center"]
+        np.testing.assert_allclose(errors([k], center), [0.0, 0.0], atol=1e-12)
+        np.testing.assert_allclose(errors([k, k, [-0.3, 0.05, -0.09]], center)[0], 0.1)  # M(1): .66 instead of .6
+        radial, frame = errors([k], [0.0, 0.0])
+        self.assertEqual(radial, 0.0)
+        self.assertGreater(frame, 0.01)
+        grid = {"columns": 4, "rows": 3, "attenuation": np.full((3, 3, 4), 1.05).tolist()}
+        np.testing.assert_allclose(errors([k], center, grid), [0.0, 0.05], atol=1e-9)
+
+    def test_table(self):
+        def record(kind, error, usable=True, reason=""):
+            return {"kind": kind, "number": 0, "name": kind + " 0", "usable": usable, "reason": reason, "error": error,
+                    "frame_error": 2 * error, "z": 0.5, "findings": [], "passed": []}
+
+        records = [record("even", 0.001), record("even", 0.5, False, "no"), record("partial", 0.01),
+                   record("partial", 0.3), record("partial", 0.2, True, "careful"), record("partial", 0.9, False, "no")]
+        lines = card_tables.cards({"tune": False, "skipped": [], "records": records})
+        cells = [[c.strip() for c in line.strip("|").split("|")] for line in lines if line.startswith("| partial |")]
+        self.assertEqual(cells, [["partial", "4", "1", "2", "1", "0.200", "0.300", "0.400", "0.600", *"111", ""]])
+        self.assertEqual([line.split("|")[1:3] for line in lines[lines.index("Missed.") + 4:-1]],
+                         [[" even 0 ", " refused "], [" partial 0 ", " accepted without a warning "]])
+        self.assertEqual(card_tables.cards({}), [])
 
 
 class Gallery(unittest.TestCase):
