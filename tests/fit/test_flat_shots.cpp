@@ -101,6 +101,19 @@ static void what_is_far_from_radial_needs_a_grid(void **) {
     assert_reason(*r, CORNER_UNCERTAIN, "request a gain grid");
 }
 
+// A shadow or lamp leaves patterns that two shots can have alike; three shots with different angles cannot.
+static void few_shots_do_not_tell_light_from_a_lens_that_is_not_radial(void **) {
+    for (const uint32_t shots : {1u, 2u, 4u}) {
+        FlatPictures p;
+        p.defect = [](double x, double y, uint32_t c) { return std::pow(shading(x, y, c), 3.0); };
+        for (uint32_t shot = 0; shot < shots; shot++) p.shoot(shot, 0.0, 90.0 * shot);
+        const auto r = p.fit(p.options());
+        assert_true(r->usable && r->frame_residual > 0.01);
+        assert_reason(*r, FLAT_NOT_RADIAL, shots < 3 ? "add shots" : "grid");
+        assert_int_equal(r->first.severity, shots < 3 ? LENSPROF_SEVERITY_WARNING : LENSPROF_SEVERITY_NOTE);
+    }
+}
+
 static void the_result_does_not_depend_on_threads(void **) {
     FlatPictures p;
     p.defect = shading;
@@ -132,6 +145,7 @@ int main(void) {
         cmocka_unit_test(a_card_at_several_places_needs_no_even_light_over_the_frame),
         cmocka_unit_test(what_is_not_radial_goes_into_a_grid),
         cmocka_unit_test(what_is_far_from_radial_needs_a_grid),
+        cmocka_unit_test(few_shots_do_not_tell_light_from_a_lens_that_is_not_radial),
         cmocka_unit_test(the_result_does_not_depend_on_threads),
         cmocka_unit_test(wrong_angles_are_noticed),
     };

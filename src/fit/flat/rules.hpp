@@ -16,7 +16,8 @@ enum FlatState : uint32_t {
     kNotSeparated = 4,
     kHasGrid = 8,
     kHasNoGrid = 16,
-    kCenterByPrior = 32
+    kCenterByPrior = 32,
+    kFewShots = 64  // which do not tell whether the light or the lens is not radial
 };
 
 struct JudgedFlat {
@@ -83,6 +84,7 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_SMALL_RADIUS,         kWarns,   kOfAll,                measure::card_radius,             Side::below, flat_limits::kWholeRadius,        Wording::weak},
     {LENSPROF_REASON_FLAT_EXPOSURE_WRONG,  kWarns,   kOfAll,                measure::exposure_distance,       Side::above, flat_limits::kDoubtfulEv,         Wording::weak},
     {LENSPROF_REASON_FLAT_STEEP,           kWarns,   kCenterByPrior,        measure::slope,                   Side::above, flat_limits::kSlantAlone,         Wording::weak},
+    {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewShots,             measure::not_radial,              Side::above, flat_limits::kMuchNotRadial,      Wording::alone},
     // Worth knowing.
     {LENSPROF_REASON_FLAT_WHITE,           kNotes,   kOfAll,                measure::white_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
     {LENSPROF_REASON_FLAT_BLACK,           kNotes,   kOfAll,                measure::black_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
