@@ -167,7 +167,7 @@ constexpr Sentence kSentences[] = {
     {LENSPROF_REASON_FLAT_STEEP, Wording::weak,
      "the light varies by {0%} per half diagonal; without a rotated shot it cannot be separated from the lens: the centre depends on its prior; add a shot with the camera rotated by 90 or 180 degrees"},
     {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::alone,
-     "{0.1%} of the light is not radial: a shadow or second lamp on the card, wrong angles of rotated shots, or the lens; add shots until three have the camera rotated by different angles, which tells them apart"},
+     "{0.1%} of the light is not radial: a shadow or second lamp on the card, wrong angles of rotated shots, or the lens; add shots until three have the camera rotated by different angles, which separates lens and light"},
     {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::grid,
      "{0.1%} of the light is not radial: the gain grid describes it, except for {1.1%}"},
     {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::usual,
