@@ -2,29 +2,23 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+
+#include "fit/base/joined_sets.hpp"
 
 namespace lensprof {
 namespace {
 
 // Groups of images connected by data of one camera; each group is identified by its smallest index.
 std::vector<uint32_t> camera_groups(const CamerasData &data, const std::vector<uint32_t> &camera_of) {
-    std::vector<uint32_t> parent(data.images.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    };
+    JoinedSets groups(data.images.size());
     const auto join = [&](uint32_t i, uint32_t j) {
-        const uint32_t a = root(i), b = root(j);
-        if (camera_of[i] == camera_of[j]) parent[std::max(a, b)] = std::min(a, b);
+        if (camera_of[i] == camera_of[j]) groups.join(i, j);
     };
     for (const lensprof_pair &pair : data.pairs) join(pair.image[0], pair.image[1]);
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> first;  // for each point and camera, its first image
     for (const lensprof_observation &o : data.observations)
         join(first.try_emplace({o.point, camera_of[o.image]}, o.image).first->second, o.image);
-    for (uint32_t i = 0; i < parent.size(); i++) parent[i] = root(i);
-    return parent;
+    return groups.all();
 }
 
 // Selects the images of each camera that are fitted.

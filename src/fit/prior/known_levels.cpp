@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "fit/base/constants.hpp"
+#include "fit/base/joined_sets.hpp"
 
 namespace lensprof {
 namespace {
@@ -17,23 +17,15 @@ constexpr size_t kMinDistances = 3;     // distances needed
 
 using Tree = std::vector<std::vector<uint32_t>>;
 
-uint32_t root_of(std::vector<uint32_t> &parent, uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 // Neighbours of each image in the maximum spanning tree of its group (Kruskal 1956).
 Tree spanning_tree(const Problem &problem) {
     std::vector<Edge> edges = problem.edges;
     std::stable_sort(edges.begin(), edges.end(),
                      [](const Edge &a, const Edge &b) { return a.last - a.first > b.last - b.first; });
-    std::vector<uint32_t> parent(problem.image_count);
-    std::iota(parent.begin(), parent.end(), 0u);
+    JoinedSets joined(problem.image_count);
     Tree tree(problem.image_count);
     for (const Edge &edge : edges) {
-        const uint32_t a = root_of(parent, edge.image[0]), b = root_of(parent, edge.image[1]);
-        if (a == b) continue;
-        parent[a] = b;
+        if (!joined.join(edge.image[0], edge.image[1])) continue;
         tree[edge.image[0]].push_back(edge.image[1]);
         tree[edge.image[1]].push_back(edge.image[0]);
     }

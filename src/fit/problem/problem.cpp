@@ -7,16 +7,12 @@
 #include <stdexcept>
 
 #include "core/response.h"
+#include "fit/base/joined_sets.hpp"
 #include "fit/problem/curve_shape.hpp"
 #include "fit/problem/tracks.hpp"
 
 namespace lensprof {
 namespace {
-
-uint32_t find_root(std::vector<uint32_t> &parent, uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
 
 // Sorts the pairs by edge, so that values common to an edge are computed once and sums have a fixed order.
 void find_edges(Problem &problem) {
@@ -78,13 +74,9 @@ void find_links(Problem &problem) {
 }
 
 void find_components(Problem &problem) {
-    std::vector<uint32_t> parent(problem.image_count);
-    std::iota(parent.begin(), parent.end(), 0u);
-    for (const auto &edge : problem.edges) {
-        uint32_t a = find_root(parent, edge.image[0]), b = find_root(parent, edge.image[1]);
-        parent[std::max(a, b)] = std::min(a, b);
-    }
-    for (uint32_t i = 0; i < problem.image_count; i++) problem.component.push_back(find_root(parent, i));
+    JoinedSets joined(problem.image_count);
+    for (const auto &edge : problem.edges) joined.join(edge.image[0], edge.image[1]);
+    problem.component = joined.all();
 }
 
 // The column of the unknown that image `owner` owns, created on first use; -1 if it is fixed.
