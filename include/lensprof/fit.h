@@ -185,6 +185,15 @@ typedef struct lensprof_fit_options {
     uint32_t link_count;
     uint32_t unlinked_images; /* images of the same set that overlap none of these and are not among them: if there are
                                  links and none is verified, they count against a result of fewer images. 0 = none */
+    const uint32_t *points;   /* of lensprof_fit_overlap, per pair: the scene point that it shows, any number. For pairs
+                                 that a reconstruction matched in images of a moving camera: glossy points are left out,
+                                 standard errors include the difference between halves of the points, exposures alone are
+                                 the result if colours of points agree as well with them, and `equalizes` states whether
+                                 these agree. With model EXPOSURES, all images are of setting 0 and camera 0 of the fit.
+                                 Takes up to ten fits. NULL = none. Read during the call */
+    const double *view_distances; /* with points, per pair: how far its two views are apart, e.g. the angle between
+                                     them; only ratios count. Two visits in different light are refused, which takes
+                                     views as close as others to tell. NULL = all alike. Read during the call */
 } lensprof_fit_options;
 
 /* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,
@@ -210,7 +219,7 @@ typedef struct lensprof_fit_image_quality {
     double grey_low, grey_high;    /* 5 % and 95 % quantile of its grey values, 0..1 */
     uint32_t pairs;
     uint32_t inliers;           /* pairs within 3 sigma of the noise */
-    uint32_t component;         /* smallest index of an image connected to it through pairs */
+    uint32_t component;         /* smallest index of an image connected to it through pairs, or of its visit */
     uint32_t known_ev_left_out; /* 1: known_ev contradicts the pictures and the known_ev of others, and was not used */
 } lensprof_fit_image_quality;
 
@@ -284,6 +293,11 @@ typedef struct lensprof_fit_result {
     uint32_t camera_count;  /* cameras: 1 + the largest number given */
     uint32_t reserved2;     /* 0 */
     double seconds;         /* time taken by the solver */
+    /* With points: variance of a point's colour over the images that see it, levels of 255 squared: mean over channels
+     * and over the 90 % of the pairs that differ least, of half the squared difference. Of the images as they are,
+     * corrected by exposures and white balances alone (LENSPROF_UNKNOWN if these are fixed), and by the result. Without
+     * points 0 */
+    double colour_variance_before, colour_variance_exposures_only, colour_variance;
 } lensprof_fit_result;
 
 /* No images. */
@@ -387,6 +401,14 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_transfer_rms(const l
                                                                          const lensprof_pair *pairs,
                                                                          uint32_t pair_count, double *rms,
                                                                          double *median, lensprof_error *error);
+
+/* Half the squared difference of the colours at the two ends of each pair, levels of 255 squared, mean over the
+ * channels, corrected by a fit to the mean exposure: of colour_variance. NaN for pairs of images left out. Errors:
+ * those of lensprof_fit_transfer_rms, except for images left out. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_colour_differences(const lensprof_fit *fit,
+                                                                               const lensprof_pair *pairs,
+                                                                               uint32_t pair_count, double *differences,
+                                                                               lensprof_error *error);
 
 #ifdef __cplusplus
 }

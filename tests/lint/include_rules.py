@@ -95,8 +95,8 @@ LAYERS = {
 
 # The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
 ROOMS = {
-    "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "sampling", "flat",
-                "api"],
+    "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "scene",
+                "sampling", "flat", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
     "src/cli": ["program", "report", "pictures", "page", "registration", "reconstruction", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],

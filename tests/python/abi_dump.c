@@ -238,6 +238,8 @@ static void print_structs(void) {
     FIELD(lensprof_fit_options, links);
     FIELD(lensprof_fit_options, link_count);
     FIELD(lensprof_fit_options, unlinked_images);
+    FIELD(lensprof_fit_options, points);
+    FIELD(lensprof_fit_options, view_distances);
     STRUCT(lensprof_fit_image_quality);
     FIELD(lensprof_fit_image_quality, struct_size);
     FIELD(lensprof_fit_image_quality, joined);
@@ -297,6 +299,9 @@ static void print_structs(void) {
     FIELD(lensprof_fit_result, camera_count);
     FIELD(lensprof_fit_result, reserved2);
     FIELD(lensprof_fit_result, seconds);
+    FIELD(lensprof_fit_result, colour_variance_before);
+    FIELD(lensprof_fit_result, colour_variance_exposures_only);
+    FIELD(lensprof_fit_result, colour_variance);
     STRUCT(lensprof_fit_camera);
     FIELD(lensprof_fit_camera, struct_size);
     FIELD(lensprof_fit_camera, images);

@@ -319,6 +319,27 @@ class Refused(unittest.TestCase):
             with refused(self, lp.Status.ERROR_ARGUMENT):
                 result.transfer_rms(pairs)
 
+    def test_colour_differences(self):
+        result = lp.fit_overlap(two_images(), simple_pairs(gain=1.5), linear_options())
+        differences = result.colour_differences(simple_pairs(gain=1.5))
+        self.assertEqual(differences.shape, (len(simple_pairs()),))
+        self.assertLess(np.median(differences), 1e-3)
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            result.colour_differences(simple_pairs()[:0])
+
+    def test_numbers_per_pair(self):
+        pairs = simple_pairs()
+        options = lp.FitOptions(points=np.arange(len(pairs)) // 2, view_distances=np.ones(len(pairs)))
+        self.assertEqual(options.points.dtype, np.uint32)
+        options.points = options.points[::-1][::-1]  # kept by the options
+        lp.fit_overlap(two_images(), pairs, options)
+        for wrong in (np.zeros(3, np.uint32), np.zeros((2, 2), np.uint32)):
+            with self.assertRaisesRegex(ValueError, "one (number )?for each"):
+                lp.fit_overlap(two_images(), pairs, lp.FitOptions(points=wrong))
+        options.points = None
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.fit_overlap(two_images(), pairs, options)
+
     def test_closed(self):
         result = lp.fit_overlap(two_images(), simple_pairs(), linear_options())
         result._fit.close()

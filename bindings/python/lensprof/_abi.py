@@ -746,6 +746,8 @@ class FitOptions(Structure):
         ("links", POINTER(Link)),
         ("link_count", c_uint32),
         ("unlinked_images", c_uint32),
+        ("points", POINTER(c_uint32)),
+        ("view_distances", POINTER(c_double)),
     ]
 
 
@@ -817,6 +819,9 @@ class FitResult(Structure):
         ("camera_count", c_uint32),
         ("reserved2", c_uint32),
         ("seconds", c_double),
+        ("colour_variance_before", c_double),
+        ("colour_variance_exposures_only", c_double),
+        ("colour_variance", c_double),
     ]
 
 
@@ -1364,6 +1369,8 @@ FUNCTIONS = {
     "lensprof_fit_profile": (c_int, [POINTER(Fit), c_uint32, POINTER(Profile), POINTER(ErrorText)]),
     "lensprof_fit_transfer_rms": (c_int, [POINTER(Fit), POINTER(Pair), c_uint32, POINTER(c_double), POINTER(c_double),
                                           POINTER(ErrorText)]),
+    "lensprof_fit_colour_differences": (c_int, [POINTER(Fit), POINTER(Pair), c_uint32, POINTER(c_double),
+                                                POINTER(ErrorText)]),
     # fixed.h
     "lensprof_fixed_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
     "lensprof_fixed_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(FixedPlan)),

@@ -1,6 +1,7 @@
 """Recovers response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
 from __future__ import annotations
 
+import ctypes
 from ctypes import POINTER, byref, c_double, sizeof
 from typing import Any, Optional, Sequence
 
@@ -49,6 +50,28 @@ class FitImage(Value, _abi.FitImage):
         super().__init__(**fields)
 
 
+class PerPair:
+    """An option with a number for each pair, which the options keep."""
+
+    def __init__(self, dtype: Any):
+        self._dtype = dtype
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, options: Any, owner: Optional[type] = None) -> Any:
+        return self if options is None else options.__dict__.get(self._name)
+
+    def __set__(self, options: Any, values: Any) -> None:
+        array = None if values is None else np.ascontiguousarray(values, dtype=self._dtype)
+        if array is not None and array.ndim != 1:
+            raise ValueError(f"{self._name} of shape {array.shape}: give one number for each pair")
+        options.__dict__[self._name] = array
+        field = getattr(_abi.FitOptions, self._name)
+        kind = dict(_abi.FitOptions._fields_)[self._name]
+        field.__set__(options, None if array is None else ctypes.cast(array.ctypes.data, kind))
+
+
 class FitOptions(WithProgress, Struct, _abi.FitOptions):
     """Options of a fit. Defaults: 3 channels, reference 0, everything free, modes chosen by held-out error.
 
@@ -63,7 +86,9 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     those of SampleOptions, so that the result warns of images connected only where there is no texture to check the
     alignment; None = unknown. moving_camera: the camera moved between the images, so that a finding notes few of them.
     unlinked_images: images of the same set that overlap none of these; if there are links and none is verified, they
-    count against a result of fewer images.
+    count against a result of fewer images. points: for pairs that a reconstruction matched, the scene point of each, any
+    numbers: the fit then leaves out glossy points, and `equalizes` states whether the colours of points agree; None.
+    view_distances: with points, how far the views of each pair are apart; None = all alike.
 
     progress: called repeatedly during a fit with the fraction done (0..1). The fit is cancelled if it returns True or
     raises an exception, which then propagates from fit_overlap.
@@ -89,6 +114,8 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     vignetting = Nested(Vignetting)
     unlinked_images: int
     _links: Optional[np.ndarray] = None
+    points = PerPair(np.uint32)
+    view_distances = PerPair(np.float64)
 
     @property
     def links(self) -> Optional[np.ndarray]:
@@ -102,7 +129,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [name for name in super()._names() if not name.startswith("link")]
+        return [name for name in super()._names() if name not in ("links", "link_count", "points", "view_distances")]
 
 
 class FitCamera(Struct, _abi.FitCamera):
@@ -183,7 +210,9 @@ class FitResult(WithFindings, Struct, _abi.FitResult):
     image_quality: how well each image is determined, IMAGE_QUALITY_DTYPE. left_out: number of inconsistent images, with
     ev NaN in `exposures` and `joined` 0 in `image_quality`; reference: the image of 0 EV. components: connected groups
     of images. settings: tuple of FitResult by FitImage.setting. cameras: tuple of FitCamera by FitImage.camera.
-    seconds: time taken.
+    seconds: time taken. colour_variance_before, colour_variance_exposures_only, colour_variance: with points, of a
+    point's colour over the images that see it, levels of 255 squared: as they are, corrected by exposures and white
+    balances alone, and by the result.
     """
 
     images: int
@@ -225,6 +254,9 @@ class FitResult(WithFindings, Struct, _abi.FitResult):
     equal_exposures = Flag()
     setting_count: int
     camera_count: int
+    colour_variance_before: float
+    colour_variance_exposures_only: float
+    colour_variance: float
     _fit: Any = None
 
     @property
@@ -268,6 +300,16 @@ class FitResult(WithFindings, Struct, _abi.FitResult):
                   "the pairs do not belong to this fit", error)
         return rms.value, median.value
 
+    def colour_differences(self, pairs: np.ndarray) -> np.ndarray:
+        """Half the squared difference of the colours at the ends of each pair, corrected by this fit, in levels of 255
+        squared: of colour_variance. NaN for pairs of images left out."""
+        differences, error = np.zeros(len(pairs)), _abi.ErrorText()
+        with self._fit._use() as fit:
+            check(lib.lensprof_fit_colour_differences(fit, *_arrays.pairs(pairs),
+                                                      _arrays.address(differences, c_double), byref(error)),
+                  "the pairs do not belong to this fit", error)
+        return differences
+
 
 def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], options: FitOptions) -> FitResult:
     error, pointer = _abi.ErrorText(), POINTER(_abi.Fit)()
@@ -282,7 +324,12 @@ def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], optio
 
 def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
     """Fits pairs (PAIR_DTYPE) over at least two images. Also returns if the result is poor: see `usable`."""
-    return _fit(lib.lensprof_fit_overlap, images, _arrays.pairs(pairs), options or FitOptions())
+    options = options or FitOptions()
+    for name in ("points", "view_distances"):
+        values = getattr(options, name)
+        if values is not None and len(values) != len(pairs):
+            raise ValueError(f"{len(values)} {name} for {len(pairs)} pairs: give one for each")
+    return _fit(lib.lensprof_fit_overlap, images, _arrays.pairs(pairs), options)
 
 
 def fit_radiance(images: Sequence[FitImage], observations: np.ndarray,

@@ -174,9 +174,10 @@ static void ask(const lensprof_fit &held, const std::vector<lensprof_fit_image> 
         lensprof_fit_camera_init(&fitted.cameras[k]);
         check(lensprof_fit_camera_at(&held, k, &fitted.cameras[k], &error), "fit", &error);
     }
+    const bool has_one_setting = fitted.settings.size() == 1, has_one_camera = fitted.cameras.size() == 1;
     for (uint32_t i = 0; i < images.size(); i++) {
-        fitted.setting_of.push_back(images[i].setting);
-        fitted.camera_of.push_back(images[i].camera);
+        fitted.setting_of.push_back(has_one_setting ? 0 : images[i].setting);
+        fitted.camera_of.push_back(has_one_camera ? 0 : images[i].camera);
         if (!quality) continue;
         lensprof_fit_image_quality_init(&(*quality)[i]);
         check(lensprof_fit_image_at(&held, i, &(*quality)[i], &error), "fit", &error);
@@ -234,6 +235,8 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     lensprof_fit *held = nullptr;
     input.options.progress = on_fit_progress;
     input.options.progress_user = &progress;
+    input.options.points = input.points.empty() ? nullptr : input.points.data();
+    input.options.view_distances = input.view_distances.empty() ? nullptr : input.view_distances.data();
     lensprof_error error{};
     const auto *images = input.images.data();
     auto pairs = static_cast<uint32_t>(input.pairs.size()),

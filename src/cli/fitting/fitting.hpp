@@ -74,6 +74,8 @@ struct FitInput {
     std::vector<lensprof_fit_image> images;
     std::vector<lensprof_pair> pairs;                // used if there are no observations
     std::vector<lensprof_observation> observations;  // tracks, for the method radiance
+    std::vector<uint32_t> points;                    // of a reconstruction, per pair: the scene point that it shows,
+    std::vector<double> view_distances;              // and how far its views are apart
 
     // Per image, the orientation that turns the picture into the frame of its setting (pictures/orientation.hpp);
     // empty: no picture is rotated. Places of pairs and tracks are those of the pictures as stored.

@@ -1,14 +1,11 @@
 #include "cli/fitting/project_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <tuple>
 
 #include "cli/fitting/block_sampling.hpp"
 #include "cli/fitting/known_exposures.hpp"
-#include "cli/fitting/light_groups.hpp"
-#include "cli/fitting/matte_fit.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
@@ -94,13 +91,20 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     state.report.sample_s += lap(clock);
 }
 
+// Passes what a reconstruction knows of its pairs to the fit.
+void set_points(const Project &project, std::vector<uint32_t> points, FitInput &input) {
+    input.points = std::move(points);
+    for (const lensprof_pair &pair : input.pairs)
+        input.view_distances.push_back(project.view_distances.at(std::minmax(pair.image[0], pair.image[1])));
+}
+
 // The fitted pairs or tracks, and the pictures they were drawn from (empty if pairs are given).
 Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectFit &state) {
     auto clock = std::chrono::steady_clock::now();
     uint32_t &channels = state.input.options.channels;
     if (!o.points.empty() || !project.pairs.empty()) {
         state.input.pairs = o.points.empty() ? project.pairs : read_points(o.points, project);
-        state.points = project.pair_points;
+        if (o.points.empty()) set_points(project, project.pair_points, state.input);
         channels = is_grey(state.input.pairs) ? 1 : 3;
         state.report.load_s = lap(clock);
         return {};
@@ -108,8 +112,10 @@ Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectF
     if (project.is_reconstruction) {
         lensprof_sample_options options = sample_options(o);
         options.pairs = 0;  // as many as there are matches, which were selected for this
+        std::vector<uint32_t> points;
         state.input.pairs = sample_in_blocks(project, options, o.pixels.max_side, default_block_bytes, state.progress,
-                                             state.report.links, state.points, &channels);
+                                             state.report.links, points, &channels);
+        set_points(project, std::move(points), state.input);
         set_links(state);
         state.report.sample_s = lap(clock);
         return {};
@@ -257,76 +263,29 @@ CameraKind common_camera_kind(const ProjectFitOptions &o, const std::vector<Pict
     return of_reference;
 }
 
-// Uses only exposures as the result and stores no profile: the rule `exposures_only` of a reconstruction, with the
-// findings on which images take part.
-void use_exposures_only(const Fitted &only, ProjectFit &state) {
-    constexpr std::array on_images{LENSPROF_REASON_IMAGES_LEFT_OUT, LENSPROF_REASON_IMAGES_UNCONNECTED,
-                                   LENSPROF_REASON_LINKS_CONTRADICT, LENSPROF_REASON_LINKS_UNVERIFIED};
-    state.best = only;
-    state.best.result.usable = 0;
-    state.best.verdict = {};
-    for (const lensprof_reason code : on_images)
-        if (const Finding *finding = only.verdict.find(code)) state.best.verdict.add_last(*finding);
-    state.best.verdict.refuse(LENSPROF_REASON_EXPOSURES_ONLY, lensprof_reason_text(LENSPROF_REASON_EXPOSURES_ONLY));
-    state.settings.of_image.assign(state.settings.of_image.size(), 0), state.settings.first.resize(1);
-    join_cameras(state.settings);
+// The images of the smaller of two visits, which a finding names.
+std::string images_of_visit(const Project &project, const BuildReport &report, uint32_t image) {
+    std::vector<uint32_t> images;
+    for (uint32_t i = 0; i < report.quality.size(); i++)
+        if (report.quality[i].component == report.quality[image].component) images.push_back(i);
+    return listed(images, project.names);
 }
 
-// Whether a result corrects the pictures of a reconstruction: colours differ less than before, and either much less or
-// no more than those of a scene with glossy surfaces. With false matches they differ more regardless of the correction.
-bool equalizes_colours(const ColourVariance &variance) {
-    constexpr double max_variance_ratio = 0.5,
-                     max_variance = 200.0;  // levels of 255 squared: 20 levels between two pictures
-    return variance.result < variance.before
-           && (variance.result < max_variance_ratio * variance.before || variance.result < max_variance);
-}
-
-// Failure (not_usable) for pictures of two visits whose light differs by more than an exposure.
-void check_light(const LightGroups &groups, const Project &project) {
-    if (groups.second.empty()) return;
-    throw Failure(
-        ExitCode::not_usable,
-        project.path + ": " + listed(groups.second, project.names)
-            + format(" show the scene in different light from the rest (colours differ %.0f times as much "
-                     "between these groups as within); fit each visit separately, with --reconstruction list=FILE",
-                     groups.ratio),
-        LENSPROF_REASON_IMAGE_GROUPS);
-}
-
-// For a reconstruction: fits without glossy points, measures the improvement and, if response and falloff explain the
-// pairs no better than exposures alone, uses only exposures, because undetermined parameters do harm.
-void fit_reconstruction(const Project &project, ProjectFit &state) {
+// What the fit of a reconstruction found of colours, and of light.
+void report_scene(const Project &project, ProjectFit &state) {
+    if (state.input.points.empty() || !state.input.options.free) return;
     BuildReport &report = state.report;
-    const bool is_by_pairs = state.input.observations.empty() && state.input.options.free != 0;
-    if (!project.is_reconstruction || !is_by_pairs) return;
-    const FitInput all = state.input;
-    auto clock = std::chrono::steady_clock::now();
-    const double first_s = state.best.result.seconds;
-    std::vector<lensprof_fit_image_quality> quality;
-    const Fitted only = fit_exposures_only(all, report.reference, state.item, state.progress, &quality);
-    state.gains = {{"before", colour_differences(all, nullptr)}, {"exposures alone", colour_differences(all, &only)}};
-    report.variance.before = colour_variance_of(state.gains[0].variances);
-    report.variance.exposures_only = colour_variance_of(state.gains[1].variances);
-    report.variance.pairs = all.pairs.size();
-    bool is_better = is_joint_better(state.best, only);
-    if (is_better) {
-        state.best = fit_matte_points(state.input, state.points, state.best, report.reference, state.item,
-                                      state.progress, &report.quality);
-        state.gains.push_back({"this result", colour_differences(all, &state.best)});
-        report.variance.result = colour_variance_of(state.gains[2].variances);
-        is_better = report.variance.result < report.variance.exposures_only;
+    const lensprof_fit_result &result = state.best.result;
+    report.variance = {result.colour_variance_before, result.colour_variance_exposures_only, result.colour_variance,
+                       state.input.pairs.size()};
+    if (result.model == LENSPROF_FIT_MODEL_EXPOSURES) {
+        state.settings.of_image.assign(state.settings.of_image.size(), 0), state.settings.first.resize(1);
+        join_cameras(state.settings);
     }
-    if (is_better) {
-        add_errors_by_halves(state.input, state.points, state.best, state.item, state.progress, report.quality);
-    } else {
-        use_exposures_only(only, state);
-        report.quality = quality, report.variance.result = report.variance.exposures_only;
-        state.gains.resize(2);
-        state.gains.push_back({"this result", state.gains[1].variances});
-    }
-    state.best.result.seconds = first_s + lap(clock);
-    state.best.result.equalizes = equalizes_colours(report.variance);
-    check_light(light_groups(all, state.gains[2].variances, project.view_distances), project);
+    for (Finding &finding : state.best.verdict.findings)
+        if (finding.code == LENSPROF_REASON_IMAGE_GROUPS && !std::isnan(finding.limit))
+            finding.text +=
+                ", with --reconstruction list=FILE: " + images_of_visit(project, report, finding.item.index);
 }
 
 // The result of each setting, if there are several.
@@ -484,7 +443,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     const bool has_one_camera = !state.settings.has_several_cameras();  // irradiance is compared with one response
     if (has_one_camera && !pictures.empty() && may_connect_more(o, state.best, report.links))
         resample(o, project, pictures, state);
-    fit_reconstruction(project, state);
+    report_scene(project, state);
     report.fit = state.best.result, report.held = state.best.held;
     report.verdict = state.best.verdict;
     for (Finding &finding : report.verdict.findings)

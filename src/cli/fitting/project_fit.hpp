@@ -35,10 +35,8 @@ struct ProjectFit {
     BuildReport report;  // camera_kind is set by the caller
     LensSettings settings;
     FitInput input;
-    std::vector<uint32_t> points;  // of a reconstruction: the scene point per pair
     Fitted best;
-    std::vector<GainCurve> gains;  // of a reconstruction: before, with exposures alone, and with this result
-    std::string item;              // name of the input in a Failure
+    std::string item;  // name of the input in a Failure
 };
 
 // Metadata of the pictures. If pairs are given, only what the profile key needs is read, because the pictures may be
@@ -56,6 +54,9 @@ DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Progr
 // Samples the pictures, or takes given points, and fits. `prior` must outlive `state`.
 void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
                  const EarlierProfile &prior, ProjectFit &state, Streams &streams);
+
+// Of a reconstruction, how much colours differ before, with exposures alone, and with the result; else empty.
+std::vector<GainCurve> gain_curves(ProjectFit &state);
 
 // The text of the project with the result, to be written to `path`. A project stores five modes and one falloff; a
 // result with more is refitted with these.

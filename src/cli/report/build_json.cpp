@@ -204,7 +204,7 @@ Json build_json(const BuildReport &report) {
                         {"inlier_share", fit.inlier_share}};
     if (report.variance.pairs)
         json["colour_variance"] = {{"before", report.variance.before},
-                                   {"exposures_only", report.variance.exposures_only},
+                                   {"exposures_only", number_or_null(report.variance.exposures_only)},
                                    {"result", report.variance.result},
                                    {"pairs", report.variance.pairs}};
     json["gamma_from"] = gamma_name(fit.gamma_from);

@@ -16,6 +16,7 @@
 #include "fit/methods/cameras.hpp"
 #include "fit/methods/overlap.hpp"
 #include "fit/problem/tracks.hpp"
+#include "fit/scene/scene.hpp"
 
 using namespace lensprof;
 
@@ -61,6 +62,56 @@ lensprof_status run(FitCall &call, const Target &target, lensprof_error *error, 
     return LENSPROF_OK;
 }
 
+// Fits pairs of one camera or several.
+lensprof_status fit_given(FitCall &call, const std::vector<lensprof_pair> &pairs, lensprof_exposure *found,
+                          lensprof_error *error) {
+    return has_several_cameras(call.options, call.images)
+               ? fit_each_camera(call, {call.options, call.images, pairs, {}}, found, error)
+               : fit_pairs(call, pairs.data(), static_cast<uint32_t>(pairs.size()), found, error);
+}
+
+// The progress of the fits of a scene as that of one.
+class SceneProgress {
+public:
+    explicit SceneProgress(lensprof_fit_options &options) : report_(options.progress), user_(options.progress_user) {
+        if (report_) options.progress = &SceneProgress::on_progress, options.progress_user = this;
+    }
+    SceneProgress(const SceneProgress &) = delete;
+    SceneProgress &operator=(const SceneProgress &) = delete;
+
+    void next_fit() { done_++; }
+
+private:
+    static constexpr int kMostFits = 10;  // all pairs, exposures alone, six rounds without glossy points, two halves
+
+    static int on_progress(double done, void *user) {
+        const auto *self = static_cast<const SceneProgress *>(user);
+        return self->report_((self->done_ + done) / kMostFits, self->user_);
+    }
+
+    const lensprof_progress report_;
+    void *const user_;
+    int done_ = 0;
+};
+
+// Fits pairs of known scene points.
+lensprof_status fit_points(FitCall &call, const std::vector<lensprof_pair> &pairs, lensprof_exposure *found,
+                           lensprof_error *error) {
+    const lensprof_fit_options &o = call.options;
+    SceneData data{pairs, {o.points, o.points + pairs.size()}, {}};
+    if (o.view_distances) data.distances.assign(o.view_distances, o.view_distances + pairs.size());
+    SceneProgress progress(call.options);
+    const lensprof_status status = fit_given(call, pairs, found, error);
+    if (status != LENSPROF_OK) return status;
+    const auto fit = [&](FitCall &next, const std::vector<lensprof_pair> &some, lensprof_exposure *exposures) {
+        progress.next_fit();
+        return !some.empty() && has_unknowns(next.options, next.images.data(), next.count())
+               && fit_given(next, some, exposures, nullptr) == LENSPROF_OK;
+    };
+    fit_scene(data, fit, call, found);
+    return LENSPROF_OK;
+}
+
 }  // namespace
 
 extern "C" {
@@ -98,12 +149,13 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         if (status == LENSPROF_OK) status = check_place(target.place, fit_bytes(call->images), "fit", error);
         if (status == LENSPROF_OK)
             status = check_pairs(pairs, pair_count, call->images.data(), image_count, call->channels(), error);
+        if (status == LENSPROF_OK) status = check_scene(call->options, pair_count, error);
         if (status != LENSPROF_OK) return status;
         if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
         return run(*call, target, error, [&](lensprof_exposure *found) {
-            return has_several_cameras(call->options, call->images) ? fit_each_camera(
-                       *call, {call->options, call->images, {pairs, pairs + pair_count}, {}}, found, error)
-                                                                    : fit_pairs(*call, pairs, pair_count, found, error);
+            const std::vector<lensprof_pair> given(pairs, pairs + pair_count);
+            return call->options.points ? fit_points(*call, given, found, error)
+                                        : fit_given(*call, given, found, error);
         });
     });
 }
@@ -120,6 +172,8 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
         if (status == LENSPROF_OK) status = check_place(target.place, fit_bytes(call->images), "fit", error);
         if (status == LENSPROF_OK && call->options.method != LENSPROF_METHOD_RADIANCE)
             return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: tracks require the method radiance");
+        if (status == LENSPROF_OK && call->options.points)
+            return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: points are those of pairs, not of tracks");
         if (status == LENSPROF_OK)
             status = check_observations(observations, observation_count, call->images.data(), image_count,
                                         call->channels(), error);

@@ -1,6 +1,5 @@
 #include "fit/api/fit_call.hpp"
 
-#include <algorithm>
 #include <map>
 
 #include "fit/api/fit_checks.hpp"
@@ -30,24 +29,6 @@ lensprof_status check_settings(const FitCall &call, lensprof_error *error) {
     return LENSPROF_OK;
 }
 
-// Allocates the results of lens settings and cameras: none if all numbers are 0.
-void allocate_results(FitCall &call) {
-    uint32_t last_setting = 0, last_camera = 0;
-    for (const lensprof_fit_image &image : call.images) {
-        last_setting = std::max(last_setting, image.setting);
-        last_camera = std::max(last_camera, image.camera);
-    }
-    call.quality.resize(call.count());
-    call.result.image_quality = call.quality.data();
-    if (last_setting) call.settings.resize(last_setting + 1);
-    if (last_camera) call.cameras.resize(last_camera + 1);
-    for (CameraResult &camera : call.cameras) lensprof_response_set_linear(&camera.response);
-    if (last_setting) call.result.settings = call.settings.data();
-    if (last_camera) call.result.cameras = call.cameras.data();
-    call.result.setting_count = static_cast<uint32_t>(call.settings.size());
-    call.result.camera_count = static_cast<uint32_t>(call.cameras.size());
-}
-
 }  // namespace
 
 lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
@@ -61,13 +42,13 @@ lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fi
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: %s", wrong);
     lensprof_status status = check_options(call.options, image_count, error);
     if (call.options.camera_kind == LENSPROF_CAMERA_LINEAR && (call.options.free & LENSPROF_FREE_RESPONSE)) {
-        lensprof_response_set_linear(&call.linear);
-        call.options.response = &call.linear;
+        lensprof_response_set_linear(&call.held);
+        call.options.response = &call.held;
         call.options.free &= ~LENSPROF_FREE_RESPONSE;
     }
     if (status == LENSPROF_OK) status = take_images(images, image_count, call.images, error);
     if (status == LENSPROF_OK) status = check_settings(call, error);
-    if (status == LENSPROF_OK) allocate_results(call);
+    if (status == LENSPROF_OK) call.make_room();
     return status;
 }
 

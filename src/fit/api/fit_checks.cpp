@@ -179,6 +179,16 @@ lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const le
     return LENSPROF_OK;
 }
 
+lensprof_status check_scene(const lensprof_fit_options &o, uint32_t pair_count, lensprof_error *error) {
+    if (o.view_distances && !o.points)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit options: view_distances need points");
+    for (uint32_t p = 0; o.view_distances && p < pair_count; p++)
+        if (!(o.view_distances[p] >= 0.0 && std::isfinite(o.view_distances[p])))
+            return fail_at(LENSPROF_ITEM_PAIR, p, LENSPROF_ERROR_ARGUMENT, error,
+                           "view distance must be at least 0 and finite");
+    return LENSPROF_OK;
+}
+
 lensprof_status check_observations(const lensprof_observation *observations, uint32_t count,
                                    const lensprof_fit_image *images, uint32_t image_count, int channels,
                                    lensprof_error *error) {

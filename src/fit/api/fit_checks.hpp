@@ -21,6 +21,9 @@ lensprof_status check_cameras(const std::vector<lensprof_fit_image> &images, len
 lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const lensprof_fit_image *images,
                             uint32_t image_count, int channels, lensprof_error *error);
 
+// Checks what the options hold per pair.
+lensprof_status check_scene(const lensprof_fit_options &o, uint32_t pair_count, lensprof_error *error);
+
 lensprof_status check_observations(const lensprof_observation *observations, uint32_t count,
                                    const lensprof_fit_image *images, uint32_t image_count, int channels,
                                    lensprof_error *error);

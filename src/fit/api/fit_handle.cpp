@@ -13,6 +13,7 @@
 #include "fit/api/held.hpp"
 #include "fit/api/profile.hpp"
 #include "fit/methods/overlap.hpp"
+#include "fit/scene/colours.hpp"
 #include "fit/verdict/output.hpp"
 #include "fit/verdict/rules.hpp"
 
@@ -109,6 +110,28 @@ void put_fit(const lensprof_fit &fit, uint32_t setting, lensprof_profile &target
     if (setting != fit.reference_setting) return;
     provenance.images = sum_of(result.images, fit.prior_images);
     provenance.pairs = sum_of(result.setting_pairs, fit.prior_pairs);
+}
+
+// ARGUMENT without pairs; checks the pairs.
+lensprof_status check_given(const lensprof_fit *fit, const lensprof_pair *pairs, uint32_t pair_count,
+                            const void *target, lensprof_error *error) {
+    const lensprof_status status = check_fit(fit, target, 0, 1, "", error);
+    if (status != LENSPROF_OK) return status;
+    if (!pairs || !pair_count) return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: there are no pairs");
+    return check_pairs(pairs, pair_count, fit->images, fit->image_count, static_cast<int>(fit->channels), error);
+}
+
+// What a fit corrects its images with; an empty setting, as the reference.
+ColourCorrection correction_of(const lensprof_fit &fit) {
+    ColourCorrection correction;
+    correction.images = fit.images, correction.exposures = fit.exposures;
+    correction.reference = fit.results[fit.reference_setting].reference;
+    for (uint32_t i = 0; i < fit.image_count; i++) {
+        const lensprof_fit_result &own = fit.results[fit.images[i].setting],
+                                  &result = own.images ? own : fit.results[fit.reference_setting];
+        correction.responses.push_back(&result.response), correction.falloffs.push_back(result.vignetting);
+    }
+    return correction;
 }
 
 // Residuals of pairs whose images belong to one camera, which must hold for all.
@@ -252,11 +275,7 @@ lensprof_status lensprof_fit_profile(const lensprof_fit *fit, uint32_t setting, 
 
 lensprof_status lensprof_fit_transfer_rms(const lensprof_fit *fit, const lensprof_pair *pairs, uint32_t pair_count,
                                           double *rms, double *median, lensprof_error *error) {
-    lensprof_status status = check_fit(fit, rms, 0, 1, "", error);
-    if (status == LENSPROF_OK && (!pairs || !pair_count))
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: there are no pairs");
-    if (status == LENSPROF_OK)
-        status = check_pairs(pairs, pair_count, fit->images, fit->image_count, static_cast<int>(fit->channels), error);
+    lensprof_status status = check_given(fit, pairs, pair_count, rms, error);
     for (uint32_t p = 0; p < pair_count && status == LENSPROF_OK; p++)
         for (const uint32_t image : pairs[p].image)
             if (std::isnan(fit->exposures[image].ev))
@@ -270,6 +289,20 @@ lensprof_status lensprof_fit_transfer_rms(const lensprof_fit *fit, const lenspro
         const Summary summary = summarise(levels_of(*fit, pairs, pair_count));
         *rms = summary.rms;
         if (median) *median = summary.median;
+        return LENSPROF_OK;
+    } catch (const std::exception &) {
+        return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");
+    }
+}
+
+lensprof_status lensprof_fit_colour_differences(const lensprof_fit *fit, const lensprof_pair *pairs,
+                                                uint32_t pair_count, double *differences, lensprof_error *error) {
+    const lensprof_status status = check_given(fit, pairs, pair_count, differences, error);
+    if (status != LENSPROF_OK) return status;
+    try {
+        const ColourCorrection correction = correction_of(*fit);
+        const auto found = colour_differences(pairs, pair_count, static_cast<int>(fit->channels), &correction);
+        std::copy(found.begin(), found.end(), differences);
         return LENSPROF_OK;
     } catch (const std::exception &) {
         return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");

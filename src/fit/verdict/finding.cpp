@@ -22,6 +22,8 @@ struct Sentence {
 constexpr Sentence kSentences[] = {
     {LENSPROF_REASON_IMAGE_GROUPS, Wording::usual,
      "the images form {0} groups: no usable overlap connects {item} to the reference, even through other images; more than half of the images must be consistent: add pictures that connect them, or check the alignment"},
+    {LENSPROF_REASON_IMAGE_GROUPS, Wording::light,
+     "{0} of the images, the first of them {item}, show the scene in different light from the rest (colours differ {1} times as much between these groups as within): fit each visit separately"},
     {LENSPROF_REASON_FEW_PAIRS, Wording::usual,
      "{0} distinct pairs between black and white are too few for {1} unknowns; sample more pairs"},
     {LENSPROF_REASON_FEW_AGREE, Wording::usual,

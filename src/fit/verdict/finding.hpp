@@ -19,6 +19,7 @@ enum class Wording {
     still,  // pictures of a stationary camera
     held,   // of a response or falloff that is given
     weak,   // the milder of two severities
+    light,  // groups by light
     odd,    // with a response unlike those of measured cameras
     less,   // below its limit, or negative
     card,   // of a card

@@ -68,6 +68,11 @@ constexpr double kUnusual = 1.0, kVeryUnusual = 2.0;
 constexpr double kSmallestLightSpread = 0.06;
 constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one determines nothing at all
 
+// Scenes of a reconstruction. Variances of a point's colour, levels of 255 squared: after the correction at most half
+// of that before, or that of glossy surfaces, 20 levels between two images; and of two visits, between them over
+// within.
+constexpr double kMuchLessColour = 0.5, kGlossy = 200.0, kVisitRatio = 8.0;
+
 // Held white balances. Levels of 255, and standard errors of a median.
 constexpr double kClearLevels = 1.5, kClearBalance = 5.0;
 

@@ -74,9 +74,11 @@ constexpr MethodRule kMethodRules[] = {
     {LENSPROF_REASON_IMAGES_UNCONNECTED,       kWarns,   NAN},
     {LENSPROF_REASON_LINKS_CONTRADICT,         kNotes,   NAN},
     {LENSPROF_REASON_LINKS_UNVERIFIED,         kNotes,   NAN},
+    // scene: two visits in different light
+    {LENSPROF_REASON_IMAGE_GROUPS,             kRefuses, kVisitRatio},
     // methods/transfer_function: equal exposures have the identity as their transfer functions
     {LENSPROF_REASON_EXPOSURES_EQUAL,          kRefuses, kSmallestSpread},
-    // methods/simpler.cpp: which model held-out pairs prefer; of reconstructions, the command compares colours
+    // methods/simpler.cpp: which model held-out pairs prefer; scene: and colours of points seen from many sides
     {LENSPROF_REASON_NOTHING_BETTER,           kRefuses, NAN},
     {LENSPROF_REASON_EXPOSURES_ONLY,           kRefuses, NAN},
     // methods/overlap.cpp: whether the pictures contradict a profile that is the prior (kClearlyWorse, kFarFromPrior)
