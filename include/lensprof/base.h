@@ -29,9 +29,10 @@
  *    lensprof_store_fault) get new members at their end. All other public structs are frozen values.
  *  - Every header opens with an example, the body of a function. Variables that it does not declare are these:
  *        lensprof_status status; lensprof_error error; lensprof_profile profile; lensprof_profile_key key;
- *        lensprof_store *store; lensprof_camera cameras[3]; lensprof_image image, images[3];
+ *        lensprof_store *store; lensprof_camera cameras[3]; lensprof_image image, images[3], raw, jpeg;
  *        lensprof_target picture, pictures[3];
- *    image and picture, and images[i] and pictures[i], are views of the same pixels, 8 bit RGB.
+ *    image and picture, and images[i] and pictures[i], are views of the same pixels, 8 bit RGB; raw is a linear frame
+ *    of 16 bits, and jpeg what the camera rendered of it.
  *  - Input and output live in the caller's buffers. The library keeps no reference after a call returns unless stated.
  *
  * Threads: everything declared here may be called from any thread at any time.

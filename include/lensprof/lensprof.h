@@ -20,6 +20,7 @@
 #include "model.h"
 #include "profile.h"
 #include "reason.h"
+#include "rendering.h"
 #include "sample.h"
 #include "store.h"
 

@@ -1,5 +1,6 @@
 /* What the examples of the headers run in: the variables that base.h states, which header_examples.py declares, with
- * three overlapping pictures, one of a card, and a database. All show the same lens: 65 % of the light in the corner.
+ * three overlapping pictures, one of a card, a raw frame with its rendering, and a database. All show the same lens: 65
+ * % of the light in the corner.
  */
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +10,7 @@
 #define HEIGHT 320
 
 static uint8_t pixels[4][HEIGHT][WIDTH][3];
+static uint16_t raw_pixels[HEIGHT][WIDTH][3];
 
 /* Half of white, or a scene of soft waves in the direction (longitude, latitude). */
 static double light_of(const double *to, int c) {
@@ -35,6 +37,20 @@ static void draw(uint8_t (*rows)[WIDTH][3], const lensprof_camera *camera, doubl
         }
 }
 
+/* A raw frame that the camera renders as the first picture. */
+static void draw_raw(void) {
+    lensprof_response typical;
+    status = lensprof_response_set_typical(&typical, LENSPROF_CAMERA_ANY, NULL, NULL);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            for (int c = 0; c < 3; c++) {
+                const double light = lensprof_response_invert(&typical, pixels[0][y][x][c] / 255.0, NULL);
+                raw_pixels[y][x][c] = (uint16_t)(60000.0 * light);
+            }
+    raw = (lensprof_image){raw_pixels, WIDTH * 6, WIDTH, HEIGHT, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB};
+    jpeg = images[0];
+}
+
 static void set_views(uint8_t (*rows)[WIDTH][3], lensprof_image *read, lensprof_target *written) {
     *read = (lensprof_image){rows, WIDTH * 3, WIDTH, HEIGHT, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
     *written = (lensprof_target){rows, WIDTH * 3, WIDTH, HEIGHT, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
@@ -46,6 +62,7 @@ static void prepare(void) {
         draw(pixels[i], &cameras[i], i == 1 ? 0.5 : 0.0);
         set_views(pixels[i], &images[i], &pictures[i]);
     }
+    draw_raw();
     draw(pixels[3], NULL, 0.0);
     set_views(pixels[3], &image, &picture);
     lensprof_profile_init(&profile);

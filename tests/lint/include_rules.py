@@ -54,7 +54,7 @@ CPP_OUTSIDE = {
 }
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h", "reason.h"}
-FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h"}
+FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h", "rendering.h"}
 FORMATS_API = FIT_API | {"hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
 WHOLE_API = FORMATS_API | STORE_API | {"lensprof.h"}
@@ -96,7 +96,7 @@ LAYERS = {
 # The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
 ROOMS = {
     "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "scene",
-                "sampling", "flat", "api"],
+                "sampling", "flat", "rendering", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
     "src/cli": ["program", "report", "pictures", "page", "registration", "reconstruction", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
@@ -122,6 +122,7 @@ PUBLIC = {
     "sample.h": FIT_API,
     "fit.h": FIT_API,
     "flat.h": FIT_API,
+    "rendering.h": CORE_API,
     "hugin.h": FIT_API,
     "formats.h": FORMATS_API,
     "store.h": STORE_API,

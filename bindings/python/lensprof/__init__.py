@@ -22,6 +22,7 @@ from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 from .reason import Finding, Item, reason_name, reason_text
+from .rendering import RenderingResult, RenderingShot, fit_rendering
 from .sample import SampleImage, SampleOptions, sample_matches, sample_overlap, sample_tracks
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats, StoreSummary, lookup_in
 
@@ -34,10 +35,10 @@ __all__ = [
     "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE", "Layout", "LinkState", "Lookup", "LookupOptions",
     "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
     "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
-    "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
+    "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames",
     "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "correct", "detect_format", "emor_table",
-    "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles",
+    "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "fit_rendering", "format_info", "half_diagonal", "import_profiles",
     "layout_channels", "layout_samples", "lensfun_read_cameras", "lookup_in", "map_read", "map_write", "points_read",
     "points_write", "reason_name", "reason_text", "sample_matches", "sample_overlap", "sample_tracks",
     "sample_type_bytes", "simulate", "status_name", "version",

@@ -24,6 +24,9 @@ COVERAGE_BINS = 10
 FIT_REFERENCE = 4294967295
 FLAT_IMAGES = 128
 FLAT_SPOTS = 32
+RENDERING_SHOTS = 16
+RENDERING_SIDE = 256
+RENDERING_RAW_SIDE = 64
 LOOKUP_ROWS = 24
 LOOKUP_REASONS = 8
 LOOKUP_RESPONSES = 8
@@ -1047,6 +1050,67 @@ class ExportOptions(Structure):
     ]
 
 
+class Rendering(Structure):
+    """Opaque."""
+
+
+class RenderingShot(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("quarter_turns", c_uint32),
+        ("shift", c_double * 2),
+        ("scale", c_double),
+        ("k1", c_double),
+        ("k2", c_double),
+        ("correlation", c_double),
+        ("texture", c_double),
+        ("channels", c_uint32),
+        ("squares", c_uint32),
+        ("black", c_uint32),
+        ("white", c_uint32),
+        ("colourful", c_uint32),
+        ("saturated", c_uint32),
+        ("rough", c_uint32),
+        ("areas", c_uint32),
+        ("corrects_falloff", c_uint32),
+        ("reserved", c_uint32),
+        ("radius", c_double),
+        ("corner", c_double),
+        ("corner_sigma", c_double),
+        ("pattern_levels", c_double),
+        ("pattern_ev", c_double),
+        ("noise_levels", c_double),
+        ("white_ev", c_double),
+        ("gamma", c_double),
+        ("gamma_sigma", c_double),
+        ("colour", c_double * 9),
+        ("falloff", c_double * 3),
+        ("saturation", c_double),
+    ]
+
+
+class RenderingResult(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("usable", c_uint32),
+        ("findings", c_uint32),
+        ("passed", c_uint32),
+        ("response", Response),
+        ("gamma", c_double),
+        ("gamma_sigma", c_double),
+        ("lowest", c_double),
+        ("highest", c_double),
+        ("tenths", c_uint32),
+        ("shows_white", c_uint32),
+        ("corrects_falloff", c_uint32),
+        ("shots", c_uint32),
+        ("areas", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
 class Store(Structure):
     """Opaque."""
 
@@ -1233,6 +1297,8 @@ STRUCTS = {
     "lensprof_format_info": FormatInfo,
     "lensprof_import_options": ImportOptions,
     "lensprof_export_options": ExportOptions,
+    "lensprof_rendering_shot": RenderingShot,
+    "lensprof_rendering_result": RenderingResult,
     "lensprof_lookup_options": LookupOptions,
     "lensprof_lookup": Lookup,
     "lensprof_store_row": StoreRow,
@@ -1248,6 +1314,7 @@ OPAQUE = {
     "lensprof_fixed_plan": FixedPlan,
     "lensprof_flat": Flat,
     "lensprof_pto": Pto,
+    "lensprof_rendering": Rendering,
     "lensprof_store": Store,
 }
 
@@ -1280,6 +1347,8 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     PtoImage: ("lensprof_init_sized", [PtoImage]),
     ImportOptions: ("lensprof_import_options_init_sized", [ImportOptions]),
     ExportOptions: ("lensprof_export_options_init_sized", [ExportOptions]),
+    RenderingShot: ("lensprof_init_sized", [RenderingShot]),
+    RenderingResult: ("lensprof_init_sized", [RenderingResult]),
     LookupOptions: ("lensprof_init_sized", [LookupOptions]),
     Lookup: ("lensprof_init_sized", [Lookup]),
     StoreStats: ("lensprof_init_sized", [StoreStats]),
@@ -1423,6 +1492,14 @@ FUNCTIONS = {
     "lensprof_export_options_init_sized": (None, [POINTER(ExportOptions), c_size_t]),
     "lensprof_export": (c_int, [POINTER(POINTER(Profile)), c_uint32, POINTER(ExportOptions), c_void_p, c_size_t,
                                 POINTER(c_size_t), POINTER(ErrorText)]),
+    # rendering.h
+    "lensprof_rendering_create": (c_int, [POINTER(Response), Progress, c_void_p, POINTER(POINTER(Rendering)),
+                                          POINTER(ErrorText)]),
+    "lensprof_rendering_destroy": (None, [POINTER(Rendering)]),
+    "lensprof_rendering_add": (c_int, [POINTER(Rendering), POINTER(Image), POINTER(Image), POINTER(ErrorText)]),
+    "lensprof_rendering_fit": (c_int, [POINTER(Rendering), POINTER(RenderingResult), POINTER(ErrorText)]),
+    "lensprof_rendering_shot_at": (c_int, [POINTER(Rendering), c_uint32, POINTER(RenderingShot), POINTER(ErrorText)]),
+    "lensprof_rendering_finding_at": (c_int, [POINTER(Rendering), c_uint32, POINTER(Finding), POINTER(ErrorText)]),
     # store.h
     "lensprof_store_open": (c_int, [c_char_p, c_uint32, POINTER(POINTER(Store)), POINTER(ErrorText)]),
     "lensprof_store_close": (None, [POINTER(Store)]),

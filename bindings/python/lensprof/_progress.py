@@ -52,21 +52,30 @@ def _interrupts() -> Iterator[list[int]]:
 
 
 @contextlib.contextmanager
-def calling(options: Any) -> Iterator[Any]:
-    """The raw options for one call of the library, valid within the block; `options` keeps alive what they point to."""
+def calling_function(function: Optional[Function]) -> Iterator[Any]:
+    """The C function of a progress function or None, valid within the block, for calls of the library."""
     raised: list[BaseException] = []
-    raw: Any = next(base for base in type(options).__mro__ if "_fields_" in vars(base))
-    call = raw.from_buffer_copy(options)
 
     def on_progress(done: float, _user: Any) -> int:
         try:
-            return 1 if interrupted or (options.progress and options.progress(done)) else 0
+            return 1 if interrupted or (function and function(done)) else 0
         except BaseException as exception:  # must not cross C
             raised.append(exception)
             return 1
 
-    with _interrupts() as interrupted:
-        call.progress = _abi.Progress(on_progress)
+    try:
+        with _interrupts() as interrupted:
+            yield _abi.Progress(on_progress)
+    finally:
+        if raised:
+            raise raised[0]
+
+
+@contextlib.contextmanager
+def calling(options: Any) -> Iterator[Any]:
+    """The raw options for one call of the library, valid within the block; `options` keeps alive what they point to."""
+    raw: Any = next(base for base in type(options).__mro__ if "_fields_" in vars(base))
+    call = raw.from_buffer_copy(options)
+    with calling_function(options.progress) as function:
+        call.progress = function
         yield call
-    if raised:
-        raise raised[0]

@@ -95,6 +95,12 @@ Verdict verdict_of(const lensprof_flat *flat) {
     });
 }
 
+Verdict verdict_of(const lensprof_rendering *rendering, const lensprof_rendering_result &result) {
+    return verdict_from(result, [&](uint32_t i, lensprof_finding *found, lensprof_error *error) {
+        return lensprof_rendering_finding_at(rendering, i, found, error);
+    });
+}
+
 void name_images(const std::vector<std::string> &names, Verdict &verdict) {
     for (Finding &finding : verdict.findings) {
         if (finding.item.kind != LENSPROF_ITEM_IMAGE || finding.item.index >= names.size()) continue;

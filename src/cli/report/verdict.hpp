@@ -10,6 +10,7 @@
 
 #include <lensprof/fit.h>
 #include <lensprof/flat.h>
+#include <lensprof/rendering.h>
 
 #include "cli/program/message.hpp"
 
@@ -51,6 +52,7 @@ struct Verdict {
 // The findings that the library returns; of one lens setting.
 Verdict verdict_of(const lensprof_fit *fit, uint32_t setting = LENSPROF_FIT_REFERENCE);
 Verdict verdict_of(const lensprof_flat *flat);
+Verdict verdict_of(const lensprof_rendering *rendering, const lensprof_rendering_result &result);
 
 // Replaces the numbers of images by their files.
 void name_images(const std::vector<std::string> &names, Verdict &verdict);

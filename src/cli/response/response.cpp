@@ -3,12 +3,14 @@
 #include <cctype>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/pictures/metadata.hpp"
+#include "cli/pictures/picture.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
@@ -16,13 +18,10 @@
 #include "cli/program/message.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/progress.hpp"
-#include "cli/response/findings.hpp"
+#include "cli/response/response_report.hpp"
 
 namespace lensprof {
 namespace {
-
-constexpr size_t max_files = 16;
-constexpr uint32_t min_raw_side = 64;  // px, of the cells of a frame
 
 struct Options {
     StoreOptions store;
@@ -48,9 +47,9 @@ void check_options(const Options &o) {
         for (size_t k = 0; k < i; k++)
             if (is_same_file(o.files[i], o.files[k]))
                 throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
-    if (o.files.size() > max_files)
-        throw Failure(ExitCode::usage, format("%zu files are too many (maximum %zu), and a few suffice; give fewer",
-                                              o.files.size(), max_files));
+    if (o.files.size() > LENSPROF_RENDERING_SHOTS)
+        throw Failure(ExitCode::usage, format("%zu files are too many (maximum %d), and a few suffice; give fewer",
+                                              o.files.size(), LENSPROF_RENDERING_SHOTS));
 }
 
 // A JPEG in the same folder with the base name of the raw file; empty = none.
@@ -74,7 +73,9 @@ Picture read_jpeg(const std::string &file) {
     return picture;
 }
 
-bool is_large_enough(const Picture &picture) { return std::max(picture.width, picture.height) >= min_rendered_side; }
+bool is_large_enough(const Picture &picture) {
+    return std::max(picture.width, picture.height) >= LENSPROF_RENDERING_SIDE;
+}
 
 // The JPEG of --jpeg, else the embedded one, else (none, or not much larger than an icon) the JPEG next to the raw
 // file, whose name `jpeg_file` receives.
@@ -99,7 +100,7 @@ Picture read_cells(const std::string &file) {
     if (header.traits.format != FileFormat::raw)
         throw Failure(ExitCode::unreadable, file + ": is not a camera raw file; give one, and its JPEG with --jpeg");
     const uint32_t longer = std::max(header.width, header.height);
-    if (std::min(header.width, header.height) < 2 * min_raw_side)
+    if (std::min(header.width, header.height) < 2 * LENSPROF_RENDERING_RAW_SIDE)
         throw Failure(ExitCode::not_usable,
                       file + format(": %u x %u px are too few; give a larger raw file", header.width, header.height),
                       LENSPROF_REASON_FEW_PAIRS);
@@ -135,55 +136,90 @@ lensprof_response prior_of(const lensprof_profile_key &key) {
     return prior;
 }
 
-void read_files(const Options &o, Progress &progress, std::vector<std::vector<Place>> &places, ResponseReport &report,
-                Streams &streams) {
+int on_progress(double, void *) { return interrupted(); }
+
+using HeldRendering = std::unique_ptr<lensprof_rendering, decltype(&lensprof_rendering_destroy)>;
+
+HeldRendering new_rendering(const lensprof_profile_key &key) {
+    const lensprof_response prior = prior_of(key);
+    lensprof_rendering *made = nullptr;
+    lensprof_error error{};
+    check(lensprof_rendering_create(&prior, on_progress, nullptr, &made, &error), "response", &error);
+    return {made, lensprof_rendering_destroy};
+}
+
+// Failure for pictures that cannot be compared, with what to give instead.
+void check_added(lensprof_status status, const ResponseFile &file, const lensprof_error &error) {
+    const std::string text = file.rendered_name() + ": " + error.text;
+    const char *advice = "; give the camera's JPEG of the same picture with --jpeg";
+    switch (status) {
+    case LENSPROF_ERROR_SIZE: throw Failure(ExitCode::not_usable, text + advice, LENSPROF_REASON_FEW_PAIRS);
+    case LENSPROF_ERROR_NO_OVERLAP: throw Failure(ExitCode::not_usable, text + advice, LENSPROF_REASON_IMAGE_GROUPS);
+    case LENSPROF_ERROR_UNSUPPORTED: throw Failure(ExitCode::not_usable, text, LENSPROF_REASON_UNDETERMINED);
+    default: check(status, file.rendered_name(), &error);
+    }
+}
+
+void add_files(const Options &o, Progress &progress, lensprof_rendering *rendering, ResponseReport &report,
+               Streams &streams) {
     for (size_t i = 0; i < o.files.size(); i++) {
         stop_if_interrupted();
         progress.update("comparing", double(i) / double(o.files.size()));
-        FileFindings file;
+        ResponseFile file;
         file.file = o.files[i];
-        Picture rendered = read_rendered(o, i, file.rendered, streams);
-        const Picture raw = read_cells(o.files[i]);
-        file.from = places_of(raw, std::move(rendered), static_cast<uint32_t>(i),
-                              file.rendered.empty() ? o.files[i] + " (its preview)" : file.rendered);
-        if (i > 0 && file.from.channels != report.files[0].from.channels)
+        const Picture rendered = read_rendered(o, i, file.rendered, streams), raw = read_cells(o.files[i]);
+        if (i > 0 && (raw.layout == LENSPROF_LAYOUT_GREY) != (report.files[0].shot.channels == 1))
             throw Failure(ExitCode::usage, o.files[i] + ": is in colour and " + o.files[0]
                                                + " is grey, or the reverse; give files of one kind");
-        places.push_back(std::move(file.from.places));
-        file.from.places = {};
+        const lensprof_image raw_view = raw.view(), rendered_view = rendered.view();
+        lensprof_error error{};
+        check_added(lensprof_rendering_add(rendering, &raw_view, &rendered_view, &error), file, error);
+        lensprof_rendering_shot_init(&file.shot);
+        check(lensprof_rendering_shot_at(rendering, static_cast<uint32_t>(i), &file.shot, &error), file.file, &error);
         report.files.push_back(std::move(file));
     }
     progress.clear();
 }
 
-void measure(const Options &o, const lensprof_response &prior, ResponseReport &report, Streams &streams) {
+void measure(const Options &o, const lensprof_profile_key &key, ResponseReport &report, Streams &streams) {
     Progress progress(streams, o.progress);
     auto clock = std::chrono::steady_clock::now();
-    std::vector<std::vector<Place>> places;
-    read_files(o, progress, places, report, streams);
+    const HeldRendering rendering = new_rendering(key);
+    add_files(o, progress, rendering.get(), report, streams);
     report.load_s = lap(clock);
-    fit_files(places, prior, report);
+    lensprof_error error{};
+    lensprof_rendering_result_init(&report.result);
+    const lensprof_status status = lensprof_rendering_fit(rendering.get(), &report.result, &error);
+    const bool is_of_shot = error.item.kind == LENSPROF_ITEM_IMAGE && error.item.index < o.files.size();
+    if (status != LENSPROF_OK && is_of_shot)
+        throw Failure(ExitCode::not_usable, with_name(error.text, error.item, o.files[error.item.index]),
+                      LENSPROF_REASON_FEW_PAIRS);
+    check(status, o.files.front(), &error);
+    for (uint32_t i = 0; i < report.files.size(); i++)
+        check(lensprof_rendering_shot_at(rendering.get(), i, &report.files[i].shot, &error), o.files[i], &error);
+    report.verdict = verdict_of(rendering.get(), report.result);
+    name_images(o.files, report.verdict);
     report.solve_s = lap(clock);
 }
 
 int64_t store(const Options &o, const lensprof_profile_key &key, const ResponseReport &report) {
     auto profile = new_profile();
     profile->key = key;
-    profile->response[0] = report.response;
+    profile->response[0] = report.result.response;
     auto &p = profile->provenance;
     p.images = static_cast<uint32_t>(report.files.size());
-    for (const FileFindings &file : report.files) p.pairs += file.places;
-    p.gamma_sigma = report.log_gamma_sigma;
-    p.not_usable = !report.usable;
+    p.pairs = report.result.areas;
+    p.gamma_sigma = report.result.gamma_sigma;
+    p.not_usable = !report.result.usable;
     set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
-    return store_profile(o.store, *profile, {"response", o.files.front(), report.usable});
+    return store_profile(o.store, *profile, {"response", o.files.front(), report.result.usable != 0});
 }
 
 int finish(const Options &o, lensprof_profile_key key, ResponseReport &report, Streams &streams) {
     if (!o.store.processing)
-        key.processing = report.is_corrected ? LENSPROF_PROCESSING_CORRECTED : LENSPROF_PROCESSING_JPEG;
+        key.processing = report.result.corrects_falloff ? LENSPROF_PROCESSING_CORRECTED : LENSPROF_PROCESSING_JPEG;
     stop_if_interrupted();
-    if ((report.usable || o.store.force) && !o.store.no_store) report.profile_id = store(o, key, report);
+    if ((report.result.usable || o.store.force) && !o.store.no_store) report.profile_id = store(o, key, report);
     if (o.json)
         print_json(response_report_json(report), streams.out);
     else
@@ -191,9 +227,9 @@ int finish(const Options &o, lensprof_profile_key key, ResponseReport &report, S
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(key) << "\n";
-    if (report.usable) report_findings(report.verdict, o.files.front(), streams);
-    if (!report.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
-    return static_cast<int>(report.usable ? ExitCode::done : ExitCode::not_usable);
+    if (report.result.usable) report_findings(report.verdict, o.files.front(), streams);
+    if (!report.result.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
+    return static_cast<int>(report.result.usable ? ExitCode::done : ExitCode::not_usable);
 }
 
 int run(const Options &o, Streams &streams) {
@@ -207,7 +243,7 @@ int run(const Options &o, Streams &streams) {
     check_store(o.store);
     ResponseReport report;
     try {
-        measure(o, prior_of(key), report, streams);
+        measure(o, key, report, streams);
     } catch (const Failure &failure) {
         if (o.json && failure.code == ExitCode::not_usable) {
             report.verdict.refuse(failure.reason, failure.what());

@@ -6,12 +6,12 @@
 #include <new>
 #include <vector>
 
+#include "fit/api/boundary.hpp"
 #include "fit/api/fit_call.hpp"
 #include "fit/api/fit_checks.hpp"
 #include "fit/api/fit_handle.hpp"
 #include "fit/api/fit_methods.hpp"
 #include "fit/api/held.hpp"
-#include "fit/base/parallel.hpp"
 #include "fit/base/sized.hpp"
 #include "fit/methods/cameras.hpp"
 #include "fit/methods/overlap.hpp"
@@ -28,22 +28,6 @@ struct Target {
     lensprof_exposure *exposures;
     lensprof_fit **fit;
 };
-
-// Runs a fit, which returns a status, and converts exceptions to status codes.
-template <class Fit>
-lensprof_status at_boundary(lensprof_error *error, Fit fit) {
-    try {
-        return fit();
-    } catch (const Cancelled &) {
-        return fail(LENSPROF_ERROR_CANCELLED, error, "fit: cancelled");
-    } catch (const std::bad_alloc &) {
-        return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");
-    } catch (const std::exception &e) {
-        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: %s", e.what());
-    } catch (...) {
-        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: an unknown exception");
-    }
-}
 
 // Runs a fit, and gives the exposures and the fit to the caller.
 template <class Fit>
@@ -141,7 +125,7 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
                                      uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
                                      void *memory, size_t size, lensprof_exposure *exposures, lensprof_fit **held,
                                      lensprof_error *error) {
-    return at_boundary(error, [&] {
+    return at_boundary("fit", error, [&] {
         const auto call = std::make_unique<FitCall>();
         lensprof_status status =
             take_call(options, images, image_count, held && (pairs || pair_count == 0), exposures, *call, error);
@@ -164,7 +148,7 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
                                       uint32_t image_count, const lensprof_observation *observations,
                                       uint32_t observation_count, void *memory, size_t size,
                                       lensprof_exposure *exposures, lensprof_fit **held, lensprof_error *error) {
-    return at_boundary(error, [&] {
+    return at_boundary("fit", error, [&] {
         const auto call = std::make_unique<FitCall>();
         lensprof_status status = take_call(options, images, image_count,
                                            held && (observations || observation_count == 0), exposures, *call, error);

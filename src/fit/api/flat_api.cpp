@@ -3,9 +3,9 @@
 #include <memory>
 #include <new>
 
+#include "fit/api/boundary.hpp"
 #include "fit/api/held.hpp"
 #include "fit/api/profile.hpp"
-#include "fit/base/parallel.hpp"
 #include "fit/base/sized.hpp"
 #include "fit/flat/rules.hpp"
 
@@ -180,7 +180,7 @@ lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const le
                                   lensprof_error *error) {
     clear(error);
     if (!options || !images || !flat) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: a pointer is NULL");
-    try {
+    return at_boundary("flat", error, [&] {
         const auto call = std::make_unique<Call>();
         lensprof_status status = take_call(options, images, image_count, *call, error);
         const size_t bytes = lensprof_flat_bytes(image_count);
@@ -188,15 +188,7 @@ lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const le
         if (status == LENSPROF_OK) status = run(*call, error);
         if (status == LENSPROF_OK) *flat = make_flat(*call, memory ? memory : ::operator new(bytes), !memory);
         return status;
-    } catch (const Cancelled &) {
-        return fail(LENSPROF_ERROR_CANCELLED, error, "flat: cancelled");
-    } catch (const std::bad_alloc &) {
-        return fail(LENSPROF_ERROR_MEMORY, error, "flat: out of memory");
-    } catch (const std::exception &e) {
-        return fail(LENSPROF_ERROR_INTERNAL, error, "flat: %s", e.what());
-    } catch (...) {
-        return fail(LENSPROF_ERROR_INTERNAL, error, "flat: an unknown exception");
-    }
+    });
 }
 
 void lensprof_flat_destroy(lensprof_flat *flat) {

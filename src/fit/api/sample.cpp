@@ -4,6 +4,7 @@
 #include <new>
 #include <vector>
 
+#include "fit/api/boundary.hpp"
 #include "fit/base/sized.hpp"
 #include "fit/sampling/sampler.hpp"
 
@@ -99,7 +100,7 @@ Sampler sampler_of(const lensprof_sample_options &options, const std::vector<len
 template <class Item, class Draw>
 lensprof_status sample(const lensprof_sample_options &options, const lensprof_sample_image *given, uint32_t count,
                        const Matches *matches, Draw draw, std::vector<Item> &items, lensprof_error *error) {
-    try {
+    return at_boundary("sample", error, [&] {
         std::vector<lensprof_sample_image> images;
         auto init = [](lensprof_sample_image &image, uint32_t) { lensprof_sample_image_init(&image); };
         lensprof_status status = take_all(given, count, kFirstSampleImage, LENSPROF_ITEM_IMAGE, init, images, error);
@@ -125,13 +126,7 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
                         "different content in the two images; check their alignment");
         give_links(options, sampler.links());
         return LENSPROF_OK;
-    } catch (const Cancelled &) {
-        return fail(LENSPROF_ERROR_CANCELLED, error, "sample: cancelled");
-    } catch (const std::bad_alloc &) {
-        return fail(LENSPROF_ERROR_MEMORY, error, "sample: out of memory");
-    } catch (const std::exception &e) {
-        return fail(LENSPROF_ERROR_INTERNAL, error, "sample: %s", e.what());
-    }
+    });
 }
 
 // Common to both samplings: writes up to `max_items` results of `draw` into `items`.

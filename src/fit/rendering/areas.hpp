@@ -3,16 +3,16 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "cli/pictures/picture.hpp"
-#include "cli/response/alignment.hpp"
+#include <lensprof/rendering.h>
+
+#include "fit/rendering/alignment.hpp"
 
 namespace lensprof {
 
 // Means over a square of the rendered picture and the same area of the raw frame.
-struct Place {
+struct Area {
     enum Use : uint8_t {
         none,   // black, or partly white
         grey,   // unclipped
@@ -29,21 +29,15 @@ struct Place {
     bool is_rougher, is_more_colourful;  // more even than half of the areas of its grey level
 };
 
-// Statistics of a file, and how well both pictures align.
-struct PlacesOf {
-    std::vector<Place> places;
-    Alignment alignment;
-    uint32_t squares = 0;                                                    // of the rendered picture
-    uint32_t black = 0, white = 0, colourful = 0, saturated = 0, rough = 0;  // left out
-    uint32_t width = 0, height = 0;                                          // of the rendered picture, px
-    int quarter_turns = 0;                                                   // rotation that aligns it with the frame
-    uint32_t channels = 3;
+// A shot: what is reported of it, and its areas.
+struct RenderedShot {
+    lensprof_rendering_shot found;
+    std::vector<Area> areas;
 };
 
-constexpr uint32_t min_rendered_side = 256;  // px, of the longer side
-
-// Aligns both and selects smooth areas, where sharpening and a small misalignment do not matter. `name` is the name of
-// the rendered picture in a Failure (not_usable): if the two do not match, or there are too few areas.
-PlacesOf places_of(const Picture &raw, Picture rendered, uint32_t picture, const std::string &name);
+// Aligns both pictures and selects smooth areas, where sharpening and a small misalignment do not matter. Errors: those
+// of lensprof_rendering_add.
+lensprof_status compare_pictures(const lensprof_image &raw, const lensprof_image &rendered, uint32_t picture,
+                                 const Stop &stop, RenderedShot &shot, lensprof_error *error);
 
 }  // namespace lensprof

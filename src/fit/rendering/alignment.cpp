@@ -1,20 +1,19 @@
-#include "cli/response/alignment.hpp"
+#include "fit/rendering/alignment.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <Eigen/Dense>
-
-#include "cli/program/interrupt.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double perceptual = 1.0 / 2.2;
-constexpr int coarse_side = 80, fine_side = 1024;
-constexpr int half_window = 6;         // px: side of a level, and of the window for normalising structure
-constexpr float min_contrast = 0.01f;  // on the perceptual scale: below it is noise
+constexpr double kPerceptual = 1.0 / 2.2;
+constexpr int kCoarseSide = 80, kFineSide = 1024;
+constexpr int kHalfWindow = 6;         // px: side of a level, and of the window for normalising structure
+constexpr float kMinContrast = 0.01f;  // on the kPerceptual scale: below it is noise
 
 double half_diagonal(const Plane &p) { return 0.5 * std::hypot(p.width, p.height); }
 
@@ -31,8 +30,8 @@ void average_row(const std::vector<float> &row, std::vector<float> &parts) {
 }
 
 // Of 8 or 16 bit samples, 0..1.
-void read_channel(const Picture &picture, int y, size_t channels, size_t channel, std::vector<float> &row) {
-    const uint8_t *bytes = picture.pixels.data() + size_t(y) * picture.row_bytes;
+void read_channel(const lensprof_image &picture, int y, size_t channels, size_t channel, std::vector<float> &row) {
+    const uint8_t *bytes = static_cast<const uint8_t *>(picture.data) + size_t(y) * picture.row_bytes;
     const auto *words = reinterpret_cast<const uint16_t *>(bytes);
     for (size_t x = 0; x < row.size(); x++) {
         const size_t index = x * channels + channel;
@@ -41,7 +40,7 @@ void read_channel(const Picture &picture, int y, size_t channels, size_t channel
     }
 }
 
-Plane averaged(const Picture &picture, int width, int height) {
+Plane averaged(const lensprof_image &picture, int width, int height) {
     const size_t channels = picture.layout == LENSPROF_LAYOUT_GREY ? 1 : 3;
     Plane plane{width, height, std::vector<float>(size_t(width) * size_t(height), 0.0f)};
     std::vector<float> row(picture.width), parts(static_cast<size_t>(width));
@@ -73,8 +72,8 @@ public:
         }
     }
     double mean(int x, int y) const {
-        const int left = std::max(x - half_window, 0), right = std::min(x + half_window + 1, width_);
-        const int top = std::max(y - half_window, 0), low = std::min(y + half_window + 1, height_);
+        const int left = std::max(x - kHalfWindow, 0), right = std::min(x + kHalfWindow + 1, width_);
+        const int top = std::max(y - kHalfWindow, 0), low = std::min(y + kHalfWindow + 1, height_);
         const double sum = sums_[at(right, low)] - sums_[at(left, low)] - sums_[at(right, top)] + sums_[at(left, top)];
         return sum / ((right - left) * (low - top));
     }
@@ -94,9 +93,9 @@ Plane normalised(const Plane &plane, double *texture) {
         for (int x = 0; x < plane.width; x++) {
             const double mean = sums.mean(x, y);
             const auto contrast = static_cast<float>(std::sqrt(std::max(0.0, squares.mean(x, y) - mean * mean)));
-            textured += contrast > 2.0f * min_contrast;
+            textured += contrast > 2.0f * kMinContrast;
             out.values[size_t(y) * size_t(plane.width) + size_t(x)] =
-                (plane.at(x, y) - static_cast<float>(mean)) / (contrast + min_contrast);
+                (plane.at(x, y) - static_cast<float>(mean)) / (contrast + kMinContrast);
         }
     if (texture) *texture = double(textured) / double(std::max<size_t>(plane.values.size(), 1));
     return out;
@@ -119,23 +118,22 @@ struct Level {
     double texture = 0.0;
 };
 
-Level level_of(const Picture &raw, const Picture &rendered, int side) {
+Level level_of(const lensprof_image &raw, const lensprof_image &rendered, int side) {
     Level level;
     level.rendered = normalised(structure_of(rendered, side, 1.0), &level.texture);
-    level.raw = normalised(structure_of(raw, side, perceptual), nullptr);
+    level.raw = normalised(structure_of(raw, side, kPerceptual), nullptr);
     return level;
 }
 
 double correlation_of(const Level &level, const Alignment &alignment) {
     const Plane &t = level.rendered, &raw = level.raw;
     const double rho = half_diagonal(t), raw_rho = half_diagonal(raw);
-    double product = 0.0, first_square = 0.0, second_square = 0.0, place[2], value[3];
+    double product = 0.0, first_square = 0.0, second_square = 0.0, at[2], value[3];
     size_t inside = 0;
     for (int y = 0; y < t.height; y++)
         for (int x = 0; x < t.width; x++) {
-            alignment.map((x - 0.5 * (t.width - 1)) / rho, (y - 0.5 * (t.height - 1)) / rho, place);
-            if (!sample(raw, 0.5 * (raw.width - 1) + raw_rho * place[0], 0.5 * (raw.height - 1) + raw_rho * place[1],
-                        value))
+            alignment.map((x - 0.5 * (t.width - 1)) / rho, (y - 0.5 * (t.height - 1)) / rho, at);
+            if (!sample(raw, 0.5 * (raw.width - 1) + raw_rho * at[0], 0.5 * (raw.height - 1) + raw_rho * at[1], value))
                 continue;
             product += t.at(x, y) * value[0], first_square += t.at(x, y) * t.at(x, y),
                 second_square += value[0] * value[0];
@@ -148,7 +146,7 @@ double correlation_of(const Level &level, const Alignment &alignment) {
 }
 
 // The scale at which the rendered picture is as wide, or as high, as the frame: the smaller one.
-double covering_scale(const Picture &raw, const Picture &rendered) {
+double covering_scale(const lensprof_image &raw, const lensprof_image &rendered) {
     const double fit = std::min(double(raw.width) / rendered.width, double(raw.height) / rendered.height);
     return fit * std::hypot(rendered.width, rendered.height) / std::hypot(raw.width, raw.height);
 }
@@ -168,9 +166,9 @@ Alignment best_of_grid(const Level &level, double cover) {
     return best;
 }
 
-constexpr int unknowns = 5;
-using Normal = Eigen::Matrix<double, unknowns, unknowns>;
-using Gradient = Eigen::Matrix<double, unknowns, 1>;
+constexpr int kUnknowns = 5;
+using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using Gradient = Eigen::Matrix<double, kUnknowns, 1>;
 
 // One row of pixels into the normal equations of (shift x, shift y, ln scale, k1, k2).
 void add_row(const Level &level, const Alignment &a, int y, Normal &h, Gradient &g) {
@@ -179,10 +177,9 @@ void add_row(const Level &level, const Alignment &a, int y, Normal &h, Gradient 
     const double v = (y - 0.5 * (t.height - 1)) / rho;
     for (int x = 0; x < t.width; x++) {
         const double u = (x - 0.5 * (t.width - 1)) / rho, r2 = u * u + v * v;
-        double place[2], value[3];
-        a.map(u, v, place);
-        if (!sample(raw, 0.5 * (raw.width - 1) + raw_rho * place[0], 0.5 * (raw.height - 1) + raw_rho * place[1],
-                    value))
+        double at[2], value[3];
+        a.map(u, v, at);
+        if (!sample(raw, 0.5 * (raw.width - 1) + raw_rho * at[0], 0.5 * (raw.height - 1) + raw_rho * at[1], value))
             continue;
         const double residual = value[0] - t.at(x, y), weight = 1.0 / (1.0 + residual * residual);
         const double along = raw_rho * a.scale * (value[1] * u + value[2] * v);
@@ -195,9 +192,9 @@ void add_row(const Level &level, const Alignment &a, int y, Normal &h, Gradient 
 }
 
 // Constrains parameters that a picture with little texture at the edges does not determine.
-void refine(const Level &level, bool bends, Alignment &a) {
+void refine(const Level &level, bool bends, const Stop &stop, Alignment &a) {
     for (int round = 0; round < 12; round++) {
-        stop_if_interrupted();
+        stop.check();
         Normal h = Normal::Zero();
         Gradient g = Gradient::Zero();
         for (int y = 0; y < level.rendered.height; y++) add_row(level, a, y, h, g);
@@ -225,7 +222,7 @@ void Alignment::map(double x, double y, double raw[2]) const {
     raw[1] = shift[1] + bend * y;
 }
 
-Plane structure_of(const Picture &picture, int side, double exponent) {
+Plane structure_of(const lensprof_image &picture, int side, double exponent) {
     const double reduction = std::max(1.0, double(std::max(picture.width, picture.height)) / side);
     Plane plane = averaged(picture, std::max(1, static_cast<int>(std::lround(picture.width / reduction))),
                            std::max(1, static_cast<int>(std::lround(picture.height / reduction))));
@@ -237,42 +234,41 @@ Plane structure_of(const Picture &picture, int side, double exponent) {
     return plane;
 }
 
-Alignment align_coarsely(const Picture &raw, const Picture &rendered) {
-    const Level level = level_of(raw, rendered, coarse_side);
+Alignment align_coarsely(const lensprof_image &raw, const lensprof_image &rendered, const Stop &stop) {
+    const Level level = level_of(raw, rendered, kCoarseSide);
     Alignment alignment = best_of_grid(level, covering_scale(raw, rendered));
-    refine(level, false, alignment);
+    refine(level, false, stop, alignment);
     alignment.texture = level.texture;
     return alignment;
 }
 
-Alignment align_pictures(const Picture &raw, const Picture &rendered) {
-    Alignment alignment = align_coarsely(raw, rendered);
+Alignment align_pictures(const lensprof_image &raw, const lensprof_image &rendered, const Stop &stop) {
+    Alignment alignment = align_coarsely(raw, rendered, stop);
     const int longer_side = static_cast<int>(std::max(rendered.width, rendered.height));
-    for (int side = 2 * coarse_side; side / 2 < std::min(longer_side, fine_side); side *= 2) {
-        const Level level = level_of(raw, rendered, std::min(side, fine_side));
+    for (int side = 2 * kCoarseSide; side / 2 < std::min(longer_side, kFineSide); side *= 2) {
+        const Level level = level_of(raw, rendered, std::min(side, kFineSide));
         alignment.correlation = correlation_of(level, alignment);
-        refine(level, side > 2 * coarse_side, alignment);
+        refine(level, side > 2 * kCoarseSide, stop, alignment);
         alignment.texture = level.texture;
     }
     return alignment;
 }
 
-Picture rotated(const Picture &picture, int quarters) {
-    if (quarters % 4 == 0) return picture;
-    Picture out = picture;
+RotatedImage rotated(const lensprof_image &picture, int quarters) {
+    RotatedImage out{{}, picture};
+    if (quarters % 4 == 0) return out;
     const size_t bytes = picture.layout == LENSPROF_LAYOUT_GREY ? 1 : 3;
-    const bool swaps = quarters % 2 != 0;
-    out.width = swaps ? picture.height : picture.width;
-    out.height = swaps ? picture.width : picture.height;
-    out.row_bytes = size_t(out.width) * bytes;
-    out.pixels.resize(out.row_bytes * out.height);
+    if (quarters % 2) std::swap(out.view.width, out.view.height);
+    out.view.row_bytes = size_t(out.view.width) * bytes;
+    out.pixels.resize(out.view.row_bytes * out.view.height);
+    out.view.data = out.pixels.data();
     for (uint32_t y = 0; y < picture.height; y++)
         for (uint32_t x = 0; x < picture.width; x++) {
             const uint32_t right = picture.height - 1 - y, back = picture.width - 1 - x;
             const uint32_t to_x = quarters == 1 ? right : quarters == 2 ? back : y;
             const uint32_t to_y = quarters == 1 ? x : quarters == 2 ? right : back;
-            std::memcpy(out.pixels.data() + to_y * out.row_bytes + to_x * bytes,
-                        picture.pixels.data() + y * picture.row_bytes + x * bytes, bytes);
+            std::memcpy(out.pixels.data() + to_y * out.view.row_bytes + to_x * bytes,
+                        static_cast<const uint8_t *>(picture.data) + y * picture.row_bytes + x * bytes, bytes);
         }
     return out;
 }

@@ -4,9 +4,12 @@
 // picture is scaled, and warped if the camera corrects distortion.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "cli/pictures/picture.hpp"
+#include <lensprof/apply.h>
+
+#include "fit/rendering/stop.hpp"
 
 namespace lensprof {
 
@@ -27,18 +30,22 @@ struct Alignment {
     void map(double x, double y, double raw[2]) const;
 };
 
-// The green or only channel on a perceptual scale, reduced to `side` pixels on the longer side (unless it has fewer).
-// `exponent`: of the power function that makes linear values perceptual, 1 for rendered ones.
-Plane structure_of(const Picture &picture, int side, double exponent);
+// The green or only channel on a kPerceptual scale, reduced to `side` pixels on the longer side (unless it has fewer).
+// `exponent`: of the kPower function that makes linear values kPerceptual, 1 for rendered ones.
+Plane structure_of(const lensprof_image &picture, int side, double exponent);
 
 // Gauss-Newton on the locally normalised structure (Lucas & Kanade 1981), coarse to fine; the coarsest level starts
 // from the best of a grid of scales and shifts. `rendered` has the orientation of the raw frame.
-Alignment align_pictures(const Picture &raw, const Picture &rendered);
+Alignment align_pictures(const lensprof_image &raw, const lensprof_image &rendered, const Stop &stop);
 
 // The same on the coarsest level only, to determine the orientation of a picture.
-Alignment align_coarsely(const Picture &raw, const Picture &rendered);
+Alignment align_coarsely(const lensprof_image &raw, const lensprof_image &rendered, const Stop &stop);
 
-// `picture` (8 bit) rotated clockwise by `quarters` quarter turns.
-Picture rotated(const Picture &picture, int quarters);
+// An 8 bit `picture` rotated clockwise by `quarters` quarter turns.
+struct RotatedImage {
+    std::vector<uint8_t> pixels;  // empty: those of `picture`
+    lensprof_image view;
+};
+RotatedImage rotated(const lensprof_image &picture, int quarters);
 
 }  // namespace lensprof
