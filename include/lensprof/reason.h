@@ -66,8 +66,8 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_CENTER_ON_LIMIT = 404,  /* distance, half diagonals */
     LENSPROF_REASON_FALLOFF_DARK = 405,     /* smallest M */
     LENSPROF_REASON_SAME_VIEW = 406,        /* change of r^2 between the ends of most pairs, at most */
-    LENSPROF_REASON_EXPOSURES_ONLY = 407,   /* a simpler model predicts held-out pairs as well */
-    LENSPROF_REASON_NOTHING_BETTER = 408,   /* no model predicts held-out pairs better than no correction */
+    LENSPROF_REASON_EXPOSURES_ONLY = 407,   /* a simpler model predicts the pairs as well */
+    LENSPROF_REASON_NOTHING_BETTER = 408,   /* no model predicts the pairs better than no correction */
     LENSPROF_REASON_NOT_RADIAL = 409,       /* share of the residual's variance; levels of 255 */
     LENSPROF_REASON_FAR_CENTER = 410,       /* distance, half diagonals */
     LENSPROF_REASON_FEW_IMAGES = 411,       /* images of a moving camera; images needed */

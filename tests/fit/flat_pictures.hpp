@@ -31,13 +31,26 @@ inline const std::vector<double> &normal_numbers() {
 // A result with its first finding, which is empty if all rules hold.
 struct FoundFlat : lensprof_flat_result {
     lensprof_finding first;
+    std::vector<lensprof_finding> all;  // findings
+
+    // The finding with this code, or NULL.
+    const lensprof_finding *with(lensprof_reason code) const {
+        for (const lensprof_finding &finding : all)
+            if (finding.code == static_cast<uint32_t>(code)) return &finding;
+        return nullptr;
+    }
 };
 
 inline void take_flat(const lensprof_flat *flat, FoundFlat &result) {
     lensprof_flat_result_init(&result);
     lensprof_finding_init(&result.first);
     assert_ok(lensprof_flat_get(flat, &result, nullptr));
-    if (result.findings) assert_ok(lensprof_flat_finding_at(flat, 0, &result.first, nullptr));
+    result.all.resize(result.findings);
+    for (uint32_t i = 0; i < result.findings; i++) {
+        lensprof_finding_init(&result.all[i]);
+        assert_ok(lensprof_flat_finding_at(flat, i, &result.all[i], nullptr));
+    }
+    if (result.findings) result.first = result.all[0];
 }
 
 struct FlatPictures {

@@ -101,17 +101,30 @@ static void what_is_far_from_radial_needs_a_grid(void **) {
     assert_reason(*r, CORNER_UNCERTAIN, "request a gain grid");
 }
 
-// A shadow or lamp leaves patterns that two shots can have alike; three shots with different angles cannot.
-static void few_shots_do_not_tell_light_from_a_lens_that_is_not_radial(void **) {
-    for (const uint32_t shots : {1u, 2u, 4u}) {
+// If the stated angles are true, a shadow or lamp cannot leave one pattern in shots at three angles, but in those at
+// two.
+static void few_angles_do_not_separate_light_from_a_lens_that_is_not_radial(void **) {
+    const std::vector<std::vector<double>> of_light = {{0}, {0, 90}, {0, 0, 90}, {0, 90, 90}, {0, 20, 90}},
+                                           of_lens = {{0, 90, 180}, {0, 30, 60}, {0, 90, 180, 270}};
+    const auto found = [](const std::vector<double> &angles, auto change) {
         FlatPictures p;
         p.defect = [](double x, double y, uint32_t c) { return std::pow(shading(x, y, c), 3.0); };
-        for (uint32_t shot = 0; shot < shots; shot++) p.shoot(shot, 0.0, 90.0 * shot);
-        const auto r = p.fit(p.options());
+        for (uint32_t shot = 0; shot < angles.size(); shot++) p.shoot(shot, 0.0, angles[shot]);
+        lensprof_flat_options o = p.options();
+        change(o);
+        const auto r = p.fit(o);
         assert_true(r->usable && r->frame_residual > 0.01);
-        assert_reason(*r, FLAT_NOT_RADIAL, shots < 3 ? "add shots" : "grid");
-        assert_int_equal(r->first.severity, shots < 3 ? LENSPROF_SEVERITY_WARNING : LENSPROF_SEVERITY_NOTE);
-    }
+        const lensprof_finding *finding = r->with(LENSPROF_REASON_FLAT_NOT_RADIAL);
+        assert_non_null(finding);
+        assert_int_equal(finding->value_count, 2);
+        assert_non_null(strstr(finding->text, "gain grid"));
+        return finding->severity;
+    };
+    const auto as_it_is = [](lensprof_flat_options &) {};
+    for (const auto &angles : of_light) assert_int_equal(found(angles, as_it_is), LENSPROF_SEVERITY_WARNING);
+    for (const auto &angles : of_lens) assert_int_equal(found(angles, as_it_is), LENSPROF_SEVERITY_NOTE);
+    assert_int_equal(found(of_lens[0], [](auto &o) { o.free &= ~LENSPROF_FREE_CENTER; }), LENSPROF_SEVERITY_NOTE);
+    assert_int_equal(found(of_light[0], [](auto &o) { o.light = LENSPROF_FLAT_LIGHT_EVEN; }), LENSPROF_SEVERITY_NOTE);
 }
 
 static void the_result_does_not_depend_on_threads(void **) {
@@ -124,7 +137,7 @@ static void the_result_does_not_depend_on_threads(void **) {
     for (uint32_t threads : {2u, 5u, 0u}) {
         o.threads = threads;
         auto other = p.fit(o);
-        assert_memory_equal(one.get(), other.get(), sizeof *one);
+        assert_memory_equal(one.get(), other.get(), sizeof(lensprof_flat_result));
     }
 }
 
@@ -145,7 +158,7 @@ int main(void) {
         cmocka_unit_test(a_card_at_several_places_needs_no_even_light_over_the_frame),
         cmocka_unit_test(what_is_not_radial_goes_into_a_grid),
         cmocka_unit_test(what_is_far_from_radial_needs_a_grid),
-        cmocka_unit_test(few_shots_do_not_tell_light_from_a_lens_that_is_not_radial),
+        cmocka_unit_test(few_angles_do_not_separate_light_from_a_lens_that_is_not_radial),
         cmocka_unit_test(the_result_does_not_depend_on_threads),
         cmocka_unit_test(wrong_angles_are_noticed),
     };

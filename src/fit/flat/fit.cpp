@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kDiffers = 22.5;             // chi-squared of the curves' differences, 6 degrees of freedom: 99.9 %
 constexpr double kSmallestDifference = 2e-3;  // of M in the corner: half a level
-constexpr double kRotated = 0.5;              // radians between two shots that separate light from lens
 
 void report(const lensprof_flat_options &options, double done) {
     if (options.progress && options.progress(done, options.progress_user) != 0) throw Cancelled();
@@ -83,10 +82,7 @@ bool is_separated(const FlatFit &fit) {
     const FlatModel &model = fit.problem.model;
     if (!(fit.options.free & LENSPROF_FREE_CENTER)) return false;
     if (model.light_terms == 0) return true;
-    bool rotated = false;
-    for (const auto &a : model.turn)
-        for (const auto &b : model.turn) rotated = rotated || a[0] * b[0] + a[1] * b[1] < std::cos(kRotated);
-    return rotated && !model.own_light;
+    return model.angles() > 1 && !model.own_light;
 }
 
 void fill_lens(const FlatFit &fit, FlatResult &r) {

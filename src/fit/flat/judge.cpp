@@ -9,8 +9,8 @@
 namespace lensprof {
 namespace {
 
-// Rotated shots that tell light from lens also if it is not radial: of two, each can have a pattern of its own.
-constexpr size_t kTellingShots = 3;
+// Angles of shots that separate light from a lens that is not radial: two shots can have one pattern in common.
+constexpr size_t kTellingAngles = 3;
 
 // The worst of the shots in some respect.
 struct Worst {
@@ -76,7 +76,7 @@ uint32_t state_of(const FlatFit &fit, const FlatResult &r) {
     uint32_t state = r.separated ? kSeparated : kNotSeparated;
     state |= r.gain_grid.columns ? kHasGrid : kHasNoGrid;
     if (is_sloped) state |= kSloped;
-    if (is_sloped && (!r.separated || fit.shots.size() < kTellingShots)) state |= kFewShots;
+    if (is_sloped && fit.problem.model.angles() < kTellingAngles) state |= kFewAngles;
     if (is_sloped && !r.separated && (fit.options.free & LENSPROF_FREE_CENTER)) state |= kCenterByPrior;
     return state;
 }

@@ -4,6 +4,17 @@
 
 namespace lensprof {
 
+constexpr double kRotated = 0.5;  // radians
+
+size_t FlatModel::angles() const {
+    std::vector<std::array<double, 2>> apart;
+    for (const auto &a : turn)
+        if (std::none_of(apart.begin(), apart.end(),
+                         [&](const auto &b) { return a[0] * b[0] + a[1] * b[1] >= std::cos(kRotated); }))
+            apart.push_back(a);
+    return apart.size();
+}
+
 lensprof_vignetting falloff_of(const FlatModel &model, const Eigen::VectorXd &u, int curve) {
     lensprof_vignetting v;
     for (int i = 0; i < 3; i++) v.k[i] = u[model.k(curve) + i];

@@ -33,6 +33,9 @@ struct FlatModel {
     }
     int unknowns() const { return light(own_light ? shots - 1 : 0, channels - 1) + light_terms; }
     int curve_of(int channel) const { return curves == 3 ? channel : 0; }
+
+    // The number of angles at which shots differ enough to separate light from lens.
+    size_t angles() const;
 };
 
 lensprof_vignetting falloff_of(const FlatModel &model, const Eigen::VectorXd &u, int curve);

@@ -17,7 +17,7 @@ enum FlatState : uint32_t {
     kHasGrid = 8,
     kHasNoGrid = 16,
     kCenterByPrior = 32,
-    kFewShots = 64  // which do not tell whether the light or the lens is not radial
+    kFewAngles = 64  // of shots: they do not separate the light from a lens that is not radial
 };
 
 struct JudgedFlat {
@@ -78,13 +78,15 @@ constexpr FlatRule kFlatRules[] = {
     // They do not determine it.
     {LENSPROF_REASON_NOT_CONVERGED,        kRefuses, kOfAll,                measure::convergence,             Side::below, 1.0,                              Wording::usual},
     {LENSPROF_REASON_UNDETERMINED,         kRefuses, kOfAll,                measure::covariance,              Side::below, 1.0,                              Wording::card},
+    {LENSPROF_REASON_CORNER_UNCERTAIN,     kRefuses, kFewAngles|kHasNoGrid, measure::corner_sigma_not_radial, Side::above, flat_limits::kLargestCornerSigma, Wording::alone},
     {LENSPROF_REASON_CORNER_UNCERTAIN,     kRefuses, kHasNoGrid,            measure::corner_sigma_not_radial, Side::above, flat_limits::kLargestCornerSigma, Wording::grid},
     {LENSPROF_REASON_CORNER_UNCERTAIN,     kRefuses, kOfAll,                measure::corner_sigma,            Side::above, flat_limits::kLargestCornerSigma, Wording::card},
     // The falloff may be wrong where people use it.
     {LENSPROF_REASON_SMALL_RADIUS,         kWarns,   kOfAll,                measure::card_radius,             Side::below, flat_limits::kWholeRadius,        Wording::weak},
     {LENSPROF_REASON_FLAT_EXPOSURE_WRONG,  kWarns,   kOfAll,                measure::exposure_distance,       Side::above, flat_limits::kDoubtfulEv,         Wording::weak},
     {LENSPROF_REASON_FLAT_STEEP,           kWarns,   kCenterByPrior,        measure::slope,                   Side::above, flat_limits::kSlantAlone,         Wording::weak},
-    {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewShots,             measure::not_radial,              Side::above, flat_limits::kMuchNotRadial,      Wording::alone},
+    {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewAngles|kHasGrid,   measure::not_radial_grid,         Side::above, flat_limits::kMuchNotRadial,      Wording::alone_grid},
+    {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewAngles|kHasNoGrid, measure::not_radial,              Side::above, flat_limits::kMuchNotRadial,      Wording::alone},
     // Worth knowing.
     {LENSPROF_REASON_FLAT_WHITE,           kNotes,   kOfAll,                measure::white_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
     {LENSPROF_REASON_FLAT_BLACK,           kNotes,   kOfAll,                measure::black_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},

@@ -16,17 +16,18 @@ using Findings = std::vector<lensprof_finding>;
 // Which sentence states a code, where one does not suit all.
 enum class Wording {
     usual,
-    still,      // pictures of a stationary camera
-    held,       // of a response or falloff that is given
-    weak,       // the milder of two severities
-    light,      // groups by light
-    odd,        // with a response unlike those of measured cameras
-    less,       // below its limit, or negative
-    card,       // of a card
-    alone,      // a card without rotated shots
-    grid,       // a card with a gain grid
-    rendering,  // of a raw frame
-    map         // a rendering whose tones may be mapped locally
+    still,       // pictures of a stationary camera
+    held,        // of a response or falloff that is given
+    weak,        // the milder of two severities
+    light,       // groups by light
+    odd,         // with a response unlike those of measured cameras
+    less,        // below its limit, or negative
+    card,        // of a card
+    alone,       // a card without rotated shots, or with few
+    grid,        // a card with a gain grid
+    alone_grid,  // with a gain grid, but few rotated shots
+    rendering,   // of a raw frame
+    map          // a rendering whose tones may be mapped locally
 };
 
 // What a rule measures: the number compared with its limit, the item that has it, and the values of the code.

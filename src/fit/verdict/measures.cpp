@@ -200,7 +200,7 @@ Measured weak_pattern(const Judged &judged) { return image_pattern(judged, kSusp
 // The oddness of the response, where the residual follows patterns as well: each alone may be a camera's.
 Measured pattern_oddness(const Judged &judged) {
     Measured pattern = weak_pattern(judged);
-    pattern.value = pattern.value > kWeakPattern ? response_oddness(judged).value : 0.0;
+    pattern.value = pattern.value > kWeakPattern ? response_oddness(judged).value : NAN;
     return pattern;
 }
 

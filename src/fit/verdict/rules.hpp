@@ -24,7 +24,6 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_PATTERNS,            kRefuses, kStill,                 measure::strong_pattern,      Side::above, kHarmfulStillPattern,    Wording::still},
     {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kFreesAll,    measure::strong_pattern,      Side::above, kHarmfulPattern,         Wording::usual},
     {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kHolds,       measure::strong_pattern,      Side::above, kSmallestPattern,        Wording::held},
-    {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kFreesResponse, measure::pattern_oddness, Side::above, kUnusual,                Wording::odd},
     {LENSPROF_REASON_SCATTER,             kRefuses, kAlways,                measure::noise,               Side::above, kLargestNoise,           Wording::usual},
     // They do not determine the result.
     {LENSPROF_REASON_NOT_CONVERGED,       kRefuses, kAlways,                measure::convergence,         Side::below, 1.0,                     Wording::usual},
@@ -36,6 +35,7 @@ constexpr FitRule kRules[] = {
     {LENSPROF_REASON_FEW_INLIERS,         kRefuses, kAlways,                measure::image_inliers,       Side::below, kMinInliers,             Wording::usual},
     {LENSPROF_REASON_IMAGE_DISAGREES,     kRefuses, kAlways,                measure::image_agreement,     Side::below, kSmallestImageShare,     Wording::usual},
     {LENSPROF_REASON_EXPOSURE_UNCERTAIN,  kRefuses, kAlways,                measure::exposure_sigma,      Side::above, kLargestEvSigma,         Wording::usual},
+    {LENSPROF_REASON_PATTERNS,            kRefuses, kNotStill|kFreesResponse, measure::pattern_oddness, Side::above, kUnusual,                Wording::odd},
     // The pictures still show it, or a number that people use is wrong.
     {LENSPROF_REASON_WHITE_BALANCE_FIXED, kWarns,   kAlways,                measure::held_white_balance,  Side::above, 0.0,                     Wording::usual},
     {LENSPROF_REASON_IMAGE_INCONSISTENT,  kWarns,   kAlways,                measure::image_residual,      Side::above, kInconsistentImage,      Wording::usual},
