@@ -186,11 +186,12 @@ typedef struct lensprof_fit_options {
     uint32_t unlinked_images; /* images of the same set that overlap none of these and are not among them: if there are
                                  links and none is verified, they count against a result of fewer images. 0 = none */
     const uint32_t *points;   /* of lensprof_fit_overlap, per pair: the scene point that it shows, any number. For pairs
-                                 that a reconstruction matched in images of a moving camera: glossy points are left out,
-                                 standard errors include the difference between halves of the points, exposures alone are
-                                 the result if colours of points agree as well with them, and `equalizes` states whether
-                                 these agree. With model EXPOSURES, all images are of setting 0 and camera 0 of the fit.
-                                 Takes up to ten fits. NULL = none. Read during the call */
+                                 that a reconstruction matched in images of a moving camera: glossy points are left out;
+                                 errors of exposures and white balances include the difference between fits of two halves
+                                 of the points, if both can be fitted; exposures alone are the result if colours of points
+                                 agree as well with them, and all images are then of setting 0 and camera 0 of the fit;
+                                 and `equalizes` states whether colours agree. No effect if `free` is 0. Takes up to ten
+                                 fits. NULL = none. Read during the call */
     const double *view_distances; /* with points, per pair: how far its two views are apart, e.g. the angle between
                                      them; only ratios count. Two visits in different light are refused, which takes
                                      views as close as others to tell. NULL = all alike. Read during the call */

@@ -92,6 +92,7 @@ void test_new_pictures(void **) {
     const Json json = json_of(words);
     assert_now(json, true, 1, 3);
     assert_int_equal(json["found"], 7);
+    assert_true(json["panoramas"][0]["not_stored"] == "--no-store");
     // With another output folder, the first one's files are not taken for pictures.
     const Json other = json_of({"calibrate", work("row"), "-o", work("row/other"), "--no-store", "--json"});
     assert_int_equal(other["found"], 7);
@@ -127,6 +128,12 @@ void test_bad_input(void **) {
     const Json json = json_of({"calibrate", work("one"), "-o", work("out"), "--no-store", "--json"}, not_usable);
     assert_int_equal(json["left_out"].size(), 1);
     assert_true(contains(json["left_out"][0]["reason"], "no overlap with another picture found"));
+    // Of a refused panorama, the refusal is stated, also if nothing was to be stored.
+    simulate("mapped", {"--images", "4", "--seed", "21", "--set", "local-tone=2"});
+    const Json mapped = parsed(
+        run_words({"calibrate", work("mapped"), "-o", work("copies"), "--no-store", "--json"}).out)["panoramas"][0];
+    assert_false(mapped["result"]["usable"].get<bool>());
+    assert_true(mapped["not_stored"] == mapped["result"]["findings"][0]["text"]);
     save_text(work("notes.txt"), "x");
     assert_refused(usage, calibrated(work("notes.txt")), {"notes.txt"});
     assert_refused(usage, {"calibrate", work("one")}, {"-o"});

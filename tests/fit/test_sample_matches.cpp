@@ -57,7 +57,7 @@ struct Moved : Pictures {
     }
 };
 
-// The index of each pair's match: same images, and within the search distance for quiet places.
+// The index of each pair's match: same images, and within the search distance for places of lower gradient.
 void test_matches_of_pairs(void **) {
     const Moved pictures(3);
     const auto matches = pictures.matches(true);
@@ -97,7 +97,7 @@ void test_pairs_show_one_scene_point(void **) {
     }
 }
 
-// With a map of the surroundings, pairs come from quieter places near the matches.
+// With a map of the surroundings, pairs come from places of lower gradient near the matches.
 void test_the_flattest_place_near_a_match(void **) {
     const Moved pictures(2);
     double step[2] = {};

@@ -336,6 +336,9 @@ class Refused(unittest.TestCase):
         for wrong in (np.zeros(3, np.uint32), np.zeros((2, 2), np.uint32)):
             with self.assertRaisesRegex(ValueError, "one (number )?for each"):
                 lp.fit_overlap(two_images(), pairs, lp.FitOptions(points=wrong))
+        for wrong in ([0.7, 1.2], [-1, 0], [2**32, 0]):
+            with self.assertRaisesRegex(ValueError, "integers of 0..4294967295"):
+                options.points = wrong
         options.points = None
         with refused(self, lp.Status.ERROR_ARGUMENT):
             lp.fit_overlap(two_images(), pairs, options)

@@ -63,7 +63,11 @@ class PerPair:
         return self if options is None else options.__dict__.get(self._name)
 
     def __set__(self, options: Any, values: Any) -> None:
-        array = None if values is None else np.ascontiguousarray(values, dtype=self._dtype)
+        given = None if values is None else np.asarray(values)
+        if given is not None and issubclass(self._dtype, np.integer) and given.size and not (
+                np.issubdtype(given.dtype, np.integer) and given.min() >= 0 and given.max() <= np.iinfo(self._dtype).max):
+            raise ValueError(f"{self._name} must be integers of 0..{np.iinfo(self._dtype).max}")
+        array = None if given is None else np.ascontiguousarray(given, dtype=self._dtype)
         if array is not None and array.ndim != 1:
             raise ValueError(f"{self._name} of shape {array.shape}: give one number for each pair")
         options.__dict__[self._name] = array

@@ -171,7 +171,7 @@ BuildReport build(const BuildOptions &o, Project &project, const std::vector<Pic
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(state.input.pairs, project));
     if (!o.exposures_out.empty() && (state.best.corrects() || o.store.force))
         outputs.add(o.exposures_out, exposures_text(state, project, metadata, o.exposures_out));
-    if (!o.gain_chart.empty() && !state.input.points.empty())
+    if (!o.gain_chart.empty() && !state.input.points.empty() && (state.best.corrects() || o.store.force))
         outputs.add(o.gain_chart, gain_chart(o.gain_chart, project.path, gain_curves(state)));
     if (!o.pto_out.empty() && (state.best.corrects() || o.store.force))
         outputs.add(o.pto_out, result_text(state, project, o.pto_out));

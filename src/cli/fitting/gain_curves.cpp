@@ -28,11 +28,13 @@ std::vector<double> differences_with(const Fitted &fitted, const FitInput &input
     return differences;
 }
 
-// The result if response and falloff were unknown: the typical response of the kind of camera, and no falloff.
+// The result if response and falloff were unknown, as the library compares it: the typical response of the kind of
+// camera, and no falloff, where these are free.
 Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string &item, Progress &progress) {
-    check(lensprof_response_set_typical(&input.fixed, input.options.camera_kind, nullptr, nullptr), item);
+    if (input.options.free & LENSPROF_FREE_RESPONSE)
+        check(lensprof_response_set_typical(&input.fixed, input.options.camera_kind, nullptr, nullptr), item);
     input.options.response = &input.fixed;
-    input.options.vignetting = lensprof_vignetting{};
+    if (input.options.free & falloff_flags) input.options.vignetting = lensprof_vignetting{};
     input.options.profile = nullptr;
     input.options.free = 0;
     input.points.clear(), input.view_distances.clear();
@@ -43,10 +45,13 @@ Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string 
 }  // namespace
 
 std::vector<GainCurve> gain_curves(ProjectFit &state) {
-    const Fitted only = fit_exposures_only(state.input, state.report.reference, state.item, state.progress);
-    return {{"before", differences_before(state.input)},
-            {"exposures alone", differences_with(only, state.input, state.item)},
-            {"this result", differences_with(state.best, state.input, state.item)}};
+    std::vector<GainCurve> curves = {{"before", differences_before(state.input)}};
+    if (state.best.result.colour_variance_exposures_only != LENSPROF_UNKNOWN) {
+        const Fitted only = fit_exposures_only(state.input, state.report.reference, state.item, state.progress);
+        curves.push_back({"exposures alone", differences_with(only, state.input, state.item)});
+    }
+    curves.push_back({"this result", differences_with(state.best, state.input, state.item)});
+    return curves;
 }
 
 }  // namespace lensprof

@@ -132,7 +132,7 @@ void set_turns(const Project &project, const std::vector<PictureMetadata> &metad
 
 }  // namespace
 
-bool LensSettings::has_turned_images() const {
+bool LensSettings::has_rotated_images() const {
     return std::any_of(turn_of_image.begin(), turn_of_image.end(), [](uint16_t turn) { return turn != 1; });
 }
 

@@ -22,7 +22,7 @@ struct LensSettings {
     bool are_centres_unknown = false;
     std::vector<bool> is_turn_unknown;  // per setting: it has pictures that may have been rotated either way
 
-    bool has_turned_images() const;
+    bool has_rotated_images() const;
     bool has_several_settings() const { return first.size() > 1; }
     bool has_several_cameras() const { return first_of_camera.size() > 1; }
 };

@@ -71,7 +71,8 @@ void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::stri
 std::string reason_left_out(const FoundProject &other, const FoundProject &project) {
     if (other.kind == SceneKind::still)
         return "part of another group, whose camera did not move; use `lensprof bracket` or `lensprof align` for it";
-    if (other.group == project.group) return std::string("part of another group: ") + linked_by_other_camera;
+    if (other.connected_group == project.connected_group)
+        return std::string("part of another group: ") + linked_by_other_camera;
     return "part of another group that overlaps none of these pictures; give that group's pictures alone";
 }
 

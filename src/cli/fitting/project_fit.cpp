@@ -208,7 +208,7 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &state, Streams &stream
         state.input.images[i].setting = settings.of_image[i];
         state.input.images[i].camera = settings.camera_of_image[i];
     }
-    if (settings.has_turned_images()) state.input.turn_of = settings.turn_of_image;
+    if (settings.has_rotated_images()) state.input.turn_of = settings.turn_of_image;
     lensprof_fit_options &options = state.input.options;
     if (!settings.are_centres_unknown || !(options.free & LENSPROF_FREE_CENTER)) return;
     options.free &= ~uint32_t(LENSPROF_FREE_CENTER);

@@ -35,7 +35,7 @@ std::string result_text(ProjectFit &state, Project &project, const std::string &
                                   stored.exposures.data(), static_cast<uint32_t>(stored.exposures.size()),
                                   stored.reference, &error),
           project.path, &error);
-    if (state.settings.has_several_settings() || state.settings.has_turned_images()) {
+    if (state.settings.has_several_settings() || state.settings.has_rotated_images()) {
         const FalloffGroups groups = falloff_groups(state.settings);
         std::vector<lensprof_vignetting> falloffs;
         for (const uint32_t first : groups.first) {

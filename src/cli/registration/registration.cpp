@@ -308,7 +308,7 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Prog
     for (const auto &[group, numbers] : members) {
         progress.update("finding cameras", static_cast<double>(group) / static_cast<double>(members.size()));
         result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
-        result.projects.back().group = components[numbers[0]];
+        result.projects.back().connected_group = components[numbers[0]];
         for (const uint32_t i : numbers) result.projects.back().camera_ids.push_back(camera_ids[i]);
     }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {

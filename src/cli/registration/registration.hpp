@@ -35,7 +35,7 @@ struct FoundProject {
                                           // explain
     double residual = 0.0;                // median over the links that fit, as a share of the longer side
 
-    uint32_t group = 0;  // equal for groups that are connected only by pictures of no group
+    uint32_t connected_group = 0;  // equal for groups that are connected only by pictures of no group
 
     bool cameras_fit() const { return 2 * unfit <= links; }
 };

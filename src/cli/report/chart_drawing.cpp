@@ -141,8 +141,8 @@ void draw(cairo_t *cr, const Layout &layout) {
     draw_text(cr, 20, 46, layout.chart->title, 0);
     const double middle = left + 0.5 * plot_width;
     draw_text(cr, middle, top + plot_height + 42, "r, half diagonals from the centre of the falloff (1 = corner)", 0.5);
-    draw_turned_text(cr, 24, top + 0.5 * plot_height, "M, light relative to the centre");
-    draw_turned_text(cr, left + plot_width + 62, top + 0.5 * plot_height, "EV relative to the centre");
+    draw_rotated_text(cr, 24, top + 0.5 * plot_height, "M, light relative to the centre");
+    draw_rotated_text(cr, left + plot_width + 62, top + 0.5 * plot_height, "EV relative to the centre");
 }
 
 }  // namespace

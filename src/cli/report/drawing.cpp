@@ -108,7 +108,7 @@ void draw_text(cairo_t *cr, double x, double y, const std::string &text, double 
     cairo_show_text(cr, text.c_str());
 }
 
-void draw_turned_text(cairo_t *cr, double x, double y, const std::string &text) {
+void draw_rotated_text(cairo_t *cr, double x, double y, const std::string &text) {
     cairo_save(cr);
     cairo_translate(cr, x, y);
     cairo_rotate(cr, -0.5 * M_PI);

@@ -20,7 +20,7 @@ double text_width(cairo_t *cr, const std::string &text);
 
 // Text on the base line y; its point `anchor` (0 = start, 1 = end) is at x.
 void draw_text(cairo_t *cr, double x, double y, const std::string &text, double anchor);
-void draw_turned_text(cairo_t *cr, double x, double y, const std::string &text);  // vertical, centred
+void draw_rotated_text(cairo_t *cr, double x, double y, const std::string &text);  // vertical, centred
 void stroke_line(cairo_t *cr, double x0, double y0, double x1, double y1);
 
 struct DrawingSize {

@@ -24,7 +24,13 @@ struct ColourCorrection {
 std::vector<double> colour_differences(const lensprof_pair *pairs, size_t count, int channels,
                                        const ColourCorrection *correction);
 
-// The mean of the smallest 90 % of these values; the others may show different objects. NaN is skipped.
+// Replaces NaN of pairs with unknown exposures: each link of two images is then compared at the ratio of exposures that
+// its own pairs have.
+void compare_unknown_exposures(const std::vector<lensprof_pair> &pairs, int channels,
+                               const ColourCorrection &correction, std::vector<double> &differences);
+
+// The mean of the smallest 90 % of these values; the others may show different objects. NaN is skipped; without others,
+// the mean is NaN.
 double colour_variance(std::vector<double> differences);
 
 }  // namespace lensprof

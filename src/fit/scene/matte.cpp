@@ -15,11 +15,12 @@ constexpr size_t kGreyBins = 8;
 
 // Whether the point of each pair is in the share of points whose colours differ least, among those of similar grey
 // value: where the response is flat, as near white, all differences are small.
-std::vector<bool> are_matte(const SceneData &data, const std::vector<double> &differences) {
+std::vector<bool> are_matte(const SceneData &data, int channels, const std::vector<double> &differences) {
     struct Point {
         double difference = 0.0, grey = 0.0, count = 0.0;
-        size_t bin() const { return std::min(kGreyBins - 1, static_cast<size_t>(grey / count * kGreyBins)); }
+        size_t bin() const { return static_cast<size_t>(std::clamp(grey / count * kGreyBins, 0.0, kGreyBins - 1.0)); }
     };
+    const int channel = channels == 1 ? 0 : 1;
     std::vector<uint32_t> numbers = data.points;
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -30,7 +31,7 @@ std::vector<bool> are_matte(const SceneData &data, const std::vector<double> &di
     for (size_t p = 0; p < data.points.size(); p++) {
         Point &point = point_of(p);
         point.difference += std::isnan(differences[p]) ? kMaxDifference : std::min(differences[p], kMaxDifference);
-        point.grey += 0.5 * (data.pairs[p].value[0][1] + data.pairs[p].value[1][1]);
+        point.grey += 0.5 * (data.pairs[p].value[0][channel] + data.pairs[p].value[1][channel]);
         point.count++;
     }
     std::vector<double> of_bin[kGreyBins];
@@ -121,7 +122,7 @@ void leave_out_glossy_points(const FitPairs &fit, SceneData &data, SceneFit &bes
     const SceneFit first = fit_like(best);
     bool is_converged = false;
     for (int round = 0; round < kMaxRounds && !is_converged; round++) {
-        const std::vector<bool> matte = are_matte(all, best.differences(all));
+        const std::vector<bool> matte = are_matte(all, best.call->channels(), best.differences(all));
         SceneData selected = data_where(all, [&](size_t p) { return matte[p]; });
         SceneFit next(*first.call, first.exposures.data());
         if (!run(fit, selected, next) || next.joined() < best.joined()) break;  // some images have too few matte points

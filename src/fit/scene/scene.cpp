@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fit/methods/unconstrained.hpp"
 #include "fit/scene/colours.hpp"
 #include "fit/scene/matte.hpp"
 #include "fit/scene/visits.hpp"
@@ -13,21 +14,56 @@
 namespace lensprof {
 namespace {
 
-// Exposures and white balances with the typical response of the kind of camera and no falloff: the baseline without
-// knowledge of the camera. All images are of one setting and camera.
-SceneFit exposures_only(const FitCall &call, const lensprof_exposure *before) {
-    SceneFit only(call, before);
-    FitCall &of = *only.call;
-    if (lensprof_response_set_typical(&of.held, of.options.camera_kind, nullptr, nullptr) != LENSPROF_OK)
-        throw std::invalid_argument("unknown kind of camera");
-    of.options.response = &of.held;
-    of.options.vignetting = lensprof_vignetting{};
-    of.options.profile = nullptr;
-    of.options.free = 0;
-    for (lensprof_fit_image &image : of.images) image.setting = image.camera = 0;
-    of.make_room();
-    return only;
-}
+// Exposures and white balances, with the typical response of the kind of camera and no falloff where these are free:
+// the baseline without knowledge of the camera. All images are of one setting and camera.
+class Baseline {
+public:
+    Baseline(const FitCall &call, const lensprof_exposure *before) : fit(call, before) {
+        FitCall &of = *fit.call;
+        if (of.options.free & LENSPROF_FREE_RESPONSE) {
+            if (lensprof_response_set_typical(&of.held, of.options.camera_kind, nullptr, &gamma_sigma_) != LENSPROF_OK)
+                throw std::invalid_argument("unknown kind of camera");
+            of.options.response = &of.held;
+        }
+        if (of.options.free & kFalloffFlags) of.options.vignetting = lensprof_vignetting{};
+        of.options.profile = nullptr;
+        of.options.free = 0;
+        for (lensprof_fit_image &image : of.images) image.setting = image.camera = 0;
+        of.make_room();
+    }
+
+    // The result, with the error of the typical response and the findings on the pairs and images.
+    SceneFit result() && {
+        FitResult &r = fit.call->result;
+        if (gamma_sigma_ > 0.0) state_typical(gamma_sigma_, fit.call->count(), fit.exposures.data(), r);
+        remove_findings(r.verdict, [](const lensprof_finding &finding) { return !is_of_data(finding.code); });
+        report_first(r, found_by_method(LENSPROF_REASON_EXPOSURES_ONLY, {}));
+        r.model = LENSPROF_FIT_MODEL_EXPOSURES;
+        return std::move(fit);
+    }
+
+    SceneFit fit;
+
+private:
+    static bool is_of_data(uint32_t code) {
+        switch (code) {
+        case LENSPROF_REASON_IMAGE_GROUPS:
+        case LENSPROF_REASON_FEW_PAIRS:
+        case LENSPROF_REASON_FEW_INLIERS:
+        case LENSPROF_REASON_IMAGE_DISAGREES:
+        case LENSPROF_REASON_IMAGE_INCONSISTENT:
+        case LENSPROF_REASON_IMAGES_LEFT_OUT:
+        case LENSPROF_REASON_IMAGES_UNCONNECTED:
+        case LENSPROF_REASON_LINKS_CONTRADICT:
+        case LENSPROF_REASON_LINKS_UNVERIFIED:
+        case LENSPROF_REASON_NOT_CONVERGED:
+        case LENSPROF_REASON_EXPOSURE_UNCERTAIN: return true;
+        default: return false;
+        }
+    }
+
+    double gamma_sigma_ = 0.0;
+};
 
 // Whether held-out pairs differ less with response and falloff, by the median residual, which glossy objects affect
 // less than the mean.
@@ -36,35 +72,42 @@ bool is_better(const FitResult &full, const FitResult &only) {
            || full.heldout_median < only.heldout_median;
 }
 
-// Exposures alone as the result, with the findings on which images take part.
-void refuse_lens(FitResult &r) {
-    remove_findings(r.verdict, [](const lensprof_finding &finding) {
-        switch (finding.code) {
-        case LENSPROF_REASON_IMAGES_LEFT_OUT:
-        case LENSPROF_REASON_IMAGES_UNCONNECTED:
-        case LENSPROF_REASON_LINKS_CONTRADICT:
-        case LENSPROF_REASON_LINKS_UNVERIFIED: return false;
-        default: return true;
-        }
-    });
-    report_first(r, found_by_method(LENSPROF_REASON_EXPOSURES_ONLY, {}));
-    r.model = LENSPROF_FIT_MODEL_EXPOSURES;
-}
-
 void set_equalizes(bool equalizes, FitCall &call) {
     call.result.equalizes = equalizes;
-    if (!call.cameras.empty()) call.cameras[call.images[call.result.reference].camera].equalizes = equalizes;
+    for (CameraResult &camera : call.cameras)
+        if (camera.joint.images) camera.equalizes = equalizes;
+}
+
+// Whether colours agree after the correction. With false matches they differ more than before regardless of it.
+bool agree_in_colour(const FitResult &r) {
+    const bool is_determined = r.converged && !has_code(r.verdict, LENSPROF_REASON_FEW_PAIRS)
+                               && !has_code(r.verdict, LENSPROF_REASON_IMAGE_GROUPS);
+    return is_determined && r.colour_variance < r.colour_variance_before
+           && (r.colour_variance < kMuchLessColour * r.colour_variance_before || r.colour_variance < kGlossy);
+}
+
+double known_or_unknown(double variance) { return std::isnan(variance) ? LENSPROF_UNKNOWN : variance; }
+
+// Measures all on the same pairs: those whose images all of them have.
+void keep_common(std::vector<double> &a, std::vector<double> &b) {
+    for (size_t p = 0; p < a.size(); p++)
+        if (std::isnan(a[p]) || std::isnan(b[p])) a[p] = b[p] = NAN;
 }
 
 // Refuses images of two visits, of which each is a component.
-void judge_visits(const Visits &visits, FitCall &call) {
+void judge_visits(const Visits &visits, const lensprof_exposure *exposures, FitCall &call) {
     if (visits.second.empty()) return;
     const auto is_second = [&](uint32_t image) {
         return std::binary_search(visits.second.begin(), visits.second.end(), image);
     };
-    uint32_t first = 0;  // image of the larger group
-    while (is_second(first)) first++;
-    for (uint32_t i = 0; i < call.count(); i++) call.quality[i].component = is_second(i) ? visits.second[0] : first;
+    uint32_t first = call.count();  // image of the larger group
+    for (uint32_t i = call.count(); i-- > 0;)
+        if (!is_second(i) && !std::isnan(exposures[i].ev)) first = i;
+    for (uint32_t i = 0; i < call.count(); i++)
+        if (is_second(i))
+            call.quality[i].component = visits.second[0];
+        else if (!std::isnan(exposures[i].ev))
+            call.quality[i].component = first;
     const auto count = static_cast<double>(visits.second.size());
     const Measured measured = of_image(of_values(visits.ratio, count, visits.ratio), visits.second[0]);
     const lensprof_finding finding =
@@ -94,34 +137,36 @@ std::vector<double> SceneFit::differences(const SceneData &data) const {
 
 void fit_scene(const SceneData &data, const FitPairs &fit, FitCall &call, lensprof_exposure *exposures) {
     if (!call.options.free) return;
-    const int channels = call.channels();
-    SceneFit best(call, exposures), only = exposures_only(call, exposures);
+    SceneFit best(call, exposures);
+    Baseline only(call, exposures);
     best.call->take(std::move(call));
-    const bool has_baseline = fit(*only.call, data.pairs, only.exposures.data());
-    const double before = colour_variance(colour_differences(data.pairs.data(), data.pairs.size(), channels, nullptr)),
-                 baseline = has_baseline ? colour_variance(only.differences(data)) : HUGE_VAL;
-    bool has_lens = !has_baseline || is_better(best.call->result, only.call->result);
+    const bool has_baseline = fit(*only.fit.call, data.pairs, only.fit.exposures.data());
+    std::vector<double> before = colour_differences(data.pairs.data(), data.pairs.size(), call.channels(), nullptr),
+                        baseline = has_baseline ? only.fit.differences(data) : before;
+    bool has_lens = !has_baseline || is_better(best.call->result, only.fit.call->result);
     SceneData fitted = data;
     if (has_lens) {
         leave_out_glossy_points(fit, fitted, best);
-        has_lens = colour_variance(best.differences(data)) < baseline;
+        std::vector<double> with_lens = best.differences(data), without = baseline;
+        keep_common(with_lens, without);
+        has_lens = !has_baseline || colour_variance(with_lens) < colour_variance(without);
     }
     if (has_lens)
         add_errors_by_halves(fitted, fit, best);
     else
-        best = std::move(only), refuse_lens(best.call->result);
-    const std::vector<double> differences = best.differences(data);
+        best = std::move(only).result();
+    std::vector<double> differences = best.differences(data), all_differences = differences;
+    compare_unknown_exposures(data.pairs, call.channels(), ColourCorrection(*best.call, best.exposures.data()),
+                              all_differences);
+    keep_common(differences, baseline), keep_common(differences, before), keep_common(differences, baseline);
     call.take(std::move(*best.call));
     std::copy(best.exposures.begin(), best.exposures.end(), exposures);
     FitResult &r = call.result;
-    r.colour_variance_before = before;
-    r.colour_variance_exposures_only = has_baseline ? baseline : LENSPROF_UNKNOWN;
-    r.colour_variance = colour_variance(differences);
-    // With false matches, colours differ more than before regardless of the correction.
-    set_equalizes(
-        r.colour_variance < before && (r.colour_variance < kMuchLessColour * before || r.colour_variance < kGlossy),
-        call);
-    judge_visits(find_visits(call.count(), data, differences), call);
+    r.colour_variance_before = known_or_unknown(colour_variance(before));
+    r.colour_variance_exposures_only = has_baseline ? known_or_unknown(colour_variance(baseline)) : LENSPROF_UNKNOWN;
+    r.colour_variance = known_or_unknown(colour_variance(differences));
+    set_equalizes(agree_in_colour(r), call);
+    judge_visits(find_visits(call.count(), data, all_differences), exposures, call);
 }
 
 }  // namespace lensprof
