@@ -33,7 +33,7 @@ constexpr double kSteepAlone = 0.2, kSlantAlone = 0.1, kSteepRotated = 0.5;
 // can leave a pattern that both show, which counts as not radial.
 constexpr double kMuchPerShot = 0.015, kSomePerShot = 0.004;
 
-// Of the light. Some: cards 32/9, 13/10, 0/11. Much: 1/8, 0/9, 0/11; chosen on the other half (--tune). All their
+// Of the light. Some: cards 32/9, 13/10, 0/11. Much: 1/9, 0/10, 0/12; chosen on the other half (--tune). All their
 // lenses are radial: the good ones reach .0054.
 constexpr double kMuchNotRadial = 0.01, kNotRadial = 0.003;
 

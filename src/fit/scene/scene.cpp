@@ -80,7 +80,8 @@ void set_equalizes(bool equalizes, FitCall &call) {
 
 // Whether colours agree after the correction. With false matches they differ more than before regardless of it.
 bool agree_in_colour(const FitResult &r) {
-    const bool is_determined = r.converged && !has_code(r.verdict, LENSPROF_REASON_FEW_PAIRS)
+    const bool is_determined = r.converged && r.colour_variance != LENSPROF_UNKNOWN
+                               && !has_code(r.verdict, LENSPROF_REASON_FEW_PAIRS)
                                && !has_code(r.verdict, LENSPROF_REASON_IMAGE_GROUPS);
     return is_determined && r.colour_variance < r.colour_variance_before
            && (r.colour_variance < kMuchLessColour * r.colour_variance_before || r.colour_variance < kGlossy);

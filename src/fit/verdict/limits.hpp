@@ -61,7 +61,7 @@ constexpr double kClearlyBetter = 4.0;  // in chi-squared, than the next explana
 // Response.
 // Gauge::oddness: 1 = the spread of measured cameras. Twice it: gallery 39/2, 2/5, 0/7; real panoramas reach 1.9. No
 // good sequence of 400, and no real panorama, has both an unusual response and a weak pattern of each
-// image: gallery 0/13, 0/15, 0/17.
+// image: gallery 0/3, 0/5, 0/7, of sequences with a weak pattern.
 constexpr double kUnusual = 1.0, kVeryUnusual = 2.0;
 // EV. At .06 EV the differences between shapes of responses, some 5 levels, move grey values by .2 to .4 levels, as
 // much as rounding and interpolation do.
