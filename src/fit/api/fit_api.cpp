@@ -47,11 +47,11 @@ lensprof_status run(FitCall &call, const Target &target, lensprof_error *error, 
 }
 
 // Fits pairs of one camera or several.
-lensprof_status fit_given(FitCall &call, const std::vector<lensprof_pair> &pairs, lensprof_exposure *found,
+lensprof_status fit_given(FitCall &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *found,
                           lensprof_error *error) {
     return has_several_cameras(call.options, call.images)
-               ? fit_each_camera(call, {call.options, call.images, pairs, {}}, found, error)
-               : fit_pairs(call, pairs.data(), static_cast<uint32_t>(pairs.size()), found, error);
+               ? fit_each_camera(call, {call.options, call.images, {pairs, pairs + count}, {}}, found, error)
+               : fit_pairs(call, pairs, count, found, error);
 }
 
 // The progress of the fits of a scene as that of one.
@@ -79,18 +79,18 @@ private:
 };
 
 // Fits pairs of known scene points.
-lensprof_status fit_points(FitCall &call, const std::vector<lensprof_pair> &pairs, lensprof_exposure *found,
+lensprof_status fit_points(FitCall &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *found,
                            lensprof_error *error) {
     const lensprof_fit_options &o = call.options;
-    SceneData data{pairs, {o.points, o.points + pairs.size()}, {}};
-    if (o.view_distances) data.distances.assign(o.view_distances, o.view_distances + pairs.size());
+    SceneData data{{pairs, pairs + count}, {o.points, o.points + count}, {}};
+    if (o.view_distances) data.distances.assign(o.view_distances, o.view_distances + count);
     SceneProgress progress(call.options);
-    const lensprof_status status = fit_given(call, pairs, found, error);
+    const lensprof_status status = fit_given(call, pairs, count, found, error);
     if (status != LENSPROF_OK) return status;
     const auto fit = [&](FitCall &next, const std::vector<lensprof_pair> &some, lensprof_exposure *exposures) {
         progress.next_fit();
         return !some.empty() && has_unknowns(next.options, next.images.data(), next.count())
-               && fit_given(next, some, exposures, nullptr) == LENSPROF_OK;
+               && fit_given(next, some.data(), static_cast<uint32_t>(some.size()), exposures, nullptr) == LENSPROF_OK;
     };
     fit_scene(data, fit, call, found);
     return LENSPROF_OK;
@@ -137,9 +137,7 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         if (status != LENSPROF_OK) return status;
         if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
         return run(*call, target, error, [&](lensprof_exposure *found) {
-            const std::vector<lensprof_pair> given(pairs, pairs + pair_count);
-            return call->options.points ? fit_points(*call, given, found, error)
-                                        : fit_given(*call, given, found, error);
+            return (call->options.points ? fit_points : fit_given)(*call, pairs, pair_count, found, error);
         });
     });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <stdexcept>
 
 #include "fit/methods/unconstrained.hpp"
@@ -90,9 +91,10 @@ bool agree_in_colour(const FitResult &r) {
 double known_or_unknown(double variance) { return std::isnan(variance) ? LENSPROF_UNKNOWN : variance; }
 
 // Measures all on the same pairs: those whose images all of them have.
-void keep_common(std::vector<double> &a, std::vector<double> &b) {
-    for (size_t p = 0; p < a.size(); p++)
-        if (std::isnan(a[p]) || std::isnan(b[p])) a[p] = b[p] = NAN;
+void keep_common(std::initializer_list<std::vector<double> *> all) {
+    for (size_t p = 0; p < (*all.begin())->size(); p++)
+        if (std::any_of(all.begin(), all.end(), [=](const auto *of) { return std::isnan((*of)[p]); }))
+            for (std::vector<double> *of : all) (*of)[p] = NAN;
 }
 
 // Refuses images of two visits, of which each is a component.
@@ -143,23 +145,24 @@ void fit_scene(const SceneData &data, const FitPairs &fit, FitCall &call, lenspr
     best.call->take(std::move(call));
     const bool has_baseline = fit(*only.fit.call, data.pairs, only.fit.exposures.data());
     std::vector<double> before = colour_differences(data.pairs.data(), data.pairs.size(), call.channels(), nullptr),
-                        baseline = has_baseline ? only.fit.differences(data) : before;
+                        baseline = has_baseline ? only.fit.differences(data) : before, differences;
     bool has_lens = !has_baseline || is_better(best.call->result, only.fit.call->result);
     SceneData fitted = data;
     if (has_lens) {
         leave_out_glossy_points(fit, fitted, best);
-        std::vector<double> with_lens = best.differences(data), without = baseline;
-        keep_common(with_lens, without);
+        differences = best.differences(data);
+        std::vector<double> with_lens = differences, without = baseline;
+        keep_common({&with_lens, &without});
         has_lens = !has_baseline || colour_variance(with_lens) < colour_variance(without);
     }
     if (has_lens)
         add_errors_by_halves(fitted, fit, best);
     else
-        best = std::move(only).result();
-    std::vector<double> differences = best.differences(data), all_differences = differences;
+        best = std::move(only).result(), differences = baseline;
+    std::vector<double> all_differences = differences;
     compare_unknown_exposures(data.pairs, call.channels(), ColourCorrection(*best.call, best.exposures.data()),
                               all_differences);
-    keep_common(differences, baseline), keep_common(differences, before), keep_common(differences, baseline);
+    keep_common({&differences, &baseline, &before});
     call.take(std::move(*best.call));
     std::copy(best.exposures.begin(), best.exposures.end(), exposures);
     FitResult &r = call.result;
