@@ -56,7 +56,7 @@ typedef struct lensprof_rendering_shot {
     uint32_t rough;              /* not among the smoothest of their grey level */
     uint32_t areas;              /* compared. The following members are those of a fit; 0 before */
     uint32_t corrects_falloff;   /* 1: the camera brightened the corners, by three standard errors and 2 % */
-    uint32_t reserved;           /* 0 */
+    uint32_t tones;              /* 0: mapped globally; 1: perhaps locally; 2: locally, by pattern_levels */
     double radius;               /* largest r of an area, half diagonals of the raw frame */
     double corner, corner_sigma; /* irradiance of the rendering over that of the sensor at that r, and its standard
                                     error; in the middle 1 */

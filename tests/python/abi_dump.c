@@ -478,7 +478,7 @@ static void print_structs(void) {
     FIELD(lensprof_rendering_shot, rough);
     FIELD(lensprof_rendering_shot, areas);
     FIELD(lensprof_rendering_shot, corrects_falloff);
-    FIELD(lensprof_rendering_shot, reserved);
+    FIELD(lensprof_rendering_shot, tones);
     FIELD(lensprof_rendering_shot, radius);
     FIELD(lensprof_rendering_shot, corner);
     FIELD(lensprof_rendering_shot, corner_sigma);

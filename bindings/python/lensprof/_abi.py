@@ -1075,7 +1075,7 @@ class RenderingShot(Structure):
         ("rough", c_uint32),
         ("areas", c_uint32),
         ("corrects_falloff", c_uint32),
-        ("reserved", c_uint32),
+        ("tones", c_uint32),
         ("radius", c_double),
         ("corner", c_double),
         ("corner_sigma", c_double),

@@ -17,13 +17,13 @@ from .reason import WithFindings
 class RenderingShot(Struct, _abi.RenderingShot):
     """One shot: how its two pictures correspond, and what the camera did.
 
-    width, height: of the rendered picture, px; quarter_turns: rotation that aligns it with the raw frame. shift, scale,
-    k1, k2: from rendered picture to raw frame, in half diagonals. correlation, texture: of both, aligned. squares: of
-    the rendered picture, of which black, white, colourful, saturated and rough ones were left out; areas: compared.
-    corner: irradiance of the rendering over that of the sensor at `radius`; corrects_falloff: the camera brightened the
-    corners. pattern_levels, pattern_ev: map of residuals over the frame. noise_levels: of an area. white_ev: from white
-    to the sensor's saturation. gamma, gamma_sigma: from this shot alone. colour: matrix, row by row; falloff,
-    saturation: of the rendering.
+    width, height: of the rendered picture, px; quarter_turns: rotation that aligns it with the raw frame. shift,
+    scale, k1, k2: from rendered picture to raw frame, in half diagonals. correlation, texture: of both, aligned.
+    squares: of the rendered picture, of which black, white, colourful, saturated and rough ones were left out; areas:
+    compared. corner: irradiance of the rendering over that of the sensor at `radius`; corrects_falloff: the camera
+    brightened the corners. tones: 0 = mapped globally, 1 = perhaps locally, 2 = locally. pattern_levels, pattern_ev:
+    map of residuals. noise_levels: of an area. white_ev: from white to the sensor's saturation. gamma, gamma_sigma:
+    from this shot alone. colour: matrix, row by row; falloff, saturation: of the rendering.
     """
 
     width: int
@@ -44,6 +44,7 @@ class RenderingShot(Struct, _abi.RenderingShot):
     rough: int
     areas: int
     corrects_falloff = Flag()
+    tones: int
     radius: float
     corner: float
     corner_sigma: float

@@ -10,27 +10,7 @@
 namespace lensprof {
 namespace {
 
-enum class Tones {
-    global,
-    doubtful,
-    local
-};
-
-// How a shot's tones were mapped, by the findings on them.
-Tones tones_of(const ResponseReport &report, const lensprof_rendering_shot &shot) {
-    const auto is_above = [&](uint32_t severity) {
-        for (const auto *rules : {&report.verdict.findings, &report.verdict.passed})
-            for (const Finding &rule : *rules)
-                if (rule.code == LENSPROF_REASON_PATTERNS && rule.severity == severity)
-                    return shot.pattern_levels > rule.limit;
-        return false;
-    };
-    return is_above(LENSPROF_SEVERITY_REFUSAL)   ? Tones::local
-           : is_above(LENSPROF_SEVERITY_WARNING) ? Tones::doubtful
-                                                 : Tones::global;
-}
-
-Json file_json(const ResponseReport &report, const ResponseFile &file) {
+Json file_json(const ResponseFile &file) {
     constexpr std::array<const char *, 3> names = {"global", "doubtful", "local"};
     const lensprof_rendering_shot &s = file.shot;
     Json colour = Json::array();
@@ -59,13 +39,11 @@ Json file_json(const ResponseReport &report, const ResponseFile &file) {
     json["white_ev"] = s.white_ev;
     json["noise"] = s.noise_levels;
     json["falloff"] = {{"corrected", s.corrects_falloff != 0}, {"corner", s.corner}, {"corner_sigma", s.corner_sigma}};
-    json["tones"] = {{"mapped", names[static_cast<size_t>(tones_of(report, s))]},
-                     {"pattern", s.pattern_levels},
-                     {"pattern_ev", s.pattern_ev}};
+    json["tones"] = {{"mapped", names[s.tones]}, {"pattern", s.pattern_levels}, {"pattern_ev", s.pattern_ev}};
     return json;
 }
 
-void print_file(const ResponseReport &report, const ResponseFile &file, std::ostream &out) {
+void print_file(const ResponseFile &file, std::ostream &out) {
     constexpr std::array<const char *, 3> words = {"globally mapped", "possibly locally mapped", "locally mapped"};
     const lensprof_rendering_shot &s = file.shot;
     out << format("picture   %s: %s of %u x %u px, %u areas, %.2f levels from the curve\n", file.file.c_str(),
@@ -75,7 +53,7 @@ void print_file(const ResponseReport &report, const ResponseFile &file, std::ost
         "          falloff %s: %.3f +- %.3f of the sensor's light at r = %.2f; tones %s: a map of %.2f levels "
         "remains\n",
         s.corrects_falloff ? "corrected by the camera" : "not corrected", s.corner, s.corner_sigma, s.radius,
-        words[static_cast<size_t>(tones_of(report, s))], s.pattern_levels);
+        words[s.tones], s.pattern_levels);
     out << format("          white %.2f EV below the saturation of the sensor\n", s.white_ev);
 }
 
@@ -88,7 +66,7 @@ Json response_report_json(const ResponseReport &report) {
     json["usable"] = report.result.usable != 0;
     add_verdict(report.verdict, json);
     json["files"] = Json::array();
-    for (const ResponseFile &file : report.files) json["files"].push_back(file_json(report, file));
+    for (const ResponseFile &file : report.files) json["files"].push_back(file_json(file));
     const bool is_fitted = !report.files.empty();
     const lensprof_rendering_result &r = report.result;
     json["response"] = is_fitted ? response_json(&r.response, 1) : Json();
@@ -104,7 +82,7 @@ Json response_report_json(const ResponseReport &report) {
 
 void print_response_report(const ResponseReport &report, std::ostream &out) {
     const lensprof_rendering_result &r = report.result;
-    for (const ResponseFile &file : report.files) print_file(report, file, out);
+    for (const ResponseFile &file : report.files) print_file(file, out);
     print_response(r.response, out);
     out << format("gamma     %.3f +- %.3f (levels 48 to 208; standard error of ln gamma %.3f)\n", r.gamma,
                   r.gamma * r.gamma_sigma, r.gamma_sigma);

@@ -8,6 +8,7 @@
 
 #include "fit/base/fail.hpp"
 #include "fit/rendering/curve_fit.hpp"
+#include "fit/rendering/limits.hpp"
 
 namespace lensprof {
 namespace {
@@ -130,6 +131,9 @@ void describe_shot(const CurveFit &fit, uint32_t number, RenderedShot &shot) {
     found.noise_levels = 255.0 * fit.noise[0];
     found.pattern_levels = maps.rms(&HalfMaps::Sums::levels);
     found.pattern_ev = maps.rms(&HalfMaps::Sums::ev);
+    found.tones = found.pattern_levels > rendering_limits::kStrongMap ? 2
+                  : found.pattern_levels > rendering_limits::kWeakMap ? 1
+                                                                      : 0;
     found.white_ev = white_ev_of(rendering, found.channels);
 }
 
