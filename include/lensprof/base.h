@@ -60,7 +60,7 @@ extern "C" {
 #endif
 
 /* Values never change. Groups: 1-9 argument, 10-19 resource, 20-29 model or data, 30-39 fit, 40-49 store, 50-59 format,
- * 90 internal. */
+ * 60-69 file, 90 internal. */
 typedef enum lensprof_status {
     LENSPROF_OK = 0,
     LENSPROF_ERROR_ARGUMENT = 1,     /* NULL, unknown enum value, index out of range */
@@ -77,6 +77,7 @@ typedef enum lensprof_status {
     LENSPROF_ERROR_NO_OVERLAP = 30,  /* no two images see the same point */
     LENSPROF_ERROR_NO_SAMPLES = 31,  /* images overlap, but every sample is saturated, black or masked */
     LENSPROF_ERROR_NO_UNKNOWNS = 32, /* no parameter is free */
+    LENSPROF_ERROR_NOT_USABLE = 33,  /* the pictures do not suffice; the error text has the reason */
     LENSPROF_ERROR_STORE = 40,       /* the database could not be opened or used */
     LENSPROF_ERROR_NOT_FOUND = 41,   /* no such profile */
     LENSPROF_ERROR_CORRUPT = 42,     /* not a lensprof database or profile blob, or damaged */
@@ -87,6 +88,8 @@ typedef enum lensprof_status {
     LENSPROF_ERROR_SYNTAX = 50,      /* malformed file; the error text gives the line */
     LENSPROF_ERROR_VARIABLE = 51,    /* unknown or unusable variable name on a `v` line */
     LENSPROF_ERROR_UNSUPPORTED = 52, /* valid, but not supported by this version */
+    LENSPROF_ERROR_READ = 60,        /* a file cannot be read, or is not what it should be */
+    LENSPROF_ERROR_WRITE = 61,       /* a file or folder cannot be written */
     LENSPROF_ERROR_INTERNAL = 90     /* a defect of lensprof; please report */
 } lensprof_status;
 

@@ -40,6 +40,7 @@ const char *lensprof_status_name(lensprof_status status) {
         NAME(LENSPROF_ERROR_NO_OVERLAP);
         NAME(LENSPROF_ERROR_NO_SAMPLES);
         NAME(LENSPROF_ERROR_NO_UNKNOWNS);
+        NAME(LENSPROF_ERROR_NOT_USABLE);
         NAME(LENSPROF_ERROR_STORE);
         NAME(LENSPROF_ERROR_NOT_FOUND);
         NAME(LENSPROF_ERROR_CORRUPT);
@@ -50,6 +51,8 @@ const char *lensprof_status_name(lensprof_status status) {
         NAME(LENSPROF_ERROR_SYNTAX);
         NAME(LENSPROF_ERROR_VARIABLE);
         NAME(LENSPROF_ERROR_UNSUPPORTED);
+        NAME(LENSPROF_ERROR_READ);
+        NAME(LENSPROF_ERROR_WRITE);
         NAME(LENSPROF_ERROR_INTERNAL);
 #undef NAME
     }

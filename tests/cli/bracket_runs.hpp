@@ -4,7 +4,7 @@
 
 #include "cli_runs.hpp"
 
-#include "cli/pictures/metadata.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace bracket_runs {
 

@@ -1,8 +1,8 @@
 // Common parts of the tests of `calibrate`.
 #pragma once
 
-#include "cli/registration/registration.hpp"
 #include "cli_runs.hpp"
+#include "photo/registration/registration.hpp"
 
 namespace calibrate_runs {
 

@@ -22,19 +22,19 @@ void save(const std::string &path, const Bytes &bytes) {
         .write(reinterpret_cast<const char *>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
-std::string failure_of(ExitCode code, const std::function<void()> &call) {
+std::string failure_of(lensprof_status status, const std::function<void()> &call) {
     try {
         call();
     } catch (const Failure &failure) {
-        if (failure.code != code) fail_msg("%s: exit code %d", failure.what(), static_cast<int>(failure.code));
+        if (failure.group() != status) fail_msg("%s: %s", failure.what(), lensprof_status_name(failure.status));
         return failure.what();
     }
     fail_msg("no Failure");
     return std::string();
 }
 
-void assert_failure(ExitCode code, const std::string &part, const std::function<void()> &call) {
-    const std::string text = failure_of(code, call);
+void assert_failure(lensprof_status status, const std::string &part, const std::function<void()> &call) {
+    const std::string text = failure_of(status, call);
     if (text.find(part) == std::string::npos) fail_msg("'%s' does not contain '%s'", text.c_str(), part.c_str());
 }
 

@@ -19,8 +19,8 @@
 #include <png.h>
 #include <tiffio.h>
 
-#include "cli/pictures/picture.hpp"
-#include "cli/program/error.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/pictures/picture.hpp"
 
 // cmocka 1.1.5 does not declare its functions as C; support.h then includes it a second time.
 extern "C" {
@@ -48,9 +48,9 @@ Bytes load(const std::string &path);
 void save(const std::string &path, const Bytes &bytes);
 
 // The text of the Failure that `call` must throw.
-std::string failure_of(ExitCode code, const std::function<void()> &call);
+std::string failure_of(lensprof_status status, const std::function<void()> &call);
 
-void assert_failure(ExitCode code, const std::string &part, const std::function<void()> &call);
+void assert_failure(lensprof_status status, const std::string &part, const std::function<void()> &call);
 
 // The smallest profile that libpng accepts: a header and no tag (ICC.1:2010 section 7.2); padded to `size`.
 Bytes make_profile(bool grey, size_t size);

@@ -26,7 +26,7 @@ inline void assert_centre(const ReconstructionImage &image, double x, double y, 
 }
 
 inline void assert_unreadable(const std::string &path, const std::string &part, const Read &read) {
-    const std::string text = failure_of(ExitCode::unreadable, [&] { read(); });
+    const std::string text = failure_of(LENSPROF_ERROR_READ, [&] { read(); });
     if (text.find(path) == std::string::npos) fail_msg("'%s' does not name %s", text.c_str(), path.c_str());
     if (text.find(part) == std::string::npos) fail_msg("'%s' does not contain '%s'", text.c_str(), part.c_str());
 }
@@ -41,8 +41,8 @@ inline void cut_everywhere(const std::string &path, size_t step, const Read &rea
             read();
         } catch (const Failure &failure) {
             failures++;
-            if (failure.code != ExitCode::unreadable && failure.code != ExitCode::not_usable)
-                fail_msg("exit code %d: %s", int(failure.code), failure.what());
+            if (failure.group() != LENSPROF_ERROR_READ && failure.group() != LENSPROF_ERROR_NOT_USABLE)
+                fail_msg("status %d: %s", int(failure.status), failure.what());
             if (!std::strstr(failure.what(), folder.c_str())) fail_msg("no file name in: %s", failure.what());
         }
     }

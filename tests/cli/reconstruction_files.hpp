@@ -10,7 +10,7 @@
 
 #include <sqlite3.h>
 
-#include "cli/reconstruction/readers.hpp"
+#include "photo/reconstruction/readers.hpp"
 
 #include "picture_files.hpp"
 

@@ -34,8 +34,9 @@ void test_ended_within(void **) {
     save_text(file, "edited, and longer");
     Ledger again(work(""));
     assert_true(again.is_foreign(file));
-    assert_failure(ExitCode::usage, "a.png: was modified after", [&] { again.begin(file, "2"); });
-    assert_failure(ExitCode::usage, "b.png: exists and was not written by calibrate", [&] { again.begin(other, "2"); });
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "a.png: was modified after", [&] { again.begin(file, "2"); });
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "b.png: exists and was not written by calibrate",
+                   [&] { again.begin(other, "2"); });
     again.remove(file);
     assert_true(text_of(file) == "edited, and longer");
 }

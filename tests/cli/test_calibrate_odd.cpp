@@ -1,6 +1,6 @@
 // `calibrate` of folders with unusual content: it is named, and the rest is processed.
 #include "calibrate_runs.hpp"
-#include "cli/pictures/picture.hpp"
+#include "photo/pictures/picture.hpp"
 
 using namespace calibrate_runs;
 

@@ -1,7 +1,7 @@
 // `calibrate`: the whole job, its second run, existing files that block outputs, and bad input.
 #include "calibrate_runs.hpp"
 #include "cli/calibrate/ledger.hpp"
-#include "cli/pictures/picture.hpp"
+#include "photo/pictures/picture.hpp"
 
 using namespace calibrate_runs;
 

@@ -1,8 +1,8 @@
 // Pictures of several cameras: a response, a falloff and a profile for each, joined by common parameters.
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/registration/registration.hpp"
 #include "cli_runs.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/registration/registration.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <lensprof/lensprof.h>
 
-#include "cli/pictures/picture.hpp"
-#include "cli/program/library.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // `lensprof profile export` and `import` of other programs' files: written by name, recognised by content.
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/opcode_tag.hpp"
 #include "cli_runs.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/opcode_tag.hpp"
 
 using namespace cli_runs;
 using namespace picture_files;

@@ -1,7 +1,7 @@
 // `lensprof apply --linear --merge`: light of overlapping pictures compared with the light they were rendered from.
 #include "cli_runs.hpp"
 
-#include "cli/program/format.hpp"
+#include "photo/base/format.hpp"
 
 #include <lensprof/geometry.h>
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <random>
 
-#include "cli/pictures/picture.hpp"
-#include "cli/registration/registration.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/registration/registration.hpp"
 
 #include "cli_runs.hpp"
 #include "picture_files.hpp"

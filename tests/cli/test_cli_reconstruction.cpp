@@ -110,7 +110,7 @@ void test_blocks(void **) {
     std::ostringstream out, err;
     Streams streams{out, err};
     Progress progress(streams);
-    const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, {}, 0, 1}, streams);
+    const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, {}, 0, 1}, progress);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     std::vector<lensprof_pair> pairs[2];

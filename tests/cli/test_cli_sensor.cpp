@@ -4,7 +4,7 @@
 #include <lensprof/store.h>
 
 #include "cli/fitting/profile_store.hpp"
-#include "cli/pictures/sensor.hpp"
+#include "photo/pictures/sensor.hpp"
 
 using namespace cli_runs;
 

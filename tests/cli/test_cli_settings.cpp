@@ -1,10 +1,10 @@
 // Pictures at several lens settings: a falloff and a profile for each.
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/pictures/rotated_profile.hpp"
 #include "cli_runs.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/pictures/rotated_profile.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 // without loss, so the input is the ground truth.
 #include "coded_files.hpp"
 
-#include "cli/pictures/coded_kind.hpp"
+#include "photo/pictures/coded_kind.hpp"
 
 #include "heif_grid.hpp"
 
@@ -101,7 +101,7 @@ void test_webp_animation(void **) {
     put_riff(frames, "ANMF", frame);
     put_riff(frames, "ANMF", frame);
     save(in_folder("a.webp"), extended_webp(frames, 16, 16, 2, {}));
-    assert_failure(ExitCode::unreadable, "is a WebP animation", [] { read_header(in_folder("a.webp")); });
+    assert_failure(LENSPROF_ERROR_READ, "is a WebP animation", [] { read_header(in_folder("a.webp")); });
 }
 
 // libwebp's own program, which decodes in one step.
@@ -252,7 +252,7 @@ void test_heif_transfer(void **) {
             extras.transfer = transfer;
             write_heif(path, coding, picture, 8, extras);
             const char *name = transfer == 16 ? "(PQ transfer)" : "(HLG transfer)";
-            assert_failure(ExitCode::unreadable, name, [&] { read_header(path); });
+            assert_failure(LENSPROF_ERROR_READ, name, [&] { read_header(path); });
         }
         Extras linear;
         linear.transfer = 8;
@@ -297,10 +297,10 @@ void test_jxl_transfer(void **) {
     JxlKind kind;
     kind.transfer = JXL_TRANSFER_FUNCTION_PQ;
     save(path, jxl_bytes(picture, {}, kind));
-    assert_failure(ExitCode::unreadable, "(PQ transfer)", [&] { read_header(path); });
+    assert_failure(LENSPROF_ERROR_READ, "(PQ transfer)", [&] { read_header(path); });
     kind.transfer = JXL_TRANSFER_FUNCTION_HLG;
     save(path, jxl_bytes(picture, {}, kind));
-    assert_failure(ExitCode::unreadable, "(HLG transfer)", [&] { read_header(path); });
+    assert_failure(LENSPROF_ERROR_READ, "(HLG transfer)", [&] { read_header(path); });
     kind.transfer = JXL_TRANSFER_FUNCTION_LINEAR;
     save(path, jxl_bytes(picture, {}, kind));
     assert_int_equal(read_metadata(path).key.processing, LENSPROF_PROCESSING_RAW);
@@ -320,7 +320,7 @@ void test_jxl_animation(void **) {
     JxlKind kind;
     kind.animated = true;
     save(in_folder("a.jxl"), jxl_bytes(make_noise(83, 61, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB), {}, kind));
-    assert_failure(ExitCode::unreadable, "is a JPEG XL animation", [] { read_header(in_folder("a.jxl")); });
+    assert_failure(LENSPROF_ERROR_READ, "is a JPEG XL animation", [] { read_header(in_folder("a.jxl")); });
 }
 
 // libjxl's own programs: a JPEG recompressed as JPEG XL counts as the camera's own.
@@ -341,7 +341,8 @@ void test_jxl_of_jpeg(void **) {
 void test_names(void **) {
     for (const char *name : {"A.HEIC", "a.heif", "a.hif", "a.avif", "a.webp", "a.jxl"}) {
         assert_true(is_picture_name(name));
-        assert_failure(ExitCode::usage, "does not write it; give a name ending in .tif", [&] { format_of_name(name); });
+        assert_failure(LENSPROF_ERROR_ARGUMENT, "does not write it; give a name ending in .tif",
+                       [&] { format_of_name(name); });
     }
     assert_false(is_picture_name("a.mp4"));
 }

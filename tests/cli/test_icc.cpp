@@ -1,7 +1,7 @@
 // The tone curve of colour profiles. Damaged profiles give none, and nothing beyond their end is read.
 #include "icc_files.hpp"
 
-#include "cli/pictures/icc.hpp"
+#include "photo/pictures/icc.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
-#include "cli/pictures/lens_name.hpp"
+#include "photo/pictures/lens_name.hpp"
 #include "picture_files.hpp"
 
 using namespace picture_files;
@@ -570,9 +570,9 @@ void test_copy_fails(void **) {
     const auto copy = [](const char *from, const char *to) {
         return [=] { copy_metadata(in_folder(from), in_folder(to)); };
     };
-    assert_failure(ExitCode::unreadable, "no.jpg: cannot read", copy("no.jpg", "s.jpg"));
-    assert_failure(ExitCode::unreadable, "no.jpg: cannot read", copy("s.jpg", "no.jpg"));
-    assert_failure(ExitCode::unreadable, "cut.jpg: cannot read metadata: ", copy("s.jpg", "cut.jpg"));
+    assert_failure(LENSPROF_ERROR_READ, "no.jpg: cannot read", copy("no.jpg", "s.jpg"));
+    assert_failure(LENSPROF_ERROR_READ, "no.jpg: cannot read", copy("s.jpg", "no.jpg"));
+    assert_failure(LENSPROF_ERROR_READ, "cut.jpg: cannot read metadata: ", copy("s.jpg", "cut.jpg"));
     assert_true(load(in_folder("s.jpg")) == whole);
     assert_int_equal(files_in_folder(), 2);
 
@@ -586,7 +586,7 @@ void test_copy_fails(void **) {
     WriteOptions options;
     options.metadata_from = in_folder("a.tif");
     const Picture picture = make_smooth(8, 8, LENSPROF_LAYOUT_RGB);
-    assert_failure(ExitCode::failed,
+    assert_failure(LENSPROF_ERROR_WRITE,
                    "a.jpg: cannot write metadata: ", [&] { write_picture(in_folder("a.jpg"), picture, options); });
     assert_false(fs::exists(in_folder("a.jpg")));
 }

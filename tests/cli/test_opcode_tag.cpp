@@ -9,7 +9,7 @@
 
 #include "formats/each_format.h"
 
-#include "cli/pictures/opcode_tag.hpp"
+#include "photo/pictures/opcode_tag.hpp"
 
 using namespace picture_files;
 
@@ -205,7 +205,7 @@ void assert_refused(const std::string &in, const char *why) {
             else
                 read_opcode_lists(in);
         } catch (const Failure &failure) {
-            assert_int_equal(static_cast<int>(failure.code), static_cast<int>(ExitCode::unreadable));
+            assert_int_equal(failure.group(), LENSPROF_ERROR_READ);
             if (!strstr(failure.what(), why) || !strstr(failure.what(), in.c_str())) fail_msg("%s", failure.what());
             ++refused;
         }
@@ -242,7 +242,7 @@ void test_cuts_and_mutations(void **) {
             write_opcode_list(path, out, tag_opcode_list3, some_list(60));
             return read_opcode_lists(out).list3 == some_list(60) ? 1 : 2;
         } catch (const Failure &failure) {
-            assert_int_equal(static_cast<int>(failure.code), static_cast<int>(ExitCode::unreadable));
+            assert_int_equal(failure.group(), LENSPROF_ERROR_READ);
             return 0;
         }
     };

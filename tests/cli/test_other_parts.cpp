@@ -3,8 +3,8 @@
 
 #include "cli_runs.hpp"
 
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/other_parts.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/other_parts.hpp"
 
 using namespace cli_runs;
 
@@ -307,7 +307,7 @@ void test_hostile_files(void **) {
             read_picture(work("out.jpg"));
             several_pictures(work("in.jpg"));
         } catch (const Failure &failure) {
-            assert_int_equal(static_cast<int>(failure.code), unreadable);
+            assert_int_equal(failure.group(), LENSPROF_ERROR_READ);
         }
     }
 }

@@ -5,7 +5,7 @@
 
 #include "picture_files.hpp"
 
-#include "cli/pictures/picture_excerpt.hpp"
+#include "photo/pictures/picture_excerpt.hpp"
 
 using namespace picture_files;
 

@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/program/output_file.hpp"
+#include "photo/base/output_file.hpp"
 
 using namespace picture_files;
 
@@ -93,7 +93,7 @@ void check_cut(const Sample &sample, const Bytes &bytes, size_t length) {
             assert_same_pixels(picture, read_picture(path, options));
             assert_true(bytes.size() - length <= 4 && sample.name.find(".tif") != std::string::npos);
         } catch (const Failure &failure) {
-            assert_int_equal(static_cast<int>(failure.code), static_cast<int>(ExitCode::unreadable));
+            assert_int_equal(failure.group(), LENSPROF_ERROR_READ);
             assert_non_null(std::strstr(failure.what(), "cut: cannot read: "));
         }
     }
@@ -120,7 +120,7 @@ void test_cut_tiff_pixels(void **) {
             assert_same_pixels(picture, read_picture(in_folder("b.tif")));
             for (size_t length = 400; length < moved.size() - 8; length += moved.size() / 20) {
                 save(in_folder("b.tif"), Bytes(moved.begin(), moved.begin() + long(length)));
-                assert_failure(ExitCode::unreadable, "b.tif: cannot read: file is truncated or damaged (",
+                assert_failure(LENSPROF_ERROR_READ, "b.tif: cannot read: file is truncated or damaged (",
                                [] { read_picture(in_folder("b.tif")); });
             }
         }
@@ -162,7 +162,7 @@ void test_any_quantisation_table(void **) {
             changed[frame + 12 + 3 * component] = static_cast<uint8_t>(number);
             save(in_folder("changed"), changed);
             if (number > 3)
-                assert_failure(ExitCode::unreadable, "changed: cannot read: file is truncated or damaged",
+                assert_failure(LENSPROF_ERROR_READ, "changed: cannot read: file is truncated or damaged",
                                [] { read_picture(in_folder("changed")); });
         }
 }
@@ -176,7 +176,7 @@ void test_damaged_jpeg_in_tiff(void **) {
     bytes[300] = 0xff;  // the strip of about 770 bytes comes first
     bytes[301] = 0xd9;
     save(in_folder("a.tif"), bytes);
-    assert_failure(ExitCode::unreadable, "a.tif: cannot read: file is truncated or damaged",
+    assert_failure(LENSPROF_ERROR_READ, "a.tif: cannot read: file is truncated or damaged",
                    [] { read_picture(in_folder("a.tif")); });
 }
 
@@ -186,7 +186,7 @@ void test_png_checks_content(void **) {
         Bytes bytes = sample.bytes;
         bytes[at] ^= 0x10;
         save(in_folder("changed.png"), bytes);
-        assert_failure(ExitCode::unreadable, "changed.png: cannot read: file is truncated or damaged",
+        assert_failure(LENSPROF_ERROR_READ, "changed.png: cannot read: file is truncated or damaged",
                        [] { read_picture(in_folder("changed.png")); });
     }
 }
@@ -196,48 +196,48 @@ void test_not_pictures(void **) {
     save(in_folder("text.jpg"), Bytes(5000, 'x'));
     save(in_folder("raw.cr2"), {'I', 'I', '*', 0, 16, 0, 0, 0, 'C', 'R', 2, 0, 0, 0, 0, 0});
     const auto read = [](const char *name) { return [name] { read_picture(in_folder(name)); }; };
-    assert_failure(ExitCode::unreadable, "empty.png: cannot read: file is truncated", read("empty.png"));
-    assert_failure(ExitCode::unreadable, "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP or JPEG XL", read("text.jpg"));
-    assert_failure(ExitCode::unreadable, "camera raw", read("raw.cr2"));
-    assert_failure(ExitCode::unreadable, "no.png: cannot read: No such file", read("no.png"));
-    assert_failure(ExitCode::unreadable, "is a folder", read("."));
-    assert_failure(ExitCode::unreadable, "is a folder", [] { read_size(in_folder(".")); });
-    assert_failure(ExitCode::unreadable,
+    assert_failure(LENSPROF_ERROR_READ, "empty.png: cannot read: file is truncated", read("empty.png"));
+    assert_failure(LENSPROF_ERROR_READ, "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP or JPEG XL", read("text.jpg"));
+    assert_failure(LENSPROF_ERROR_READ, "camera raw", read("raw.cr2"));
+    assert_failure(LENSPROF_ERROR_READ, "no.png: cannot read: No such file", read("no.png"));
+    assert_failure(LENSPROF_ERROR_READ, "is a folder", read("."));
+    assert_failure(LENSPROF_ERROR_READ, "is a folder", [] { read_size(in_folder(".")); });
+    assert_failure(LENSPROF_ERROR_READ,
                    "text.jpg: cannot read metadata: ", [] { read_metadata(in_folder("text.jpg")); });
-    assert_failure(ExitCode::unreadable, "is a folder", [] { read_metadata(in_folder(".")); });
+    assert_failure(LENSPROF_ERROR_READ, "is a folder", [] { read_metadata(in_folder(".")); });
     assert_int_equal(mkfifo(in_folder("pipe.jpg").c_str(), 0600), 0);  // without a writer
-    assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read: not a regular file", read("pipe.jpg"));
-    assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read", [] { read_metadata(in_folder("pipe.jpg")); });
+    assert_failure(LENSPROF_ERROR_READ, "pipe.jpg: cannot read: not a regular file", read("pipe.jpg"));
+    assert_failure(LENSPROF_ERROR_READ, "pipe.jpg: cannot read", [] { read_metadata(in_folder("pipe.jpg")); });
 }
 
 void test_unsupported_kinds(void **) {
     const auto read = [] { read_picture(in_folder("a")); };
     const Picture four = make_noise(20, 10, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA);
     write_jpeg_file(in_folder("a"), four, {90, 1, 1, false, true});
-    assert_failure(ExitCode::unreadable, "a: cannot read: CMYK", read);
+    assert_failure(LENSPROF_ERROR_READ, "a: cannot read: CMYK", read);
 
     const Bytes lossless = {0xff, 0xd8, 0xff, 0xf7, 0, 11, 8, 0, 10, 0, 20,   1,    1,    0x11, 0,  // JPEG-LS
                             0xff, 0xda, 0,    8,    1, 1,  0, 0, 0,  0, 0x55, 0x55, 0xff, 0xd9};
     save(in_folder("a"), lossless);
-    assert_failure(ExitCode::unreadable, "a: cannot read: unsupported kind of JPEG (JPEG-LS); convert it first", read);
+    assert_failure(LENSPROF_ERROR_READ, "a: cannot read: unsupported kind of JPEG (JPEG-LS); convert it first", read);
 
     const Picture grey = make_noise(20, 10, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY);
     TiffKind kind;
     kind.format = SAMPLEFORMAT_INT;
     write_tiff_file(in_folder("a"), grey, kind);
-    assert_failure(ExitCode::unreadable, "16 bit TIFF of sample format 2", read);
+    assert_failure(LENSPROF_ERROR_READ, "16 bit TIFF of sample format 2", read);
     kind.format = SAMPLEFORMAT_IEEEFP;
     write_tiff_file(in_folder("a"), grey, kind);
-    assert_failure(ExitCode::unreadable, "16 bit TIFF of sample format 3", read);
+    assert_failure(LENSPROF_ERROR_READ, "16 bit TIFF of sample format 3", read);
     kind.format = SAMPLEFORMAT_UINT;
     kind.photometric = PHOTOMETRIC_SEPARATED;
     write_tiff_file(in_folder("a"), four, kind);
-    assert_failure(ExitCode::unreadable, "photometric interpretation 5", read);
+    assert_failure(LENSPROF_ERROR_READ, "photometric interpretation 5", read);
     kind.photometric = PHOTOMETRIC_MINISBLACK;
     kind.bits = 1;
     Picture narrow = make_noise(3, 10, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY);
     write_tiff_file(in_folder("a"), narrow, kind);
-    assert_failure(ExitCode::unreadable, "1 bit TIFF", read);
+    assert_failure(LENSPROF_ERROR_READ, "1 bit TIFF", read);
 }
 
 // A header that declares a frame of terabytes is refused before memory is allocated for it.
@@ -251,7 +251,7 @@ void test_too_large(void **) {
     const Bytes crc = {0x6e, 0x43, 0xff, 0x19};
     std::copy(crc.begin(), crc.end(), file.begin() + 29);
     save(in_folder("a.png"), file);
-    assert_failure(ExitCode::unreadable, "1048576 x 1048576 pixels exceed the limit",
+    assert_failure(LENSPROF_ERROR_READ, "1048576 x 1048576 pixels exceed the limit",
                    [] { read_size(in_folder("a.png")); });
 
     TIFF *tiff = TIFFOpen(in_folder("a.tif").c_str(), "w");
@@ -264,7 +264,7 @@ void test_too_large(void **) {
     Bytes strip(100, 0);
     TIFFWriteRawStrip(tiff, 0, strip.data(), 100);
     TIFFClose(tiff);
-    assert_failure(ExitCode::unreadable, "1048576 x 1048576 pixels exceed the limit",
+    assert_failure(LENSPROF_ERROR_READ, "1048576 x 1048576 pixels exceed the limit",
                    [] { read_picture(in_folder("a.tif")); });
 }
 
@@ -272,36 +272,37 @@ void test_kinds_that_formats_cannot_hold(void **) {
     const auto write = [](const char *name, uint32_t sample, uint32_t layout) {
         return [=] { write_picture(in_folder(name), make_noise(8, 8, sample, layout)); };
     };
-    assert_failure(ExitCode::usage, "a.png: cannot write: PNG holds",
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "a.png: cannot write: PNG holds",
                    write("a.png", LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB));
-    assert_failure(ExitCode::usage, "a.jpg: cannot write: JPEG holds 8 bit",
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "a.jpg: cannot write: JPEG holds 8 bit",
                    write("a.jpg", LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB));
-    assert_failure(ExitCode::usage, "alpha", write("a.jpg", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA));
-    assert_failure(ExitCode::usage, "a.bmp: unknown picture format",
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "alpha", write("a.jpg", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA));
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "a.bmp: unknown picture format",
                    write("a.bmp", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
-    assert_failure(ExitCode::usage, "unknown picture format", write("png", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "unknown picture format",
+                   write("png", LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
     Picture picture = make_noise(8, 8, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA);
     picture.traits.alpha = PictureTraits::Alpha::associated;
-    assert_failure(ExitCode::usage, "premultiplied", [&] { write_picture(in_folder("a.png"), picture); });
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "premultiplied", [&] { write_picture(in_folder("a.png"), picture); });
     picture.pixels.resize(10);
-    assert_failure(ExitCode::failed, "invalid picture", [&] { write_picture(in_folder("a.tif"), picture); });
+    assert_failure(LENSPROF_ERROR_WRITE, "invalid picture", [&] { write_picture(in_folder("a.tif"), picture); });
     Picture wide = make_noise(70000, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY);
-    assert_failure(ExitCode::failed, "a.jpg: cannot write: Maximum supported image dimension",
+    assert_failure(LENSPROF_ERROR_WRITE, "a.jpg: cannot write: Maximum supported image dimension",
                    [&] { write_picture(in_folder("a.jpg"), wide); });
     assert_int_equal(files_in_folder(), 0);
 }
 
 void test_unwritable_targets(void **) {
     const Picture picture = make_smooth(8, 8, LENSPROF_LAYOUT_RGB);
-    assert_failure(ExitCode::failed, "no/a.png: cannot write: No such file",
+    assert_failure(LENSPROF_ERROR_WRITE, "no/a.png: cannot write: No such file",
                    [&] { write_picture(in_folder("no/a.png"), picture); });
     fs::create_directory(in_folder("b.png"));
-    assert_failure(ExitCode::usage, "b.png: cannot write: not a regular file",
+    assert_failure(LENSPROF_ERROR_ARGUMENT, "b.png: cannot write: not a regular file",
                    [&] { write_picture(in_folder("b.png"), picture); });
-    assert_failure(ExitCode::failed, "/proc/a.png: cannot write: ", [&] { write_picture("/proc/a.png", picture); });
+    assert_failure(LENSPROF_ERROR_WRITE, "/proc/a.png: cannot write: ", [&] { write_picture("/proc/a.png", picture); });
     if (geteuid() != 0) {  // root may write everywhere
         fs::permissions(in_folder("b.png"), fs::perms::owner_read | fs::perms::owner_exec);
-        assert_failure(ExitCode::failed, "Permission denied",
+        assert_failure(LENSPROF_ERROR_WRITE, "Permission denied",
                        [&] { write_picture(in_folder("b.png/a.png"), picture); });
     }
     assert_int_equal(files_in_folder(), 1);
@@ -313,12 +314,12 @@ void test_replacing(void **) {
     chmod(in_folder("old.png").c_str(), 0640);
     fs::create_symlink("old.png", in_folder("link.png"));
     Picture picture = make_noise(8, 8, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB);
-    failure_of(ExitCode::usage, [&] { write_picture(in_folder("link.png"), picture); });
+    failure_of(LENSPROF_ERROR_ARGUMENT, [&] { write_picture(in_folder("link.png"), picture); });
     assert_true(load(in_folder("old.png")) == Bytes({1, 2, 3}));
     WriteOptions options;
     options.metadata_from = in_folder("missing.jpg");
     picture = make_smooth(8, 8, LENSPROF_LAYOUT_RGB);
-    assert_failure(ExitCode::unreadable, "missing.jpg: cannot read",
+    assert_failure(LENSPROF_ERROR_READ, "missing.jpg: cannot read",
                    [&] { write_picture(in_folder("link.png"), picture, options); });
     assert_true(load(in_folder("old.png")) == Bytes({1, 2, 3}));
 
@@ -349,7 +350,7 @@ int write_on_full_disk(const std::string &name, const Picture &picture, const Wr
         } catch (const Failure &failure) {
             const std::string text = failure.what();
             result = text.find(name + ": cannot write: File too large") == std::string::npos ? 2
-                     : failure.code != ExitCode::failed                                      ? 3
+                     : failure.group() != LENSPROF_ERROR_WRITE                               ? 3
                                                                                              : 0;
             if (result != 0) std::fprintf(stderr, "%s\n", text.c_str());
         }

@@ -1,6 +1,6 @@
 // Camera raw files: values compared with the formula and with LibRaw's own programs, recovery and correction of
 // falloffs, and every kind of unreadable file.
-#include "cli/registration/registration.hpp"
+#include "photo/registration/registration.hpp"
 #include "raw_runs.hpp"
 
 #include <cstring>
@@ -403,12 +403,12 @@ void test_preview(void **) {
     assert_int_equal(read_size(work("preview.dng")).width, 160);
     assert_same_pixels(read_raw_preview(work("preview.dng")), read_picture(work("preview.jpg")));
     save_dng("none.dng", dng);
-    assert_failure(ExitCode::unreadable, "without a JPEG preview", [] { read_raw_preview(work("none.dng")); });
-    assert_failure(ExitCode::unreadable, "not a camera raw file", [] { read_raw_preview(work("preview.jpg")); });
+    assert_failure(LENSPROF_ERROR_READ, "without a JPEG preview", [] { read_raw_preview(work("none.dng")); });
+    assert_failure(LENSPROF_ERROR_READ, "not a camera raw file", [] { read_raw_preview(work("preview.jpg")); });
     const Bytes whole = load(work("preview.dng"));
     for (size_t keep = 0; keep < whole.size() - 2 * 160 * 120; keep += 97) {
         save(work("cut.dng"), Bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(keep)));
-        failure_of(ExitCode::unreadable, [] { read_raw_preview(work("cut.dng")); });
+        failure_of(LENSPROF_ERROR_READ, [] { read_raw_preview(work("cut.dng")); });
     }
 }
 
@@ -420,11 +420,11 @@ void test_truncated(void **) {
         const Bytes whole = dng_bytes(dng);
         for (size_t keep = 0; keep < whole.size(); keep += whole.size() / 23 + 1) {
             save(work("cut.dng"), Bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(keep)));
-            failure_of(ExitCode::unreadable, [] { read_picture(work("cut.dng")); });
+            failure_of(LENSPROF_ERROR_READ, [] { read_picture(work("cut.dng")); });
         }
     }
     save(work("empty.nef"), {});
-    assert_failure(ExitCode::unreadable, "empty", [] { read_picture(work("empty.nef")); });
+    assert_failure(LENSPROF_ERROR_READ, "empty", [] { read_picture(work("empty.nef")); });
 }
 
 void test_bombs(void **) {
@@ -434,12 +434,12 @@ void test_bombs(void **) {
         Dng bomb = dng;
         bomb.declared = side;
         save(work("bomb.dng"), dng_bytes(bomb));
-        failure_of(ExitCode::unreadable, [] { read_picture(work("bomb.dng")); });
+        failure_of(LENSPROF_ERROR_READ, [] { read_picture(work("bomb.dng")); });
     }
     Dng bad = dng;
     bad.black = {5000, 5000, 5000, 5000};
     save_dng("black.dng", bad);
-    assert_failure(ExitCode::unreadable, "black level", [] { read_picture(work("black.dng")); });
+    assert_failure(LENSPROF_ERROR_READ, "black level", [] { read_picture(work("black.dng")); });
 }
 
 // The message names the kind of file, with and without LibRaw.
@@ -455,8 +455,8 @@ void test_kinds_are_named(void **) {
                                                           {"FOVbxxxxxxxxxxxx", "Sigma X3F"}};
     for (const auto &[start, kind] : kinds) {
         save_text(work("x.bin"), start + std::string(200, 'x'));
-        assert_failure(ExitCode::unreadable, kind, [] { read_picture(work("x.bin")); });
-        assert_failure(ExitCode::unreadable, can_read_raw() ? "linear 16 bit TIFF" : "without LibRaw",
+        assert_failure(LENSPROF_ERROR_READ, kind, [] { read_picture(work("x.bin")); });
+        assert_failure(LENSPROF_ERROR_READ, can_read_raw() ? "linear 16 bit TIFF" : "without LibRaw",
                        [] { read_picture(work("x.bin")); });
     }
 }

@@ -26,9 +26,9 @@ void assert_damaged(const Bytes &bytes, const char *why) {
     for (const uint32_t side : {0u, 80u}) {
         ReadOptions options;
         options.max_side = side;
-        assert_failure(ExitCode::unreadable, why, [&] { read_picture(work("damaged.dng"), options); });
+        assert_failure(LENSPROF_ERROR_READ, why, [&] { read_picture(work("damaged.dng"), options); });
         assert_int_equal(read_picture(work("good.dng"), options).reduction, side ? 2 : 1);
-        assert_failure(ExitCode::unreadable, why, [&] { read_picture(work("damaged.dng"), options); });
+        assert_failure(LENSPROF_ERROR_READ, why, [&] { read_picture(work("damaged.dng"), options); });
     }
 }
 
@@ -83,7 +83,7 @@ void test_packed_rows_that_lack(void **) {
         assert_true(read_picture(work(name)).width >= 156);  // LibRaw crops pictures of some cameras
         for (const size_t lacks : {1u, 10u, 200u, 5000u}) {
             write_bytes(name, Bytes(whole.begin(), whole.end() - static_cast<ptrdiff_t>(lacks)));
-            assert_failure(ExitCode::unreadable, "are cut off", [&] { read_picture(work(name)); });
+            assert_failure(LENSPROF_ERROR_READ, "are cut off", [&] { read_picture(work(name)); });
         }
     }
 }

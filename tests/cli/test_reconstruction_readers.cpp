@@ -1,5 +1,5 @@
 // Reading COLMAP's databases and models: images, cameras, positions and tracks, and damaged files.
-#include "cli/reconstruction/reconstruction_file.hpp"
+#include "photo/reconstruction/reconstruction_file.hpp"
 
 #include "reconstruction_checks.hpp"
 
@@ -65,28 +65,26 @@ void test_damaged_databases(void **) {
         assert_unreadable(path, part, [&] { return read_colmap_database(path); });
     }
     const std::string path = make_database("damaged.db", "UPDATE two_view_geometries SET config=7");
-    assert_failure(ExitCode::not_usable, path + ": no point is visible", [&] { read_colmap_database(path); });
+    assert_failure(LENSPROF_ERROR_NOT_USABLE, path + ": no point is visible", [&] { read_colmap_database(path); });
 }
 
 void test_cut_databases(void **) {
     const std::string path = make_database("database.db");
-    std::ostringstream out, err;
-    Streams streams{out, err};
+    Events events;
     cut_everywhere(path, 211, [&] { return read_colmap_database(path); });
     Bytes whole = load(path);
     whole.resize(whole.size() / 2);
     save_anew(path, whole);
     assert_true(is_reconstruction(path) && is_reconstruction(folder.string()));
-    assert_unreadable(path, "give an intact copy", [&] { return read_reconstruction(folder.string(), streams); });
+    assert_unreadable(path, "give an intact copy", [&] { return read_reconstruction(folder.string(), events); });
 }
 
 void test_other_database(void **) {
     const std::string path = in_folder("other.db");
     run_sql(path, "CREATE TABLE notes(text TEXT)");
-    std::ostringstream out, err;
-    Streams streams{out, err};
+    Events events;
     assert_false(is_colmap_database(path));
-    assert_unreadable(path, "no such table: cameras", [&] { return read_reconstruction(path, streams); });
+    assert_unreadable(path, "no such table: cameras", [&] { return read_reconstruction(path, events); });
 }
 
 // COLMAP's own journal mode: no trace is left if nobody has the database open, and all rows are visible if somebody
@@ -141,7 +139,7 @@ void test_cut_models(void **) {
             try {
                 read_colmap_model(text);
             } catch (const Failure &failure) {
-                assert_true(failure.code == ExitCode::unreadable || failure.code == ExitCode::not_usable);
+                assert_true(failure.group() == LENSPROF_ERROR_READ || failure.group() == LENSPROF_ERROR_NOT_USABLE);
             }
         }
         save_anew(text + name + ".txt", whole);
@@ -160,7 +158,7 @@ void test_gigantic_counts(void **) {
             try {
                 read_colmap_model(model);
             } catch (const Failure &failure) {
-                assert_true(failure.code == ExitCode::unreadable || failure.code == ExitCode::not_usable);
+                assert_true(failure.group() == LENSPROF_ERROR_READ || failure.group() == LENSPROF_ERROR_NOT_USABLE);
             }
         }
         Bytes first = whole;
@@ -200,7 +198,7 @@ void test_damaged_models(void **) {
     assert_unreadable(model, "has the image z z.png twice", [&] { return read_colmap_model(model); });
     save_text(model + "/images.txt", images);
     save_text(model + "/points3D.txt", "77 7 8 9 1 2 3 0 8 1\n78 7 8 9 1 2 3 0 5 0\n");
-    assert_failure(ExitCode::not_usable, model + ": no point is visible", [&] { read_colmap_model(model); });
+    assert_failure(LENSPROF_ERROR_NOT_USABLE, model + ": no point is visible", [&] { read_colmap_model(model); });
 }
 
 // A model takes the shapes of its features from its database, if the database has them.
@@ -211,16 +209,21 @@ void test_shapes_of_model(void **) {
     save_text(model + "/images.txt",
               "1 1 0 0 0 0 0 0 1 a.png\n10.5 20.5 1\n2 1 0 0 0 1 0 0 1 b b.png\n100.5 110.5 1\n");
     save_text(model + "/points3D.txt", "1 0 0 5 0 0 0 0 1 0 2 0\n");
-    std::ostringstream out, err;
-    Streams streams{out, err};
-    Reconstruction r = read_reconstruction(model, streams);
+    struct : Events {
+        void notice(uint32_t, const std::string &item, const std::string &text) override {
+            notes += item + ": " + text;
+        }
+        std::string notes;
+    } events;
+    Reconstruction r = read_reconstruction(model, events);
     assert_true(r.has_rotations);
     assert_shape(r.observations[0], {0, -2, 2, 0});
     assert_shape(r.observations[1], {1, 2, 3, 4});
     save_text(model + "/images.txt", replaced(text_of(model + "/images.txt"), "10.5 20.5", "10.5 20.7"));
-    r = read_reconstruction(model, streams);
+    r = read_reconstruction(model, events);
     assert_false(r.has_rotations);
-    assert_true(err.str().find(path + ": not used, because " + model + " was not made from it") != std::string::npos);
+    assert_string_equal(events.notes.c_str(),
+                        (path + ": not used, because " + model + " was not made from it").c_str());
 }
 
 #define TEST(name) cmocka_unit_test_setup(name, empty_folder)

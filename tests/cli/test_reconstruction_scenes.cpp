@@ -2,8 +2,8 @@
 // pictures.
 #include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
-#include "cli/reconstruction/pictures.hpp"
-#include "cli/reconstruction/reconstruction_file.hpp"
+#include "photo/reconstruction/pictures.hpp"
+#include "photo/reconstruction/reconstruction_file.hpp"
 
 #include "reconstruction_checks.hpp"
 
@@ -45,7 +45,7 @@ void test_opensfm(void **) {
         assert_int_equal(r.observations[1].colour[2], 7);
         assert_true((r.observations[1].shape[0][0] > 0.0f) == (version % 3 > 0));
         assert_false(r.images[0].has_centre);
-        assert_failure(ExitCode::unreadable, "does not state the size of a.jpg", [&] { convert_coordinates(r, {}); });
+        assert_failure(LENSPROF_ERROR_READ, "does not state the size of a.jpg", [&] { convert_coordinates(r, {}); });
     }
     save_text(in_folder("reconstruction.json"), opensfm_models);
     Reconstruction r = read_opensfm(path);
@@ -81,9 +81,9 @@ void test_damaged_opensfm(void **) {
         assert_unreadable(path, part, read);
     }
     save_text(path, replaced(tracks_of(2), "b b.jpg\t17", "b b.jpg\t16"));
-    assert_failure(ExitCode::not_usable, path + ": no point is visible", [&] { read(); });
+    assert_failure(LENSPROF_ERROR_NOT_USABLE, path + ": no point is visible", [&] { read(); });
     save_text(path, replaced(tracks_of(2), "18", "17"));  // twice in one image
-    assert_failure(ExitCode::not_usable, path + ": no point is visible", [&] { read(); });
+    assert_failure(LENSPROF_ERROR_NOT_USABLE, path + ": no point is visible", [&] { read(); });
     save_text(path, tracks_of(2));
     for (const char *text : {"{}", "[1e999]", "[", "\xFF", "[{\"cameras\": {\"\xC3\": 1}}]"}) {
         save_text(models, text);
@@ -293,8 +293,7 @@ void test_pictures_of_other_sizes(void **) {
     const Reconstruction read = read_colmap_database(path);
     const std::vector<std::string> files = find_pictures(read, "", false);
     Reconstruction r = read;
-    assert_failure(ExitCode::unreadable,
-                   in_folder("a.png") + ": is 320 x 240 pixels, but " + path + " states 100 x 200",
+    assert_failure(LENSPROF_ERROR_READ, in_folder("a.png") + ": is 320 x 240 pixels, but " + path + " states 100 x 200",
                    [&] { convert_coordinates(r, files); });
     write_picture(in_folder("a.png"), make_smooth(100, 200, LENSPROF_LAYOUT_RGB));
     r = read;
@@ -302,12 +301,12 @@ void test_pictures_of_other_sizes(void **) {
     assert_place(r.observations[2], 100, 110);
     r = read;
     r.observations[1].xy[0] = 100.5f;
-    assert_failure(ExitCode::unreadable, path + ": has a feature at 100.5, 20.0 in a.png, which has only 100 x 200",
+    assert_failure(LENSPROF_ERROR_READ, path + ": has a feature at 100.5, 20.0 in a.png, which has only 100 x 200",
                    [&] { convert_coordinates(r, files); });
     fs::remove(in_folder("d.png"));
-    assert_failure(ExitCode::unreadable, path + ": 1 of its 4 pictures, the first d.png, are not in ",
+    assert_failure(LENSPROF_ERROR_READ, path + ": 1 of its 4 pictures, the first d.png, are not in ",
                    [&] { find_pictures(read, "", false); });
-    assert_failure(ExitCode::unreadable, "4 of its 4 pictures", [&] { find_pictures(read, in_folder("none"), false); });
+    assert_failure(LENSPROF_ERROR_READ, "4 of its 4 pictures", [&] { find_pictures(read, in_folder("none"), false); });
     assert_true(find_pictures(read, in_folder("none"), true).empty());
 }
 

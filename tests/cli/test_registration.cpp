@@ -4,10 +4,10 @@
 
 #include <opencv2/calib3d.hpp>
 
-#include "cli/registration/cameras.hpp"
-#include "cli/registration/candidates.hpp"
-#include "cli/registration/copies.hpp"
-#include "cli/registration/matching.hpp"
+#include "photo/registration/cameras.hpp"
+#include "photo/registration/candidates.hpp"
+#include "photo/registration/copies.hpp"
+#include "photo/registration/matching.hpp"
 extern "C" {
 #include "support.h"
 }

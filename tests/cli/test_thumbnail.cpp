@@ -3,8 +3,8 @@
 
 #include "picture_files.hpp"
 
-#include "cli/pictures/contact_sheet.hpp"
-#include "cli/pictures/thumbnail.hpp"
+#include "photo/pictures/contact_sheet.hpp"
+#include "photo/pictures/thumbnail.hpp"
 
 using namespace picture_files;
 

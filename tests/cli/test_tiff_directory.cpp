@@ -3,7 +3,7 @@
 
 #include <climits>
 
-#include "cli/pictures/tiff_directory.hpp"
+#include "photo/pictures/tiff_directory.hpp"
 
 using namespace picture_files;
 

@@ -4,8 +4,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "cli/program/error.hpp"
 #include "fuzz_main.hpp"
+#include "photo/base/failure.hpp"
 
 // Leaks of libheif and its decoders on damaged files.
 extern "C" const char *__lsan_default_suppressions();
@@ -39,7 +39,7 @@ bool is_read(const Read &read) {
         read();
         return true;
     } catch (const lensprof::Failure &failure) {
-        demand(failure.code == lensprof::ExitCode::unreadable, failure.what());
+        demand(failure.group() == LENSPROF_ERROR_READ, failure.what());
         demand(failure.what()[0], "a failure without a text");
         return false;
     }

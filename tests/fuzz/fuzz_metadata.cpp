@@ -1,8 +1,8 @@
 // Fuzzing EXIF, XMP packets and opcode tags of picture files. Invariant for any bytes: each is read, or a Failure gives
 // the reason; a key that is read is valid.
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/opcode_tag.hpp"
 #include "fuzz_file.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/opcode_tag.hpp"
 
 namespace {
 

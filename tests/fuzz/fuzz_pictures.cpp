@@ -1,8 +1,8 @@
 // Fuzzing PNG, TIFF, JPEG, HEIC, AVIF, WebP and JPEG XL files. Invariant for any bytes: the header, the picture and the
 // reduced picture are read, or a Failure gives the reason; if the picture is read, so is its header, with the same
 // sizes.
-#include "cli/pictures/picture.hpp"
 #include "fuzz_file.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <set>
 
-#include "cli/reconstruction/match_choice.hpp"
-#include "cli/reconstruction/pictures.hpp"
-#include "cli/reconstruction/readers.hpp"
 #include "fuzz_file.hpp"
+#include "photo/reconstruction/match_choice.hpp"
+#include "photo/reconstruction/pictures.hpp"
+#include "photo/reconstruction/readers.hpp"
 
 namespace {
 
@@ -63,8 +63,7 @@ template <typename Call>
         call();
         return true;
     } catch (const lensprof::Failure &failure) {
-        demand(failure.code == lensprof::ExitCode::unreadable || failure.code == lensprof::ExitCode::not_usable,
-               failure.what());
+        demand(failure.group() == LENSPROF_ERROR_READ || failure.group() == LENSPROF_ERROR_NOT_USABLE, failure.what());
         demand(failure.what()[0], "a failure without a text");
         return false;
     }

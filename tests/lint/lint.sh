@@ -17,7 +17,7 @@ checked() {
                   --suppressions-list=tests/lint/cppcheck.txt -Iinclude -Isrc)
     local failed=0
     cppcheck "${common[@]}" --std=c11 --language=c src/core src/store || failed=1
-    cppcheck "${common[@]}" --std=c++17 --language=c++ src/falloff src/fit src/formats src/cli || failed=1
+    cppcheck "${common[@]}" --std=c++17 --language=c++ src/falloff src/fit src/formats src/photo src/cli || failed=1
     return $failed
 }
 

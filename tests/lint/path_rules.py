@@ -1,6 +1,6 @@
-"""File access of the command: std::filesystem only through src/cli/program/paths.cpp, whose calls do not throw.
+"""File access of the command: std::filesystem only through src/photo/base/paths.cpp, whose calls do not throw.
 
-path_rules.py SOURCE_DIR     lists every call elsewhere in src/cli that accesses the disk and can throw
+path_rules.py SOURCE_DIR     lists every call elsewhere in src/cli and src/photo that accesses the disk and can throw
 path_rules.py --self-check   plants violations; exit 1 if one is not found
 """
 
@@ -40,8 +40,8 @@ def main():
         return self_check()
     root = pathlib.Path(sys.argv[1])
     found = [
-        f"{path.relative_to(root)}:{number}: {call} throws in words of its own; use cli/program/paths.hpp"
-        for path in sorted((root / "src/cli").rglob("*.?pp"))
+        f"{path.relative_to(root)}:{number}: {call} throws in words of its own; use photo/base/paths.hpp"
+        for path in sorted((p for top in ("cli", "photo") for p in (root / "src" / top).rglob("*.?pp")))
         if path.name != "paths.cpp"
         for number, call in violations_in(path.read_text(encoding="utf-8"))
     ]

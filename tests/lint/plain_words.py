@@ -27,6 +27,7 @@ SOURCES = (
     "src/falloff/*",
     "src/fit/**/*",
     "src/formats/**/*",
+    "src/photo/**/*.?pp",
     "src/store/**/*",
     "tests/*.?",
     "tests/bench/*",

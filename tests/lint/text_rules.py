@@ -4,7 +4,7 @@
 usage: text_rules.py SOURCE_DIR       list violations; exit 1 if there are any
        text_rules.py --self-check     plant violations in a temporary tree; exit 1 if one is not found
 
-String literals of src/{core,falloff,fit,formats,store} must not have a word that begins with "--", `lensprof` with the
+String literals of src/{core,falloff,fit,formats,photo,store} must not have a word that begins with "--", `lensprof` with the
 name of one of its commands, or "option of the command". A program offers its options based on the code of a reason
 (docs/reasons.md), or on the status and the item of an error.
 """
@@ -14,7 +14,7 @@ import re
 import sys
 import tempfile
 
-LAYERS = ("core", "falloff", "fit", "formats", "store")
+LAYERS = ("core", "falloff", "fit", "formats", "photo", "store")
 SOURCES = {".c", ".h", ".cpp", ".hpp"}
 # A comment, a character, or a sequence of string literals, which the compiler joins.
 TOKEN = re.compile(

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "cli/program/error.hpp"
+#include "photo/base/failure.hpp"
 
 namespace lensprof {
 

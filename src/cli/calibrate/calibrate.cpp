@@ -12,14 +12,15 @@
 #include "cli/calibrate/sheet.hpp"
 #include "cli/calibrate/summary.hpp"
 #include "cli/page/page.hpp"
-#include "cli/pictures/named_pictures.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/input_file.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
-#include "cli/registration/registration.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/registration/registration.hpp"
 
 namespace lensprof {
 namespace {
@@ -65,9 +66,10 @@ void check_existing_files(const CalibrateOptions &o, const Inputs &inputs, const
     outputs.insert(outputs.begin(), (std::filesystem::path(o.output) / summary_name).string());
     for (const InputPicture &picture : inputs.pictures) outputs.push_back(picture.target);
     for (const std::string &file : outputs) {
-        if (is_folder(file)) throw Failure(ExitCode::usage, file + ": is a folder; give another output folder with -o");
+        if (is_folder(file))
+            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is a folder; give another output folder with -o");
         if (!o.overwrite && !ledger.contains(file) && ledger.is_foreign(file))
-            throw Failure(ExitCode::usage, file + ": exists and was not written by calibrate; give another folder "
+            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": exists and was not written by calibrate; give another folder "
                                                   "with -o, or use --overwrite");
     }
 }
@@ -98,9 +100,11 @@ void check_report(const CalibrateOptions &o) {
     check_page_name(o.report);
     check_not_reserved(o.report, "report", {store_path(o.store.db)});
     if ((canonical_path(o.output) + "/").rfind(canonical_path(o.report) + "/", 0) == 0)
-        throw Failure(ExitCode::usage, o.report + ": the output folder has this name; give the report another one");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      o.report + ": the output folder has this name; give the report another one");
     if (is_too_long(o.report))
-        throw Failure(ExitCode::usage, short_name(o.report) + ": the name is too long; give the report a shorter one");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      short_name(o.report) + ": the name is too long; give the report a shorter one");
     if (!is_in_new_folder(o.report, o.output)) check_output_file(o.report);
 }
 
@@ -115,7 +119,7 @@ int run(const CalibrateOptions &o, Streams &streams) {
     Ledger ledger(o.output, o.overwrite);
     check_existing_files(o, inputs, ledger);
     if (inputs.pictures.empty() && inputs.unreadable)
-        throw Failure(ExitCode::unreadable,
+        throw Failure(LENSPROF_ERROR_READ,
                       (inputs.found > 1 ? inputs.label + ": none of the pictures can be read; the first: " : "")
                           + inputs.left_out[0].reason);
     if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
@@ -127,8 +131,8 @@ int run(const CalibrateOptions &o, Streams &streams) {
         remove_obsolete_panoramas(o, panoramas, ledger);
         fit_panoramas(o, panoramas, ledger, progress);
     } catch (const Json::exception &) {  // somebody edited the records
-        throw Failure(ExitCode::failed, (std::filesystem::path(o.output) / calibrate_records).string()
-                                            + ": invalid records of earlier runs; remove this file and run again");
+        throw Failure(LENSPROF_ERROR_WRITE, (std::filesystem::path(o.output) / calibrate_records).string()
+                                                + ": invalid records of earlier runs; remove this file and run again");
     }
     CorrectedPictures pictures = plan_corrections(o, inputs, panoramas);
     write_corrections(o, pictures, ledger, progress);

@@ -8,11 +8,11 @@
 #include "cli/calibrate/attempt.hpp"
 #include "cli/correct/picture_model.hpp"
 #include "cli/correct/project_model.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
-#include "cli/program/shell_word.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/base/shell_word.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {

@@ -7,9 +7,9 @@
 #include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/panoramas.hpp"
 #include "cli/fitting/photographs.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {
@@ -40,7 +40,7 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     group.geometry = text_of_found(found);
     // Converted through the ledger's text, so that a fit of recalled matches is identical to the byte.
     if (!read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches))
-        throw Failure(ExitCode::failed, "internal error: matches of pictures are not finite; please report this");
+        throw Failure(LENSPROF_ERROR_WRITE, "internal error: matches of pictures are not finite; please report this");
     group.facts = {{"camera", found.kind == SceneKind::still   ? camera_stationary
                               : found.kind == SceneKind::plane ? "moved over a plane"
                                                                : "rotated about one point"},

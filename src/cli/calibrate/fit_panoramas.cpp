@@ -9,11 +9,11 @@
 #include "cli/fitting/photographs.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/fitting/project_fit.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -52,7 +52,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     options.store = o.store;
     options.one_lens = o.one_lens;
     if (panorama.summary["camera"] == camera_stationary)
-        throw Failure(ExitCode::not_usable, panorama.name + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, panorama.name + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
     check_pictures(project, options.pixels.max_side);
     const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
     const lensprof_profile_key &exif = metadata[project.reference].key;
@@ -65,7 +65,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     }
     const lensprof_profile_key key = profile_key(options, project, metadata, streams);
     const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
-    if (panorama.summary["cameras_fit"] == false) warn(streams, panorama.name + poor_cameras_note);
+    if (panorama.summary["cameras_fit"] == false) warn(streams, panorama.name + ": " + poor_cameras_note);
     ProjectFit state(progress);
     state.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
     fit_project(options, project, metadata, prior, state, streams);
@@ -100,7 +100,7 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
         fit_and_store(o, panorama, project, progress);
     } catch (const Failure &failure) {
         if (!is_of_pictures(failure)) throw;
-        is_final = failure.code == ExitCode::not_usable;
+        is_final = failure.group() == LENSPROF_ERROR_NOT_USABLE;
         panorama.summary["result"] = nullptr;
         panorama.summary["not_stored"] = failure.what();
         panorama.summary["warnings"] = Json::array();
@@ -190,12 +190,12 @@ void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
 
 void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledger, Progress &progress) {
     for (Panorama &panorama : panoramas.list) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         if (!recall(o, panorama, ledger)) {
             fit_one(o, panorama, ledger, progress);
             panoramas.fitted++;
         }
-        for (const Json &warning : panorama.summary["warnings"]) progress.warn(warning.get<std::string>());
+        for (const Json &warning : panorama.summary["warnings"]) progress.warn({}, warning.get<std::string>());
         if (!panorama.equalizes()) continue;
         const std::string failure = failure_of([&] { draw_preview(panorama, ledger, progress); });
         panorama.summary["preview"] = failure.empty() ? Json(panorama.preview) : Json();

@@ -7,10 +7,10 @@
 #include "cli/calibrate/summary.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/page/page.hpp"
-#include "cli/pictures/thumbnail.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
 namespace {

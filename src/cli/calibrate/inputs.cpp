@@ -6,14 +6,14 @@
 
 #include "cli/calibrate/attempt.hpp"
 #include "cli/fitting/photographs.hpp"
-#include "cli/pictures/coded_kind.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/pictures/other_parts.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/pictures/raw_kind.hpp"
-#include "cli/program/file_kind.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/file_kind.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/coded_kind.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/pictures/other_parts.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/pictures/raw_kind.hpp"
 
 namespace lensprof {
 namespace {
@@ -25,12 +25,12 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
         refuse_other_kind(word);
         if (!is_folder(word) && !is_picture_name(word) && path_exists(word))
             throw Failure(
-                ExitCode::usage,
+                LENSPROF_ERROR_ARGUMENT,
                 word
                     + ": is neither a picture (.jpg, .png, .tif, camera raw) nor a folder; use `lensprof build` for a "
                       "project");
         if (canonical_path(word) == canonical_path(output))
-            throw Failure(ExitCode::usage, output + ": is the folder of the pictures; give another output folder with "
+            throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": is the folder of the pictures; give another output folder with "
                                                     "-o");
     }
 }
@@ -64,12 +64,13 @@ void check_targets(const Inputs &inputs, const std::vector<NamedPicture> &named)
     for (const InputPicture &picture : inputs.pictures) {
         const std::string target = canonical_path(picture.target);
         if (read.count(target))
-            throw Failure(ExitCode::usage, picture.file + ": its corrected copy would be " + picture.target
-                                               + ", which is an input picture; give another folder with -o");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, picture.file + ": its corrected copy would be " + picture.target
+                                                       + ", which is an input picture; give another folder with -o");
         const auto [other, is_new] = written.try_emplace(target, picture.file);
         if (!is_new)
-            throw Failure(ExitCode::usage, picture.file + " and " + other->second + ": both would be " + picture.target
-                                               + "; give their parent folder, or calibrate one folder at a time");
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          picture.file + " and " + other->second + ": both would be " + picture.target
+                              + "; give their parent folder, or calibrate one folder at a time");
     }
 }
 
@@ -170,7 +171,7 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
     std::vector<UnlistedFolder> unlisted;
     std::vector<std::string> other_kinds;
     std::vector<NamedPicture> named = named_pictures(words, output, other_kinds, &unlisted);
-    for (const std::string &text : other_kinds) progress.warn(text);
+    for (const std::string &text : other_kinds) progress.warn({}, text);
     extract_below(named, has_ledger);
     const Photographs list = list_photographs(words, named);
     Inputs inputs;

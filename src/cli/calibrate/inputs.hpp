@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/calibrate/ledger.hpp"
-#include "cli/pictures/metadata.hpp"
 #include "cli/program/progress.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 

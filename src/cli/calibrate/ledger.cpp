@@ -12,10 +12,10 @@
 #include <unistd.h>
 
 #include "cli/calibrate/attempt.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/named_pictures.hpp"
 
 namespace lensprof {
 
@@ -76,7 +76,7 @@ bool has_ledger(const std::string &folder) {
     if (!is_regular_file(path)) return false;
     return failure_of([&] {
                if (object_of(read_text(path, max_text_bytes)).is_null())
-                   throw Failure(ExitCode::unreadable, path + ": is not a record of calibrate; delete it, or give "
+                   throw Failure(LENSPROF_ERROR_READ, path + ": is not a record of calibrate; delete it, or give "
                                                               "another folder with -o");
            })
         .empty();
@@ -96,7 +96,7 @@ void FolderLock::acquire() {
     if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
         return;  // some file systems have no locks
     close(file_);
-    throw Failure(ExitCode::failed, folder_ + ": another calibrate is using this folder; wait until it ends, or give "
+    throw Failure(LENSPROF_ERROR_WRITE, folder_ + ": another calibrate is using this folder; wait until it ends, or give "
                                               "another folder with -o");
 }
 
@@ -154,10 +154,10 @@ bool Ledger::is_foreign(const std::string &file) const {
 
 void Ledger::begin(const std::string &file, const std::string &key) {
     if (!overwrite_ && is_foreign(file))
-        throw ForeignFile(ExitCode::usage, file + ": "
-                                               + (contains(file) ? "was modified after calibrate wrote it"
-                                                                 : "exists and was not written by calibrate")
-                                               + "; move it away, or use --overwrite");
+        throw ForeignFile(LENSPROF_ERROR_ARGUMENT, file + ": "
+                                                       + (contains(file) ? "was modified after calibrate wrote it"
+                                                                         : "exists and was not written by calibrate")
+                                                       + "; move it away, or use --overwrite");
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) fs::remove(file, ignored);
     begun_[name_of(file)] = {key, ""};

@@ -9,8 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/output_file.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/output_file.hpp"
 
 namespace lensprof {
 

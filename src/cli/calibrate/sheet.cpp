@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "cli/calibrate/attempt.hpp"
-#include "cli/pictures/contact_sheet.hpp"
-#include "cli/pictures/thumbnail.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/interrupt.hpp"
-#include "cli/program/parallel.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/pictures/contact_sheet.hpp"
+#include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
 namespace {
@@ -47,7 +47,7 @@ std::vector<std::string> sheet_names(const CalibrateOptions &o, size_t pictures)
 void write_sheets(const CalibrateOptions &o, const CorrectedPictures &pictures, Ledger &ledger, Progress &progress) {
     const std::vector<std::string> names = sheet_names(o, pictures.list.size());
     for (size_t page = 0; page < names.size(); page++) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         const size_t first = page * per_page, count = std::min<size_t>(per_page, pictures.list.size() - first);
         std::string text = "sheet";
         for (size_t i = first; i < first + count; i++)

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "cli/calibrate/sheet.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/help_text.hpp"
-#include "cli/program/utf8.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/utf8.hpp"
 
 namespace lensprof {
 namespace {

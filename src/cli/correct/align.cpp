@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/correct/clipping.hpp"
 #include "cli/correct/correction.hpp"
 #include "cli/correct/merged.hpp"
 #include "cli/fitting/fitting.hpp"
@@ -12,17 +13,18 @@
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/fitting/static_camera.hpp"
-#include "cli/pictures/clipping.hpp"
-#include "cli/pictures/coded_kind.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/pictures/other_parts.hpp"
-#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/clipping.hpp"
+#include "photo/pictures/coded_kind.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/pictures/other_parts.hpp"
+#include "photo/pictures/raw_kind.hpp"
 
 namespace lensprof {
 namespace {
@@ -81,7 +83,7 @@ Project sequence(const Options &o) {
     refuse_crops(project, "align");
     if (project.images.size() < 2)
         throw Failure(
-            ExitCode::not_usable,
+            LENSPROF_ERROR_NOT_USABLE,
             (o.pto.empty() ? project.files[0] : o.pto) + ": a single frame cannot be aligned; give at least two",
             LENSPROF_REASON_FEW_PAIRS);
     require_one_kind(project.files);
@@ -144,7 +146,8 @@ void check_merge(const Options &o, const Project &project) {
     check_merged_name(o.merge);
     const std::string folder = std::filesystem::path(absolute_path(o.merge)).parent_path().string();
     if (!is_folder(folder))
-        throw Failure(ExitCode::usage, o.merge + ": its folder does not exist; create it, or give another name");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      o.merge + ": its folder does not exist; create it, or give another name");
     check_output_file(o.merge);
     std::vector<Correction> job(1);
     job[0].source = project.files[0], job[0].target = o.merge;
@@ -165,8 +168,8 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     for (uint32_t i : frames) {
         const SeveralPictures several = several_pictures(project.files[i]);
         if (!several.what.empty())
-            throw Failure(ExitCode::unreadable, project.files[i] + ": " + several.what
-                                                    + ", but only the first would be written; " + several.next_step);
+            throw Failure(LENSPROF_ERROR_READ, project.files[i] + ": " + several.what
+                                                   + ", but only the first would be written; " + several.next_step);
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
         if (raw_kind(project.files[i]) || is_read_alone(project.files[i])) name.replace_extension(".tif");
         Correction job;
@@ -282,17 +285,18 @@ int align(const Options &o, Streams &streams) {
 int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     check_max_side(o.pixels.max_side);
-    if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; give at least two");
+    if (o.files.empty() && o.pto.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "no frames to align; give at least two");
     if (!o.merge.empty() && !o.output.empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--merge: writes one picture, but --output is a folder for frames; give one of them");
     if (!o.merge.empty() && !o.pto.empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--merge: needs a stationary camera, but --project is for one that rotated; give one of them");
     try {
         return align(o, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_usable) {
+        if (o.json && failure.group() == LENSPROF_ERROR_NOT_USABLE) {
             const BuildReport empty = no_fit({}, failure);
             print_json(report(o, empty.fit, empty.verdict, {}, {}), streams.out);
         }

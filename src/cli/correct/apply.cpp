@@ -15,12 +15,13 @@
 #include "cli/correct/seeded_exif.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/format.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -33,14 +34,14 @@ void list_left_out(const ApplyWork &work, size_t corrected, Streams &streams) {
 }
 
 // The code of the first picture that failed; a picture without a profile counts only if none did.
-ExitCode code_of(const std::vector<LeftOut> &left_out) {
-    ExitCode code = ExitCode::done;
+lensprof_status status_of(const std::vector<LeftOut> &left_out) {
+    lensprof_status status = LENSPROF_OK;
     for (const LeftOut &picture : left_out) {
         if (picture.corrected_already) continue;
-        if (picture.code != ExitCode::not_found) return picture.code;
-        code = picture.code;
+        if (group_of(picture.status) != LENSPROF_ERROR_NOT_FOUND) return picture.status;
+        status = picture.status;
     }
-    return code;
+    return status;
 }
 
 Json left_out_json(const ApplyWork &work) {
@@ -116,13 +117,13 @@ bool is_photograph(const std::string &file) {
 void check_sheet(const ApplyOptions &o, size_t pictures) {
     if (pictures > ContactSheet::most_pictures)
         throw Failure(
-            ExitCode::usage,
+            LENSPROF_ERROR_ARGUMENT,
             o.sheet
                 + format(": a contact sheet holds at most %zu pictures, but %zu are given; correct them in parts",
                          ContactSheet::most_pictures, pictures));
     if (!is_in_new_folder(o.sheet, o.output)) check_output_file(o.sheet);
     if (!o.kind.overwrite && is_photograph(o.sheet))
-        throw Failure(ExitCode::usage, o.sheet + ": is a photograph; give the contact sheet another name, or use "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.sheet + ": is a photograph; give the contact sheet another name, or use "
                                                  "--overwrite");
 }
 
@@ -161,10 +162,10 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
 int run(ApplyOptions &o, Streams &streams) {
     check_project_options(o);
     if (!o.linear_end.empty() && !o.kind.linear)
-        throw Failure(ExitCode::usage, "--encoding linear: needs --linear; give both or neither");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--encoding linear: needs --linear; give both or neither");
     if (!o.sheet.empty() && format_of_name(o.sheet) == FileFormat::exr)
         throw Failure(
-            ExitCode::usage,
+            LENSPROF_ERROR_ARGUMENT,
             o.sheet + ": a contact sheet is not written as OpenEXR; give a name ending in .jpg, .png or .tif");
     if (o.merge) check_merge(o);
     o.model.puts_in = o.kind.simulate;
@@ -176,7 +177,7 @@ int run(ApplyOptions &o, Streams &streams) {
     if (work.jobs.size() == 1 && work.left_out.empty() && !written.failed.empty())
         throw Failure(written.failed[0].failure);
     for (const auto &[file, failure] : written.failed)
-        work.left_out.push_back({file, failure.what(), false, failure.code});
+        work.left_out.push_back({file, failure.what(), false, failure.status});
     if (o.json) {
         Json json = {{"schema", json_schema}, {"pictures", written.pictures}, {"left_out", left_out_json(work)}};
         add_speed(written, json);
@@ -187,7 +188,7 @@ int run(ApplyOptions &o, Streams &streams) {
     }
     list_left_out(work, written.pictures.size(), streams);
     if (work.jobs.empty() && work.left_out.empty()) return static_cast<int>(ExitCode::not_usable);
-    return static_cast<int>(code_of(work.left_out));
+    return static_cast<int>(exit_code(status_of(work.left_out)));
 }
 
 }  // namespace

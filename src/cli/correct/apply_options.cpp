@@ -1,6 +1,6 @@
 #include "cli/correct/apply_options.hpp"
 
-#include "cli/program/error.hpp"
+#include "photo/base/failure.hpp"
 
 namespace lensprof {
 
@@ -78,26 +78,27 @@ void declare_options(Command &command, ApplyOptions &o) {
 
 void check_merge(const ApplyOptions &o) {
     if (o.pto.empty() || !o.kind.linear)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--merge: needs overlapping pictures and --linear; give their project with --pto, and --linear");
     if (o.model.profile || o.model.from_db || o.model.response)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--merge: uses response and falloff of the project; omit --profile and --set response");
     if (o.kind.simulate || o.kind.strength != 1.0 || o.kind.gain_cap != 0.0 || o.kind.dither || !o.sheet.empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--merge: corrects the falloff completely and writes irradiance; omit --set simulate, "
                       "strength and gain-cap, --encoding dither and --contact-sheet");
 }
 
 void check_project_options(const ApplyOptions &o) {
     if (!o.pto.empty() && !o.exposures.empty())
-        throw Failure(ExitCode::usage, "--pto and --model exclude each other: both give exposures; give one of them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--pto and --model exclude each other: both give exposures; give one of them");
     if (o.seed_exif && o.linear_end == ".exr")
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--encoding exif-exposure: OpenEXR has no EXIF; use linear=tif, or omit one of them");
     if (o.exposures.empty() && (!o.images.empty() || o.seed_exif))
-        throw Failure(ExitCode::usage, std::string(o.seed_exif ? "--encoding exif-exposure" : "--images")
-                                           + ": needs --model; give it, or omit the option");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(o.seed_exif ? "--encoding exif-exposure" : "--images")
+                                                   + ": needs --model; give it, or omit the option");
 }
 
 }  // namespace lensprof

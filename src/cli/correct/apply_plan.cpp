@@ -9,17 +9,17 @@
 
 #include "cli/correct/falloff_doubt.hpp"
 #include "cli/fitting/exposure_file.hpp"
-#include "cli/pictures/coded_kind.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/pictures/other_parts.hpp"
-#include "cli/pictures/raw_kind.hpp"
 #include "cli/profiles/foreign_file.hpp"
-#include "cli/program/file_kind.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/shard.hpp"
+#include "photo/base/file_kind.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/coded_kind.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/pictures/other_parts.hpp"
+#include "photo/pictures/raw_kind.hpp"
 
 namespace lensprof {
 namespace {
@@ -30,10 +30,10 @@ bool becomes_dng(const ApplyOptions &o, const std::string &raw) {
     const bool is_plain = !kind.linear && !kind.simulate && kind.strength == 1.0 && kind.gain_cap == 0.0
                           && o.project().empty() && o.sheet.empty();
     if (o.raw_output == RawOutput::dng && raw != "DNG")
-        throw Failure(ExitCode::usage, "--encoding raw=dng: needs DNG files, but one is a " + raw
-                                           + "; convert it to DNG first, or omit the option");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--encoding raw=dng: needs DNG files, but one is a " + raw
+                                                   + "; convert it to DNG first, or omit the option");
     if (o.raw_output == RawOutput::dng && !is_plain)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--encoding raw=dng: an opcode stores only the falloff; omit --linear, --set simulate, "
                       "strength and gain-cap, --pto and --contact-sheet, or use raw=tif");
     return raw == "DNG" && is_plain && o.raw_output != RawOutput::tif;
@@ -59,7 +59,7 @@ void check_shape(const Project &project, uint32_t image, const std::string &file
     const bool is_same = size.width == camera.width && size.height == camera.height;
     const bool is_scalable = project.models.empty() && !project.images[image].of_crop;
     if (is_scalable ? std::abs(shape / expected - 1.0) > 0.01 : !is_same)
-        throw Failure(ExitCode::unreadable,
+        throw Failure(LENSPROF_ERROR_READ,
                       file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
                           + format(" states %u x %u; use the pictures that the project was made with", camera.width,
                                    camera.height));
@@ -73,7 +73,7 @@ void check_has_result(const Project &project) {
         if (response || falloff || image.response_type == 1) return;
     }
     throw Failure(
-        ExitCode::usage,
+        LENSPROF_ERROR_ARGUMENT,
         project.path
             + ": has neither response nor falloff; give the project that `lensprof build --write pto=FILE` wrote");
 }
@@ -92,7 +92,7 @@ PictureMetadata metadata_of(const ApplyOptions &o, const std::string &file) {
 void check_mark(const ApplyOptions &o, const std::string &file, const PictureMetadata &metadata) {
     const auto &mark = metadata.mark;
     if (o.model.force_falloff || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
-    throw NotThisOne(ExitCode::not_found,
+    throw NotThisOne(LENSPROF_ERROR_NOT_FOUND,
                      file + ": already corrected, " + metadata.corrected_by
                          + "; give the original, or use --set force-falloff=yes to correct it again",
                      true);
@@ -102,14 +102,14 @@ void check_mark(const ApplyOptions &o, const std::string &file, const PictureMet
 void check_several(const std::string &file) {
     const SeveralPictures several = several_pictures(file);
     if (!several.what.empty())
-        throw NotThisOne(ExitCode::unreadable,
+        throw NotThisOne(LENSPROF_ERROR_READ,
                          file + ": " + several.what + ", but only the first would be corrected; " + several.next_step);
 }
 
 // NotThisOne for a DNG whose opcodes already correct the falloff.
 void check_opcodes(const ApplyOptions &o, const std::string &file) {
     if (o.model.force_falloff || !has_falloff_opcode(file)) return;
-    throw NotThisOne(ExitCode::not_found,
+    throw NotThisOne(LENSPROF_ERROR_NOT_FOUND,
                      file + ": its opcodes already correct the falloff; use --encoding raw=tif, which ignores them",
                      true);
 }
@@ -193,10 +193,11 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
 // Named pictures are all wanted: all reasons are printed, and nothing is written.
 [[noreturn]] void fail_refused(const std::vector<NotThisOne> &refused, size_t count, Streams &streams) {
     if (refused.size() == 1)
-        throw Failure(refused[0].code, refused[0].what() + std::string(count > 1 ? "; or skip it with --skip" : ""));
+        throw Failure(refused[0].status, refused[0].what() + std::string(count > 1 ? "; or skip it with --skip" : ""));
     for (const NotThisOne &failure : refused) print_message(streams, failure.what());
-    throw Failure(refused[0].code, std::to_string(refused.size()) + " of " + counted(count, "picture")
-                                       + " cannot be corrected, and nothing was written; use --skip to leave them out");
+    throw Failure(refused[0].status,
+                  std::to_string(refused.size()) + " of " + counted(count, "picture")
+                      + " cannot be corrected, and nothing was written; use --skip to leave them out");
 }
 
 // All images of the project in its result. An image that cannot be written itself still contributes; the reason is
@@ -219,7 +220,7 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
             check_mark(o, file, metadata_of(o, file));
             check_mergeable(file, layout);
         } catch (const Failure &failure) {
-            if (written.count(i) || failure.code == ExitCode::interrupted) throw;
+            if (written.count(i) || failure.group() == LENSPROF_ERROR_CANCELLED) throw;
             warn(streams, failure.what() + std::string("; it is not merged"));
             continue;
         }
@@ -253,8 +254,9 @@ void warn_of_falloffs(const ApplySource &source, const std::vector<Correction> &
 void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
     const size_t first = shard.first(pictures.size()), end = shard.end(pictures.size());
     if (first == end && !pictures.empty())
-        throw Failure(ExitCode::usage, format("--shard %u/%u: contains none of the %zu pictures; use fewer parts",
-                                              shard.number, shard.count, pictures.size()));
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      format("--shard %u/%u: contains none of the %zu pictures; use fewer parts", shard.number,
+                             shard.count, pictures.size()));
     pictures.erase(pictures.begin() + static_cast<std::ptrdiff_t>(end), pictures.end());
     pictures.erase(pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(first));
 }
@@ -265,14 +267,14 @@ ApplySource open_source(const ApplyOptions &o) {
     for (const std::string &file : o.files) refuse_other_kind(file);
     ApplySource source;
     if (o.files.empty() && o.project().empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "no pictures to correct; give pictures "
                       "or folders");
     source.models = std::make_unique<PictureModels>(o.model, o.project().empty());
     const bool from_store = source.models->are_used();
     if (!from_store && o.project().empty())
         throw Failure(
-            ExitCode::usage,
+            LENSPROF_ERROR_ARGUMENT,
             "no correction given and no database found; give the database with --db FILE, or --pto FILE or --model "
             "FILE");
     if (!o.project().empty()) {
@@ -282,7 +284,7 @@ ApplySource open_source(const ApplyOptions &o) {
         source.exposures = relative_to_joined(*source.project);
         source.has_model = !from_store;
     } else if (o.exposure == OutputExposure::mean || o.exposure == OutputExposure::reference) {
-        throw Failure(ExitCode::usage, std::string("--set exposure=")
+        throw Failure(LENSPROF_ERROR_ARGUMENT, std::string("--set exposure=")
                                            + (o.exposure == OutputExposure::mean ? "mean" : "reference")
                                            + " needs the exposures of a project; give the project with --pto or "
                                              "--model");
@@ -291,6 +293,7 @@ ApplySource open_source(const ApplyOptions &o) {
 }
 
 ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &streams) {
+    Progress events(streams);
     std::vector<NamedPicture> pictures;
     std::vector<std::string> other_kinds;
     if (o.files.empty() && source.project)
@@ -300,11 +303,11 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
             if (!is_again) pictures.push_back({file, "", false});
         }
     else
-        pictures = named_pictures(o.files, o.output, other_kinds), extract_outputs(pictures, streams);
+        pictures = named_pictures(o.files, o.output, other_kinds), extract_outputs(pictures, events);
     for (const std::string &text : other_kinds) warn(streams, text);
     if (o.merge) refuse_crops(*source.project, "--merge");
     take_shard(shard_of(o.shard), pictures);
-    if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; give pictures or folders");
+    if (pictures.empty()) throw Failure(LENSPROF_ERROR_ARGUMENT, "no pictures to correct; give pictures or folders");
     ApplyWork work;
     lensprof_exposure_init(&work.mean);
     if (source.project) work.mean = mean_exposure(joined_exposures(*source.project, source.exposures));
@@ -312,7 +315,7 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
     std::vector<NotThisOne> refused;
     for (const NamedPicture &picture : pictures) {
         inputs.push_back(picture.file);
-        note_instead(picture, streams);
+        note_instead(picture, events);
         if (source.project && picture.in_folder && !source.images->find(picture.file)) {
             work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project()});
             continue;
@@ -328,14 +331,14 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
             work.jobs.push_back(make_job(o, source, picture));
         } catch (const NotThisOne &failure) {
             if (o.skip || picture.in_folder)
-                work.left_out.push_back({picture.file, failure.what(), failure.corrected_already, failure.code});
+                work.left_out.push_back({picture.file, failure.what(), failure.corrected_already, failure.status});
             else
                 refused.push_back(failure);
         } catch (const Failure &failure) {
             // A name without a file is a mistake in the call.
             const bool is_mistaken = !o.files.empty() && !picture.in_folder && !path_exists(picture.file);
-            if (failure.code != ExitCode::unreadable || is_mistaken || o.merge || pictures.size() == 1) throw;
-            work.left_out.push_back({picture.file, failure.what(), false, failure.code});
+            if (failure.group() != LENSPROF_ERROR_READ || is_mistaken || o.merge || pictures.size() == 1) throw;
+            work.left_out.push_back({picture.file, failure.what(), false, failure.status});
         }
     }
     if (!refused.empty()) fail_refused(refused, pictures.size(), streams);

@@ -25,7 +25,7 @@ struct ApplySource {
 struct LeftOut {
     std::string file, reason;
     bool corrected_already = false;
-    ExitCode code = ExitCode::not_found;
+    lensprof_status status = LENSPROF_ERROR_NOT_FOUND;
 };
 
 struct ApplyWork {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/correct/correction.hpp"
+#include "cli/program/run.hpp"
 
 namespace lensprof {
 
@@ -38,5 +39,9 @@ private:
     };
     Worst lifted_, clipped_;
 };
+
+// Warns if changing a frame from its own to the wanted exposure turns white to grey or amplifies the noise of dark
+// areas.
+void warn_of_limits(const std::string &file, double own_ev, double wanted_ev, double white_share, Streams &streams);
 
 }  // namespace lensprof

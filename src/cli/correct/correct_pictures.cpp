@@ -12,16 +12,16 @@
 #include "cli/correct/picture_plan.hpp"
 #include "cli/correct/strip_pipeline.hpp"
 #include "cli/fitting/project.hpp"
-#include "cli/pictures/icc.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/pictures/raw_kind.hpp"
-#include "cli/pictures/thumbnail.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/lookup_report.hpp"
-#include "cli/program/interrupt.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/icc.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/pictures/raw_kind.hpp"
+#include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
 namespace {
@@ -87,7 +87,7 @@ PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind
 }
 
 bool PictureCorrection::make(Strip &strip) {
-    stop_if_interrupted();
+    stop_if_cancelled();
     const Picture &source = reader_.header();
     uint32_t rows = std::min(strip_rows_, source.height - next_row_);
     if (rows == 0) return false;
@@ -118,7 +118,7 @@ bool PictureCorrection::make(Strip &strip) {
 }
 
 uint64_t PictureCorrection::take(const Strip &strip) {
-    stop_if_interrupted();
+    stop_if_cancelled();
     writer_->write(image_of(strip.written));
     return uint64_t(strip.written.width) * strip.written.height;
 }
@@ -206,10 +206,10 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         throw;
     }
     parts.warn(progress);
-    for (const std::string &text : losses.warnings()) progress.warn(text);
+    for (const std::string &text : losses.warnings()) progress.warn({}, text);
     corrected.seconds = throughput.seconds();
     corrected.megapixels = throughput.megapixels();
-    if (count > 1) progress.print_line("corrected " + throughput.summary());
+    if (count > 1) progress.finish("corrected " + throughput.summary());
     return corrected;
 }
 

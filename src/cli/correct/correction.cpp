@@ -7,11 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 
@@ -26,17 +26,18 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
         }
         const std::string target = canonical_path(job.target);
         if (target == canonical_path(job.source) || is_same_file(job.source, job.target))
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           job.source + ": would be overwritten by its correction; give another folder with -o");
         if (read.count(target))
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           job.target + ": would overwrite an input picture; give another folder with -o");
         if (!written.insert(target).second)
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           job.target + ": two pictures would get this name; correct them one folder at a time");
     }
     if (!sheet.empty() && (read.count(canonical_path(sheet)) || written.count(canonical_path(sheet))))
-        throw Failure(ExitCode::usage, sheet + ": the contact sheet would overwrite a picture; give it another name");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      sheet + ": the contact sheet would overwrite a picture; give it another name");
 }
 
 // Empty: not a picture, or without a mark.
@@ -59,11 +60,12 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
         };
         const bool is_same_folder = folder_of(job.target) == folder_of(job.source);  // next to somebody's pictures
         if (!mark && (!replaces_unmarked || is_same_folder) && path_exists(job.target))
-            throw Failure(ExitCode::usage, job.target + ": exists and was not written by lensprof; give another "
+            throw Failure(LENSPROF_ERROR_ARGUMENT, job.target + ": exists and was not written by lensprof; give another "
                                                         "folder with -o or another name, or use --overwrite");
         if (!mark || mark->digest.empty() || mark->digest == digest_of(job.source)) continue;
-        throw Failure(ExitCode::usage, job.target + ": exists and was made from another picture (" + mark->source
-                                           + "); give another folder with -o, or use --overwrite");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, job.target + ": exists and was made from another picture ("
+                                                   + mark->source
+                                                   + "); give another folder with -o, or use --overwrite");
     }
 }
 
@@ -75,11 +77,11 @@ std::string correction_note(const Correction &job) {
 
 void warn_of_written(const Correction &job, bool with_metadata, Progress &progress) {
     if (!job.copies_dng && format_of_name(job.target) == FileFormat::exr && read_metadata(job.source).orientation > 1)
-        progress.warn(job.target + ": written in sensor orientation, because OpenEXR has no EXIF orientation; rotate "
+        progress.warn({}, job.target + ": written in sensor orientation, because OpenEXR has no EXIF orientation; rotate "
                                    "it later, or write TIFF");
     if (!with_metadata)
-        progress.warn(job.target + ": written without the metadata of " + job.source
-                      + ", which lensprof does not support in BigTIFF; copy them with exiftool");
+        progress.warn({}, job.target + ": written without the metadata of " + job.source
+                              + ", which lensprof does not support in BigTIFF; copy them with exiftool");
 }
 
 void add_speed(const Corrected &corrected, Json &json) {

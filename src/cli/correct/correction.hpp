@@ -7,14 +7,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/pictures/contact_sheet.hpp"
-#include "cli/pictures/metadata.hpp"
 #include "cli/profiles/lookup_report.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/contact_sheet.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 

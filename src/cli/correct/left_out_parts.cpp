@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "cli/pictures/other_parts.hpp"
-#include "cli/program/format.hpp"
+#include "photo/base/format.hpp"
+#include "photo/pictures/other_parts.hpp"
 
 namespace lensprof {
 
@@ -24,8 +24,8 @@ void LeftOutParts::add(const std::string &source, const std::string &target) {
 void LeftOutParts::warn(Progress &progress) const {
     for (const Files &files : files_) {
         const std::string others = files.count > 1 ? " and " + std::to_string(files.count - 1) + " more" : "";
-        progress.warn(files.first + others + ": left out of the copy: " + files.text
-                      + "; keep the original if you need it");
+        progress.warn(
+            {}, files.first + others + ": left out of the copy: " + files.text + "; keep the original if you need it");
     }
 }
 

@@ -12,7 +12,8 @@ static constexpr double none_below = 0.01, all_above = 0.06, all_below = 0.9, no
 size_t samples_of_light(const Picture &header, const std::string &file) {
     const size_t samples = lensprof_layout_samples(header.layout);
     if (samples != 1 && samples != 3)
-        throw Failure(ExitCode::usage, file + ": has transparency, which merged pictures do not support; remove it");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      file + ": has transparency, which merged pictures do not support; remove it");
     return samples;
 }
 

@@ -8,8 +8,8 @@
 #include "cli/correct/light_weights.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/fitting/project.hpp"
-#include "cli/program/interrupt.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -97,7 +97,7 @@ void merge_pixel(const Frames &frames, uint32_t x, uint32_t y, float *merged) {
 void check_merged_name(const std::string &target) {
     const FileFormat format = format_of_name(target);
     if (format != FileFormat::tiff && format != FileFormat::exr)
-        throw Failure(ExitCode::usage, target + ": HDR is written only as TIFF or OpenEXR; give a name ending in .tif "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, target + ": HDR is written only as TIFF or OpenEXR; give a name ending in .tif "
                                                 "or .exr");
 }
 
@@ -109,14 +109,14 @@ void write_merged(const std::vector<Correction> &jobs, size_t reference, const s
     for (const Correction &job : jobs) frames.push_back(std::make_unique<Frame>(job, kind));
     for (const auto &frame : frames)
         if (frame->samples() != frames[0]->samples())
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           jobs[0].source + ": some frames are grey and others in colour; give frames of one kind");
     const Picture header = header_of_result(frames[reference]->header(), LENSPROF_SAMPLE_F32);
     PictureWriter writer(target, header, write_options(jobs[reference], kind));
     std::stable_sort(frames.begin(), frames.end(), [](const auto &a, const auto &b) { return a->ev() < b->ev(); });
     std::vector<float> merged;
     for (uint32_t first = 0; first < header.height; first += strip_rows) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         const uint32_t rows = std::min(strip_rows, header.height - first);
         for (const auto &frame : frames) frame->read(first, rows);
         merged.resize(size_t(header.width) * rows * frames[0]->samples());

@@ -7,10 +7,10 @@
 #include "cli/correct/left_out_parts.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/correct/place_map.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/interrupt.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -238,8 +238,8 @@ void check_mergeable(const std::string &file, std::optional<uint32_t> &layout) {
     const Picture header = read_header(file);
     const size_t samples = samples_of_light(header, file);
     if (layout && header.layout != *layout)
-        throw Failure(ExitCode::usage, file + ": is " + (samples == 1 ? "grey" : "in colour")
-                                           + ", but others are not; merge pictures of one kind");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is " + (samples == 1 ? "grey" : "in colour")
+                                                   + ", but others are not; merge pictures of one kind");
     layout = header.layout;
 }
 
@@ -254,7 +254,7 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
         Merge merge(placed, kind, project);
         uint32_t overlapping = 0;
         for (PlacedCorrection other : all) {
-            stop_if_interrupted();
+            stop_if_cancelled();
             if (other.image == placed.image || !overlap(merge.picture().camera(), project.images[other.image].camera))
                 continue;
             other.job.target_exposure = placed.job.target_exposure;
@@ -263,15 +263,14 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
             overlapping++;
         }
         if (!overlapping)
-            progress.warn(placed.job.source
-                          + ": no other picture of the project overlaps it; nothing is merged into it");
+            progress.warn(placed.job.source, "no other picture of the project overlaps it; nothing is merged into it");
         const double same = merge.share_same();
         if (same < enough_agree)
             progress.warn(
-                placed.job.source
-                + format(": agrees with the overlapping pictures in only %.0f %% of the shared area; check that it is "
-                         "the picture the project was fitted to",
-                         100.0 * same));
+                placed.job.source,
+                format("agrees with the overlapping pictures in only %.0f %% of the shared area; check that it is "
+                       "the picture the project was fitted to",
+                       100.0 * same));
         write_light(placed.job, kind, merge, progress);
         corrected.pictures.push_back({{"file", placed.job.source},
                                       {"output", placed.job.target},
@@ -282,7 +281,7 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
     }
     corrected.seconds = throughput.seconds();
     corrected.megapixels = throughput.megapixels();
-    if (jobs.size() > 1) progress.print_line("merged " + throughput.summary());
+    if (jobs.size() > 1) progress.finish("merged " + throughput.summary());
     return corrected;
 }
 

@@ -5,13 +5,14 @@
 #include <stdexcept>
 
 #include "cli/correct/falloff_doubt.hpp"
-#include "cli/pictures/orientation.hpp"
-#include "cli/pictures/rotated_profile.hpp"
-#include "cli/pictures/sensor.hpp"
 #include "cli/profiles/lookup_report.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/paths.hpp"
+#include "cli/program/database_options.hpp"
 #include "cli/program/response_words.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/orientation.hpp"
+#include "photo/pictures/rotated_profile.hpp"
+#include "photo/pictures/sensor.hpp"
 
 namespace lensprof {
 
@@ -63,7 +64,7 @@ lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) cons
 }
 
 [[noreturn]] static void fail_corrected(const std::string &file, const PictureMetadata &metadata) {
-    throw NotThisOne(ExitCode::not_found,
+    throw NotThisOne(LENSPROF_ERROR_NOT_FOUND,
                      file + ": its falloff was already corrected, " + metadata.corrected_by
                          + "; use --set force-falloff=yes to correct it anyway",
                      true);
@@ -86,10 +87,11 @@ void PictureModels::take_profile(const PictureMetadata &metadata, Correction &jo
         && profile_processing != LENSPROF_PROCESSING_CORRECTED)
         return;
     const std::string processing_text = processing_name(processing), profile_text = processing_name(profile_processing);
-    throw NotThisOne(ExitCode::usage, job.source + ": is treated as " + processing_text + ", but profile "
-                                          + std::to_string(options_.profile) + " is for " + profile_text
-                                          + " pictures; give --key processing=" + profile_text + " if this picture is "
-                                          + profile_text + ", or its response, such as --set response=srgb");
+    throw NotThisOne(LENSPROF_ERROR_ARGUMENT, job.source + ": is treated as " + processing_text + ", but profile "
+                                                  + std::to_string(options_.profile) + " is for " + profile_text
+                                                  + " pictures; give --key processing=" + profile_text
+                                                  + " if this picture is " + profile_text
+                                                  + ", or its response, such as --set response=srgb");
 }
 
 // What is missing, in EXIF or in the databases: camera, lens or setting.
@@ -143,7 +145,7 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     const std::string missing = missing_part(key, metadata, lookup);
     const bool is_all = !*key.lens && lookup.reason_code[0] == LENSPROF_REASON_LOOKUP_NO_CAMERA;  // no lens, no profile
     if (status == LENSPROF_ERROR_NOT_FOUND)
-        throw NotThisOne(ExitCode::not_found,
+        throw NotThisOne(LENSPROF_ERROR_NOT_FOUND,
                          job.source + ": no profile for " + describe_key(key) + " in " + databases_.names() + " ("
                              + missing + (missing.empty() || is_all ? "" : "; ") + (is_all ? "" : lookup.reason)
                              + describe_nearest(nearest_names(databases_, key, lookup))
@@ -177,8 +179,8 @@ static void check_error(const lensprof_lookup &lookup, const lensprof_profile_ke
     if (std::hypot(lookup.falloff_sigma, lookup.distance_sigma) <= largest_sigma && lookup.sensor_sigma > largest_sigma)
         step = std::string(*key.camera_model ? "the size of the camera's sensor is unknown" : "EXIF names no camera")
                + "; give --key crop-factor=NUMBER, or the camera with --camera and --key maker=TEXT";
-    throw NotThisOne(ExitCode::not_found, file + ": the falloff is too uncertain, " + describe_error(lookup)
-                                              + format(", above %.1f; ", largest_sigma) + step);
+    throw NotThisOne(LENSPROF_ERROR_NOT_FOUND, file + ": the falloff is too uncertain, " + describe_error(lookup)
+                                                   + format(", above %.1f; ", largest_sigma) + step);
 }
 
 // A falloff that no lens has is applied only if asked for by the number of the profile or by --key doubtful=yes.
@@ -187,7 +189,7 @@ void PictureModels::check_possible(const PictureMetadata &metadata, Correction &
     const std::string doubt = impossible_falloff(profile, metadata.size.width, metadata.size.height);
     if (doubt.empty() || options_.lookup.doubtful) return;
     if (!options_.profile)
-        throw NotThisOne(ExitCode::not_found, job.source + ": " + doubt
+        throw NotThisOne(LENSPROF_ERROR_NOT_FOUND, job.source + ": " + doubt
                                                   + ", as with no lens; make a profile with `lensprof build`, or use "
                                                     "`lensprof apply --key doubtful=yes`");
     job.note = doubt + ", as with no lens";

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "cli/correct/correction.hpp"
-#include "cli/pictures/metadata.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/lookup_options.hpp"
-#include "cli/program/databases.hpp"
+#include "photo/base/databases.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 
 // Why one picture cannot be corrected; other pictures are still corrected.
 struct NotThisOne : Failure {
-    NotThisOne(ExitCode exit_code, const std::string &text, bool already = false)
-        : Failure(exit_code, text), corrected_already(already) {}
+    NotThisOne(lensprof_status of, const std::string &text, bool already = false)
+        : Failure(of, text), corrected_already(already) {}
 
     bool corrected_already;
 };

@@ -5,8 +5,8 @@
 #include <iterator>
 
 #include "cli/fitting/project.hpp"
-#include "cli/pictures/icc.hpp"
-#include "cli/program/output_file.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/pictures/icc.hpp"
 
 namespace lensprof {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/correct/correction.hpp"
-#include "cli/pictures/picture.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "cli/correct/project_model.hpp"
-#include "cli/pictures/metadata.hpp"
-#include "cli/program/median.hpp"
+#include "photo/base/median.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 namespace {

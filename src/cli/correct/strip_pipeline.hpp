@@ -69,7 +69,8 @@ void make_and_take(bool split, const Make &make, const Take &take) {
     StripRing<Item> ring(split ? 3 : 1);
     std::exception_ptr failure;
     std::thread maker;
-    auto run = [&] {
+    auto run = [&, events = CallerScope::of_thread()] {
+        CallerScope caller(events);
         try {
             for (Item *item = ring.empty(); item && make(*item); item = ring.empty()) ring.filled();
         } catch (...) {

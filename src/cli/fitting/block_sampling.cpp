@@ -4,9 +4,9 @@
 #include <map>
 #include <set>
 
-#include "cli/program/interrupt.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/reconstruction/link_order.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/reconstruction/link_order.hpp"
 
 namespace lensprof {
 namespace {
@@ -154,7 +154,7 @@ void BlockSampler::run() {
     size_t done = 0;
     uint32_t loaded = UINT32_MAX;  // the block kept in memory for pairs with later ones
     for (const auto &[numbers, matches] : matches_of_blocks) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         Block &a = blocks_[numbers.first], &b = blocks_[numbers.second];
         if (loaded != numbers.first) {
             if (loaded != UINT32_MAX) blocks_[loaded].pictures.clear();
@@ -167,7 +167,7 @@ void BlockSampler::run() {
         progress_.update("sampling", double(++done) / double(matches_of_blocks.size()));
     }
     if (pairs.empty())
-        throw Failure(ExitCode::not_usable, project_.path + ": " + no_samples_reason_, LENSPROF_REASON_FEW_PAIRS);
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, project_.path + ": " + no_samples_reason_, LENSPROF_REASON_FEW_PAIRS);
     std::sort(links.begin(), links.end(), [](const lensprof_link &a, const lensprof_link &b) {
         return std::pair(a.image[0], a.image[1]) < std::pair(b.image[0], b.image[1]);
     });

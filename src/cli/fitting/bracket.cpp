@@ -10,14 +10,14 @@
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/static_camera.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/pictures/other_parts.hpp"
-#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
 #include "cli/program/options.hpp"
+#include "photo/base/events.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/pictures/other_parts.hpp"
+#include "photo/pictures/raw_kind.hpp"
 
 namespace lensprof {
 namespace {
@@ -198,12 +198,12 @@ BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::ve
     input.options.camera_kind = kind.kind;
     if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);
     input.pairs = get_pairs(o, project, progress, report, input.options.channels);
-    stop_if_interrupted();
+    stop_if_cancelled();
     const auto images = input.images;
     const auto members = connected_pictures(input.pairs, static_cast<uint32_t>(images.size()));
     auto place = std::find(members.begin(), members.end(), report.reference);
     if (place == members.end() && !o.reference.empty())
-        throw Failure(ExitCode::not_usable,
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       project.names[report.reference] + ": shares almost no unclipped grey values with another "
                                                         "picture; choose another reference",
                       LENSPROF_REASON_IMAGE_GROUPS);
@@ -229,7 +229,8 @@ int bracket_and_store(const BracketOptions &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
     Project project = static_project(o.files, o.free_balance);
     check_pictures(project, o.pixels.max_side);
-    note_several(project.files, streams);
+    Progress events(streams);
+    note_several(project.files, events);
     require_one_kind(project.files);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
@@ -254,11 +255,11 @@ int run(const BracketOptions &o, Streams &streams) {
     check_store_options(o.store);
     check_report(o.report, o.files, o.store);
     if (!o.ev.empty() && !o.times_s.empty())
-        throw Failure(ExitCode::usage, "--ev and --times exclude each other; give one of them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--ev and --times exclude each other; give one of them");
     try {
         return bracket_and_store(o, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_usable) {
+        if (o.json && failure.group() == LENSPROF_ERROR_NOT_USABLE) {
             BuildReport report = no_fit(o.files, failure);
             report.has_falloff = false;
             print_json(build_json(report), streams.out);

@@ -16,15 +16,15 @@
 #include "cli/fitting/project_fit.hpp"
 #include "cli/fitting/reconstruction_project.hpp"
 #include "cli/page/page.hpp"
-#include "cli/pictures/other_parts.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/file_kind.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
-#include "cli/reconstruction/reconstruction_file.hpp"
 #include "cli/report/drawing.hpp"
+#include "photo/base/file_kind.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/other_parts.hpp"
+#include "photo/reconstruction/reconstruction_file.hpp"
 
 namespace lensprof {
 namespace {
@@ -119,7 +119,7 @@ void declare(Command &command, BuildOptions &o) {
 // one.
 void reject_photograph(const std::string &output, bool is_preview) {
     if (!is_preview && is_picture_name(output))
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       output + ": is the name of a picture, but the output is text; give another name");
     if (!is_preview || !is_regular_file(output)) return;
     PictureMetadata metadata = unknown_metadata();
@@ -129,13 +129,13 @@ void reject_photograph(const std::string &output, bool is_preview) {
         return;  // not a readable picture
     }
     if (*metadata.key.camera_model || metadata.exposure_time_s)
-        throw Failure(ExitCode::usage, output + ": is an existing photograph; give the preview another name");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": is an existing photograph; give the preview another name");
 }
 
 // Files of exposures are next to reconstructions; nothing else must be overwritten by mistake.
 void reject_other_file(const std::string &output) {
     if (!is_regular_file(output) || file_bytes(output) == 0 || is_exposure_file(output)) return;
-    throw Failure(ExitCode::usage, output + ": exists and is not a file of exposures; give another name");
+    throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": exists and is not a file of exposures; give another name");
 }
 
 // No output may overwrite an input, the database or another output.
@@ -203,7 +203,7 @@ void check_photographs(const BuildOptions &o, const Photographs &list) {
             override_key(metadata.key, metadata.size, o.store, file);
             return;
         } catch (const Failure &failure) {
-            if (!missing_name && failure.code == ExitCode::usage)
+            if (!missing_name && failure.group() == LENSPROF_ERROR_ARGUMENT)
                 missing_name = failure;  // others are left out and reported
                                          // later
         }
@@ -212,53 +212,53 @@ void check_photographs(const BuildOptions &o, const Photographs &list) {
 }
 
 // Refuses options that need a project with cameras.
-Project open_reconstruction(const BuildOptions &o, Streams &streams) {
+Project open_reconstruction(const BuildOptions &o, Events &events) {
     for (const auto &[option, value] : {std::pair("--points", o.points), std::pair("--write preview", o.preview),
                                         std::pair("--write project", o.project_out)})
         if (!value.empty())
-            throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, but " + o.inputs[0]
-                                               + " is a reconstruction; omit the option");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(option) + ": is for panoramas, but " + o.inputs[0]
+                                                       + " is a reconstruction; omit the option");
     return project_of_reconstruction(
         o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pixels.pairs, o.pixels.seed},
-        streams);
+        events);
 }
 
 // The project, or the pictures instead.
 Project open_project(const BuildOptions &o, Streams &streams) {
-    if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
+    Progress progress(streams, o.progress);
+    if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, progress);
     for (const auto &[option, is_given] :
          {std::pair("--images", !o.images.empty()), std::pair("--reconstruction list", !o.image_list.empty()),
           std::pair("--reconstruction shard", !o.shard.empty()),
           std::pair("--reconstruction track-colors", o.track_colours),
           std::pair("--write gain-chart", !o.gain_chart.empty())})
         if (is_given)
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           std::string(option) + ": is for reconstructions, but " + o.inputs[0]
                               + " is not one; omit the option, or give only database.db, tracks.csv or a similar file");
     for (const std::string &input : o.inputs) refuse_other_kind(input);
     const bool is_project = o.inputs.size() == 1 && !is_picture_argument(o.inputs[0]);
     for (const std::string &input : o.inputs)
         if (!is_project && !is_picture_argument(input))
-            throw Failure(ExitCode::usage, input + ": is neither a picture (.jpg, .png, .tif) nor a folder; give a "
+            throw Failure(LENSPROF_ERROR_ARGUMENT, input + ": is neither a picture (.jpg, .png, .tif) nor a folder; give a "
                                                    "single project, or pictures and folders");
     if (is_project && !o.project_out.empty())
-        throw Failure(ExitCode::usage, "--write project: needs pictures, but " + o.inputs[0]
-                                           + " is a project; omit the option, or use --write pto=FILE");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--write project: needs pictures, but " + o.inputs[0]
+                                                   + " is a project; omit the option, or use --write pto=FILE");
     if (is_project) {
         reject_reconstruction_part(o.inputs[0]);
         Project project = read_project(o.inputs[0]);
         for (const auto &[option, value] : {std::pair("--write preview", o.preview), std::pair("--report", o.report)})
             if (!value.empty()) refuse_crops(project, option);
-        if (o.points.empty()) note_several(project.files, streams);
+        if (o.points.empty()) note_several(project.files, progress);
         return project;
     }
     if (!o.points.empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--points: needs the project that its pairs belong to; give the project instead of pictures");
-    Progress progress(streams, o.progress);
-    const Photographs list = find_photographs(o.inputs, streams);
+    const Photographs list = find_photographs(o.inputs, progress);
     check_photographs(o, list);
-    return project_of_pictures(list, o.one_lens, progress, streams);
+    return project_of_pictures(list, o.one_lens, progress);
 }
 
 // The free parameters: by --fit free, else by the v lines; all if these have nothing photometric, as in a project that
@@ -280,7 +280,7 @@ int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Stre
     Project project = open_project(o, streams);
     names = project.names;
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, project.path + ": has only one image; give at least two that overlap",
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
     std::vector<std::string> inputs = project.files;
     inputs.push_back(project.path);
@@ -321,17 +321,18 @@ int run(const BuildOptions &o, Streams &streams) {
     if (!o.gain_chart.empty()) check_chart_name(o.gain_chart);
     if (!o.report.empty()) check_page_name(o.report);
     if (!o.preview.empty() && !o.points.empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--write preview: needs the pictures, which --points does not read; give one of them");
     if (o.json && !o.compare.empty())
-        throw Failure(ExitCode::usage, "--fit truth prints a table, and --json prints JSON; give one of them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit truth prints a table, and --json prints JSON; give one of them");
     check_store_options(o.store, uses_stored_prior(o.fit), !o.pto_out.empty() || !o.exposures_out.empty());
 
     std::vector<std::string> names;
     try {
         return build_and_store(o, names, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_usable) print_json(build_json(no_fit(names, failure)), streams.out);
+        if (o.json && failure.group() == LENSPROF_ERROR_NOT_USABLE)
+            print_json(build_json(no_fit(names, failure)), streams.out);
         throw;
     }
 }

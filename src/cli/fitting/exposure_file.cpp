@@ -7,10 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/paths.hpp"
-#include "cli/reconstruction/pictures.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/reconstruction/pictures.hpp"
 
 namespace lensprof {
 namespace {
@@ -75,7 +75,7 @@ public:
     explicit Reader(const std::string &path) : path_(path) {}
 
     [[noreturn]] void fail(const std::string &what) const {
-        throw Failure(ExitCode::unreadable,
+        throw Failure(LENSPROF_ERROR_READ,
                       path_ + ": " + what + "; give the file that `lensprof build --write exposures=FILE` wrote");
     }
     const Json &member(const Json &object, const char *name) const {

@@ -9,10 +9,10 @@
 #include "cli/fitting/fit_residuals.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/page/page.hpp"
-#include "cli/pictures/thumbnail.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/report/curves_json.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
 namespace {

@@ -10,13 +10,15 @@
 
 #include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/project.hpp"
-#include "cli/pictures/orientation.hpp"
-#include "cli/pictures/rotated_profile.hpp"
-#include "cli/program/format.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
+#include "photo/pictures/orientation.hpp"
+#include "photo/pictures/rotated_profile.hpp"
 
 namespace lensprof {
 int on_fit_progress(double done, void *progress) {
@@ -121,9 +123,10 @@ bool uses_stored_prior(const FitOptions &o) {
 
 void check_fit_options(const FitOptions &o) {
     if (o.stored_is_requested && !uses_stored_prior(o))
-        throw Failure(ExitCode::usage, "--fit stored: needs --fit method=transfer or radiance, and a prior above 0");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--fit stored: needs --fit method=transfer or radiance, and a prior above 0");
     if (o.gamma_from == LENSPROF_GAMMA_EXPOSURES && o.exif_sigma == 0.0)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--fit gamma-from=exif and exif-sigma=0 (ignore EXIF) exclude each other; omit one of them");
 }
 
@@ -247,9 +250,9 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
                      : lensprof_fit_overlap(&input.options, images, count, input.pairs.data(), pairs, nullptr, 0,
                                             fitted.exposures.data(), &held, &error);
     fitted.held = {held, lensprof_fit_destroy};
-    stop_if_interrupted();
+    stop_if_cancelled();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
-        throw Failure(ExitCode::usage, item + ": no parameter is estimated; give --fit free=all");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, item + ": no parameter is estimated; give --fit free=all");
     check(status, item, &error);
     ask(*held, input.images, fitted, quality);
     fitted.verdict = verdict_of(held);
@@ -433,7 +436,7 @@ bool report_problems(const BuildReport &report, const StoreOptions &store, const
 
 int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
                Streams &streams) {
-    stop_if_interrupted();
+    stop_if_cancelled();
     if (!store.no_store) store_result(report, key, store, finish);
     std::ostringstream messages;  // after the result, but known before the outputs are complete
     Streams message_streams = streams.with(streams.out, messages);
@@ -452,7 +455,7 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
 
 void check_max_side(uint32_t max_side) {
     if (max_side != 0 && max_side < 64)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--fit max-side: fewer than 64 pixels give too few samples; give more, or 0 for full size");
 }
 

@@ -10,13 +10,13 @@
 
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/stored_prior.hpp"
-#include "cli/pictures/metadata.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 

@@ -8,14 +8,15 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
-#include "cli/pictures/orientation.hpp"
-#include "cli/pictures/rotated_profile.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/interrupt.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/events.hpp"
+#include "photo/pictures/orientation.hpp"
+#include "photo/pictures/rotated_profile.hpp"
 
 namespace lensprof {
 namespace {
@@ -133,7 +134,7 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
     read_flat(o, progress, input);
     progress.clear();
     handle_lossy_pictures(o, input, streams);
-    stop_if_interrupted();
+    stop_if_cancelled();
     FlatReport report = begin_report(input);
     report.load_s = lap(clock);
     input.options.progress = on_fit_progress;
@@ -179,7 +180,7 @@ FlatReport measure_or_report_failure(const FlatCommand &o, FlatInput &input, Str
     try {
         return measure(o, input, progress, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_usable)
+        if (o.json && failure.group() == LENSPROF_ERROR_NOT_USABLE)
             print_json(flat_json(failed_report(input, failure)), streams.out);
         throw;
     }
@@ -192,7 +193,7 @@ int run(const FlatCommand &o, Streams &streams) {
     check_store(o.store);
     FlatReport report = measure_or_report_failure(o, input, streams);
     const bool is_stored = report.fit.usable || o.store.force;
-    stop_if_interrupted();
+    stop_if_cancelled();
     OutputFiles outputs;
     if (!o.report.empty())
         outputs.add(o.report, flat_page(report, o.files.front(), command_text(streams.words), streams.warnings));

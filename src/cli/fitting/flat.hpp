@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "cli/fitting/profile_store.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 

@@ -5,14 +5,14 @@
 
 #include "cli/fitting/flat.hpp"
 #include "cli/fitting/known_exposures.hpp"
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/pictures/other_parts.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/pictures/other_parts.hpp"
 
 namespace lensprof {
 namespace {
@@ -59,7 +59,7 @@ std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_
     for (size_t i = 0; i < ev.size(); i++) {
         if (o.ev.empty() && needs_ev(o, shots, i)) {
             if (std::isnan(stated.ev[i]))
-                throw Failure(ExitCode::usage, o.files[i]
+                throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i]
                                                    + ": EXIF does not state its exposure (time, aperture, ISO); give "
                                                      "the exposures of all pictures with --ev, for example 0,0,0 if "
                                                      "they are equal");
@@ -67,7 +67,7 @@ std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_
             are_needed = true;
         }
         if (!(std::fabs(ev[i]) <= max_abs_ev))
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           o.files[i] + ": an exposure beyond 64 EV is not plausible; check --ev or EXIF");
     }
     const std::string in_part = exif_use(stated, metadata, o.files).note;
@@ -80,7 +80,7 @@ bool are_linear(const FlatCommand &o, const std::vector<PictureMetadata> &metada
     if (o.linear || o.gamma || o.profile) return o.linear;
     for (size_t i = 0; i < metadata.size(); i++)
         if (metadata[i].processing_before != LENSPROF_PROCESSING_RAW)
-            throw Failure(ExitCode::usage, o.files[i] + ": is not marked as linear; give the response of the pictures "
+            throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": is not marked as linear; give the response of the pictures "
                                                         "with --linear, --fit gamma=G or --fit profile=ID");
     return true;
 }
@@ -112,10 +112,10 @@ std::vector<lensprof_response> response_of(const FlatCommand &o) {
 // The card's rectangle as a mask of the stored pixels.
 std::vector<uint8_t> mask_of(const std::array<double, 4> &r, const Picture &picture, const std::string &file) {
     if (!(r[2] > 0 && r[3] > 0) || r[0] + r[2] > picture.frame_width || r[1] + r[3] > picture.frame_height)
-        throw Failure(ExitCode::usage, format("--card %g,%g,%g,%g", r[0], r[1], r[2], r[3])
-                                           + ": not a rectangle X,Y,WIDTH,HEIGHT in the "
-                                           + std::to_string(picture.frame_width) + " x "
-                                           + std::to_string(picture.frame_height) + " px of " + file);
+        throw Failure(LENSPROF_ERROR_ARGUMENT, format("--card %g,%g,%g,%g", r[0], r[1], r[2], r[3])
+                                                   + ": not a rectangle X,Y,WIDTH,HEIGHT in the "
+                                                   + std::to_string(picture.frame_width) + " x "
+                                                   + std::to_string(picture.frame_height) + " px of " + file);
     std::vector<uint8_t> mask(static_cast<size_t>(picture.width) * picture.height);
     const double side = picture.reduction;
     for (uint32_t y = 0; y < picture.height; y++)
@@ -133,15 +133,15 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
         const Picture &p = pictures[i];
         if (p.frame_width != first.frame_width || p.frame_height != first.frame_height)
             throw Failure(
-                ExitCode::unreadable,
+                LENSPROF_ERROR_READ,
                 format("%s: is %u x %u px, not %u x %u as %s; give pictures of one camera, all in the same orientation",
                        o.files[i].c_str(), p.frame_width, p.frame_height, first.frame_width, first.frame_height,
                        o.files.front().c_str()));
         if (lensprof_layout_channels(p.layout) != channels)
-            throw Failure(ExitCode::usage, o.files[i] + ": is in colour and others are grey, or the reverse; give "
+            throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": is in colour and others are grey, or the reverse; give "
                                                         "pictures of one kind");
         if (std::max(p.width, p.height) < min_side)
-            throw Failure(ExitCode::not_usable, o.files[i] + ": fewer than 64 px give too few cells; give larger "
+            throw Failure(LENSPROF_ERROR_NOT_USABLE, o.files[i] + ": fewer than 64 px give too few cells; give larger "
                                                              "pictures",
                           LENSPROF_REASON_FLAT_FEW_CELLS);
     }
@@ -153,35 +153,36 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
 void check_flat_options(const FlatCommand &o) {
     check_store_options(o.store);
     if (o.linear + o.gamma.has_value() + (o.profile != 0) > 1)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "give the response of the pictures with one of --linear, --fit gamma=G, --fit profile=ID");
     if (o.files.size() > LENSPROF_FLAT_IMAGES)
-        throw Failure(ExitCode::usage, std::to_string(o.files.size()) + " pictures; give at most "
-                                           + std::to_string(LENSPROF_FLAT_IMAGES));
+        throw Failure(LENSPROF_ERROR_ARGUMENT, std::to_string(o.files.size()) + " pictures; give at most "
+                                                   + std::to_string(LENSPROF_FLAT_IMAGES));
     for (size_t i = 0; i < o.files.size(); i++)
         for (size_t j = 0; j < i; j++)
             if (is_same_file(o.files[i], o.files[j]))
-                throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
+                throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": given twice; give it once");
     if (!(o.black < o.white))
-        throw Failure(ExitCode::usage, "--fit black: must be less than white; give a smaller value");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit black: must be less than white; give a smaller value");
     if (o.max_side != 0 && o.max_side < min_side)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--fit max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
     if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
-        throw Failure(ExitCode::usage, "--several: assumes even light on the card; omit --fit light");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--several: assumes even light on the card; omit --fit light");
     if (o.find_card && !o.cards.empty())
-        throw Failure(ExitCode::usage, "--card find and a rectangle exclude each other; give one of them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--card find and a rectangle exclude each other; give one of them");
     if (o.cards.size() > 1 && o.cards.size() != o.files.size())
-        throw Failure(ExitCode::usage, std::to_string(o.cards.size()) + " --card for "
-                                           + counted(o.files.size(), "picture")
-                                           + "; give one for all, or one per picture");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, std::to_string(o.cards.size()) + " --card for "
+                                                   + counted(o.files.size(), "picture")
+                                                   + "; give one for all, or one per picture");
 }
 
 FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     FlatInput input;
     lensprof_flat_options_init(&input.options);
     require_one_kind(o.files);
-    note_several(o.files, streams);
+    Progress events(streams);
+    note_several(o.files, events);
     std::vector<PictureMetadata> metadata;
     for (const auto &file : o.files) metadata.push_back(read_metadata(file));
     input.names = o.files;
@@ -227,7 +228,7 @@ void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input) {
     });
     input.options.channels = common_channels(o, input.pictures);
     if (input.options.channels == 1 && input.options.vignettings == 3)
-        throw Failure(ExitCode::usage, "--fit falloff-curves=3: the pictures are grey; use 1");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit falloff-curves=3: the pictures are grey; use 1");
     for (size_t i = 0; i < count; i++) {
         const Picture &picture = input.pictures[i];
         if (!o.cards.empty())

@@ -3,9 +3,9 @@
 
 #include "cli/fitting/flat.hpp"
 #include "cli/page/page.hpp"
-#include "cli/program/format.hpp"
 #include "cli/report/curves_json.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

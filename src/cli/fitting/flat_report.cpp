@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/flat.hpp"
-#include "cli/program/format.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

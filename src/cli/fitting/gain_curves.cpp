@@ -1,6 +1,6 @@
 // How much the colours of scene points differ between pictures, before and after corrections.
 #include "cli/fitting/project_fit.hpp"
-#include "cli/program/library.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {

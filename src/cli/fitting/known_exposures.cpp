@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "cli/pictures/orientation.hpp"
 #include "cli/report/report.hpp"
+#include "photo/pictures/orientation.hpp"
 
 namespace lensprof {
 namespace {
@@ -189,10 +189,10 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
         if (found[i] == first.size()) first.push_back(i);
     }
     if (first.size() > LENSPROF_SETTINGS_MAX)
-        throw Failure(ExitCode::usage, project.path + ": its pictures have " + std::to_string(first.size())
-                                           + " lens settings, but a fit takes at most "
-                                           + std::to_string(LENSPROF_SETTINGS_MAX)
-                                           + "; give fewer pictures, or use --one-lens to treat all as one");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, project.path + ": its pictures have " + std::to_string(first.size())
+                                                   + " lens settings, but a fit takes at most "
+                                                   + std::to_string(LENSPROF_SETTINGS_MAX)
+                                                   + "; give fewer pictures, or use --one-lens to treat all as one");
     LensSettings settings = in_order(found, first);
     settings.camera_of_image = cameras.camera_of_image, settings.first_of_camera = cameras.first_of_camera;
     set_turns(project, metadata, settings);

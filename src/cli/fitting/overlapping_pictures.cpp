@@ -5,21 +5,20 @@
 #include "cli/fitting/photographs.hpp"
 #include "cli/fitting/project_fit.hpp"
 #include "cli/fitting/reconstruction_project.hpp"
-#include "cli/program/file_kind.hpp"
-#include "cli/reconstruction/reconstruction_file.hpp"
+#include "photo/base/file_kind.hpp"
+#include "photo/reconstruction/reconstruction_file.hpp"
 
 namespace lensprof {
 
-Project project_of_words(const std::vector<std::string> &words, const std::string &images, Progress &progress,
-                         Streams &streams) {
+Project project_of_words(const std::vector<std::string> &words, const std::string &images, Events &events) {
     const bool is_one = words.size() == 1;
     if (is_one && is_reconstruction(words[0])) {
         ReconstructionOptions options;
         options.images = images;
-        return project_of_reconstruction(words[0], options, streams);
+        return project_of_reconstruction(words[0], options, events);
     }
     if (!images.empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--images: is for reconstructions, but " + words[0] + " is not one; omit the option");
     for (const std::string &word : words) refuse_other_kind(word);
     if (is_one && !is_picture_argument(words[0])) {
@@ -28,9 +27,9 @@ Project project_of_words(const std::vector<std::string> &words, const std::strin
     }
     for (const std::string &word : words)
         if (!is_picture_argument(word))
-            throw Failure(ExitCode::unreadable, word + ": is neither a picture (.jpg, .png, .tif) nor a folder; give "
+            throw Failure(LENSPROF_ERROR_READ, word + ": is neither a picture (.jpg, .png, .tif) nor a folder; give "
                                                        "a single project, or pictures and folders");
-    return project_of_pictures(find_photographs(words, streams), false, progress, streams);
+    return project_of_pictures(find_photographs(words, events), false, events);
 }
 
 DrawnPairs draw_pairs(const Project &project, Progress &progress) {

@@ -5,15 +5,14 @@
 #include <vector>
 
 #include "cli/fitting/project.hpp"
-#include "cli/program/run.hpp"
+#include "photo/base/events.hpp"
 
 namespace lensprof {
 
 // Takes pictures and folders and finds their overlaps, or takes one project or reconstruction, whose pictures are in
 // the folder `images` unless that is empty. Failure (usage) for words that are not pictures, (unreadable), and
 // (not_usable) if no two pictures overlap.
-Project project_of_words(const std::vector<std::string> &words, const std::string &images, Progress &progress,
-                         Streams &streams);
+Project project_of_words(const std::vector<std::string> &words, const std::string &images, Events &events);
 
 struct DrawnPairs {
     std::vector<lensprof_pair> pairs;

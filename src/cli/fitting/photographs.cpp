@@ -8,11 +8,11 @@
 #include <set>
 
 #include "cli/fitting/fitting.hpp"
-#include "cli/pictures/other_parts.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/other_parts.hpp"
 
 namespace lensprof {
 namespace {
@@ -63,9 +63,9 @@ using LeftOut = std::vector<std::pair<std::string, std::string>>;  // names and 
 
 // Reports pictures that are not part of the project, for one reason.
 void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names, const std::string &reason,
-               LeftOut &left_out, Streams &streams) {
+               LeftOut &left_out, Events &events) {
     for (uint32_t number : numbers) left_out.emplace_back(names[number], reason);
-    warn(streams, listed(numbers, names) + ": left out: " + reason);
+    events.warn(listed(numbers, names), "left out: " + reason);
 }
 
 std::string reason_left_out(const FoundProject &other, const FoundProject &project) {
@@ -77,35 +77,33 @@ std::string reason_left_out(const FoundProject &other, const FoundProject &proje
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
-                  LeftOut &left_out, Streams &streams) {
+                  LeftOut &left_out, Events &events) {
     const FoundProject &project = found.projects[0];
     const std::string unfit =
         project.unfit
             ? format(" that fit; %u more do not fit the cameras and are compared only at matched points", project.unfit)
             : "";
-    note(streams,
-         label
-             + format(": %zu pictures overlap (%s%s; alignment residual %.2f %% of the longer side; %s); estimating "
-                      "response, falloff, exposures and white balances (use --fit free=... to change this)",
-                      project.pictures.size(), counted(project.links - project.unfit, "link").c_str(), unfit.c_str(),
-                      100.0 * project.residual,
-                      project.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
-                                                         "points"
-                                                       : "a rotating camera"));
+    events.note(label,
+                format("%zu pictures overlap (%s%s; alignment residual %.2f %% of the longer side; %s); estimating "
+                       "response, falloff, exposures and white balances (use --fit free=... to change this)",
+                       project.pictures.size(), counted(project.links - project.unfit, "link").c_str(), unfit.c_str(),
+                       100.0 * project.residual,
+                       project.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
+                                                          "points"
+                                                        : "a rotating camera"));
     const size_t cameras = std::set<uint32_t>(project.camera_ids.begin(), project.camera_ids.end()).size();
     if (cameras > 1)
-        note(streams,
-             label
-                 + format(": the pictures are from %zu cameras, sizes or processings; each gets its own response (use "
-                          "--one-lens to treat all as one)",
-                          cameras));
-    if (!project.cameras_fit()) warn(streams, label + poor_cameras_note);
+        events.note(label,
+                    format("the pictures are from %zu cameras, sizes or processings; each gets its own response (use "
+                           "--one-lens to treat all as one)",
+                           cameras));
+    if (!project.cameras_fit()) events.warn(label, poor_cameras_note);
     for (size_t n = 1; n < found.projects.size(); n++)
-        leave_out(found.projects[n].pictures, names, reason_left_out(found.projects[n], project), left_out, streams);
-    if (!found.other_camera.empty()) leave_out(found.other_camera, names, no_overlap_within_camera, left_out, streams);
-    if (!found.disconnected.empty()) leave_out(found.disconnected, names, linked_by_other_camera, left_out, streams);
+        leave_out(found.projects[n].pictures, names, reason_left_out(found.projects[n], project), left_out, events);
+    if (!found.other_camera.empty()) leave_out(found.other_camera, names, no_overlap_within_camera, left_out, events);
+    if (!found.disconnected.empty()) leave_out(found.disconnected, names, linked_by_other_camera, left_out, events);
     if (!found.isolated.empty())
-        leave_out(found.isolated, names, "no overlap with another picture found", left_out, streams);
+        leave_out(found.isolated, names, "no overlap with another picture found", left_out, events);
 }
 
 }  // namespace
@@ -123,12 +121,12 @@ static bool is_corrected_copy(const NamedPicture &picture) {
     }
 }
 
-Photographs find_photographs(const std::vector<std::string> &words, Streams &streams) {
+Photographs find_photographs(const std::vector<std::string> &words, Events &events) {
     std::vector<std::string> other_kinds;
     std::vector<NamedPicture> named = named_pictures(words, std::string(), other_kinds);
-    for (const std::string &text : other_kinds) warn(streams, text);
-    const std::vector<NamedPicture> outputs = extract_outputs(named, streams);
-    for (const NamedPicture &picture : named) note_instead(picture, streams);
+    for (const std::string &text : other_kinds) events.warn({}, text);
+    const std::vector<NamedPicture> outputs = extract_outputs(named, events);
+    for (const NamedPicture &picture : named) note_instead(picture, events);
     const auto first_corrected = std::stable_partition(
         named.begin(), named.end(), [](const NamedPicture &picture) { return !is_corrected_copy(picture); });
     const std::vector<NamedPicture> corrected(first_corrected, named.end());
@@ -138,14 +136,14 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
         list.left_out.emplace_back(picture.file,
                                    "lensprof made it from another picture; give its name explicitly to "
                                    "use it");
-    for (const auto &[file, reason] : list.left_out) warn(streams, file + ": left out: " + reason);
+    for (const auto &[file, reason] : list.left_out) events.warn(file, "left out: " + reason);
     for (const NamedPicture &picture : outputs)
         list.left_out.emplace_back(picture.file, "it is in an output folder of calibrate");
     require_one_kind(list.files);
-    note_several(list.files, streams);
+    note_several(list.files, events);
     if (list.files.size() < 2) {
         for (const std::string &file : list.files) read_header(file);  // for its errors
-        throw Failure(ExitCode::not_usable,
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       list.label + (list.files.empty() ? ": has only corrected pictures" : ": has only one picture")
                           + "; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
@@ -153,40 +151,40 @@ Photographs find_photographs(const std::vector<std::string> &words, Streams &str
     return list;
 }
 
-Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams) {
+Project project_of_pictures(const Photographs &list, bool one_lens, Events &events) {
     const auto &[label, files, names, left_out] = list;
     Project project;
     project.left_out = left_out;
     auto clock = std::chrono::steady_clock::now();
-    const Registration found = register_pictures(files, one_lens, progress);
+    const Registration found = register_pictures(files, one_lens, events);
     project.register_s = lap(clock);
-    progress.clear();
+    events.clear();
     for (const auto &[number, reason] : found.unreadable) {
         project.left_out.emplace_back(names[number], reason);
-        warn(streams, reason + "; left out");
+        events.warn({}, reason + "; left out");
     }
     for (const CopiedPicture &picture : found.copies)
         leave_out({picture.copy}, names, "a copy of " + names[picture.original] + picture.how, project.left_out,
-                  streams);
+                  events);
     if (found.unreadable.size() == files.size())
-        throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
+        throw Failure(LENSPROF_ERROR_READ, label + ": none of the pictures can be read; give others");
     if (found.unreadable.size() + found.copies.size() + 1 == files.size() && !found.copies.empty())
-        throw Failure(ExitCode::not_usable,
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       label + ": has only one photograph and copies of it; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
     if (found.projects.empty() && !found.other_camera.empty())
-        throw Failure(ExitCode::not_usable,
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       label + ": no two pictures of the same camera, size and processing overlap; give more pictures "
                               "per camera, or use --one-lens to treat all as one",
                       LENSPROF_REASON_FEW_PAIRS);
     if (found.projects.empty())
-        throw Failure(ExitCode::not_usable,
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       label + ": no two of the pictures overlap, or they have too few recognisable features; give "
                               "pictures that overlap by a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
     if (found.projects[0].kind == SceneKind::still)
-        throw Failure(ExitCode::not_usable, label + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
-    report_found(found, names, label, project.left_out, streams);
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, label + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
+    report_found(found, names, label, project.left_out, events);
 
     const FoundProject &largest = found.projects[0];
     project.unlinked = found.isolated.size();

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/fitting/project.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/program/run.hpp"
-#include "cli/registration/registration.hpp"
+#include "photo/base/events.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/registration/registration.hpp"
 
 namespace lensprof {
 
@@ -25,12 +25,12 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
 
 // The named pictures and those of named folders. Outputs of calibrate are left out. What is left out is listed on
 // standard error. Failure (usage) for raw files among others, and if fewer than two pictures remain.
-Photographs find_photographs(const std::vector<std::string> &words, Streams &streams);
+Photographs find_photographs(const std::vector<std::string> &words, Events &events);
 
 // Finds the overlaps and returns the project of the largest group; pictures left out are listed on standard error. With
 // `one_lens` all pictures are treated as from one camera. All parameters are free. Failure (not_usable) if no two
 // pictures overlap.
-Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams);
+Project project_of_pictures(const Photographs &list, bool one_lens, Events &events);
 
 // Why a picture is not part of a project that it overlaps, directly or through others.
 constexpr const char *no_overlap_within_camera =
@@ -45,7 +45,7 @@ constexpr const char *still_camera_advice =
 
 // Note for a project whose cameras do not fit.
 constexpr const char *poor_cameras_note =
-    ": no camera model fits the pictures well, because of parallax, distortion or moving objects. The pictures are "
+    "no camera model fits the pictures well, because of parallax, distortion or moving objects. The pictures are "
     "compared only at matched points; a project or preview of them does not show the scene";
 
 // The project of a group of pictures, whose images are named image0, image1 and so on; and the same as a Project with

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/pictures/thumbnail.hpp"
-#include "cli/program/parallel.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
 namespace {
@@ -173,7 +173,7 @@ void paint(const Canvas &canvas, const CorrectedCopy &tile, std::vector<float> &
 
 void check_preview(const std::string &path) {
     if (format_of_name(path) == FileFormat::exr)
-        throw Failure(ExitCode::usage, path + ": a mosaic is not written as OpenEXR; give a name ending in .jpg, .png "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": a mosaic is not written as OpenEXR; give a name ending in .jpg, .png "
                                               "or .tif");
 }
 
@@ -223,7 +223,7 @@ Mosaic read_preview(const std::string &path) {
     Picture stored = read_picture(path, read);
     const Picture both = upright_copy(stored, 1, std::max(stored.width, stored.height));  // 8 bit RGB
     if (both.height < gap + 2)
-        throw Failure(ExitCode::unreadable, path + ": is not a mosaic before and after correction");
+        throw Failure(LENSPROF_ERROR_READ, path + ": is not a mosaic before and after correction");
     Picture half = both;
     half.height = half.frame_height = (both.height - gap) / 2;
     half.pixels.resize(half.row_bytes * half.height);

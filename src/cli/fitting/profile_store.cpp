@@ -5,13 +5,14 @@
 #include <filesystem>
 
 #include "cli/page/page.hpp"
-#include "cli/pictures/sensor.hpp"
+#include "cli/program/key_texts.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/sensor.hpp"
 
 namespace lensprof {
 
@@ -54,24 +55,26 @@ void check_store_options(const StoreOptions &o, bool reads_db, bool writes_other
     require_text_sizes(o.maker, o.camera, o.lens, o.unit, o.style);
     if (o.no_store && o.force && !writes_other_files)
         throw Failure(
-            ExitCode::usage,
+            LENSPROF_ERROR_ARGUMENT,
             "--no-store and --force (store a result that is not usable) exclude each other; omit one of them");
     if (o.no_store && !reads_db && !o.db.empty())
-        throw Failure(ExitCode::usage, "--db and --no-store exclude each other; omit one of them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--db and --no-store exclude each other; omit one of them");
 }
 
 void warn_of_truncation(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file,
                         Streams &streams) {
-    const std::pair<const char *, bool> used[] = {{"--key maker", o.maker.empty()},
-                                                  {"--camera", o.camera.empty()},
-                                                  {"--lens", o.lens.empty()},
-                                                  {"--key unit", o.unit == "exif"},
-                                                  {"--key style", o.style.empty()}};
-    for (const std::string &option : metadata.cut)
+    const std::pair<const char *, bool> used[] = {{"maker", o.maker.empty()},
+                                                  {"camera", o.camera.empty()},
+                                                  {"lens", o.lens.empty()},
+                                                  {"unit", o.unit == "exif"},
+                                                  {"style", o.style.empty()}};
+    for (const std::string &part : metadata.cut)
         for (const auto &entry : used)
-            if (option == entry.first && entry.second && !o.no_store)
-                warn(streams, file + ": the EXIF text for " + option + " is too long and was truncated; give a "
-                                                                       "shorter one with " + option);
+            if (part == entry.first && entry.second && !o.no_store) {
+                const std::string option = option_of_key(part);
+                warn(streams, file + ": the EXIF text for " + option
+                                  + " is too long and was truncated; give a shorter one with " + option);
+            }
 }
 
 lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, const StoreOptions &o,
@@ -80,7 +83,8 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
     if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
     if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
     if (o.unit == "exif" && !*key.unit)
-        throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --key unit=TEXT");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      file + ": its EXIF has no serial numbers; give them with --key unit=TEXT");
     if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit);  // any unit of the model, unless given
     const bool is_given = o.crop_factor != LENSPROF_UNKNOWN;
     const double crop = is_given ? o.crop_factor : crop_factor_in_files(o.dbs, key, size);
@@ -91,14 +95,14 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
     if (o.processing) key.processing = *o.processing;
     if (!o.style.empty()) set_text(key.style, sizeof key.style, o.style);
     if (!*key.camera_model && !*key.lens && !o.no_store)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       file + ": EXIF does not name camera and lens; give --camera and --lens, or --no-store");
     return key;
 }
 
 lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata, const std::string &file,
                                 Streams &streams) {
-    metadata.cut.erase(std::remove(metadata.cut.begin(), metadata.cut.end(), "--lens"), metadata.cut.end());
+    metadata.cut.erase(std::remove(metadata.cut.begin(), metadata.cut.end(), "lens"), metadata.cut.end());
     warn_of_truncation(metadata, o, file, streams);
     lensprof_profile_key key = metadata.key, unknown;
     lensprof_profile_key_init(&unknown);
@@ -107,7 +111,7 @@ lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata,
     key.aperture = unknown.aperture;
     key.distance_m = unknown.distance_m;
     if (!*key.camera_model && o.camera.empty() && o.lens.empty() && !o.no_store)
-        throw Failure(ExitCode::usage, file + ": EXIF does not name the camera; give --camera, or --no-store");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": EXIF does not name the camera; give --camera, or --no-store");
     return override_key(key, metadata.size, o, file);
 }
 
@@ -120,8 +124,8 @@ void check_store(const StoreOptions &o) {
         return;
     }
     require_folder(o.db);
-    check_folder(std::filesystem::path(absolute_path(file)).parent_path().string(), file, ExitCode::store,
-                 ExitCode::store);
+    check_folder(std::filesystem::path(absolute_path(file)).parent_path().string(), file, LENSPROF_ERROR_STORE,
+                 LENSPROF_ERROR_STORE);
 }
 
 void remove_empty_store(const std::string &file) {

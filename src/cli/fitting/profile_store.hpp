@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/pictures/metadata.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 

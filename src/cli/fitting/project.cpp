@@ -10,12 +10,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "cli/program/file_kind.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/input_file.hpp"
 #include "cli/program/interrupt.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/file_kind.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -31,7 +32,7 @@ void check_size(const Project &project, uint32_t i, const Picture &header) {
     const auto &camera = project.images[i].camera;
     if (header.frame_width == camera.width && header.frame_height == camera.height) return;
     throw Failure(
-        ExitCode::unreadable,
+        LENSPROF_ERROR_READ,
         project.files[i] + format(": is %u x %u pixels, but ", header.frame_width, header.frame_height) + project.path
             + format(" states %u x %u; use the pictures that the project was made with", camera.width, camera.height));
 }
@@ -39,12 +40,12 @@ void check_size(const Project &project, uint32_t i, const Picture &header) {
 // No file can have such a name: the project is damaged.
 void check_name(const Project &project, uint32_t i) {
     if (project.names[i].empty())
-        throw Failure(ExitCode::unreadable, project.path + ": image " + std::to_string(i)
-                                                + " has no file name (its n is empty or missing); correct the project");
+        throw Failure(LENSPROF_ERROR_READ, project.path + ": image " + std::to_string(i)
+                                               + " has no file name (its n is empty or missing); correct the project");
     if (is_too_long(project.files[i]))
-        throw Failure(ExitCode::unreadable, project.path + ": image " + std::to_string(i) + ": its name "
-                                                + short_name(project.names[i])
-                                                + " is too long for a file name; correct the project");
+        throw Failure(LENSPROF_ERROR_READ, project.path + ": image " + std::to_string(i) + ": its name "
+                                               + short_name(project.names[i])
+                                               + " is too long for a file name; correct the project");
 }
 
 // The available memory: project_max_bytes, or less if the machine or its process limit (ulimit -v) has less.
@@ -73,9 +74,9 @@ void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduc
                                                           + static_cast<ptrdiff_t>(y) * rows.row_bytes);
         for (uint32_t s = 0; s < rows.width * samples; s++)
             if (!std::isfinite(row[s]))
-                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * reduction) + ", "
-                                                        + std::to_string((first_row + y) * reduction)
-                                                        + " is not a finite number; repair the picture");
+                throw Failure(LENSPROF_ERROR_READ, file + ": pixel " + std::to_string(s / samples * reduction) + ", "
+                                                       + std::to_string((first_row + y) * reduction)
+                                                       + " is not a finite number; repair the picture");
     }
 }
 
@@ -93,7 +94,7 @@ bool has_crops(const Project &project) {
 
 void refuse_crops(const Project &project, const std::string &option) {
     if (!has_crops(project)) return;
-    throw Failure(ExitCode::usage, option + ": does not support " + project.path
+    throw Failure(LENSPROF_ERROR_ARGUMENT, option + ": does not support " + project.path
                                        + ", whose images are crops of one file, such as its two circles; use build and "
                                          "apply without it, or give a file per image");
 }
@@ -137,7 +138,8 @@ std::string project_text_at(Project &project, const std::string &path) {
 uint32_t image_of_word(const Project &project, const std::string &word) {
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (word == project.names[i] || word == std::to_string(i)) return i;
-    throw Failure(ExitCode::usage, word + ": not an image of " + project.path + "; give the number or name of one");
+    throw Failure(LENSPROF_ERROR_ARGUMENT,
+                  word + ": not an image of " + project.path + "; give the number or name of one");
 }
 
 ImagesByFile::ImagesByFile(const Project &project) : project_(&project) {
@@ -151,7 +153,8 @@ std::optional<uint32_t> ImagesByFile::find(const std::string &file) const {
 
 uint32_t ImagesByFile::at(const std::string &file, const std::string &option) const {
     if (const auto found = find(file)) return *found;
-    throw Failure(ExitCode::usage, file + ": is not a picture of " + project_->path + "; omit it, or omit " + option);
+    throw Failure(LENSPROF_ERROR_ARGUMENT,
+                  file + ": is not a picture of " + project_->path + "; omit it, or omit " + option);
 }
 
 void check_pictures(const Project &project, uint32_t max_side) {
@@ -159,7 +162,7 @@ void check_pictures(const Project &project, uint32_t max_side) {
     options.max_side = max_side;
     uint64_t needed = 0;
     for (uint32_t i = 0; i < project.files.size(); i++) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         const Picture header = read_header(project.files[i], options);
         check_size(project, i, header);
         needed += header.row_bytes * header.height;
@@ -167,7 +170,7 @@ void check_pictures(const Project &project, uint32_t max_side) {
     }
     const uint64_t bound = available_memory();
     if (needed > bound)
-        throw Failure(ExitCode::unreadable,
+        throw Failure(LENSPROF_ERROR_READ,
                       project.path
                           + format(": its %zu pictures need %.1f GiB of memory, but at most %.1f are available; give "
                                    "a smaller --fit max-side or fewer pictures",
@@ -247,7 +250,7 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
         options.link_count = &link_count;
     }
     lensprof_status status = function(&options, images.data(), count, items.data(), found, &found, &error);
-    stop_if_interrupted();
+    stop_if_cancelled();
     check_named(status, project.path, error, LENSPROF_ITEM_IMAGE, project.names);
     items.resize(found);
     if (links) links->resize(std::min<size_t>(links->size(), link_count));
@@ -279,7 +282,7 @@ std::vector<lensprof_pair> sample_or_empty(const Sample &sample_pairs, std::vect
     try {
         return sample_pairs();
     } catch (const Failure &failure) {
-        if (failure.code != ExitCode::not_usable) throw;
+        if (failure.group() != LENSPROF_ERROR_NOT_USABLE) throw;
         no_samples = failure;
         links.clear();
         return {};
@@ -370,15 +373,14 @@ namespace {
 void check_point(const std::string &path, const Project &project, const lensprof_pair &pair, int side, size_t number) {
     const uint32_t image = pair.image[side];
     if (image >= project.images.size())
-        throw Failure(ExitCode::unreadable, path + ": refers to image " + std::to_string(image) + ", but "
-                                                + project.path + " has images 0 to "
-                                                + std::to_string(project.images.size() - 1)
-                                                + "; give the points of this project");
+        throw Failure(LENSPROF_ERROR_READ, path + ": refers to image " + std::to_string(image) + ", but " + project.path
+                                               + " has images 0 to " + std::to_string(project.images.size() - 1)
+                                               + "; give the points of this project");
     const auto &camera = project.images[image].camera;
     const double *xy = pair.xy[side];
     if (!(xy[0] >= -1.0 && xy[1] >= -1.0 && xy[0] <= camera.width && xy[1] <= camera.height))
-        throw Failure(ExitCode::unreadable, path + ": point " + std::to_string(number) + " is outside "
-                                                + project.names[image] + "; give the points of this project");
+        throw Failure(LENSPROF_ERROR_READ, path + ": point " + std::to_string(number) + " is outside "
+                                               + project.names[image] + "; give the points of this project");
 }
 
 // Point files may have gigabytes: other files are refused by their first lines.
@@ -388,7 +390,7 @@ void check_first_points(const std::string &path) {
     refuse_other_kind(path);
     const size_t end = head.size() < max_head_bytes ? head.size() : head.rfind('\n') + 1;  // 0 without a line end
     if (end == 0 && !head.empty())
-        throw Failure(ExitCode::unreadable, path + ": line 1 is too long for a point file; check the file name");
+        throw Failure(LENSPROF_ERROR_READ, path + ": line 1 is too long for a point file; check the file name");
     lensprof_error error{};
     uint32_t found = 0;
     check(lensprof_points_read(head.data(), end, nullptr, 0, &found, &error), path, &error);
@@ -405,7 +407,7 @@ std::vector<lensprof_pair> read_points(const std::string &path, const Project &p
     uint32_t found = 0;
     check(lensprof_points_read(text.data(), text.size(), nullptr, 0, &found, &error), path, &error);
     std::vector<lensprof_pair> pairs(found);
-    if (found == 0) throw Failure(ExitCode::unreadable, path + ": has no points; give a point file of this project");
+    if (found == 0) throw Failure(LENSPROF_ERROR_READ, path + ": has no points; give a point file of this project");
     check(lensprof_points_read(text.data(), text.size(), pairs.data(), found, &found, &error), path, &error);
     for (size_t p = 0; p < pairs.size(); p++)
         for (int side = 0; side < 2; side++) check_point(path, project, pairs[p], side, p + 1);

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/progress.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 

@@ -6,11 +6,11 @@
 
 #include "cli/fitting/block_sampling.hpp"
 #include "cli/fitting/known_exposures.hpp"
-#include "cli/pictures/named_pictures.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/named_pictures.hpp"
 
 namespace lensprof {
 namespace {
@@ -36,7 +36,7 @@ lensprof_fit_options project_options(const ProjectFitOptions &o, const Project &
 // A profile stores measured properties of a lens: without any to estimate, nothing is stored.
 void check_unknowns(const ProjectFitOptions &o, const Project &project, const lensprof_fit_options &options) {
     if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
-        throw Failure(ExitCode::usage, project.path
+        throw Failure(LENSPROF_ERROR_ARGUMENT, project.path
                                            + ": neither response nor falloff is estimated, so there is nothing to "
                                              "store; give --no-store, or --fit free=all");
 }
@@ -173,7 +173,7 @@ void resample(const ProjectFitOptions &o, const Project &project, Pictures &pict
             return;
         }
     } catch (const Failure &failure) {
-        if (failure.code == ExitCode::interrupted) throw;  // else the first fit stays
+        if (failure.group() == LENSPROF_ERROR_CANCELLED) throw;  // else the first fit stays
     }
     state.input.pairs = pairs, state.input.observations = observations, state.report.links = links;
     set_links(state);
@@ -233,8 +233,8 @@ void check_cameras(const Project &project, uint32_t free, LensSettings &settings
     if (!settings.has_several_cameras()) return;
     const size_t cameras = settings.first_of_camera.size();
     const auto fail = [&](const std::string &reason) {
-        throw Failure(ExitCode::usage, project.path + ": its images are from " + std::to_string(cameras)
-                                           + " cameras, according to their links in Ra..Re and EXIF" + reason);
+        throw Failure(LENSPROF_ERROR_ARGUMENT, project.path + ": its images are from " + std::to_string(cameras)
+                                                   + " cameras, according to their links in Ra..Re and EXIF" + reason);
     };
     if (!(free & LENSPROF_FREE_RESPONSE)) {
         const auto &first = project.images[settings.first_of_camera[0]];
@@ -303,7 +303,8 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         try {
             setting.key = override_key(metadata[first].key, metadata[first].size, o.store, project.files[first]);
         } catch (const Failure &failure) {  // the others are stored
-            if (failure.code != ExitCode::usage || s == settings.of_image[state.best.result.reference]) throw;
+            if (failure.group() != LENSPROF_ERROR_ARGUMENT || s == settings.of_image[state.best.result.reference])
+                throw;
             setting.key = metadata[first].key, setting.no_key = failure.what();
         }
         setting.label = describe_setting(setting.key, project.names[first]);
@@ -398,7 +399,7 @@ lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &proj
 DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Progress &progress) {
     ProjectFit drawn(progress);
     get_points(o, project, drawn);
-    stop_if_interrupted();
+    stop_if_cancelled();
     return {std::move(drawn.input.pairs), drawn.input.options.channels};
 }
 
@@ -422,7 +423,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR) join_cameras(state.settings);  // all have one response
     check_cameras(project, input.options.free, state.settings);
     Pictures pictures = get_points(o, project, state);
-    stop_if_interrupted();
+    stop_if_cancelled();
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
         warn(streams,
              "--fit sampling=paper: needs a camera model, which fits pictures of a moving camera poorly; omit it");

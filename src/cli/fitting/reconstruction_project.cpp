@@ -8,17 +8,17 @@
 
 #include "cli/fitting/exposure_file.hpp"
 #include "cli/fitting/fitting.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/input_file.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/paths.hpp"
-#include "cli/reconstruction/field_reader.hpp"
-#include "cli/reconstruction/link_order.hpp"
-#include "cli/reconstruction/match_choice.hpp"
-#include "cli/reconstruction/pictures.hpp"
-#include "cli/reconstruction/reconstruction_file.hpp"
-#include "cli/registration/project_text.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/reconstruction/field_reader.hpp"
+#include "photo/reconstruction/link_order.hpp"
+#include "photo/reconstruction/match_choice.hpp"
+#include "photo/reconstruction/pictures.hpp"
+#include "photo/reconstruction/reconstruction_file.hpp"
+#include "photo/registration/project_text.hpp"
 
 namespace lensprof {
 namespace {
@@ -66,7 +66,7 @@ void add_pairs_of_colours(const Reconstruction &r, const std::vector<Observation
         project.pair_points.push_back(r.observations[chosen_pair.first].point);
     }
     if (project.pairs.empty())
-        throw Failure(ExitCode::not_usable, project.path + ": the colours of its points are all clipped (black or "
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": the colours of its points are all clipped (black or "
                                                            "white); give its pictures with --images",
                       LENSPROF_REASON_FEW_PAIRS);
 }
@@ -76,16 +76,15 @@ uint32_t pairs_of_image(const ReconstructionOptions &options, size_t images) {
     return std::clamp(static_cast<uint32_t>(kMaxPairs / images), kMinPairsOfImage, kMaxPairsOfImage);
 }
 
-void report_read(const Reconstruction &r, const std::string &label, bool has_pictures, Streams &streams) {
+void report_read(const Reconstruction &r, const std::string &label, bool has_pictures, Events &events) {
     const auto placed =
         std::count_if(r.images.begin(), r.images.end(), [](const auto &image) { return image.has_centre; });
-    note(streams, label
-                      + format(": %s of %zu images, %u points, %zu observations; %s; %s", r.kind.c_str(),
-                               r.images.size(), r.point_count(), r.observations.size(),
-                               placed ? "pairs weighted by similarity of viewing angle"
-                                      : "pairs weighted by the number of shared points",
-                               has_pictures ? "comparing the pictures at its points"
-                                            : "comparing the colours of its points without reading pictures"));
+    events.note(label, format("%s of %zu images, %u points, %zu observations; %s; %s", r.kind.c_str(), r.images.size(),
+                              r.point_count(), r.observations.size(),
+                              placed ? "pairs weighted by similarity of viewing angle"
+                                     : "pairs weighted by the number of shared points",
+                              has_pictures ? "comparing the pictures at its points"
+                                           : "comparing the colours of its points without reading pictures"));
 }
 
 std::vector<std::string> read_names(const std::string &list) {
@@ -103,17 +102,17 @@ void keep_listed_images(const std::string &list, Reconstruction &r) {
     for (const std::string &name : read_names(list)) {
         const auto image = image_of.find(name);
         if (image == image_of.end())
-            throw Failure(ExitCode::unreadable, list + ": " + short_name(name) + " is not an image of " + r.path
-                                                    + "; give image names as stored there, one per line");
+            throw Failure(LENSPROF_ERROR_READ, list + ": " + short_name(name) + " is not an image of " + r.path
+                                                   + "; give image names as stored there, one per line");
         kept.insert(image->second);
     }
     if (kept.size() < 2)
-        throw Failure(ExitCode::unreadable, list + ": has fewer than two image names; give one name per line");
+        throw Failure(LENSPROF_ERROR_READ, list + ": has fewer than two image names; give one name per line");
     keep_images(std::vector<uint32_t>(kept.begin(), kept.end()), r);
 }
 
 // Reports the number of pictures in the folder that are not part of the reconstruction and get no exposure.
-void report_unused(const std::vector<std::string> &files, Streams &streams) {
+void report_unused(const std::vector<std::string> &files, Events &events) {
     namespace fs = std::filesystem;
     std::set<std::string> used, folders;
     for (const std::string &file : files) {
@@ -130,8 +129,8 @@ void report_unused(const std::vector<std::string> &files, Streams &streams) {
             if (!unused++ || file < first) first = file;
         }
     if (unused)
-        note(streams, counted(unused, "picture") + " in the folder, the first " + first
-                          + ", not part of the reconstruction: no exposure for them");
+        events.note({}, counted(unused, "picture") + " in the folder, the first " + first
+                            + ", not part of the reconstruction: no exposure for them");
 }
 
 // Keeps the images of a shard, their files and observations; sets `label`.
@@ -143,8 +142,8 @@ void keep_shard(const Shard &shard, Reconstruction &r, std::vector<std::string> 
                end = static_cast<std::ptrdiff_t>(shard.end(count));
     const std::string part = format("%u/%u", shard.number, shard.count);
     if (end - first < 2)
-        throw Failure(ExitCode::usage, "--reconstruction shard=" + part + ": contains fewer than two of the "
-                                           + counted(count, "image") + "; use fewer parts");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--reconstruction shard=" + part + ": contains fewer than two of the "
+                                                   + counted(count, "image") + "; use fewer parts");
     std::vector<uint32_t> kept(order.begin() + first, order.begin() + end);
     std::sort(kept.begin(), kept.end());
     keep_images(kept, r);
@@ -165,26 +164,26 @@ void reject_reconstruction_part(const std::string &path) {
         advice = "a part of an OpenSfM reconstruction; give tracks.csv, which lies next to it";
     else if ((stem == "cameras" || stem == "images" || stem == "points3D") && (end == ".bin" || end == ".txt"))
         advice = "a part of a COLMAP model; give its folder";
-    if (!advice.empty()) throw Failure(ExitCode::unreadable, path + ": is " + advice);
+    if (!advice.empty()) throw Failure(LENSPROF_ERROR_READ, path + ": is " + advice);
 }
 
-Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Streams &streams) {
+Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Events &events) {
     auto clock = std::chrono::steady_clock::now();
-    Reconstruction r = read_reconstruction(path, streams);
+    Reconstruction r = read_reconstruction(path, events);
     if (options.is_by_colours && !r.has_colours)
-        throw Failure(ExitCode::usage, "--reconstruction track-colors: needs OpenSfM's tracks.csv, but " + path
-                                           + " is a " + r.kind + "; omit the option");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--reconstruction track-colors: needs OpenSfM's tracks.csv, but " + path
+                                                   + " is a " + r.kind + "; omit the option");
     Project project;
     project.path = path;
     project.by_matches = project.is_reconstruction = true;
     project.sources = files_of_reconstruction(path);
     if (!options.image_list.empty()) keep_listed_images(options.image_list, r);
     std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
-    if (options.image_list.empty()) report_unused(files, streams);
+    if (options.image_list.empty()) report_unused(files, events);
     convert_coordinates(r, files);
     keep_shard(options.shard, r, files, project.path);
     const bool has_pictures = !files.empty() && !options.is_by_colours;
-    report_read(r, project.path, has_pictures, streams);
+    report_read(r, project.path, has_pictures, events);
     const auto chosen = choose_pairs(r, kEnds * pairs_of_image(options, r.images.size()), options.seed);
     project.view_distances = view_distances(r, chosen);
     if (has_pictures) {

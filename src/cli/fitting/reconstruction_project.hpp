@@ -4,8 +4,8 @@
 #include <string>
 
 #include "cli/fitting/project.hpp"
-#include "cli/program/run.hpp"
 #include "cli/program/shard.hpp"
+#include "photo/base/events.hpp"
 
 namespace lensprof {
 
@@ -19,7 +19,7 @@ struct ReconstructionOptions {
 
 // Images of one size are linked: EXIF distinguishes cameras and settings. Pictures are compared at the project's
 // matches; without pictures, the colours of the tracks, if any, are its pairs.
-Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Streams &streams);
+Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Events &events);
 
 // Failure (unreadable) for a file that belongs to a reconstruction but is not its main file, with the file to give
 // instead. For names that are not a reconstruction.

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "cli/fitting/project_fit.hpp"
-#include "cli/program/library.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "cli/program/file_kind.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/file_kind.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -49,11 +49,11 @@ lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free)
 Project static_project(const std::vector<std::string> &files, bool free_balance) {
     for (const std::string &file : files) {
         if (is_folder(file))
-            throw Failure(ExitCode::unreadable, file + ": cannot read: it is a folder; give its pictures");
+            throw Failure(LENSPROF_ERROR_READ, file + ": cannot read: it is a folder; give its pictures");
         refuse_other_kind(file);
     }
     if (files.size() < 2)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "one picture shows no difference in exposure; give at least two of the same scene");
     Project project;
     project.path = files[0];
@@ -62,15 +62,15 @@ Project static_project(const std::vector<std::string> &files, bool free_balance)
     std::set<std::string> seen;
     for (uint32_t i = 0; i < files.size(); i++) {
         if (!seen.insert(file_identity(files[i])).second)
-            throw Failure(ExitCode::usage, files[i] + ": given twice; give it once");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, files[i] + ": given twice; give it once");
         PictureSize size = read_size(files[i]);
         project.images.push_back(still_image(size, i, LENSPROF_FREE_RESPONSE | LENSPROF_FREE_EV | balance));
         const auto &first = project.images[0].camera;
         if (size.width != first.width || size.height != first.height)
-            throw Failure(ExitCode::unreadable, files[i] + ": is " + std::to_string(size.width) + " x "
-                                                    + std::to_string(size.height) + " pixels, but " + files[0] + " is "
-                                                    + std::to_string(first.width) + " x " + std::to_string(first.height)
-                                                    + "; give pictures of one camera that did not move");
+            throw Failure(LENSPROF_ERROR_READ, files[i] + ": is " + std::to_string(size.width) + " x "
+                                                   + std::to_string(size.height) + " pixels, but " + files[0] + " is "
+                                                   + std::to_string(first.width) + " x " + std::to_string(first.height)
+                                                   + "; give pictures of one camera that did not move");
     }
     return project;
 }

@@ -5,9 +5,9 @@
 #include <set>
 #include <vector>
 
-#include "cli/pictures/picture.hpp"
-#include "cli/program/databases.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/databases.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {
@@ -117,7 +117,7 @@ EarlierProfile single_prior(lensprof_store *store, int64_t id, std::unique_ptr<l
     const std::string reason = "profile " + std::to_string(id) + " already includes these pictures, and later ones";
     if (is_requested)
         throw Failure(
-            ExitCode::usage,
+            LENSPROF_ERROR_ARGUMENT,
             source_name + ": " + reason + "; a fit would add no information. Use --fit stored=none to fit them alone");
     return {0, nullptr, reason};
 }
@@ -145,7 +145,7 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_requ
         check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(o.db), &error);
         EarlierProfile given = single_prior(store.get(), id, std::move(profile), source_name, is_requested);
         if (!given.id)
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           "--fit stored=" + std::to_string(id) + ": " + given.reason
                               + "; give another profile, or --fit stored=none to fit the pictures alone");
         return given;

@@ -6,10 +6,10 @@
 #include <lensprof/base.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/pictures/jpeg_bytes.hpp"
-#include "cli/program/error.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/paths.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/jpeg_bytes.hpp"
 
 namespace lensprof {
 namespace {
@@ -123,10 +123,11 @@ void check_page_name(const std::string &path) {
     std::string end = path.substr(std::min(path.size(), path.find_last_of('.')));
     for (char &c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (end != ".html" && end != ".htm")
-        throw Failure(ExitCode::usage, path + ": a report is an HTML file; give a name that ends in .html");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": a report is an HTML file; give a name that ends in .html");
     constexpr const char *generator = "content=\"lensprof\"";  // of page.html
     if (is_regular_file(path) && file_bytes(path) > 0 && read_head(path, 512).find(generator) == std::string::npos)
-        throw Failure(ExitCode::usage, path + ": already exists and is not a report of lensprof; give another name");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      path + ": already exists and is not a report of lensprof; give another name");
 }
 
 }  // namespace lensprof

@@ -8,9 +8,10 @@
 #include "cli/fitting/project_fit.hpp"
 #include "cli/profiles/profile_trial.hpp"
 #include "cli/profiles/trial_report.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {
@@ -33,15 +34,16 @@ void split_words(const AgainstOptions &o, std::vector<int64_t> &ids, std::vector
         try {
             id = profile_id_of(word);
         } catch (const std::invalid_argument &wrong) {
-            throw Failure(ExitCode::usage, "profile check: " + std::string(wrong.what()));
+            throw Failure(LENSPROF_ERROR_ARGUMENT, "profile check: " + std::string(wrong.what()));
         }
         if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
     }
     if (o.pictures.empty())
-        throw Failure(ExitCode::usage, (o.words.empty() ? std::string("--images") : o.words[0])
+        throw Failure(LENSPROF_ERROR_ARGUMENT, (o.words.empty() ? std::string("--images") : o.words[0])
                                            + ": unexpected argument without --against, which names the pictures to "
                                              "check profiles against; see `lensprof help profile check`");
-    if (ids.empty()) throw Failure(ExitCode::usage, "--against: needs profile ids; see `lensprof profile list`");
+    if (ids.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--against: needs profile ids; see `lensprof profile list`");
 }
 
 std::vector<StoredProfile> read_by_ids(const std::string &db, const std::vector<int64_t> &ids) {
@@ -55,26 +57,26 @@ std::vector<StoredProfile> read_by_ids(const std::string &db, const std::vector<
     return profiles;
 }
 
-// Notes of `build` describe its estimates, which do not apply here; warnings concern the pictures.
-Project open_pictures(const std::vector<std::string> &words, const std::string &images, Progress &progress,
-                      Streams &streams) {
-    std::ostringstream err;
-    const auto print_warnings = [&] {
-        std::istringstream lines(err.str());
-        for (std::string line; std::getline(lines, line);)
-            if (line.rfind("lensprof: note: ", 0) != 0) streams.err << line << "\n";
-    };
-    Streams captured = streams.with(streams.out, err);
-    captured.colour = false;  // the words identify notes
-    try {
-        Project project = project_of_words(words, images, progress, captured);
-        print_warnings();
-        return project;
-    } catch (...) {
-        print_warnings();
-        throw;
+// Notes on a scene announce estimates, which are not made here; warnings concern the pictures.
+class WarningsAlone : public Events {
+public:
+    explicit WarningsAlone(Events &to) : to_(to) {}
+
+    void update(const std::string &step, double fraction, const std::string &detail) override {
+        to_.update(step, fraction, detail);
     }
-}
+    void update_items(const std::string &step, uint32_t done, uint32_t count) override {
+        to_.update_items(step, done, count);
+    }
+    void clear() override { to_.clear(); }
+    void notice(uint32_t severity, const std::string &item, const std::string &text) override {
+        if (severity == LENSPROF_SEVERITY_WARNING) to_.notice(severity, item, text);
+    }
+    bool is_cancelled() override { return to_.is_cancelled(); }
+
+private:
+    Events &to_;
+};
 
 // The pairs of one camera at one lens setting, as in a profile: the setting with most pairs. `first` receives its image
 // with most metadata.
@@ -186,7 +188,7 @@ TrialReport measure(const Project &project, const std::vector<StoredProfile> &pr
     TrialReport report;
     report.pairs = split_for_trial(fit_images(project), sampled.pairs, sampled.channels);
     if (report.pairs.heldout.size() < kMinMeasuredPairs)
-        throw Failure(ExitCode::not_usable,
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       project.path
                           + format(": its overlaps contain %zu usable pairs, but at least %zu are needed; give "
                                    "pictures that overlap by a third",
@@ -216,9 +218,10 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     split_words(o, ids, pictures);
     const std::vector<StoredProfile> profiles = read_by_ids(db, ids);
     Progress progress(streams, o.progress);
-    const Project project = open_pictures(pictures, o.images, progress, streams);
+    WarningsAlone warnings(progress);
+    const Project project = project_of_words(pictures, o.images, warnings);
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, project.path + ": has only one image; give at least two that overlap",
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
     TrialReport report = measure(project, profiles, progress, streams);
     report.file = store_path(db), report.path = project.path;

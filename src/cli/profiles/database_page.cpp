@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/page/page.hpp"
-#include "cli/program/format.hpp"
 #include "cli/report/curves_json.hpp"
 #include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

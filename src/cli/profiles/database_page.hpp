@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/program/library.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 

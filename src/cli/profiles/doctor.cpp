@@ -3,14 +3,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/pictures/picture.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/databases.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/paths.hpp"
-#include "cli/program/utf8.hpp"
-#include "cli/registration/registration.hpp"
+#include "cli/program/database_options.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/base/utf8.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/registration/registration.hpp"
 
 namespace lensprof {
 namespace {

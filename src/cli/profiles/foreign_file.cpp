@@ -2,11 +2,11 @@
 
 #include <cctype>
 
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/opcode_tag.hpp"
-#include "cli/program/file_kind.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/library.hpp"
+#include "photo/base/file_kind.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/opcode_tag.hpp"
 
 namespace lensprof {
 namespace {
@@ -21,13 +21,14 @@ std::string extension_of(const std::string &path) {
 
 const ForeignRule &rule_of(uint32_t format) {
     if (const ForeignRule *rule = lensprof_format_get_info(format)) return *rule;
-    throw Failure(ExitCode::failed, "internal error: a format without a rule; please report this");
+    throw Failure(LENSPROF_ERROR_WRITE, "internal error: a format without a rule; please report this");
 }
 
 const ForeignRule &rule_of_word(const std::string &word) {
     for (uint32_t format = 1; const ForeignRule *rule = lensprof_format_get_info(format); format++)
         if (word == rule->name) return *rule;
-    throw Failure(ExitCode::usage, "--format " + word + ": unknown format; see `lensprof profile import --help`");
+    throw Failure(LENSPROF_ERROR_ARGUMENT,
+                  "--format " + word + ": unknown format; see `lensprof profile import --help`");
 }
 
 // Identifies a TIFF or DNG by its tags: opcodes, or XMP of a drone camera; AUTO if it has neither.
@@ -58,20 +59,20 @@ const ForeignRule &format_to_read(const std::string &path, const std::string &fo
     uint32_t format = format_of_tags(path, head);
     if (!format) format = lensprof_format_detect(head.data(), head.size(), path.c_str());
     if (format) return rule_of(format);
-    throw Failure(ExitCode::usage,
+    throw Failure(LENSPROF_ERROR_ARGUMENT,
                   path + ": the format cannot be identified from content or name; give it with --format");
 }
 
 const ForeignRule &format_to_write(const std::string &path, const std::string &format_name) {
     const uint32_t named = lensprof_format_detect(nullptr, 0, path.c_str());
     if (format_name.empty() && !named)
-        throw Failure(ExitCode::usage, path + ": the name does not identify a format; give it with --format");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": the name does not identify a format; give it with --format");
     const ForeignRule *rule = format_name.empty() ? &rule_of(named) : &rule_of_word(format_name);
     if (extension_of(path) == "m" && rule->format == LENSPROF_FORMAT_CURVES)
-        throw Failure(ExitCode::usage, path + ": the format of pfstools is supported for import only; use a name "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": the format of pfstools is supported for import only; use a name "
                                               "ending in .csv");
     if (!rule->is_written)
-        throw Failure(ExitCode::usage, path + ": " + rule->name + " is supported for import only; choose another "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": " + rule->name + " is supported for import only; choose another "
                                                                   "--format");
     return *rule;
 }

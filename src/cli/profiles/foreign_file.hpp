@@ -7,7 +7,7 @@
 
 #include <lensprof/lensprof.h>
 
-#include "cli/program/error.hpp"
+#include "photo/base/failure.hpp"
 
 namespace lensprof {
 

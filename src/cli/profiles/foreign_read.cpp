@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstring>
 
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/opcode_tag.hpp"
-#include "cli/pictures/picture.hpp"
 #include "cli/profiles/foreign_file.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/library.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/opcode_tag.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {
@@ -73,7 +73,7 @@ void import(const std::string &path, const std::string &bytes, const lensprof_im
 // Width and height of the frame, which some files do not state.
 void require_frame(const std::string &path, const ForeignOptions &o) {
     if (!o.width || !o.height)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       path + ": does not state the size of the pictures; give --encoding frame=WIDTHxHEIGHT");
 }
 
@@ -110,7 +110,7 @@ void read_map(const std::string &path, const ForeignOptions &o, lensprof_import_
     const double shape = double(picture.width) / picture.height,
                  frame_shape = o.width ? double(o.width) / o.height : shape;
     if (std::fabs(shape / frame_shape - 1.0) > 0.01)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       path + ": its aspect ratio differs from that of --encoding frame; give the size of the pictures that it "
                              "is for");
     const lensprof_map map = {picture.width, picture.height, channels,
@@ -124,10 +124,10 @@ std::string opcodes_of(const std::string &path, lensprof_import_options &options
     const OpcodeLists lists = read_opcode_lists(path);
     const std::vector<uint8_t> &list = lists.list3.empty() ? lists.list2 : lists.list3;
     if (list.empty())
-        throw Failure(ExitCode::unreadable, path + ": has no DNG opcode list; give a picture that has one");
+        throw Failure(LENSPROF_ERROR_READ, path + ": has no DNG opcode list; give a picture that has one");
     const bool of_mosaic = lists.list3.empty();
     if (of_mosaic && lists.layout == UINT32_MAX)
-        throw Failure(ExitCode::unreadable,
+        throw Failure(LENSPROF_ERROR_READ,
                       path + ": its mosaic is not red, green, green and blue; give another picture");
     if (of_mosaic || lists.layout == LENSPROF_LAYOUT_GREY) options.layout = lists.layout;
     options.width = lists.width, options.height = lists.height;
@@ -144,7 +144,7 @@ std::string packet_of(const std::string &path, const ForeignOptions &o, lensprof
     if (is_packet) require_frame(path, o);
     const std::string packet = is_packet ? read_text(path, max_text_bytes) : read_xmp_packet(path);
     if (packet.empty())
-        throw Failure(ExitCode::unreadable, path + ": has no XMP, where drone cameras describe their falloff; give "
+        throw Failure(LENSPROF_ERROR_READ, path + ": has no XMP, where drone cameras describe their falloff; give "
                                                    "the original picture");
     if (is_packet || o.width) return packet;
     const PictureSize size = read_size(path);

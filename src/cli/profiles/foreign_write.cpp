@@ -3,10 +3,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "cli/pictures/opcode_tag.hpp"
-#include "cli/pictures/picture.hpp"
 #include "cli/profiles/foreign_file.hpp"
-#include "cli/program/library.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/opcode_tag.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {
@@ -15,13 +15,13 @@ constexpr uint64_t max_map_values = 80000000;  // of all channels; each needs 12
 
 void require_single_profile(const std::string &path, const ForeignRule &rule, size_t profiles) {
     if (profiles != 1)
-        throw Failure(ExitCode::usage, path + ": " + rule.name + " holds one profile, and " + std::to_string(profiles)
-                                           + " were chosen; give one id");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": " + rule.name + " holds one profile, and "
+                                                   + std::to_string(profiles) + " were chosen; give one id");
 }
 
 void require_frame(const std::string &path, const ForeignRule &rule, const ForeignOptions &o) {
     if (!o.width || !o.height)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       path + ": " + rule.name + " is for pictures of one size; give --encoding frame=WIDTHxHEIGHT");
 }
 
@@ -31,14 +31,15 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     const bool is_tiff = format_of_name(path) == FileFormat::tiff;
     const bool is_gain = o.sense.empty() ? is_tiff : o.sense == "gain";
     if (format_of_name(path) == FileFormat::jpeg)
-        throw Failure(ExitCode::usage, path + ": JPEG is lossy; use a name ending in .png or .tif for a map");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": JPEG is lossy; use a name ending in .png or .tif for a map");
     if (!is_tiff && is_gain)
-        throw Failure(ExitCode::usage, path + ": gains exceed 1 and need a float TIFF; use a name ending in .tif");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      path + ": gains exceed 1 and need a float TIFF; use a name ending in .tif");
     const bool has_channels = profile.vignettings == 3 || profile.grid.channels == 3;
     const uint32_t channels = is_tiff && has_channels ? 3 : 1;
     const uint32_t columns = o.columns ? o.columns : o.width, rows = o.rows ? o.rows : o.height;
     if (uint64_t(columns) * rows * channels > max_map_values)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       path + ": the map would have more than 80 million values; give a smaller --encoding grid");
     std::vector<float> values(size_t(columns) * rows * channels);
     lensprof_error error{};
@@ -83,9 +84,10 @@ bool is_gain(uint32_t id) { return id == 3 || id == 9; }  // FixVignetteRadial, 
 // Other opcodes of a picture must stay, and a falloff must not be corrected twice.
 void require_no_other_opcodes(const std::string &path, const OpcodeLists &lists) {
     if (has_opcode(lists.list2, is_gain))
-        throw Failure(ExitCode::usage, path + ": its OpcodeList2 already corrects the falloff; give another picture");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      path + ": its OpcodeList2 already corrects the falloff; give another picture");
     if (has_opcode(lists.list3, [](uint32_t id) { return !is_gain(id); }))
-        throw Failure(ExitCode::usage, path + ": its OpcodeList3 has other corrections (such as distortion), which "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": its OpcodeList3 has other corrections (such as distortion), which "
                                               "would be lost; give a picture without them");
 }
 
@@ -141,7 +143,7 @@ std::string foreign_bytes(const ForeignRule &rule, const std::string &path, cons
                           const std::vector<std::string> &names) {
     const uint32_t format = rule.format;
     if (format == LENSPROF_FORMAT_MAP || format == LENSPROF_FORMAT_DNG_OPCODES)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       path + ": " + rule.name + " is written into a picture; export one profile with -o FILE");
     if (!rule.is_many) require_single_profile(path, rule, profiles.size());
     if (format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC) require_frame(path, rule, o);

@@ -6,10 +6,11 @@
 #include <set>
 
 #include "cli/fitting/profile_store.hpp"
-#include "cli/program/library.hpp"
+#include "cli/program/key_texts.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {
@@ -133,7 +134,7 @@ std::vector<StoredProfile> KeyFilter::profiles(const Databases &databases, const
         }
         if (!ids.empty() || (of_first && !profiles.empty())) break;
     }
-    if (profiles.empty()) throw Failure(ExitCode::not_found, nothing_found(databases.names()));
+    if (profiles.empty()) throw Failure(LENSPROF_ERROR_NOT_FOUND, nothing_found(databases.names()));
     return profiles;
 }
 

@@ -8,9 +8,9 @@
 
 #include <lensprof/lensprof.h>
 
-#include "cli/program/databases.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
+#include "photo/base/databases.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/profiles/key_filter.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/nearest.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 

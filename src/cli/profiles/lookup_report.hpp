@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/program/databases.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/databases.hpp"
 
 namespace lensprof {
 

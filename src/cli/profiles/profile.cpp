@@ -7,17 +7,18 @@
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/profile_blob.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/databases.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
+#include "cli/program/database_options.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/chart.hpp"
 #include "cli/report/drawing.hpp"
 #include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -134,7 +135,7 @@ void keep_with_falloff(std::vector<StoredProfile> &profiles) {
     };
     profiles.erase(std::remove_if(profiles.begin(), profiles.end(), has_no_falloff), profiles.end());
     if (profiles.empty())
-        throw Failure(ExitCode::not_found, "profile " + std::to_string(first)
+        throw Failure(LENSPROF_ERROR_NOT_FOUND, "profile " + std::to_string(first)
                                                + " has no falloff to draw; measure it with `lensprof flat` or "
                                                  "`lensprof build`");
 }
@@ -154,19 +155,20 @@ void print_blob(const std::string &path, const BlobStamp &stamp, const lensprof_
 
 int show(const ShowOptions &o, Streams &streams) {
     if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(!o.blob.empty()) != 1)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile show: give ids (see `lensprof profile list`), or --camera, --lens or other filters, or "
                       "--blob");
     if (o.channel && !o.chart && o.chart_out.empty())
-        throw Failure(ExitCode::usage, "profile show: --channel needs --chart or --chart-out; add one of them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "profile show: --channel needs --chart or --chart-out; add one of them");
     if (!o.blob.empty() && !o.dbs.empty())
-        throw Failure(ExitCode::usage, "profile show: --blob does not read a database; omit --db");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "profile show: --blob does not read a database; omit --db");
     if (!o.chart_out.empty()) check_chart_name(o.chart_out);
     const std::vector<std::string> read = o.blob.empty() ? databases_of(o.dbs) : std::vector<std::string>{o.blob};
     for (const std::string &file : read)
         if (is_same_file(o.chart_out, file))
-            throw Failure(ExitCode::usage, o.chart_out + ": is the " + (o.blob.empty() ? "profile database" : "blob")
-                                               + "; give --chart-out another name");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, o.chart_out + ": is the "
+                                                       + (o.blob.empty() ? "profile database" : "blob")
+                                                       + "; give --chart-out another name");
     std::vector<StoredProfile> profiles;
     BlobStamp stamp{};
     if (o.blob.empty())

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "cli/program/format.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/library.hpp"
-#include "cli/program/output_file.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/output_file.hpp"
 
 namespace lensprof {
 namespace {
@@ -36,9 +36,9 @@ std::unique_ptr<lensprof_profile> read_blob(const std::string &path, BlobStamp &
     auto profile = new_profile();
     const lensprof_status status = lensprof_profile_unpack(blob.data(), blob.size(), profile.get());
     if (status == LENSPROF_ERROR_LAYOUT)
-        throw Failure(ExitCode::unreadable, path + ": was written by a newer lensprof; read it with that version");
+        throw Failure(LENSPROF_ERROR_READ, path + ": was written by a newer lensprof; read it with that version");
     if (status != LENSPROF_OK)
-        throw Failure(ExitCode::unreadable, path + ": not a profile blob, or damaged; copy it again, or export it "
+        throw Failure(LENSPROF_ERROR_READ, path + ": not a profile blob, or damaged; copy it again, or export it "
                                                    "again with `lensprof profile export`");
     stamp = stamp_of(reinterpret_cast<const unsigned char *>(blob.data()), blob.size());
     return profile;

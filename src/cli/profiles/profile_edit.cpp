@@ -5,11 +5,11 @@
 
 #include "cli/profiles/key_filter.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {
@@ -49,16 +49,16 @@ struct RemoveOptions {
 
 int remove(RemoveOptions &o, Streams &streams) {
     if (o.ids.empty() == o.filter.is_empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile remove: give ids (see `lensprof profile list`), or --camera, --lens or other filters "
                       "with --yes");
     remove_duplicates(o.ids);
     const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
     if (o.ids.empty()) {
         for (const auto &row : o.filter.matching_rows(store.get(), o.db)) o.ids.push_back(row.id);
-        if (o.ids.empty()) throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db));
+        if (o.ids.empty()) throw Failure(LENSPROF_ERROR_NOT_FOUND, o.filter.nothing_found(o.db));
         if (!o.yes)
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           "profile remove: would remove " + counted(o.ids.size(), "profile") + " of " + store_path(o.db)
                               + "; list them with `lensprof profile list` and the same options, then add --yes");
     }
@@ -103,15 +103,15 @@ void check_contradictions(const SetOptions &o) {
     given.crop_factor = o.crop_factor;
     for (double lensprof_profile_key::*number : o.unknown)
         if (number ? given.*number != LENSPROF_UNKNOWN : *given.unit != 0)
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           "profile set: --clear and the option of the same name exclude each other; omit one of them");
 }
 
 int set(SetOptions &o, Streams &streams) {
     if (o.ids.empty())
-        throw Failure(ExitCode::usage, "profile set: give the ids of profiles; see `lensprof profile list`");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "profile set: give the ids of profiles; see `lensprof profile list`");
     if (o.key.is_empty() && o.crop_factor == LENSPROF_UNKNOWN && o.unknown.empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile set: nothing to change; give for example --lens NAME or --clear "
                       "distance");
     o.key.check_names();

@@ -3,21 +3,21 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/pictures/picture.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/foreign_options.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/profile_blob.hpp"
 #include "cli/profiles/profile_split.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/databases.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
+#include "cli/program/database_options.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {
@@ -53,20 +53,23 @@ void declare(Command &command, ExportOptions &o) {
 }
 
 void check_options(const ExportOptions &o) {
-    if (o.output.empty()) throw Failure(ExitCode::usage, "profile export: no output file; give it with -o");
+    if (o.output.empty()) throw Failure(LENSPROF_ERROR_ARGUMENT, "profile export: no output file; give it with -o");
     if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(o.all) != 1)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile export: give ids (see `lensprof profile list`), or --camera, --lens or other filters, "
                       "or --all");
     if (o.split && o.format.empty())
-        throw Failure(ExitCode::usage, "profile export: --split needs --format, because -o is a folder; add --format");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "profile export: --split needs --format, because -o is a folder; add --format");
     if (o.split && o.covariance)
-        throw Failure(ExitCode::usage, "profile export: --encoding covariance=yes needs a single blob; omit --split");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "profile export: --encoding covariance=yes needs a single blob; omit --split");
     if (o.split && path_exists(o.output) && !is_folder(o.output))
-        throw Failure(ExitCode::usage, o.output + ": is a file; --split needs a folder");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.output + ": is a file; --split needs a folder");
     for (const std::string &file : databases_of(o.dbs))
         if (is_same_file(o.output, file))
-            throw Failure(ExitCode::usage, o.output + ": is the profile database; give the output another name");
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          o.output + ": is the profile database; give the output another name");
 }
 
 // One profile; size and checksum of its blob identify it.
@@ -105,8 +108,9 @@ void complete_crop_factors(const ExportOptions &o, const ForeignRule &rule, cons
         double &crop = stored.profile->key.crop_factor;
         if (crop == LENSPROF_UNKNOWN) crop = o.crop_factor;
         if (needs_crop && crop == LENSPROF_UNKNOWN)
-            throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(stored.id)
-                                               + " is unknown; give --key crop-factor=NUMBER");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, o.output + ": the crop factor of profile "
+                                                       + std::to_string(stored.id)
+                                                       + " is unknown; give --key crop-factor=NUMBER");
     }
 }
 
@@ -154,7 +158,7 @@ int run(ExportOptions &o, Streams &streams) {
     check_options(o);
     const ForeignRule &rule = format_to_write(o.output, o.format);
     if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile export: --encoding covariance=yes needs --format blob; add it, or omit the covariance");
     std::vector<std::string> files = databases_of(o.dbs);
     if (o.all) files.resize(1);
@@ -169,8 +173,8 @@ int run(ExportOptions &o, Streams &streams) {
         return 0;
     }
     if (chosen.size() != 1)
-        throw Failure(ExitCode::usage, o.output + ": a blob holds one profile, and " + std::to_string(chosen.size())
-                                           + " were chosen; give one id");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.output + ": a blob holds one profile, and "
+                                                   + std::to_string(chosen.size()) + " were chosen; give one id");
     export_blob(o, chosen[0], streams);
     return 0;
 }

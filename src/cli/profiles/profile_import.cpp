@@ -10,14 +10,15 @@
 #include "cli/profiles/foreign_options.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -120,7 +121,8 @@ std::unique_ptr<lensprof_profile> read_profile_of(const ImportOptions &o, const 
         if (change > 0.0) parts.changed.push_back({{"file", input.file}, {"levels", change}});
     }
     if (!*profile->key.camera_model && !*profile->key.lens)
-        throw Failure(ExitCode::usage, inputs[0].file + ": does not name camera or lens; give --camera or --lens");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      inputs[0].file + ": does not name camera or lens; give --camera or --lens");
     set_text(profile->provenance.method, sizeof profile->provenance.method, "import");
     set_text(profile->provenance.software, sizeof profile->provenance.software,
              std::string("lensprof ") + lensprof_version());
@@ -134,11 +136,12 @@ void read_tuning_files(const ImportOptions &o, const std::vector<Input> &inputs,
         try {
             parts.profiles.push_back(read_profile_of(o, {input}, parts));
         } catch (const Failure &failure) {
-            if (failure.code != ExitCode::not_found) throw;
+            if (failure.group() != LENSPROF_ERROR_NOT_FOUND) throw;
             parts.without_table.push_back({{"file", input.file}, {"reason", failure.what()}});
         }
     }
-    if (parts.profiles.empty()) throw Failure(ExitCode::not_found, parts.without_table[0]["reason"].get<std::string>());
+    if (parts.profiles.empty())
+        throw Failure(LENSPROF_ERROR_NOT_FOUND, parts.without_table[0]["reason"].get<std::string>());
 }
 
 // Failure (usage) for two responses or two falloffs, which are of two profiles.
@@ -147,10 +150,10 @@ void check_parts(const ImportOptions &o, const std::vector<Input> &inputs) {
     for (const Input &input : inputs) {
         std::string &source_file = input.rule->holds == LENSPROF_HOLDS_RESPONSE ? response : falloff;
         if (!source_file.empty())
-            throw Failure(ExitCode::usage, input.file + ": has a "
-                                               + (&source_file == &response ? "response" : "falloff") + ", and so has "
-                                               + source_file + "; import the profiles one after the other"
-                                               + (o.key.is_empty() ? "" : ", each with its own camera and lens"));
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          input.file + ": has a " + (&source_file == &response ? "response" : "falloff")
+                              + ", and so has " + source_file + "; import the profiles one after the other"
+                              + (o.key.is_empty() ? "" : ", each with its own camera and lens"));
         source_file = input.file;
     }
 }
@@ -193,7 +196,7 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const PartProfi
             read_profiles(*input.rule, input.file, visit, &import);
             if (input.rule->format == LENSPROF_FORMAT_LENSFUN) read_cameras(input.file, take_camera, &import);
         } catch (const Failure &) {
-            stop_if_interrupted();
+            stop_if_cancelled();
             check(import.store_status, store_path(import.db),
                   &import.error);  // a failure of the store, not of the file
             throw;
@@ -252,7 +255,7 @@ int run(const ImportOptions &o, Streams &streams) {
         if (seen.insert(canonical_path(file)).second) inputs.push_back({file, &format_to_read(file, o.format)});
     const PartProfiles parts = read_parts(o, inputs);
     if (parts.profiles.empty() && !o.key.is_empty())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile import: these files already name camera and lens; omit --camera, --lens and similar "
                       "options");
     Import import;

@@ -3,13 +3,13 @@
 
 #include "cli/fitting/profile_store.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/interrupt.hpp"
-#include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -32,7 +32,7 @@ std::vector<Other> open_others(const std::string &db, const std::vector<std::str
     std::vector<Other> others;
     for (const std::string &file : files) {
         if (is_same_file(file, store_path(db)))
-            throw Failure(ExitCode::usage, file + ": is the target database itself; give another database to merge "
+            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is the target database itself; give another database to merge "
                                                   "into it");
         others.push_back({file, open_store(file, LENSPROF_STORE_READ)});
     }
@@ -44,7 +44,7 @@ void merge_all(const std::string &db, std::vector<Other> &others) {
     lensprof_error error{};
     check(lensprof_store_begin(store.get(), &error), store_path(db), &error);
     for (Other &other : others) {  // a failure closes the store, and rolls back
-        stop_if_interrupted();
+        stop_if_cancelled();
         const auto status = lensprof_store_merge(store.get(), other.store.get(), &other.added, &other.known, &error);
         check(status, error.text[0] ? "" : other.file, &error);
     }

@@ -6,12 +6,12 @@
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/known_range.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/databases.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
+#include "cli/program/database_options.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {

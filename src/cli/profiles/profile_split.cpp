@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "cli/program/format.hpp"
-#include "cli/program/output_file.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/output_file.hpp"
 
 namespace lensprof {
 namespace {

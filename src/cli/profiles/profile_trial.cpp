@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "cli/profiles/exposures_only.hpp"
-#include "cli/program/joined_sets.hpp"
-#include "cli/program/mixed_bits.hpp"
+#include "photo/base/joined_sets.hpp"
+#include "photo/base/mixed_bits.hpp"
 
 namespace lensprof {
 namespace {

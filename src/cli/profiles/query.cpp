@@ -4,17 +4,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/pictures/sensor.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/known_range.hpp"
 #include "cli/profiles/lookup_options.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/databases.hpp"
-#include "cli/program/library.hpp"
+#include "cli/program/database_options.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/library.hpp"
+#include "photo/pictures/sensor.hpp"
 
 namespace lensprof {
 namespace {
@@ -106,7 +106,7 @@ void answer_stored(const QueryOptions &o, const Databases &databases, size_t ind
 void answer_range(const QueryOptions &o, const Databases &databases, const std::string &reason, Streams &streams) {
     KnownRange known;
     const auto all = matches(o, databases, o.filter.without_setting(), true);
-    if (!count(all)) throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names()) + "; " + reason);
+    if (!count(all)) throw Failure(LENSPROF_ERROR_NOT_FOUND, o.filter.nothing_found(databases.names()) + "; " + reason);
     auto profile = new_profile();
     for (const Match &match : all)
         for (const auto &row : match.rows) {
@@ -154,9 +154,9 @@ bool answer_lookup(const QueryOptions &o, const Databases &databases, size_t row
     if (status == LENSPROF_ERROR_NOT_FOUND && is_ambiguous(lookup)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND) {
         refusal.nearest = nearest_names(databases, key, lookup);
-        throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names())
-                                               + "; the falloff cannot be predicted either: " + lookup.reason
-                                               + describe_nearest(refusal.nearest));
+        throw Failure(LENSPROF_ERROR_NOT_FOUND, o.filter.nothing_found(databases.names())
+                                                    + "; the falloff cannot be predicted either: " + lookup.reason
+                                                    + describe_nearest(refusal.nearest));
     }
     const Found found{lookup, databases.files()};
     if (o.json) {
@@ -184,14 +184,14 @@ void answer(const QueryOptions &o, Refusal &refusal, Streams &streams) {
 }
 
 int run(const QueryOptions &o, Streams &streams) {
-    if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
+    if (!o.filter.has_camera_or_lens()) throw Failure(LENSPROF_ERROR_ARGUMENT, "give at least --camera or --lens");
     o.filter.check_names();
     Refusal refusal;
     lensprof_lookup_init(&refusal.lookup);
     try {
         answer(o, refusal, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_found)
+        if (o.json && failure.group() == LENSPROF_ERROR_NOT_FOUND)
             print_json(Json{{"schema", json_schema},
                             {"id", nullptr},
                             {"found", false},

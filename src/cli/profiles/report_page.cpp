@@ -3,19 +3,19 @@
 #include <sstream>
 
 #include "cli/page/page.hpp"
-#include "cli/pictures/picture.hpp"
 #include "cli/profiles/database_page.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/databases.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/input_file.hpp"
+#include "cli/program/database_options.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/paths.hpp"
-#include "cli/reconstruction/reconstruction_file.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/reconstruction/reconstruction_file.hpp"
 
 namespace lensprof {
 namespace {
@@ -87,7 +87,8 @@ std::vector<StoredProfile> profiles_of_file(const std::string &path, Streams &st
     read_profiles(format_to_read(path, ""), path, keep, &found);
     if (found.invalid)
         warn(streams, path + ": " + counted(found.invalid, "profile") + " with an invalid falloff left out");
-    if (found.profiles.empty()) throw Failure(ExitCode::not_found, path + ": has no valid profile; give another file");
+    if (found.profiles.empty())
+        throw Failure(LENSPROF_ERROR_NOT_FOUND, path + ": has no valid profile; give another file");
     return std::move(found.profiles);
 }
 
@@ -111,7 +112,7 @@ std::vector<StoredProfile> all_profiles(const Databases &databases, Streams &str
                               + " left out; see `lensprof profile check`");
     }
     if (profiles.empty())
-        throw Failure(ExitCode::not_found,
+        throw Failure(LENSPROF_ERROR_NOT_FOUND,
                       databases.names() + ": no profile is stored; make one with `lensprof build`, or `make profiles`");
     return profiles;
 }
@@ -151,15 +152,16 @@ int write_page(const PageOptions &o, const std::vector<StoredProfile> &profiles,
 // Failure (usage) for inputs that do not go together with each other or the options.
 void check_inputs(const PageOptions &o, const std::vector<Kind> &kinds, bool asks_profiles) {
     if (kinds.size() == 1 && kinds[0] == Kind::part)
-        throw Failure(ExitCode::usage, o.inputs[0] + ": holds a response or a falloff, but no profile; import it with "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.inputs[0] + ": holds a response or a falloff, but no profile; import it with "
                                                      "`lensprof profile import` and report the database");
-    if (!o.inputs.empty() && !o.dbs.empty()) throw Failure(ExitCode::usage, "report: give files or --db, not both");
+    if (!o.inputs.empty() && !o.dbs.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "report: give files or --db, not both");
     if (!o.images.empty())
-        throw Failure(ExitCode::usage, "--images: applies to a reconstruction, not to profiles; leave it out");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--images: applies to a reconstruction, not to profiles; leave it out");
     const bool is_one_file = kinds.size() == 1 && kinds[0] == Kind::profiles && !asks_profiles;
     for (size_t i = 0; i < kinds.size() && !is_one_file; i++)
         if (kinds[i] != Kind::database)
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           o.inputs[i]
                               + ": is not a profile database; give one kind of files: pictures, databases, or one file "
                                 "of profiles without --profile and names");

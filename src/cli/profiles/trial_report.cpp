@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

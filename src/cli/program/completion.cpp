@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "cli/program/description.hpp"
-#include "cli/program/format.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "cli/program/format.hpp"
 #include "cli/program/nearest.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 

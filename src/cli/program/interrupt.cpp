@@ -2,8 +2,6 @@
 
 #include <csignal>
 
-#include "cli/program/error.hpp"
-
 namespace lensprof {
 namespace {
 
@@ -23,9 +21,5 @@ void catch_interrupts() {
 }
 
 bool interrupted() { return interrupt_flag != 0; }
-
-void stop_if_interrupted() {
-    if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted");
-}
 
 }  // namespace lensprof

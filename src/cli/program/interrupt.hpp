@@ -9,7 +9,4 @@ void catch_interrupts();
 
 bool interrupted();
 
-// Throws Failure (interrupted) if the flag is set.
-void stop_if_interrupted();
-
 }  // namespace lensprof

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "cli/program/error.hpp"
-#include "cli/program/format.hpp"
 #include "cli/program/nearest.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 
@@ -30,7 +30,8 @@ void KeyTable::read(const std::string &word) {
     std::vector<std::string> pairs;
     for (std::string part : split(word)) {
         if (pairs.empty() && part.empty() && !word.empty())
-            throw Failure(ExitCode::usage, option + ": a pair is missing before or after a comma in '" + word + "'");
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          option + ": a pair is missing before or after a comma in '" + word + "'");
         if (part.find('=') != std::string::npos) part.erase(0, part.find_first_not_of(' '));
         if (pairs.empty() || part.find('=') != std::string::npos)
             pairs.push_back(part);
@@ -46,19 +47,20 @@ void KeyTable::set(const std::string &pair) {
     const Key *key = find(name);
     if (!key) {
         const std::string nearest = did_you_mean(name, names());
-        throw Failure(ExitCode::usage, option + ": " + (name.empty() ? "''" : name) + " is not a key" + nearest
-                                           + (nearest.empty() ? "; keys: " : " Keys: ") + joined(names(), ", ") + "; `"
-                                           + help + "` explains them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, option + ": " + (name.empty() ? "''" : name) + " is not a key" + nearest
+                                                   + (nearest.empty() ? "; keys: " : " Keys: ") + joined(names(), ", ")
+                                                   + "; `" + help + "` explains them");
     }
     if (equal == std::string::npos)
-        throw Failure(ExitCode::usage, key_name + ": needs a value; give " + key_name + "=" + key->type);
-    if (!given.insert(name).second) throw Failure(ExitCode::usage, key_name + ": given more than once; give it once");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, key_name + ": needs a value; give " + key_name + "=" + key->type);
+    if (!given.insert(name).second)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, key_name + ": given more than once; give it once");
     const std::string value = pair.substr(equal + 1);
     try {
         if (value.empty()) throw std::invalid_argument("empty value; give " + key->type + ", or omit the key");
         key->read(value);
     } catch (const std::invalid_argument &error) {
-        throw Failure(ExitCode::usage, key_name + ": " + error.what());
+        throw Failure(LENSPROF_ERROR_ARGUMENT, key_name + ": " + error.what());
     }
 }
 

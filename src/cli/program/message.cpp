@@ -5,9 +5,9 @@
 
 #include <unistd.h>
 
-#include "cli/program/format.hpp"
-#include "cli/program/shell_word.hpp"
-#include "cli/program/utf8.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/shell_word.hpp"
+#include "photo/base/utf8.hpp"
 
 namespace lensprof {
 namespace {
@@ -24,12 +24,11 @@ bool shows_colour() {
     return isatty(STDERR_FILENO) && !(no_color && *no_color) && terminal && std::strcmp(terminal, "dumb") != 0;
 }
 
-std::string warning_line(bool colour, const std::string &text) { return marked_line(colour, "1;33", "warning:", text); }
-
 void print_message(Streams &streams, const std::string &text) { streams.err << "lensprof: " << one_line(text) << "\n"; }
 
 void warn(Streams &streams, const std::string &text) {
-    if (streams.verbosity != Verbosity::quiet) streams.err << warning_line(streams.colour, text) << "\n";
+    if (streams.verbosity != Verbosity::quiet)
+        streams.err << marked_line(streams.colour, "1;33", "warning:", text) << "\n";
     streams.warnings.push_back(one_line(text));
 }
 

@@ -17,9 +17,6 @@ void note(Streams &streams, const std::string &text);
 // Whether standard error is a terminal that shows colours.
 bool shows_colour();
 
-// "lensprof: warning: " and the text.
-std::string warning_line(bool colour, const std::string &text);
-
 // A command line for a shell: "lensprof" and the words, those in quotes that need them.
 std::string command_text(const std::vector<std::string> &words);
 

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "cli/program/error.hpp"
-#include "cli/program/format.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {
@@ -95,8 +95,8 @@ std::vector<std::string> elements(const std::string &list) {
 
 void require_count(size_t values, const std::string &option, size_t count, const std::string &singular) {
     if (values != count)
-        throw Failure(ExitCode::usage, option + ": " + counted(values, "value") + " for " + counted(count, singular)
-                                           + "; give one for each, in their order");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, option + ": " + counted(values, "value") + " for "
+                                                   + counted(count, singular) + "; give one for each, in their order");
 }
 
 }  // namespace lensprof

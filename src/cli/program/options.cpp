@@ -9,12 +9,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/program/error.hpp"
-#include "cli/program/format.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/help_text.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/nearest.hpp"
 #include "cli/program/renamed_options.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 
@@ -72,10 +73,12 @@ std::string advice(const std::string &word, const std::vector<std::string> &word
     const std::string help = "`lensprof help" + (command_words.empty() ? "" : " " + command_words) + "`";
     const std::vector<std::string> names = names_of_commands(app);
     if (names.empty())
-        throw Failure(ExitCode::usage, command_words + " " + word + ": `" + path + "` has no verbs; see " + help);
-    throw Failure(ExitCode::usage, (command_words.empty() ? (word.empty() ? "''" : word) : command_words + " " + word)
-                                       + (command_words.empty() ? ": no such command" : ": no such verb")
-                                       + advice(word, names, help + " lists them"));
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      command_words + " " + word + ": `" + path + "` has no verbs; see " + help);
+    throw Failure(LENSPROF_ERROR_ARGUMENT,
+                  (command_words.empty() ? (word.empty() ? "''" : word) : command_words + " " + word)
+                      + (command_words.empty() ? ": no such command" : ": no such verb")
+                      + advice(word, names, help + " lists them"));
 }
 
 // Message for an empty value, such as from an unset shell variable.
@@ -176,7 +179,7 @@ private:
         }
         if (wants_help_) return;
         if (positionals_.size() == room())
-            throw Failure(ExitCode::usage, word + ": unexpected argument; see " + help_command());
+            throw Failure(LENSPROF_ERROR_ARGUMENT, word + ": unexpected argument; see " + help_command());
         positionals_.push_back(text_prefix + word);
     }
 
@@ -186,7 +189,7 @@ private:
         const std::string name = word.substr(0, equal);
         const CLI::Option *option = app_->get_option_no_throw(is_long ? name : word.substr(0, 2));
         if (option && !is_long && is_flag(*option) && word.size() > 2)
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           word + ": " + word.substr(0, 2) + " takes no value; give one option per word");
         if (!option) fail_no_option(name, is_long);
         if (is_flag(*option)) return parse_flag(*option, equal == std::string::npos ? "true" : word.substr(equal + 1));
@@ -194,7 +197,7 @@ private:
         const size_t value_offset = is_long || equal == 2 ? equal + 1 : 2;  // of --output=FILE, -o=FILE and -oFILE
         const std::string value = has_value ? word.substr(value_offset) : next_value(*option);
         if (counts_[option]++ > 0 && option->get_items_expected_max() == 1)
-            throw Failure(ExitCode::usage, option->get_name() + ": given more than once; give it once");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, option->get_name() + ": given more than once; give it once");
         options_.push_back(option->get_name());
         options_.push_back(text_prefix + value);
     }
@@ -202,10 +205,11 @@ private:
     // A word with one dash may be a file name, even if an option is similar.
     [[noreturn]] void fail_no_option(const std::string &name, bool is_long) const {
         const std::string now = form_now(*app_, tables_, name);
-        if (!now.empty()) throw Failure(ExitCode::usage, name + " is now " + now + "; see " + all_help_command());
+        if (!now.empty())
+            throw Failure(LENSPROF_ERROR_ARGUMENT, name + " is now " + now + "; see " + all_help_command());
         const std::string nearest = did_you_mean(name, names_of_options(*app_)),
                           hint = "put -- before names that start with -";
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       name + ": no such option"
                           + (nearest.empty()      ? "; see " + help_command() + (room() ? ", or " + hint : "")
                              : room() && !is_long ? nearest + " Otherwise " + hint
@@ -215,11 +219,11 @@ private:
     // An option of the program itself, such as --version, ends parsing.
     void parse_flag(const CLI::Option &flag, const std::string &value) {
         const std::string &name = flag.get_name();
-        if (value.empty()) throw Failure(ExitCode::usage, name + ": takes no value; give " + name + " alone");
+        if (value.empty()) throw Failure(LENSPROF_ERROR_ARGUMENT, name + ": takes no value; give " + name + " alone");
         try {
             CLI::detail::to_flag_value(value);
         } catch (const std::exception &) {
-            throw Failure(ExitCode::usage,
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
                           name + ": takes no value, but " + value + " was given; give " + name + " alone");
         }
         options_.push_back(name + "=" + value);
@@ -228,11 +232,11 @@ private:
 
     std::string next_value(const CLI::Option &option) {
         const std::string name = option.get_name(), remedy = "; give " + name + " " + option.get_type_name();
-        if (position_ == words_.size()) throw Failure(ExitCode::usage, name + ": needs a value" + remedy);
+        if (position_ == words_.size()) throw Failure(LENSPROF_ERROR_ARGUMENT, name + ": needs a value" + remedy);
         const std::string &word = words_[position_++];
         if (!looks_like_option(word, option)) return word;
-        throw Failure(ExitCode::usage, name + ": needs a value, but " + word + " looks like an option" + remedy
-                                           + ", or " + name + "=" + word + " if that is the value");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, name + ": needs a value, but " + word + " looks like an option" + remedy
+                                                   + ", or " + name + "=" + word + " if that is the value");
     }
 
     // The number of positionals the command takes.
@@ -261,7 +265,7 @@ void check_required(const CLI::App &command) {
         if (!option->get_required() || option->count()) continue;
         const std::string name = option->get_name(),
                           type = option->get_positional() ? "" : " " + option->get_type_name();
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       name + ": missing; give " + name + type + ", see `" + path_of(command) + " --help`");
     }
 }
@@ -305,7 +309,7 @@ CLI::Option *Command::add_option(const char *names, const std::string &type, con
                 if (word.empty()) throw std::invalid_argument(empty_text(*app->get_option(name)));
                 read(word);
             } catch (const std::invalid_argument &error) {
-                throw Failure(ExitCode::usage, name + ": " + error.what());
+                throw Failure(LENSPROF_ERROR_ARGUMENT, name + ": " + error.what());
             }
         return true;
     };
@@ -404,14 +408,14 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
         app_->parse(reversed);
     } catch (const CLI::ParseError &e) {
         check_required(command);
-        throw Failure(ExitCode::usage, std::string(e.what()) + "; see `" + path_of(command) + " --help`");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(e.what()) + "; see `" + path_of(command) + " --help`");
     }
     const auto action = actions_->of.find(&command);
     if (action == actions_->of.end())
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       command.get_name() + ": give a subcommand: " + joined(names_of_commands(command), ", "));
     if (quiet_ && verbose_)
-        throw Failure(ExitCode::usage, "--quiet and --verbose exclude each other; give one of them");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--quiet and --verbose exclude each other; give one of them");
     if (quiet_ || verbose_) streams.verbosity = quiet_ ? Verbosity::quiet : Verbosity::verbose;
     const auto begin = std::chrono::steady_clock::now();
     const int code = action->second(streams);

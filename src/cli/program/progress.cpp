@@ -6,9 +6,11 @@
 
 #include <unistd.h>
 
-#include "cli/program/format.hpp"
+#include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/utf8.hpp"
+#include "cli/program/option_names.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/utf8.hpp"
 
 namespace lensprof {
 namespace {
@@ -47,9 +49,9 @@ std::string describe_time_left(double seconds) {
 }
 
 Progress::Progress(Streams &streams, bool always)
-    : err_(streams.err),
+    : streams_(streams),
+      err_(streams.err),
       verbosity_(streams.verbosity),
-      colour_(streams.colour),
       is_shown_(verbosity_ != Verbosity::quiet && (always || (&err_ == &std::cerr && isatty(STDERR_FILENO)))) {}
 
 Progress::~Progress() { clear(); }
@@ -107,19 +109,24 @@ void Progress::end_step() {
     step_.clear();
 }
 
-void Progress::print_line(const std::string &line) {
+void Progress::finish(const std::string &summary) {
+    clear();
     if (!is_shown_) return;
     std::lock_guard<std::mutex> lock(mutex_);
-    clear_line();
-    err_ << line << std::endl;
+    err_ << summary << std::endl;
 }
 
-void Progress::warn(const std::string &line) {
-    if (verbosity_ == Verbosity::quiet) return;
+void Progress::notice(uint32_t severity, const std::string &item, const std::string &text) {
     std::lock_guard<std::mutex> lock(mutex_);
     clear_line();
-    err_ << warning_line(colour_, line) << std::endl;
+    const std::string line = item.empty() ? text : item + ": " + text;
+    severity == LENSPROF_SEVERITY_WARNING ? lensprof::warn(streams_, line) : lensprof::note(streams_, line);
+    err_.flush();
 }
+
+bool Progress::is_cancelled() { return interrupted(); }
+
+std::string Progress::option_name(const std::string &name) { return option_of(name); }
 
 Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)
     : progress_(progress), what_(what), pictures_(pictures), pixels_(pixels), begin_(std::chrono::steady_clock::now()) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cli/program/run.hpp"
+#include "photo/base/events.hpp"
 
 namespace lensprof {
 
@@ -31,36 +32,38 @@ private:
 std::string describe_time_left(double seconds);
 
 // Threads: all methods may be called by any thread.
-class Progress {
+class Progress : public Events {
 public:
     // Shows progress on `streams.err` if it is a terminal or `always`, and not with --quiet. With --verbose, prints a
     // line with the time of each step.
     explicit Progress(Streams &streams, bool always = false);
-    ~Progress();
+    ~Progress() override;
 
     // `detail` follows the percentage, and the remaining time follows `detail`; if only these change, the line is
     // redrawn a few times per second.
-    void update(const std::string &what, double fraction, const std::string &detail = std::string());
+    void update(const std::string &what, double fraction, const std::string &detail = {}) override;
 
-    // The same for items of equal size, with their number and rate: ", 12 of 40, 3.1/s".
-    void update_items(const std::string &what, uint32_t done, uint32_t count);
+    // With the number of items and their rate: ", 12 of 40, 3.1/s".
+    void update_items(const std::string &what, uint32_t done, uint32_t count) override;
 
-    void clear();  // ends the step
-
-    // Prints a permanent line if progress is shown.
-    void print_line(const std::string &line);
+    void clear() override;
+    void finish(const std::string &summary) override;  // prints the line if progress is shown
 
     // Prints a permanent line, except with --quiet.
-    void warn(const std::string &line);
+    void notice(uint32_t severity, const std::string &item, const std::string &text) override;
+
+    bool is_cancelled() override;  // Ctrl-C
+    std::string option_name(const std::string &name) override;
 
 private:
     void draw(const std::string &what, double fraction, const std::function<std::string()> &detail);
     void clear_line();
     void end_step();
 
+    Streams &streams_;
     std::ostream &err_;
     const Verbosity verbosity_;
-    const bool colour_, is_shown_;
+    const bool is_shown_;
     int percent_ = -1;
     std::string what_, text_, step_;
     TimeLeft left_;

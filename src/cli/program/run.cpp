@@ -5,9 +5,11 @@
 #include <lensprof/base.h>
 
 #include "cli/program/commands.hpp"
-#include "cli/program/error.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
+#include "cli/program/progress.hpp"
 #include "cli/program/shell.hpp"
+#include "photo/base/failure.hpp"
 
 namespace lensprof {
 namespace {
@@ -65,13 +67,15 @@ void declare_all(Command root, const Program &program) {
 
 int run(const std::vector<std::string> &words, Streams &streams) {
     streams.words = words;
+    Progress events(streams);
+    CallerScope caller(&events);
     try {
         Program program("lensprof", "calibrate camera response and vignetting, and correct pictures");
         declare_all(program.root(), program);
         return program.run(words, streams);
     } catch (const Failure &failure) {
         print_message(streams, failure.what());
-        return static_cast<int>(failure.code);
+        return static_cast<int>(exit_code(failure.status));
     } catch (const std::bad_alloc &) {
         print_message(streams, "out of memory; close other programs or use smaller pictures");
     } catch (const std::exception &e) {

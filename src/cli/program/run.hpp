@@ -4,6 +4,7 @@
 #include <ostream>
 #include <string>
 #include <vector>
+#include "cli/program/exit_code.hpp"
 
 namespace lensprof {
 

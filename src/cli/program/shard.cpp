@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "cli/program/error.hpp"
 #include "cli/program/numbers.hpp"
+#include "photo/base/failure.hpp"
 
 namespace lensprof {
 
@@ -16,7 +16,7 @@ Shard shard_of(const std::string &word) {
         const uint32_t count = count_of(word.substr(slash + 1), 1, max_shards);
         return {count_of(word.substr(0, slash), 1, count), count};
     } catch (const std::invalid_argument &) {
-        throw Failure(ExitCode::usage, "--shard " + word + ": not a valid part; give INDEX/COUNT with 1 <= INDEX <= "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--shard " + word + ": not a valid part; give INDEX/COUNT with 1 <= INDEX <= "
                                                            "COUNT, such as 2/5");
     }
 }

@@ -2,9 +2,9 @@
 
 #include <lensprof/base.h>
 
-#include "cli/program/error.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/output_file.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/output_file.hpp"
 
 namespace lensprof {
 namespace {
@@ -18,7 +18,7 @@ const CommandDescription &command_named(const CommandDescription &program, const
         const CommandDescription *found = nullptr;
         for (const CommandDescription &verb : command->commands)
             if (verb.name() == word) found = &verb;
-        if (!found) throw Failure(ExitCode::usage, word + ": no such command; `lensprof help` lists them");
+        if (!found) throw Failure(LENSPROF_ERROR_ARGUMENT, word + ": no such command; `lensprof help` lists them");
         command = found;
     }
     return *command;
@@ -68,7 +68,7 @@ void declare_man(Command &root, const Program &program) {
             return 0;
         }
         if (!o->words.empty())
-            throw Failure(ExitCode::usage, "man: -o writes the pages of all commands; leave COMMAND out");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, "man: -o writes the pages of all commands; leave COMMAND out");
         make_folder(o->folder);
         const size_t pages = write_pages(all, o->folder);
         streams.out << "wrote " << counted(pages, "man page") << " to " << o->folder << "\n";

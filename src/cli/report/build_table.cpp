@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/program/format.hpp"
 #include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

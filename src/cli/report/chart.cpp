@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/error.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {
@@ -155,7 +155,7 @@ Chart make_chart(const std::vector<StoredProfile> &profiles, int channel) {
     chart.title = printable(chart.title);
     chart.note = note_of(profiles);
     if (chart.curves.size() > chart_max_curves)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       format("a chart of %zu curves is unreadable, the maximum is %zu; choose fewer profiles, by ids "
                              "or with filters such as --focal and --aperture, or one --channel",
                              chart.curves.size(), chart_max_curves));

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/program/library.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 

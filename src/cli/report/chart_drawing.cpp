@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/program/error.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/output_file.hpp"
 #include "cli/report/chart.hpp"
 #include "cli/report/drawing.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/output_file.hpp"
 
 namespace lensprof {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
-#include "cli/program/input_file.hpp"
-#include "cli/program/library.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/input_file.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 
@@ -20,10 +20,10 @@ TrueValues read_truth(const std::string &path, size_t images) {
         for (size_t n = 0; n < 3; n++) truth.vignetting.k[n] = curves.at(curves.size() / 2).at(n).get<double>();
         for (size_t d = 0; d < 2; d++) truth.vignetting.center[d] = center.at(d).get<double>();
     } catch (const Json::exception &) {
-        throw Failure(ExitCode::unreadable, path + ": is not the truth.json of `lensprof simulate`");
+        throw Failure(LENSPROF_ERROR_READ, path + ": is not the truth.json of `lensprof simulate`");
     }
     if (truth.ev.size() != images)
-        throw Failure(ExitCode::unreadable,
+        throw Failure(LENSPROF_ERROR_READ,
                       path
                           + format(": is for %zu images, not for %zu; give the truth.json of this project",
                                    truth.ev.size(), images));

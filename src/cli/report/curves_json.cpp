@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
 #include "cli/report/chart.hpp"
 #include "cli/report/falloff.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <cairo-svg.h>
 
-#include "cli/program/error.hpp"
+#include "photo/base/failure.hpp"
 
 namespace lensprof {
 namespace {
@@ -49,7 +49,7 @@ cairo_status_t append(void *text, const unsigned char *data, unsigned length) {
 void expect(cairo_status_t status, const std::string &path) {
     if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
     if (status != CAIRO_STATUS_SUCCESS)
-        throw Failure(ExitCode::failed, path + ": cannot draw the chart: " + cairo_status_to_string(status));
+        throw Failure(LENSPROF_ERROR_WRITE, path + ": cannot draw the chart: " + cairo_status_to_string(status));
 }
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
@@ -141,7 +141,7 @@ std::string drawing_of(const std::string &path, const std::function<DrawingSize(
 
 void check_chart_name(const std::string &path) {
     if (!has_extension(path, ".svg") && !has_extension(path, ".png"))
-        throw Failure(ExitCode::usage, path + ": charts are written as .svg or .png; give a name with one of these "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, path + ": charts are written as .svg or .png; give a name with one of these "
                                               "endings");
 }
 

@@ -6,7 +6,7 @@
 
 #include <lensprof/lensprof.h>
 
-#include "cli/program/library.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 

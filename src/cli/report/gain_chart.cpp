@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/program/format.hpp"
 #include "cli/report/drawing.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
 #include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 

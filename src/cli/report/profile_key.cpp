@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {

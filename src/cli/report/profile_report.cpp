@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
 #include "cli/report/report.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {

@@ -9,16 +9,18 @@
 
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/profile_store.hpp"
-#include "cli/pictures/metadata.hpp"
-#include "cli/pictures/picture.hpp"
-#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/format.hpp"
+#include "cli/program/exit_code.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/response/response_report.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/metadata.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/pictures/raw_kind.hpp"
 
 namespace lensprof {
 namespace {
@@ -46,10 +48,11 @@ void check_options(const Options &o) {
     for (size_t i = 0; i < o.files.size(); i++)
         for (size_t k = 0; k < i; k++)
             if (is_same_file(o.files[i], o.files[k]))
-                throw Failure(ExitCode::usage, o.files[i] + ": given twice; give it once");
+                throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": given twice; give it once");
     if (o.files.size() > LENSPROF_RENDERING_SHOTS)
-        throw Failure(ExitCode::usage, format("%zu files are too many (maximum %d), and a few suffice; give fewer",
-                                              o.files.size(), LENSPROF_RENDERING_SHOTS));
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      format("%zu files are too many (maximum %d), and a few suffice; give fewer", o.files.size(),
+                             LENSPROF_RENDERING_SHOTS));
 }
 
 // A JPEG in the same folder with the base name of the raw file; empty = none.
@@ -65,10 +68,10 @@ std::string neighbouring_jpeg(const std::string &raw) {
 Picture read_jpeg(const std::string &file) {
     Picture picture = read_picture(file);
     if (picture.traits.format != FileFormat::jpeg)
-        throw Failure(ExitCode::usage, file + ": is not a JPEG, but only the camera's own JPEGs show its response; "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is not a JPEG, but only the camera's own JPEGs show its response; "
                                               "give the JPEG of the same shot with --jpeg");
     if (read_metadata(file).mark)
-        throw Failure(ExitCode::usage, file + ": was written by lensprof, but only the camera's own JPEGs show its "
+        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": was written by lensprof, but only the camera's own JPEGs show its "
                                               "response; give the original");
     return picture;
 }
@@ -86,9 +89,9 @@ Picture read_rendered(const Options &o, size_t i, std::string &jpeg_file, Stream
         Picture picture = read_raw_preview(o.files[i]);
         if (is_large_enough(picture) || other.empty()) return picture;
     } catch (const Failure &failure) {
-        const bool is_raw = failure.code == ExitCode::unreadable && can_read_raw() && raw_kind(o.files[i]);
+        const bool is_raw = failure.group() == LENSPROF_ERROR_READ && can_read_raw() && raw_kind(o.files[i]);
         if (!is_raw) throw;
-        if (other.empty()) throw Failure(failure.code, failure.what() + std::string(", and give it with --jpeg"));
+        if (other.empty()) throw Failure(failure.status, failure.what() + std::string(", and give it with --jpeg"));
     }
     note(streams, o.files[i] + ": has no large enough JPEG preview; using " + other);
     return read_jpeg(jpeg_file = other);
@@ -98,10 +101,10 @@ Picture read_rendered(const Options &o, size_t i, std::string &jpeg_file, Stream
 Picture read_cells(const std::string &file) {
     const Picture header = read_header(file);
     if (header.traits.format != FileFormat::raw)
-        throw Failure(ExitCode::unreadable, file + ": is not a camera raw file; give one, and its JPEG with --jpeg");
+        throw Failure(LENSPROF_ERROR_READ, file + ": is not a camera raw file; give one, and its JPEG with --jpeg");
     const uint32_t longer = std::max(header.width, header.height);
     if (std::min(header.width, header.height) < 2 * LENSPROF_RENDERING_RAW_SIDE)
-        throw Failure(ExitCode::not_usable,
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       file + format(": %u x %u px are too few; give a larger raw file", header.width, header.height),
                       LENSPROF_REASON_FEW_PAIRS);
     return read_picture(file, {longer / 2});
@@ -114,9 +117,9 @@ std::string camera_of(const PictureMetadata &metadata) {
 void demand_one_camera(const Options &o, const std::vector<PictureMetadata> &metadata) {
     for (size_t i = 1; i < metadata.size(); i++)
         if (camera_of(metadata[i]) != camera_of(metadata[0]))
-            throw Failure(ExitCode::usage, o.files[i] + ": comes from another camera (" + camera_of(metadata[i])
-                                               + ") than " + o.files[0] + " (" + camera_of(metadata[0])
-                                               + "); give files of one camera");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": comes from another camera (" + camera_of(metadata[i])
+                                                       + ") than " + o.files[0] + " (" + camera_of(metadata[0])
+                                                       + "); give files of one camera");
 }
 
 // Picture styles have their own responses; a style that not all files share is not stored in the profile.
@@ -153,9 +156,10 @@ void check_added(lensprof_status status, const ResponseFile &file, const lenspro
     const std::string text = file.rendered_name() + ": " + error.text;
     const char *advice = "; give the camera's JPEG of the same picture with --jpeg";
     switch (status) {
-    case LENSPROF_ERROR_SIZE: throw Failure(ExitCode::not_usable, text + advice, LENSPROF_REASON_FEW_PAIRS);
-    case LENSPROF_ERROR_NO_OVERLAP: throw Failure(ExitCode::not_usable, text + advice, LENSPROF_REASON_IMAGE_GROUPS);
-    case LENSPROF_ERROR_UNSUPPORTED: throw Failure(ExitCode::not_usable, text, LENSPROF_REASON_UNDETERMINED);
+    case LENSPROF_ERROR_SIZE: throw Failure(LENSPROF_ERROR_NOT_USABLE, text + advice, LENSPROF_REASON_FEW_PAIRS);
+    case LENSPROF_ERROR_NO_OVERLAP:
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, text + advice, LENSPROF_REASON_IMAGE_GROUPS);
+    case LENSPROF_ERROR_UNSUPPORTED: throw Failure(LENSPROF_ERROR_NOT_USABLE, text, LENSPROF_REASON_UNDETERMINED);
     default: check(status, file.rendered_name(), &error);
     }
 }
@@ -163,14 +167,14 @@ void check_added(lensprof_status status, const ResponseFile &file, const lenspro
 void add_files(const Options &o, Progress &progress, lensprof_rendering *rendering, ResponseReport &report,
                Streams &streams) {
     for (size_t i = 0; i < o.files.size(); i++) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         progress.update("comparing", double(i) / double(o.files.size()));
         ResponseFile file;
         file.file = o.files[i];
         const Picture rendered = read_rendered(o, i, file.rendered, streams), raw = read_cells(o.files[i]);
         if (i > 0 && (raw.layout == LENSPROF_LAYOUT_GREY) != (report.files[0].shot.channels == 1))
-            throw Failure(ExitCode::usage, o.files[i] + ": is in colour and " + o.files[0]
-                                               + " is grey, or the reverse; give files of one kind");
+            throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": is in colour and " + o.files[0]
+                                                       + " is grey, or the reverse; give files of one kind");
         const lensprof_image raw_view = raw.view(), rendered_view = rendered.view();
         lensprof_error error{};
         check_added(lensprof_rendering_add(rendering, &raw_view, &rendered_view, &error), file, error);
@@ -192,7 +196,7 @@ void measure(const Options &o, const lensprof_profile_key &key, ResponseReport &
     const lensprof_status status = lensprof_rendering_fit(rendering.get(), &report.result, &error);
     const bool is_of_shot = error.item.kind == LENSPROF_ITEM_IMAGE && error.item.index < o.files.size();
     if (status != LENSPROF_OK && is_of_shot)
-        throw Failure(ExitCode::not_usable, with_name(error.text, error.item, o.files[error.item.index]),
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, with_name(error.text, error.item, o.files[error.item.index]),
                       LENSPROF_REASON_FEW_PAIRS);
     check(status, o.files.front(), &error);
     for (uint32_t i = 0; i < report.files.size(); i++)
@@ -218,7 +222,7 @@ int64_t store(const Options &o, const lensprof_profile_key &key, const ResponseR
 int finish(const Options &o, lensprof_profile_key key, ResponseReport &report, Streams &streams) {
     if (!o.store.processing)
         key.processing = report.result.corrects_falloff ? LENSPROF_PROCESSING_CORRECTED : LENSPROF_PROCESSING_JPEG;
-    stop_if_interrupted();
+    stop_if_cancelled();
     if ((report.result.usable || o.store.force) && !o.store.no_store) report.profile_id = store(o, key, report);
     if (o.json)
         print_json(response_report_json(report), streams.out);
@@ -245,7 +249,7 @@ int run(const Options &o, Streams &streams) {
     try {
         measure(o, key, report, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_usable) {
+        if (o.json && failure.group() == LENSPROF_ERROR_NOT_USABLE) {
             report.verdict.refuse(failure.reason, failure.what());
             report.files.clear();
             print_json(response_report_json(report), streams.out);

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/program/library.hpp"
 #include "cli/simulate/simulate.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {

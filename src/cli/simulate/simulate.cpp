@@ -7,15 +7,15 @@
 #include <filesystem>
 
 #include "cli/fitting/project.hpp"
-#include "cli/pictures/picture.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/interrupt.hpp"
 #include "cli/program/options.hpp"
-#include "cli/program/output_file.hpp"
-#include "cli/program/parallel.hpp"
-#include "cli/program/paths.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/output_file.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {
@@ -30,7 +30,7 @@ Picture render(const Truth &truth, const Scene &scene, uint32_t i) {
     picture.row_bytes = static_cast<size_t>(camera.width) * 3 * sizeof(float);
     picture.pixels.resize(picture.row_bytes * camera.height);
     for (uint32_t y = 0; y < camera.height; y++) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         auto *row = reinterpret_cast<float *>(&picture.pixels[y * picture.row_bytes]);
         for (uint32_t x = 0; x < camera.width; x++) {
             double rgb[3];
@@ -82,7 +82,7 @@ void digitise(const Truth &truth, uint32_t i, uint32_t sample, Picture &picture)
     result.row_bytes = static_cast<size_t>(result.width) * 3 * lensprof_sample_type_bytes(sample);
     result.pixels.assign(result.row_bytes * result.height, 0);
     for (uint32_t y = 0; y < picture.height; y++) {
-        stop_if_interrupted();
+        stop_if_cancelled();
         const auto *row = reinterpret_cast<const float *>(&picture.pixels[y * picture.row_bytes]);
         uint8_t *out = &result.pixels[y * result.row_bytes];
         for (uint32_t x = 0; x < picture.width; x++) {
@@ -140,7 +140,8 @@ void write_pictures(const SimulateOptions &o, const Truth &truth, const Scene &s
         write.metadata = &metadata;
         std::string path = (std::filesystem::path(o.output) / truth.files[i]).string();
         if (!write_picture(path, picture, write) && o.exif)
-            throw Failure(ExitCode::failed, path + ": EXIF cannot be written to a TIFF of 4 GB; use a smaller --size");
+            throw Failure(LENSPROF_ERROR_WRITE,
+                          path + ": EXIF cannot be written to a TIFF of 4 GB; use a smaller --size");
     });
 }
 

@@ -8,10 +8,10 @@
 
 #include <lensprof/lensprof.h>
 
-#include "cli/pictures/picture.hpp"
 #include "cli/simulate/moving.hpp"
 #include "cli/simulate/scene.hpp"
 #include "cli/simulate/simulate_options.hpp"
+#include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/registration/project_text.hpp"
 #include "cli/report/report.hpp"
 #include "cli/simulate/simulate.hpp"
+#include "photo/registration/project_text.hpp"
 
 namespace lensprof {
 namespace {

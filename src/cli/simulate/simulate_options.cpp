@@ -1,7 +1,7 @@
 #include "cli/simulate/simulate_options.hpp"
 
-#include "cli/program/error.hpp"
 #include "cli/program/response_words.hpp"
+#include "photo/base/failure.hpp"
 
 namespace lensprof {
 namespace {
@@ -82,11 +82,13 @@ void check_moving_options(const SimulateOptions &o) {
     };
     for (const auto &option : changed)
         if (option.second)
-            throw Failure(ExitCode::usage, option.first
-                                               + std::string(": is for a camera that turns about one point; omit it, "
-                                                             "or omit --set moving"));
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          option.first
+                              + std::string(": is for a camera that turns about one point; omit it, "
+                                            "or omit --set moving"));
     if (o.hfov < 20.0 || o.hfov > 100.0)
-        throw Failure(ExitCode::usage, "--set hfov: must be 20 to 100 degrees with moving; give a value in this range");
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--set hfov: must be 20 to 100 degrees with moving; give a value in this range");
 }
 
 }  // namespace
@@ -121,14 +123,16 @@ void declare_simulate_options(Command &command, SimulateOptions &o) {
 
 void check_simulate_options(const SimulateOptions &o) {
     if (o.moving) check_moving_options(o);
-    if (o.gloss && !o.moving) throw Failure(ExitCode::usage, "--set gloss: needs moving; add it, or omit gloss");
+    if (o.gloss && !o.moving)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--set gloss: needs moving; add it, or omit gloss");
     if (o.exif && o.no_images)
-        throw Failure(ExitCode::usage, "--exif: needs pictures to write to; omit --set no-images");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--exif: needs pictures to write to; omit --set no-images");
     for (const auto &[key, is_given] :
          {std::pair("exif-rounding", o.exif_rounding > 0.0), std::pair("exif-scatter", o.exif_scatter > 0.0),
           std::pair("exif-manual", o.exif_manual)})
         if (is_given && !o.exif)
-            throw Failure(ExitCode::usage, std::string("--set ") + key + ": needs --exif; add it, or omit " + key);
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          std::string("--set ") + key + ": needs --exif; add it, or omit " + key);
 }
 
 }  // namespace lensprof

@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "cli/program/interrupt.hpp"
-#include "cli/program/mixed_bits.hpp"
 #include "cli/simulate/simulate.hpp"
+#include "photo/base/events.hpp"
+#include "photo/base/mixed_bits.hpp"
 
 namespace lensprof {
 
@@ -148,7 +148,7 @@ std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene
          trial++) {
         if (trial % (max_trials / 20) == max_trials / 20 - 1)
             share += share / 4 + 1;  // rings that cannot be filled: others get more
-        if (trial % 4096 == 0) stop_if_interrupted();
+        if (trial % 4096 == 0) stop_if_cancelled();
         lensprof_pair pair;
         int ring[2];
         if (!source.draw(random, pair, ring)) continue;

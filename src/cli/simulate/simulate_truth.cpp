@@ -2,10 +2,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "cli/program/error.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/library.hpp"
 #include "cli/simulate/simulate.hpp"
+#include "photo/base/failure.hpp"
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {
@@ -86,10 +86,10 @@ void check_falloff(lensprof_vignetting falloff) {
     if (lensprof_vignetting_validate(&falloff) == LENSPROF_OK) return;
     falloff.center[0] = falloff.center[1] = 0.0;
     if (lensprof_vignetting_validate(&falloff) != LENSPROF_OK)
-        throw Failure(ExitCode::usage,
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--vignetting: the falloff must stay positive up to the corner; give smaller numbers");
     throw Failure(
-        ExitCode::usage,
+        LENSPROF_ERROR_ARGUMENT,
         "--set center: the falloff must stay positive up to the farthest corner; give a centre closer to 0,0");
 }
 
@@ -103,8 +103,8 @@ Truth make_truth(const SimulateOptions &o, const Scene &scene) {
     truth.noise_levels = o.noise;
     truth.outlier_share = o.outliers;
     if (o.vignetting.size() != 3 && o.vignetting.size() != 9)
-        throw Failure(ExitCode::usage, "--vignetting: give three numbers, or nine");
-    if (o.center.size() != 2) throw Failure(ExitCode::usage, "--set center: give two numbers, x,y");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--vignetting: give three numbers, or nine");
+    if (o.center.size() != 2) throw Failure(LENSPROF_ERROR_ARGUMENT, "--set center: give two numbers, x,y");
     truth.vignettings = static_cast<uint32_t>(o.vignetting.size() / 3);
     for (uint32_t c = 0; c < 3; c++) {
         for (uint32_t n = 0; n < 3; n++)

@@ -1,0 +1,214 @@
+#include "photo/registration/matching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <tuple>
+
+#include <opencv2/calib3d.hpp>
+
+#include "photo/base/parallel.hpp"
+#include "photo/registration/candidates.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr float ratio = 0.8f;        // Lowe's ratio of the distances to the nearest and second nearest feature
+constexpr double tolerance = 0.003;  // of the longer side: maximum distance of a match from the homography
+// Brown & Lowe 2007, equation 13, with our own shares: for unrelated pictures no homography held more than 7 of 90
+// matches; for related ones with little overlap 10 to 20.
+constexpr size_t min_matches = 10;
+constexpr double min_above_chance = 6.0, share_of_matches = 0.1;
+constexpr double still = 0.002;       // of the longer side: less than the movement by a camera that moves or rotates
+constexpr size_t still_by_moved = 3;  // ratio of stationary to moving matches for a stationary camera
+constexpr int max_draws = 3000;       // of four matches for a homography
+constexpr int max_rounds = 5;         // of matching: links found determine the next candidates
+
+using Match = std::pair<int, int>;
+
+// Every feature of `a` whose nearest one in `b` passes the ratio test and is not nearer to another. For descriptors of
+// length 1 the product is 1 - distance^2 / 2.
+std::vector<Match> match(const Features &first, const Features &second) {
+    std::vector<Match> found;
+    const Descriptors a = descriptors_of(first), b = descriptors_of(second);
+    if (a.rows() < 2 || b.rows() < 2) return found;
+    constexpr Eigen::Index block = 256;  // rows whose products fit in the cache
+    std::vector<int> taken(static_cast<size_t>(b.rows()), -1);
+    std::vector<float> nearest(static_cast<size_t>(b.rows()), -2.0f);
+    Rows products;
+    for (Eigen::Index begin = 0; begin < a.rows(); begin += block) {
+        const Eigen::Index rows = std::min(block, a.rows() - begin);
+        products.noalias() = a.middleRows(begin, rows) * b.transpose();
+        for (Eigen::Index i = 0; i < rows; i++) {
+            const float *row = products.row(i).data();
+            float best = -2.0f, next = -2.0f;
+            size_t best_index = 0;
+            for (size_t j = 0; j < taken.size(); j++)
+                if (row[j] > best)
+                    next = best, best = row[j], best_index = j;
+                else if (row[j] > next)
+                    next = row[j];
+            if (1.0f - best < ratio * ratio * (1.0f - next) && best > nearest[best_index])
+                nearest[best_index] = best, taken[best_index] = static_cast<int>(begin + i);
+        }
+    }
+    for (size_t to = 0; to < taken.size(); to++)
+        if (taken[to] >= 0) found.emplace_back(taken[to], static_cast<int>(to));
+    return found;
+}
+
+using Places = std::vector<std::pair<cv::Point2d, cv::Point2d>>;
+
+// The homography supported by most matches; empty if chance explains as many.
+std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matches, double longer_side) {
+    if (matches.size() < min_matches) return std::nullopt;
+    std::vector<cv::Point2d> from, to;
+    for (const auto &[a, b] : matches) from.push_back(a), to.push_back(b);
+    std::vector<uint8_t> follows;
+    const cv::Mat homography =
+        cv::findHomography(from, to, cv::USAC_MAGSAC, tolerance * longer_side, follows, max_draws, 0.999);
+    if (homography.empty()) return std::nullopt;
+    PictureLink found{{pair.first, pair.second}, {}, homography, false};
+    for (size_t m = 0; m < matches.size(); m++)
+        if (follows[m]) found.matches.push_back(matches[m]);
+    const auto count = static_cast<double>(found.matches.size());
+    const bool is_chance = found.matches.size() < min_matches
+                           || count <= min_above_chance + share_of_matches * static_cast<double>(matches.size());
+    return is_chance ? std::nullopt : std::optional(std::move(found));
+}
+
+// Positions in the first frame.
+cv::Rect2d box_of(const Places &places) {
+    cv::Point2d low = places[0].first, high = low;
+    for (const auto &[from, to] : places) {
+        low = {std::min(low.x, from.x), std::min(low.y, from.y)};
+        high = {std::max(high.x, from.x), std::max(high.y, from.y)};
+    }
+    return {low.x, low.y, high.x - low.x, high.y - low.y};
+}
+
+// Whether stationary positions belong to a scene: many more than moved together, spread over the frame and the area of
+// the moved ones, which then come from repetitive objects. Something fixed to the frame, such as a dashboard, occupies
+// its own part of it.
+bool is_still_scene(const Places &stayed, const Places &moved, const Features &picture) {
+    if (stayed.size() < min_matches || stayed.size() < still_by_moved * moved.size()) return false;
+    const cv::Rect2d box = box_of(stayed);
+    const auto outside =
+        std::count_if(moved.begin(), moved.end(), [&](const auto &place) { return !box.contains(place.first); });
+    return box.width > 0.5 * picture.width && box.height > 0.25 * picture.height
+           && 2 * static_cast<size_t>(outside) <= moved.size();
+}
+
+// Uses what moved between frames; or, if that shows nothing, everything: what is fixed to the frame (a date stamp, a
+// logo, dirt) matches in every pair of pictures. Nothing moves with a stationary camera, except that matches of
+// repetitive objects may agree by chance.
+std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
+    const Features &a = pictures[pair.first], &b = pictures[pair.second];
+    const double longer_side = std::max(std::max(a.width, a.height), std::max(b.width, b.height));
+    Places all, moved, stayed;
+    for (const Match &m : match(a, b)) {
+        const cv::Point2d from = a.places[static_cast<size_t>(m.first)], to = b.places[static_cast<size_t>(m.second)];
+        all.emplace_back(from, to);
+        (cv::norm(to - from) > still * longer_side ? moved : stayed).push_back(all.back());
+    }
+    auto by_moved = link_by(pair, moved, longer_side);
+    const bool is_scene = is_still_scene(stayed, by_moved ? by_moved->matches : Places(), a);
+    if (by_moved && !is_scene) return by_moved;
+    auto found = link_by(pair, by_moved ? stayed : all, longer_side);
+    if (found) found->is_still = !stayed.empty(), found->is_scene = is_scene;
+    return found;
+}
+
+// The stationary positions of a picture, by its still link with most matches.
+struct Stayed {
+    size_t matches = 0;
+    cv::Rect2d box;
+};
+
+std::vector<Stayed> what_stayed(size_t pictures, const std::vector<PictureLink> &links) {
+    std::vector<Stayed> stayed(pictures);
+    for (const PictureLink &link : links)
+        for (const uint32_t picture : link.picture)  // at the same positions in both
+            if (link.is_scene && link.matches.size() > stayed[picture].matches)
+                stayed[picture] = {link.matches.size(), box_of(link.matches)};
+    return stayed;
+}
+
+// Removes moving links between pictures connected by still ones with far more matches at the same positions: chance
+// matches of repetitive objects.
+void drop_chance(size_t pictures, std::vector<PictureLink> &links) {
+    const std::vector<uint32_t> groups =
+        groups_of(pictures, links, [](const PictureLink &link) { return link.is_scene; });
+    const std::vector<Stayed> stayed = what_stayed(pictures, links);
+    const auto is_chance = [&](const PictureLink &link) {
+        const Stayed &a = stayed[link.picture[0]], &b = stayed[link.picture[1]];
+        if (link.is_still || groups[link.picture[0]] != groups[link.picture[1]]) return false;
+        if (still_by_moved * link.matches.size() >= std::min(a.matches, b.matches)) return false;
+        const auto within = std::count_if(link.matches.begin(), link.matches.end(), [&](const auto &place) {
+            return a.box.contains(place.first) && b.box.contains(place.second);
+        });
+        return 2 * static_cast<size_t>(within) > link.matches.size();
+    };
+    links.erase(std::remove_if(links.begin(), links.end(), is_chance), links.end());
+}
+
+// Removes still links of pictures connected by moving ones: the camera was not stationary.
+void drop_static(size_t pictures, std::vector<PictureLink> &links) {
+    std::vector<bool> moves(pictures);
+    for (const PictureLink &link : links)
+        for (uint32_t picture : link.picture)
+            if (!link.is_still) moves[picture] = true;
+    const auto is_fixed = [&](const PictureLink &link) {
+        return link.is_still && (moves[link.picture[0]] || moves[link.picture[1]]);
+    };
+    links.erase(std::remove_if(links.begin(), links.end(), is_fixed), links.end());
+}
+
+}  // namespace
+
+std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Events &events) {
+    std::vector<PictureLink> links;
+    std::vector<PicturePair> tried, linked, pairs = candidate_pairs(pictures);
+    for (int round = 0; round < max_rounds && !pairs.empty(); round++) {
+        std::vector<std::optional<PictureLink>> found(pairs.size());
+        for_each_parallel(static_cast<uint32_t>(pairs.size()),
+                          round ? "matching further pictures" : "matching pictures", events,
+                          [&](uint32_t n) { found[n] = link(pictures, pairs[n]); });
+        for (size_t n = 0; n < pairs.size(); n++)
+            if (found[n]) links.push_back(std::move(*found[n])), linked.push_back(pairs[n]);
+        tried.insert(tried.end(), pairs.begin(), pairs.end());
+        std::sort(tried.begin(), tried.end());
+        pairs = further_pairs(static_cast<uint32_t>(pictures.size()), linked, tried);
+    }
+    drop_chance(pictures.size(), links);
+    drop_static(pictures.size(), links);
+    std::sort(links.begin(), links.end(), [](const PictureLink &a, const PictureLink &b) {
+        return std::tie(a.picture[0], a.picture[1]) < std::tie(b.picture[0], b.picture[1]);
+    });
+    return links;
+}
+
+std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links, const TakesLink &takes) {
+    std::vector<uint32_t> first(pictures);
+    std::iota(first.begin(), first.end(), 0u);
+    const auto root = [&](uint32_t i) {
+        while (first[i] != i) i = first[i];
+        return i;
+    };
+    for (const PictureLink &link : links) {
+        if (!takes(link)) continue;
+        const uint32_t a = root(link.picture[0]), b = root(link.picture[1]);
+        first[std::max(a, b)] = std::min(a, b);
+    }
+    std::vector<uint32_t> group(pictures), number(pictures, UINT32_MAX);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < pictures; i++) {
+        uint32_t &n = number[root(i)];
+        if (n == UINT32_MAX) n = count++;
+        group[i] = n;
+    }
+    return group;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,65 @@
+// Registration of pictures without a project: finds overlaps and cameras, as Hugin projects.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lensprof/geometry.h>
+#include <lensprof/sample.h>
+
+#include "photo/base/events.hpp"
+#include "photo/registration/project_text.hpp"
+
+namespace lensprof {
+
+enum class SceneKind {
+    panorama,  // the camera rotated about one point
+    plane,     // it moved over a scene that is nearly a plane
+    still      // neither: frames from a tripod or a bracket, which do not show the falloff
+};
+
+// A group of pictures that overlap, directly or through others. Each camera has at least two, connected by its own
+// pictures.
+struct FoundProject {
+    std::vector<uint32_t> pictures;  // indices, ascending; the members below use this order
+    SceneKind kind = SceneKind::panorama;
+    std::vector<lensprof_camera> cameras;
+    std::vector<uint32_t> lenses;      // equal for pictures of one camera and size, with one lens at one focal length
+    std::vector<uint32_t> camera_ids;  // equal for pictures of one camera, processing and size (upright or not)
+    std::vector<ControlPoint> points;  // a few per link that the cameras explain
+    std::vector<lensprof_match> matches;  // of the links that the cameras do not explain, or of all links
+    bool by_matches = false;              // pictures are compared at these matches, not through the cameras
+    uint32_t links = 0, unfit = 0;        // overlapping pairs of pictures, and the number that the cameras do not
+                                          // explain
+    double residual = 0.0;                // median over the links that fit, as a share of the longer side
+
+    uint32_t connected_group = 0;  // equal for groups that are connected only by pictures of no group
+
+    bool cameras_fit() const { return 2 * unfit <= links; }
+};
+
+// A picture that repeats another one.
+struct CopiedPicture {
+    uint32_t copy, original;
+    std::string how;  // ", rotated, resized", or ""
+};
+
+struct Registration {
+    std::vector<FoundProject> projects;  // largest first; stationary cameras last
+    std::vector<uint32_t> isolated;      // pictures that overlap no other,
+    // And those that overlap only pictures of other cameras: with a camera whose own pictures do not overlap, or do.
+    std::vector<uint32_t> other_camera, disconnected;
+    std::vector<std::pair<uint32_t, std::string>> unreadable;  // and the reasons
+    std::vector<CopiedPicture> copies;                         // in no project
+};
+
+// Whether this program was built with registration (OpenCV).
+bool can_register();
+
+// Groups by camera, processing and size, unless `as_one` treats all as one; raw files are never mixed with others.
+// Failure (usage) without OpenCV.
+Registration register_pictures(const std::vector<std::string> &files, bool as_one, Events &events);
+
+}  // namespace lensprof
