@@ -2,8 +2,8 @@
 // camera, and the files written for other programs.
 #include <deque>
 
-#include "cli/fitting/block_sampling.hpp"
-#include "cli/fitting/reconstruction_project.hpp"
+#include "photo/scene/block_sampling.hpp"
+#include "photo/scene/reconstruction_project.hpp"
 
 #include "moving_scenes.hpp"
 
@@ -107,9 +107,7 @@ void test_is_deterministic(void **) {
 
 // Pictures in blocks of two, and all in one block: the same links, and about as many pairs.
 void test_blocks(void **) {
-    std::ostringstream out, err;
-    Streams streams{out, err};
-    Progress progress(streams);
+    Events progress;
     const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, {}, 0, 1}, progress);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);

@@ -3,7 +3,7 @@
 
 #include <lensprof/store.h>
 
-#include "cli/fitting/profile_store.hpp"
+#include "photo/calibration/profile_store.hpp"
 #include "photo/pictures/sensor.hpp"
 
 using namespace cli_runs;

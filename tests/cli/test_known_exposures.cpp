@@ -3,7 +3,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "cli/fitting/known_exposures.hpp"
+#include "photo/calibration/known_exposures.hpp"
 
 extern "C" {
 #include "support.h"
@@ -38,10 +38,10 @@ Known known_of(std::vector<PictureMetadata> metadata, const FitOptions &options 
         if (m.exposure_time_s && m.f_number && m.iso)
             m.exif_ev = std::log2(*m.exposure_time_s * *m.iso / 100.0 / (*m.f_number * *m.f_number));
     }
-    std::ostringstream out, err;
-    Streams streams{out, err};
-    const ExifUse use = add_known_exposures(options, project, metadata, images, streams);
-    Known known{{}, {}, err.str()};
+    NoticeList notices;
+    const ExifUse use = add_known_exposures(options, project, metadata, images, notices);
+    Known known{{}, {}, {}};
+    for (const Notice &notice : notices.list) known.note += notice.line() + "\n";
     for (const auto &image : images) known.sigmas.push_back(image.known_ev_sigma), known.ev.push_back(image.known_ev);
     assert_int_equal(use.note.empty(), known.note.empty());
     assert_true(known.note.find(use.note) != std::string::npos);

@@ -6,10 +6,10 @@
 
 #include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/panoramas.hpp"
-#include "cli/fitting/photographs.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/scene/photographs.hpp"
 
 namespace lensprof {
 namespace {
@@ -85,9 +85,9 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
         groups.unjoined[files[number]] = files[number] + ": overlaps others, but "
                                          + (o.one_lens ? "it is the only camera raw file among them, or the only "
                                                          "other picture"
-                                                       : no_overlap_within_camera);
+                                                       : no_overlap_within_camera());
     for (const uint32_t number : found.disconnected)
-        groups.unjoined[files[number]] = files[number] + ": " + linked_by_other_camera;
+        groups.unjoined[files[number]] = files[number] + ": " + linked_by_other_camera();
     for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));
     std::stable_sort(groups.list.begin(), groups.list.end(),
                      [](const Group &a, const Group &b) { return a.pictures.size() > b.pictures.size(); });

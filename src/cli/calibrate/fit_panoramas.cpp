@@ -1,32 +1,22 @@
 // Fit, profile, project and mosaic of each panorama.
 #include <algorithm>
-#include <sstream>
 
 #include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/panoramas.hpp"
 #include "cli/correct/project_model.hpp"
 #include "cli/fitting/fit_page.hpp"
-#include "cli/fitting/photographs.hpp"
-#include "cli/fitting/preview.hpp"
-#include "cli/fitting/project_fit.hpp"
-#include "cli/program/message.hpp"
 #include "photo/base/events.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/base/utf8.hpp"
+#include "photo/calibration/outcome.hpp"
+#include "photo/calibration/preview.hpp"
+#include "photo/calibration/project_fit.hpp"
+#include "photo/scene/photographs.hpp"
 
 namespace lensprof {
 namespace {
-
-// The warnings in the lines of standard error.
-Json warnings_in(const std::string &lines) {
-    const std::string start = "lensprof: warning: ";
-    Json warnings = Json::array();
-    std::istringstream in(lines);
-    for (std::string line; std::getline(in, line);)
-        if (line.compare(0, start.size(), start) == 0) warnings.push_back(line.substr(start.size()));
-    return warnings;
-}
 
 // File names need not be UTF-8: invalid bytes are replaced.
 Json valid_json(const Json &json) { return Json::parse(json.dump(-1, ' ', false, Json::error_handler_t::replace)); }
@@ -44,48 +34,89 @@ Project project_of(const Panorama &panorama) {
     return project;
 }
 
+// The warnings while a fit was prepared, and those of its result.
+Json warnings_of(const NoticeList &before, const Outcome &outcome) {
+    Json warnings = Json::array();
+    const auto add = [&](const Notice &notice) {
+        if (notice.severity == LENSPROF_SEVERITY_WARNING) warnings.push_back(one_line(notice.line()));
+    };
+    std::for_each(before.list.begin(), before.list.end(), add);
+    std::for_each(outcome.notices.list.begin(), outcome.notices.list.end(), add);
+    return warnings;
+}
+
+// The result of a fit as calibrate.json has it.
+Json result_of(const BuildReport &report) {
+    Json result = kept_in_utf8(build_json(report));
+    result.erase("seconds");
+    result.erase("schema");
+    return result;
+}
+
+// Notices are kept for the summary, and progress is shown.
+class PanoramaEvents : public NoticeList {
+public:
+    explicit PanoramaEvents(Events &of_folder) : of_folder_(of_folder) {}
+
+    void update(const std::string &step, double fraction, const std::string &detail) override {
+        of_folder_.update(step, fraction, detail);
+    }
+    void update_items(const std::string &step, uint32_t done, uint32_t count) override {
+        of_folder_.update_items(step, done, count);
+    }
+    void clear() override { of_folder_.clear(); }
+    bool is_cancelled() override { return of_folder_.is_cancelled(); }
+
+private:
+    Events &of_folder_;
+};
+
+// The panorama is not stored if EXIF does not name camera and lens, unless the caller names them.
+void choose_storing(const CalibrateOptions &o, const lensprof_profile_key &exif, bool by_matches, Panorama &panorama,
+                    StoreOptions &store) {
+    panorama.summary["not_stored"] = nullptr;
+    if (o.store.no_store) panorama.summary["not_stored"] = "--no-store";
+    if (o.store.no_store || *exif.camera_model || *exif.lens) return;
+    store.no_store = true;
+    panorama.summary["not_stored"] = std::string("EXIF does not name camera and lens; run `lensprof build` on the ")
+                                     + (by_matches ? "pictures" : "project") + " with --camera and --lens";
+}
+
 // Fits and stores; the project text goes to `outputs`, which are committed with the profile.
 void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &project, Progress &progress) {
-    std::ostringstream out, err;
-    Streams streams{out, err};
+    PanoramaEvents events(progress);
     ProjectFitOptions options;
     options.store = o.store;
     options.one_lens = o.one_lens;
     if (panorama.summary["camera"] == camera_stationary)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, panorama.name + still_camera_advice, LENSPROF_REASON_FEW_PAIRS);
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, panorama.name + still_camera_reason(), LENSPROF_REASON_FEW_PAIRS);
     check_pictures(project, options.pixels.max_side);
     const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
-    const lensprof_profile_key &exif = metadata[project.reference].key;
-    panorama.summary["not_stored"] = nullptr;
-    if (o.store.no_store) panorama.summary["not_stored"] = "--no-store";
-    if (!o.store.no_store && !*exif.camera_model && !*exif.lens) {
-        options.store.no_store = true;
-        panorama.summary["not_stored"] = std::string("EXIF does not name camera and lens; run `lensprof build` on the ")
-                                         + (project.by_matches ? "pictures" : "project") + " with --camera and --lens";
-    }
-    const lensprof_profile_key key = profile_key(options, project, metadata, streams);
+    choose_storing(o, metadata[project.reference].key, project.by_matches, panorama, options.store);
+    const lensprof_profile_key key = profile_key(options, project, metadata, events);
     const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
-    if (panorama.summary["cameras_fit"] == false) warn(streams, panorama.name + ": " + poor_cameras_note);
-    ProjectFit state(progress);
+    if (panorama.summary["cameras_fit"] == false) events.warn(panorama.name, poor_cameras_note);
+    ProjectFit state(events);
     state.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
-    fit_project(options, project, metadata, prior, state, streams);
+    fit_project(options, project, metadata, prior, state, events);
     Json page = fit_page_data(
         {state.report, state.input, state.best, state.input.images, project, metadata, "", "", false}, progress);
     OutputFiles outputs;
     outputs.add(panorama.project, state.best.corrects() ? result_text(state, project, panorama.project)
                                                         : project_text_at(project, panorama.project));
-    finish_fit(state.report, key, options.store,
-               {method_name(options.fit.method), project.path, true, true, "", nullptr, &outputs, &prior}, streams);
-    Json result = Json::parse(out.str());
-    result.erase("seconds");
-    result.erase("schema");
-    if (result["profile"].is_null() && (!options.store.no_store || !state.report.fit.usable))
-        panorama.summary["not_stored"] = first_text(result);
+    stop_if_cancelled();
+    if (!options.store.no_store)
+        store_result(state.report, key, options.store, {method_name(options.fit.method), project.path, &prior});
+    const Outcome outcome = outcome_of(state.report, options.store, project.path, true);
+    outputs.commit();
+    const bool is_stored = state.report.profile_id != 0;
+    if (!is_stored && (!options.store.no_store || !state.report.fit.usable))
+        panorama.summary["not_stored"] = state.report.verdict.text();
     panorama.summary["key"] = key_json(key);
-    panorama.summary["database"] = result["profile"].is_null() ? Json() : Json(store_path(options.store.db));
-    panorama.summary["warnings"] = warnings_in(err.str());
-    panorama.summary["result"] = result;
-    add_fit_verdict(page, state.report, streams.warnings);
+    panorama.summary["database"] = is_stored ? Json(store_path(options.store.db)) : Json();
+    panorama.summary["warnings"] = warnings_of(events, outcome);
+    panorama.summary["result"] = result_of(state.report);
+    add_fit_verdict(page, state.report, panorama.summary["warnings"].get<std::vector<std::string>>());
     panorama.page = valid_json(page);
 }
 

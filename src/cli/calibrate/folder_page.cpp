@@ -5,11 +5,11 @@
 #include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/sheet.hpp"
 #include "cli/calibrate/summary.hpp"
-#include "cli/fitting/preview.hpp"
 #include "cli/page/page.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/preview.hpp"
 #include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "cli/calibrate/attempt.hpp"
-#include "cli/fitting/photographs.hpp"
 #include "photo/base/file_kind.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
@@ -14,6 +13,7 @@
 #include "photo/pictures/other_parts.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/pictures/raw_kind.hpp"
+#include "photo/scene/photographs.hpp"
 
 namespace lensprof {
 namespace {

@@ -8,8 +8,8 @@
 #include "cli/calibrate/inputs.hpp"
 #include "cli/calibrate/ledger.hpp"
 #include "cli/calibrate/noted_matches.hpp"
-#include "cli/fitting/profile_store.hpp"
 #include "cli/program/progress.hpp"
+#include "photo/calibration/profile_store.hpp"
 
 namespace lensprof {
 

@@ -5,9 +5,9 @@
 
 #include "cli/calibrate/sheet.hpp"
 #include "cli/program/help_text.hpp"
-#include "cli/report/falloff.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/utf8.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

@@ -9,22 +9,23 @@
 #include "cli/correct/correction.hpp"
 #include "cli/correct/merged.hpp"
 #include "cli/fitting/fitting.hpp"
-#include "cli/fitting/known_exposures.hpp"
-#include "cli/fitting/profile_store.hpp"
-#include "cli/fitting/project.hpp"
-#include "cli/fitting/static_camera.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "cli/report/falloff.hpp"
+#include "cli/report/findings.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/known_exposures.hpp"
+#include "photo/calibration/profile_store.hpp"
 #include "photo/pictures/clipping.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/pictures/raw_kind.hpp"
+#include "photo/report/falloff.hpp"
+#include "photo/scene/project.hpp"
+#include "photo/scene/static_camera.hpp"
 
 namespace lensprof {
 namespace {
@@ -107,8 +108,7 @@ std::vector<uint32_t> frames_of(const Options &o, const Project &project) {
     return frames;
 }
 
-Fitted fit_sequence(const Options &o, const Project &project, std::vector<double> &white_shares, Progress &progress,
-                    Streams &streams) {
+Fitted fit_sequence(const Options &o, const Project &project, std::vector<double> &white_shares, Progress &progress) {
     FitInput input;
     input.options = fit_options(o.fit);
     input.options.free &= project.images[0].free;
@@ -128,7 +128,7 @@ Fitted fit_sequence(const Options &o, const Project &project, std::vector<double
     input.images = fit_images(project);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
-    add_known_exposures(o.fit, project, metadata, input.images, streams);
+    add_known_exposures(o.fit, project, metadata, input.images, progress);
     for (const SamplePicture &picture : pictures) white_shares.push_back(white_share(picture.picture));
     return fit(input, project.reference, o.pto.empty() ? project.files[0] : o.pto, progress, nullptr);
 }
@@ -245,7 +245,7 @@ int align(const Options &o, Streams &streams) {
     if (o.merge.empty()) check_output_folder(o.folder());
     Progress progress(streams, o.progress);
     std::vector<double> white_shares;  // number of the project's pictures
-    Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
+    Fitted fitted = fit_sequence(o, project, white_shares, progress);
     Verdict verdict = fitted.verdict;
     name_images(project.names, verdict);
     std::vector<lensprof_exposure> exposures;
@@ -271,7 +271,7 @@ int align(const Options &o, Streams &streams) {
             verdict.findings[0].text += "; frames of a moving camera need --project";
         print_message(streams, item + ": not usable: " + verdict.headline() + "; nothing written");
     } else if (fitted.result.usable) {
-        report_findings(verdict, item, streams);
+        report_findings(verdict, item, progress);
     } else {
         warn(streams, item + ": " + verdict.headline());
     }

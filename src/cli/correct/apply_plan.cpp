@@ -8,7 +8,6 @@
 #include <set>
 
 #include "cli/correct/falloff_doubt.hpp"
-#include "cli/fitting/exposure_file.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/shard.hpp"
@@ -16,6 +15,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/exposure_file.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"

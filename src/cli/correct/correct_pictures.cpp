@@ -11,7 +11,6 @@
 #include "cli/correct/left_out_parts.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/correct/strip_pipeline.hpp"
-#include "cli/fitting/project.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "photo/base/events.hpp"
@@ -22,6 +21,7 @@
 #include "photo/pictures/picture.hpp"
 #include "photo/pictures/raw_kind.hpp"
 #include "photo/pictures/thumbnail.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 namespace {

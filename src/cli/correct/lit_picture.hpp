@@ -8,7 +8,7 @@
 
 #include "cli/correct/correction.hpp"
 #include "cli/correct/light_weights.hpp"
-#include "cli/fitting/project.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 

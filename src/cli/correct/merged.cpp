@@ -7,9 +7,9 @@
 #include "cli/correct/left_out_parts.hpp"
 #include "cli/correct/light_weights.hpp"
 #include "cli/correct/picture_plan.hpp"
-#include "cli/fitting/project.hpp"
 #include "photo/base/events.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 namespace {

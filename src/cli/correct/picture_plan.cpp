@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <iterator>
 
-#include "cli/fitting/project.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/pictures/icc.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 

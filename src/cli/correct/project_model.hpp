@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "cli/fitting/project.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 

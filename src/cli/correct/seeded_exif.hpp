@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/correct/correction.hpp"
-#include "cli/fitting/project.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 

@@ -7,17 +7,19 @@
 
 #include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/fitting.hpp"
-#include "cli/fitting/known_exposures.hpp"
-#include "cli/fitting/profile_store.hpp"
-#include "cli/fitting/static_camera.hpp"
+#include "cli/fitting/store_options.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/progress.hpp"
 #include "photo/base/events.hpp"
+#include "photo/base/lap.hpp"
+#include "photo/calibration/known_exposures.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/pictures/raw_kind.hpp"
+#include "photo/scene/static_camera.hpp"
 
 namespace lensprof {
 namespace {
@@ -171,14 +173,14 @@ Verdict bracket_verdict(const Fitted &fitted, const std::vector<uint32_t> &membe
 }
 
 FitInput fit_input(const BracketOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
-                   const std::vector<double> &ev, ExifUse &exif, Streams &streams) {
+                   const std::vector<double> &ev, ExifUse &exif, Events &events) {
     FitInput input;
     input.options = fit_options(o.fit);
     input.options.free &= LENSPROF_FREE_RESPONSE;
     input.options.vignettings = 1;
     input.options.refine = !o.modes_only && o.fit.modes == LENSPROF_MODES_AUTO;
     input.images = fit_images(project);
-    if (ev.empty()) exif = add_known_exposures(o.fit, project, metadata, input.images, streams);
+    if (ev.empty()) exif = add_known_exposures(o.fit, project, metadata, input.images, events);
     for (size_t i = 0; i < ev.size(); i++) {
         input.images[i].known_ev = ev[i];
         input.images[i].known_ev_sigma = o.ev_sigma;
@@ -193,7 +195,7 @@ BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::ve
     report.names = project.names;
     report.has_falloff = false;
     report.exposures_given = !ev.empty();
-    FitInput input = fit_input(o, project, metadata, ev, report.exif, streams);
+    FitInput input = fit_input(o, project, metadata, ev, report.exif, progress);
     report.camera_kind = kind;
     input.options.camera_kind = kind.kind;
     if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);
@@ -234,7 +236,7 @@ int bracket_and_store(const BracketOptions &o, Streams &streams) {
     require_one_kind(project.files);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
-    lensprof_profile_key key = camera_key(o.store, metadata[0], project.files[0], streams);
+    lensprof_profile_key key = camera_key(o.store, metadata[0], project.files[0], events);
     check_store(o.store);
     CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
     if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(project.files[0]))

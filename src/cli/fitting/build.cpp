@@ -7,24 +7,28 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fitting/exposure_file.hpp"
+#include "cli/fitting/build.hpp"
 #include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/fitting.hpp"
-#include "cli/fitting/photographs.hpp"
-#include "cli/fitting/preview.hpp"
-#include "cli/fitting/profile_store.hpp"
-#include "cli/fitting/project_fit.hpp"
-#include "cli/fitting/reconstruction_project.hpp"
+#include "cli/fitting/store_options.hpp"
 #include "cli/page/page.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/progress.hpp"
+#include "cli/program/shard.hpp"
 #include "cli/report/drawing.hpp"
+#include "cli/report/gain_chart.hpp"
 #include "photo/base/file_kind.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/exposure_file.hpp"
+#include "photo/calibration/preview.hpp"
+#include "photo/calibration/project_fit.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
+#include "photo/scene/photographs.hpp"
+#include "photo/scene/reconstruction_project.hpp"
 
 namespace lensprof {
 namespace {
@@ -166,7 +170,7 @@ BuildReport build(const BuildOptions &o, Project &project, const std::vector<Pic
     Progress progress(streams, o.progress);
     ProjectFit state(progress);
     state.report.camera_kind = kind;
-    fit_project(o, project, metadata, prior, state, streams);
+    fit_project(o, project, metadata, prior, state, progress);
     BuildReport &report = state.report;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(state.input.pairs, project));
     if (!o.exposures_out.empty() && (state.best.corrects() || o.store.force))
@@ -277,6 +281,7 @@ void choose_unknowns(const BuildOptions &o, Project &project, Streams &streams) 
 
 // Runs the command after option parsing; `names` receives the images as soon as they are known.
 int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Streams &streams) {
+    Progress events(streams, o.progress);
     Project project = open_project(o, streams);
     names = project.names;
     if (project.images.size() < 2)
@@ -290,7 +295,7 @@ int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Stre
     choose_unknowns(o, project, streams);
     if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.pixels.max_side);
     auto metadata = picture_metadata(o, project);
-    lensprof_profile_key key = profile_key(o, project, metadata, streams);
+    lensprof_profile_key key = profile_key(o, project, metadata, events);
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     check_store(o.store);
@@ -338,6 +343,14 @@ int run(const BuildOptions &o, Streams &streams) {
 }
 
 }  // namespace
+
+int build_page(const std::vector<std::string> &inputs, const std::string &images, const std::string &page,
+               Streams &streams) {
+    BuildOptions o;
+    o.inputs = inputs, o.images = images, o.report = page;
+    o.store.no_store = true;
+    return run(o, streams);
+}
 
 void declare_build(Command &program) {
     Command command = program.add("build", "fit a lens profile to overlapping pictures or a Hugin project",

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fit_residuals.hpp"
-#include "cli/fitting/preview.hpp"
 #include "cli/page/page.hpp"
 #include "cli/report/curves_json.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/preview.hpp"
 #include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
@@ -79,7 +79,7 @@ Json facts_json(const BuildReport &report) {
     return facts;
 }
 
-void add_views(const FitPageInput &input, Progress &progress, Json &page) {
+void add_views(const FitPageInput &input, Events &events, Json &page) {
     const Fitted &fitted = input.best;
     std::vector<uint32_t> images = images_with_exposure(fitted);
     const size_t image_count = images.size();
@@ -93,7 +93,7 @@ void add_views(const FitPageInput &input, Progress &progress, Json &page) {
     }
     const uint32_t side = view_side(images.size());
     const bool has_mosaic = !input.project.is_reconstruction && images.size() <= 200;
-    auto copies = corrected_copies(input.project, fitted, images, has_mosaic ? std::max(side, 500u) : side, progress);
+    auto copies = corrected_copies(input.project, fitted, images, has_mosaic ? std::max(side, 500u) : side, events);
     Json views = Json::array();
     if (has_mosaic) {
         const Mosaic mosaic = mosaic_of(copies);
@@ -109,7 +109,7 @@ void add_views(const FitPageInput &input, Progress &progress, Json &page) {
 
 }  // namespace
 
-Json fit_page_data(const FitPageInput &input, Progress &progress) {
+Json fit_page_data(const FitPageInput &input, Events &events) {
     const BuildReport &report = input.report;
     const std::string title = std::filesystem::path(input.project.path).filename().string();
     Json page = new_page("fit", title.empty() ? input.project.path : title, input.subtitle, input.command);
@@ -126,7 +126,7 @@ Json fit_page_data(const FitPageInput &input, Progress &progress) {
         if (std::isnan(report.exposures[i].ev))
             page["left_out"].push_back({{"name", report.names[i]},
                                         {"reason", "no exposure was found: the warnings or its verdict state why"}});
-    if (input.shows_pictures) add_views(input, progress, page);
+    if (input.shows_pictures) add_views(input, events, page);
     return page;
 }
 

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "cli/fitting/project_fit.hpp"
+#include "photo/calibration/project_fit.hpp"
 
 namespace lensprof {
 
@@ -24,7 +24,7 @@ struct FitPageInput {
 
 // Everything in the page but the verdict and what depends on the stored profile; pictures before and after are in it if
 // the result corrects them. Deterministic.
-nlohmann::ordered_json fit_page_data(const FitPageInput &input, Progress &progress);
+nlohmann::ordered_json fit_page_data(const FitPageInput &input, Events &events);
 
 // Adds the verdict and the facts, once the profile is stored and all warnings are known.
 void add_fit_verdict(nlohmann::ordered_json &data, const BuildReport &report, const std::vector<std::string> &warnings);

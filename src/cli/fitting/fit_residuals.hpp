@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/fitting/fitting.hpp"
-#include "cli/fitting/project.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 

@@ -12,11 +12,15 @@
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
-#include "cli/report/falloff.hpp"
+#include "cli/report/findings.hpp"
 #include "photo/base/events.hpp"
+#include "photo/base/lap.hpp"
+#include "photo/calibration/outcome.hpp"
 #include "photo/pictures/orientation.hpp"
 #include "photo/pictures/rotated_profile.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {
@@ -206,7 +210,8 @@ int run(const FlatCommand &o, Streams &streams) {
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
-    if (report.fit.usable) report_findings(report.verdict, o.files.front(), streams);
+    Progress events(streams);
+    if (report.fit.usable) report_findings(report.verdict, o.files.front(), events);
     if (!report.fit.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/fitting/profile_store.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/report/report.hpp"
 #include "photo/base/library.hpp"
+#include "photo/calibration/profile_store.hpp"
 #include "photo/pictures/picture.hpp"
 
 namespace lensprof {

@@ -4,12 +4,14 @@
 #include <set>
 
 #include "cli/fitting/flat.hpp"
-#include "cli/fitting/known_exposures.hpp"
+#include "cli/fitting/store_options.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
+#include "cli/program/progress.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/known_exposures.hpp"
 #include "photo/pictures/metadata.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
@@ -203,7 +205,7 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
         note_linear(metadata.front(), o.files.front(), streams);
         metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
     }
-    warn_of_truncation(metadata.front(), o.store, o.files.front(), streams);
+    warn_of_truncation(metadata.front(), o.store, o.files.front(), events);
     input.key = override_key(metadata.front().key, metadata.front().size, o.store, o.files.front());
     auto &options = input.options;
     options.vignettings = o.falloff_curves;

@@ -4,8 +4,8 @@
 #include "cli/fitting/flat.hpp"
 #include "cli/page/page.hpp"
 #include "cli/report/curves_json.hpp"
-#include "cli/report/falloff.hpp"
 #include "photo/base/format.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

@@ -4,8 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/flat.hpp"
-#include "cli/report/falloff.hpp"
+#include "cli/report/findings.hpp"
 #include "photo/base/format.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "cli/report/verdict.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/report/verdict.hpp"
 
 namespace lensprof {
 

@@ -5,13 +5,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fitting/project_fit.hpp"
 #include "cli/profiles/profile_trial.hpp"
 #include "cli/profiles/trial_report.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
+#include "cli/program/progress.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/calibration/project_fit.hpp"
 
 namespace lensprof {
 namespace {

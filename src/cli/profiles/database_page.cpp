@@ -8,9 +8,9 @@
 
 #include "cli/page/page.hpp"
 #include "cli/report/curves_json.hpp"
-#include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
 #include "photo/base/format.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

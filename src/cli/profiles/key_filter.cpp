@@ -5,7 +5,7 @@
 #include <memory>
 #include <set>
 
-#include "cli/fitting/profile_store.hpp"
+#include "cli/fitting/store_options.hpp"
 #include "cli/program/key_texts.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"

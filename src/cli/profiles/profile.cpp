@@ -14,11 +14,11 @@
 #include "cli/program/run.hpp"
 #include "cli/report/chart.hpp"
 #include "cli/report/drawing.hpp"
-#include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

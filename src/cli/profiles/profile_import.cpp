@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fitting/profile_store.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/foreign_options.hpp"
 #include "cli/profiles/key_filter.hpp"
@@ -19,6 +18,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/profile_store.hpp"
 
 namespace lensprof {
 namespace {

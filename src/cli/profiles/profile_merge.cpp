@@ -1,7 +1,6 @@
 // `lensprof profile merge`: profiles of other databases.
 #include <nlohmann/json.hpp>
 
-#include "cli/fitting/profile_store.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
@@ -10,6 +9,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/profile_store.hpp"
 
 namespace lensprof {
 namespace {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "cli/fitting/build.hpp"
 #include "cli/page/page.hpp"
 #include "cli/profiles/database_page.hpp"
 #include "cli/profiles/foreign_file.hpp"
@@ -125,15 +126,11 @@ std::vector<StoredProfile> profiles_of(const PageOptions &o, const Databases &da
 
 // A fit's page is what `build` writes of it.
 int report_fit(const PageOptions &o, Streams &streams) {
-    std::vector<std::string> words{"build", "--no-store", "--report", o.output};
-    if (!o.images.empty()) words.insert(words.end(), {"--images", o.images});
-    words.push_back("--");
-    words.insert(words.end(), o.inputs.begin(), o.inputs.end());
     std::ostringstream table;  // what build prints is in the report
     Streams quiet = streams.with(table, streams.err);
     bool is_written = false;
     const CommitWatch watch([&](const std::string &path, const std::string &) { is_written |= path == o.output; });
-    const int code = run(words, quiet);
+    const int code = build_page(o.inputs, o.images, o.output, quiet);
     if (is_written) streams.out << "wrote " << o.output << "\n";
     return code;
 }

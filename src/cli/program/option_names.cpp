@@ -6,12 +6,53 @@ namespace lensprof {
 
 std::string option_of(const std::string &name) {
     static const std::map<std::string, std::string> options = {
+        {"camera", "--camera"},
         {"database", "--db FILE"},
+        {"exif_sigma_zero", "--fit exif-sigma=0"},
+        {"free", "--fit free=..."},
+        {"free_all", "--fit free=all"},
         {"image_list", "--reconstruction list=FILE"},
         {"images", "--images"},
+        {"lens", "--lens"},
+        {"maker", "--key maker"},
+        {"max_side", "--fit max-side"},
+        {"method_transfer_function", "--fit method=transfer-function"},
+        {"no_store", "--no-store"},
+        {"one_lens", "--one-lens"},
+        {"points", "--points"},
+        {"sampling_paper", "--fit sampling=paper"},
+        {"shard", "--reconstruction shard"},
+        {"stored", "--fit stored"},
+        {"style", "--key style"},
+        {"track_colours", "--reconstruction track-colors"},
+        {"unit", "--key unit"},
+        {"unit_text", "--key unit=TEXT"},
     };
     const auto found = options.find(name);
     return found == options.end() ? name : found->second;
+}
+
+std::string advice_for(const std::string &situation) {
+    static const std::map<std::string, std::string> advice = {
+        {"accept", "; it does correct these pictures: use --no-store to accept it"},
+        {"exif_used", " (--fit exif-sigma=0 ignores EXIF)"},
+        {"exposure_file_wanted", "; give the file that `lensprof build --write exposures=FILE` wrote"},
+        {"exposure_of_options", "; it is that of --ev or --times"},
+        {"exposures_given", "; give it to `apply --model`"},
+        {"force", " (use --force to store it anyway)"},
+        {"free_parameters", " (use --fit free=... to change this)"},
+        {"fixed_balance", " (Er and Eb on the v lines, or --fit free=all)"},
+        {"one_lens", " (use --one-lens to treat all as one)"},
+        {"one_visit", ", with --reconstruction list=FILE"},
+        {"prior_alone", " Use --fit stored=none to fit them alone"},
+        {"prior_given", ", or --fit stored=none to fit the pictures alone"},
+        {"still_camera",
+         "; use `lensprof bracket` for its response, `lensprof align` to match or merge the pictures. "
+         "Both need plain exposures, without HDR"},
+        {"still_group", "; use `lensprof bracket` or `lensprof align` for it"},
+    };
+    const auto found = advice.find(situation);
+    return found == advice.end() ? std::string() : found->second;
 }
 
 }  // namespace lensprof

@@ -128,6 +128,8 @@ bool Progress::is_cancelled() { return interrupted(); }
 
 std::string Progress::option_name(const std::string &name) { return option_of(name); }
 
+std::string Progress::advice(const std::string &situation) { return advice_for(situation); }
+
 Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)
     : progress_(progress), what_(what), pictures_(pictures), pixels_(pixels), begin_(std::chrono::steady_clock::now()) {
     show();

@@ -54,6 +54,7 @@ public:
 
     bool is_cancelled() override;  // Ctrl-C
     std::string option_name(const std::string &name) override;
+    std::string advice(const std::string &situation) override;
 
 private:
     void draw(const std::string &what, double fraction, const std::function<std::string()> &detail);

@@ -1,19 +1,11 @@
-// A part of the work, to distribute it over several machines.
+// The option of a part of the work.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <string>
 
+#include "photo/base/shard.hpp"
+
 namespace lensprof {
-
-struct Shard {
-    uint32_t number = 1, count = 1;  // 1-based
-
-    // The items of this part are first(items) to end(items), exclusive: each item belongs to exactly one part.
-    size_t first(size_t items) const { return items * (number - 1) / count; }
-    size_t end(size_t items) const { return items * number / count; }
-};
 
 // Parses "2/5"; an empty word gives the whole. Failure (usage) for the option --shard.
 Shard shard_of(const std::string &word);

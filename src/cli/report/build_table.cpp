@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/report/falloff.hpp"
+#include "cli/report/findings.hpp"
 #include "cli/report/report.hpp"
 #include "photo/base/format.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/report/falloff.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/report/chart.hpp"
-#include "cli/report/falloff.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace lensprof {
+#include "photo/calibration/project_fit.hpp"
 
-struct GainCurve {
-    std::string label;
-    std::vector<double> variances;  // per pair of pictures; see colour_differences. NaN is skipped
-};
+namespace lensprof {
 
 // The bytes of an SVG or PNG, by the extension of `path`: for every curve, the share of pairs that differ by less than
 // a number of levels of 255. Failure (usage) for other names.

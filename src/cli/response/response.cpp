@@ -8,16 +8,19 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
-#include "cli/fitting/profile_store.hpp"
+#include "cli/fitting/store_options.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/progress.hpp"
+#include "cli/report/findings.hpp"
 #include "cli/response/response_report.hpp"
 #include "photo/base/events.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/lap.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/outcome.hpp"
 #include "photo/pictures/metadata.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/pictures/raw_kind.hpp"
@@ -231,7 +234,8 @@ int finish(const Options &o, lensprof_profile_key key, ResponseReport &report, S
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(key) << "\n";
-    if (report.result.usable) report_findings(report.verdict, o.files.front(), streams);
+    Progress events(streams);
+    if (report.result.usable) report_findings(report.verdict, o.files.front(), events);
     if (!report.result.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
     return static_cast<int>(report.result.usable ? ExitCode::done : ExitCode::not_usable);
 }
@@ -241,7 +245,8 @@ int run(const Options &o, Streams &streams) {
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : o.files) metadata.push_back(read_metadata(file));
     demand_one_camera(o, metadata);
-    lensprof_profile_key key = camera_key(o.store, metadata[0], o.files[0], streams);
+    Progress events(streams);
+    lensprof_profile_key key = camera_key(o.store, metadata[0], o.files[0], events);
     keep_common_style(metadata, key, o.store);
     key.processing = LENSPROF_PROCESSING_JPEG;  // the stored profile describes the rendering, not the raw file
     check_store(o.store);

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/report/findings.hpp"
 #include "photo/base/format.hpp"
 
 namespace lensprof {

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "cli/fitting/project.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
@@ -16,6 +15,7 @@
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/scene/project.hpp"
 
 namespace lensprof {
 namespace {

@@ -18,6 +18,7 @@ void Events::update_items(const std::string &step, uint32_t done, uint32_t count
 }
 void Events::notice(uint32_t, const std::string &, const std::string &) {}
 bool Events::is_cancelled() { return false; }
+std::string Events::advice(const std::string &) { return {}; }
 std::string Events::option_name(const std::string &name) { return "`" + name + "`"; }
 
 CallerScope::CallerScope(Events *events) : before_(events_of_thread) { events_of_thread = events; }
@@ -26,6 +27,10 @@ Events *CallerScope::of_thread() { return events_of_thread; }
 
 std::string option_name(const std::string &name) {
     return (events_of_thread ? *events_of_thread : unheard).option_name(name);
+}
+
+std::string advice(const std::string &situation) {
+    return (events_of_thread ? *events_of_thread : unheard).advice(situation);
 }
 
 bool is_cancelled() { return events_of_thread && events_of_thread->is_cancelled(); }

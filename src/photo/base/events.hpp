@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <lensprof/reason.h>
 
@@ -30,6 +31,24 @@ public:
 
     // What the caller calls an option in messages; here its name in quotes. `name` is that of the library.
     virtual std::string option_name(const std::string &name);
+
+    // What the caller can do in a situation, as the rest of a sentence; nothing by default.
+    virtual std::string advice(const std::string &situation);
+};
+
+struct Notice {
+    uint32_t severity;
+    std::string item, text;
+
+    std::string line() const { return item.empty() ? text : item + ": " + text; }
+};
+
+// Keeps notices instead of passing them on.
+struct NoticeList : Events {
+    void notice(uint32_t severity, const std::string &item, const std::string &text) override {
+        list.push_back({severity, item, text});
+    }
+    std::vector<Notice> list;
 };
 
 // While this object lives, `events` can end what runs on this thread, and names the options in its failures. The most
@@ -49,6 +68,7 @@ private:
 
 // By the caller of this thread.
 std::string option_name(const std::string &name);
+std::string advice(const std::string &situation);
 bool is_cancelled();
 
 // Throws Failure (CANCELLED) if the caller wants the task to end.

@@ -10,7 +10,7 @@
 
 namespace lensprof {
 
-// The status that stands for all statuses of a kind: ARGUMENT, READ (an input cannot be read), NOT_USABLE (a fit ran,
+// One status for all statuses of a kind: ARGUMENT, READ (an input cannot be read), NOT_USABLE (a fit ran,
 // but its result must not be used), NOT_FOUND (no such profile), STORE (the profile database), CANCELLED; WRITE for
 // everything else.
 lensprof_status group_of(lensprof_status status);

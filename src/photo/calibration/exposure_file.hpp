@@ -1,0 +1,16 @@
+// The file of measured exposures, exposures.json: EV and white balance with standard errors per image, the response per
+// camera, the falloff per lens setting. See docs/reconstructions.md.
+#pragma once
+
+#include <string>
+
+#include "photo/calibration/project_fit.hpp"
+#include "photo/scene/exposure_reader.hpp"
+
+namespace lensprof {
+
+// The text of the file, to be written to `path`: file names are relative to its folder.
+std::string exposures_text(const ProjectFit &state, const Project &project,
+                           const std::vector<PictureMetadata> &metadata, const std::string &path);
+
+}  // namespace lensprof

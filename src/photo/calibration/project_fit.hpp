@@ -1,0 +1,70 @@
+// Fits a project and its pictures: the result, the report, and the project with the result.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "photo/calibration/fit.hpp"
+#include "photo/calibration/lens_settings.hpp"
+#include "photo/calibration/overlapping_pictures.hpp"
+#include "photo/calibration/stored_prior.hpp"
+#include "photo/scene/project.hpp"
+
+namespace lensprof {
+
+constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
+
+// How a project is sampled, fitted and stored.
+struct ProjectFitOptions {
+    FitOptions fit;
+    StoreOptions store;
+    std::string points, reference;
+    uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: chosen by held-out error
+    SamplingOptions pixels;
+    bool one_lens = false;  // all images are treated as one lens setting
+};
+
+// Input and result of a fit. Not copyable: the options of `input` point to other members.
+struct ProjectFit {
+    explicit ProjectFit(Events &of_caller) : events(of_caller) {}
+    ProjectFit(const ProjectFit &) = delete;
+    ProjectFit &operator=(const ProjectFit &) = delete;
+
+    Events &events;
+    BuildReport report;  // camera_kind is set by the caller
+    LensSettings settings;
+    FitInput input;
+    Fitted best;
+    std::string item;  // name of the input in a Failure
+};
+
+// Metadata of the pictures. If pairs are given, only what the profile key needs is read, because the pictures may be
+// anything.
+std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project);
+
+// The key of the profile: EXIF of the reference picture, overridden by the command line. With one_lens, warns of
+// pictures at other settings.
+lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
+                                 const std::vector<PictureMetadata> &metadata, Events &events);
+
+// The pairs that fit_project starts with; none for tracks of the method radiance.
+DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Events &progress);
+
+// Samples the pictures, or takes given points, and fits. `prior` must outlive `state`.
+void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
+                 const EarlierProfile &prior, ProjectFit &state, Events &events);
+
+struct GainCurve {
+    std::string label;
+    std::vector<double> variances;  // per pair of pictures; see colour_differences. NaN is skipped
+};
+
+// Of a reconstruction, how much colours differ before, with exposures alone, and with the result; else empty.
+std::vector<GainCurve> gain_curves(ProjectFit &state);
+
+// The text of the project with the result, to be written to `path`. A project stores five modes and one falloff; a
+// result with more is refitted with these.
+std::string result_text(ProjectFit &state, Project &project, const std::string &path);
+
+}  // namespace lensprof

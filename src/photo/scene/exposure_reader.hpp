@@ -1,0 +1,19 @@
+// Reads the file of measured exposures, exposures.json (docs/reconstructions.md), as a project.
+#pragma once
+
+#include <string>
+
+#include "photo/scene/project.hpp"
+
+namespace lensprof {
+
+constexpr int exposures_schema = 1;
+
+// Whether a file is a file of exposures, judged by its first lines.
+bool is_exposure_file(const std::string &path);
+
+// Reads the file as a project in which each image has a model. Pictures are the files it names, or, if `images` is not
+// empty, the image names in that folder. Failure (unreadable) for a damaged or foreign file.
+Project read_exposures(const std::string &path, const std::string &images);
+
+}  // namespace lensprof
