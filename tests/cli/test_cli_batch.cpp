@@ -2,8 +2,9 @@
 // remains after a failure.
 #include "batch_runs.hpp"
 
-#include "cli/correct/clipping.hpp"
-#include "cli/correct/correction.hpp"
+#include "cli/program/progress.hpp"
+#include "photo/correct/copy_losses.hpp"
+#include "photo/correct/correction.hpp"
 
 using namespace batch_runs;
 

@@ -80,11 +80,11 @@ LAYERS = {
         FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"pugixml.hpp", "nlohmann/*"}, ["core", "falloff"], CPP_OUTSIDE
     ),
     "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core", "falloff"]),
-    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads"]),
+    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp"]),
     "src/cli": Layer(
         WHOLE_API,
         C_LIBRARY | CPP_LIBRARY | POSIX | {"CLI/*", "cairo-svg.h", "cairo.h", "nlohmann/*"},
-        ["photo", "threads", "falloff/rise.hpp"],
+        ["photo", "threads"],
     ),
     "examples": Layer(WHOLE_API, C_LIBRARY),
     "bindings": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"Python.h"}),
@@ -96,7 +96,7 @@ ROOMS = {
                 "sampling", "flat", "rendering", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration"],
+    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "correct"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 

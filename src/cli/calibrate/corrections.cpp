@@ -6,12 +6,12 @@
 #include <map>
 
 #include "cli/calibrate/attempt.hpp"
-#include "cli/correct/picture_model.hpp"
-#include "cli/correct/project_model.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/base/shell_word.hpp"
+#include "photo/correct/picture_model.hpp"
+#include "photo/correct/project_model.hpp"
 #include "photo/pictures/picture.hpp"
 
 namespace lensprof {

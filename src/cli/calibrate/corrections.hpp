@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/calibrate/panoramas.hpp"
-#include "cli/correct/correction.hpp"
+#include "photo/correct/correction.hpp"
 
 namespace lensprof {
 

@@ -3,7 +3,6 @@
 
 #include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/panoramas.hpp"
-#include "cli/correct/project_model.hpp"
 #include "cli/fitting/fit_page.hpp"
 #include "photo/base/events.hpp"
 #include "photo/base/input_file.hpp"
@@ -13,6 +12,7 @@
 #include "photo/calibration/outcome.hpp"
 #include "photo/calibration/preview.hpp"
 #include "photo/calibration/project_fit.hpp"
+#include "photo/correct/project_model.hpp"
 #include "photo/scene/photographs.hpp"
 
 namespace lensprof {

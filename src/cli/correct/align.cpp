@@ -5,9 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/correct/clipping.hpp"
-#include "cli/correct/correction.hpp"
-#include "cli/correct/merged.hpp"
+#include "cli/correct/exposure_limits.hpp"
+#include "cli/correct/model_options.hpp"
 #include "cli/fitting/fitting.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
@@ -18,6 +17,8 @@
 #include "photo/base/paths.hpp"
 #include "photo/calibration/known_exposures.hpp"
 #include "photo/calibration/profile_store.hpp"
+#include "photo/correct/correction.hpp"
+#include "photo/correct/merged.hpp"
 #include "photo/pictures/clipping.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/named_pictures.hpp"

@@ -9,11 +9,6 @@
 
 #include "cli/correct/apply_options.hpp"
 #include "cli/correct/apply_plan.hpp"
-#include "cli/correct/correction.hpp"
-#include "cli/correct/overlaps.hpp"
-#include "cli/correct/project_model.hpp"
-#include "cli/correct/seeded_exif.hpp"
-#include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
@@ -22,6 +17,11 @@
 #include "photo/base/format.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/correct/correction.hpp"
+#include "photo/correct/lookup_report.hpp"
+#include "photo/correct/overlaps.hpp"
+#include "photo/correct/project_model.hpp"
+#include "photo/correct/seeded_exif.hpp"
 
 namespace lensprof {
 namespace {

@@ -1,5 +1,6 @@
 #include "cli/correct/apply_options.hpp"
 
+#include "cli/correct/model_options.hpp"
 #include "photo/base/failure.hpp"
 
 namespace lensprof {
@@ -15,7 +16,7 @@ static void declare_keys(Command &command, ApplyOptions &o) {
     keys.number("strength", o.kind.strength, {0.0, 1.0}, "share of the falloff to correct, 0 to 1; default 1");
     keys.number("gain-cap", o.kind.gain_cap, {1.0, 1e6},
                 "maximum gain of the falloff correction, 1 or more, to limit noise in the corners; default unlimited");
-    o.model.add_keys(keys);
+    declare_model_keys(keys, o.model);
     keys.flag("simulate", o.kind.simulate, "add the falloff instead of correcting it");
     Keys encoding = command.keys("--encoding", "how the outputs are written");
     encoding.choice("linear", o.linear_end, {{"tif", ".tif"}, {"exr", ".exr"}},
@@ -56,7 +57,7 @@ static void declare_experts(Command command, ApplyOptions &o) {
 void declare_options(Command &command, ApplyOptions &o) {
     command.folder("-o,--output", o.output, "output folder, with the subfolders of the input; default corrected");
     command.file("--pto", o.pto, "use the exposures (and, without --profile, response and falloff) of this project");
-    o.model.add_options(command);
+    declare_model(command, o.model);
     declare_writing(command, o.kind);
     declare_experts(command.expert(), o);
     declare_json(command, o.json);

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/correct/correction.hpp"
-#include "cli/correct/picture_model.hpp"
 #include "cli/program/options.hpp"
+#include "photo/correct/correction.hpp"
+#include "photo/correct/picture_model.hpp"
 
 namespace lensprof {
 

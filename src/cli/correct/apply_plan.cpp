@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 
-#include "cli/correct/falloff_doubt.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/shard.hpp"
@@ -16,6 +15,8 @@
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/exposure_file.hpp"
+#include "photo/correct/falloff_doubt.hpp"
+#include "photo/correct/opcode_copy.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cli/correct/apply_options.hpp"
-#include "cli/correct/correction.hpp"
-#include "cli/correct/overlaps.hpp"
-#include "cli/correct/picture_model.hpp"
-#include "cli/correct/project_model.hpp"
+#include "photo/correct/correction.hpp"
+#include "photo/correct/overlaps.hpp"
+#include "photo/correct/picture_model.hpp"
+#include "photo/correct/project_model.hpp"
 
 namespace lensprof {
 

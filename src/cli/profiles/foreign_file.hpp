@@ -52,11 +52,4 @@ std::string foreign_bytes(const ForeignRule &rule, const std::string &path, cons
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
                    const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names);
 
-// Whether the opcodes of a DNG or TIFF correct a falloff.
-bool has_falloff_opcode(const std::string &path);
-
-// Copies a DNG with the falloff as an opcode, replacing an existing one; pixels and everything else stay unchanged.
-// Failure if other opcodes would be lost.
-void write_opcodes(const std::string &path_in, const std::string &path_out, const lensprof_profile &profile);
-
 }  // namespace lensprof

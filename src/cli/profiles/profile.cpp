@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/key_options.hpp"
 #include "cli/profiles/profile_blob.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/database_options.hpp"
@@ -18,6 +18,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/key_filter.hpp"
 #include "photo/report/falloff.hpp"
 
 namespace lensprof {
@@ -200,7 +201,7 @@ void declare_list(Command &profile) {
     declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
     command.group("Filters");
-    o->filter.add_options(command);
+    declare_key_filter(command, o->filter);
     command.example("lensprof profile list --db lenses.db");
     command.run([o](Streams &streams) { return list(*o, streams); });
 }
@@ -219,7 +220,7 @@ void declare_show(Command &profile) {
                   "for one profile, green for several");
     expert.file("--blob", o->blob, "read this blob (docs/blob.md) instead of the database");
     command.group("Filters, instead of ids");
-    o->filter.add_options(command);
+    declare_key_filter(command, o->filter);
     command.example("lensprof profile show 3 --chart");
     command.run([o](Streams &streams) { return show(*o, streams); });
 }

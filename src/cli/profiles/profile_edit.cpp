@@ -3,13 +3,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/key_options.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/calibration/key_filter.hpp"
 
 namespace lensprof {
 namespace {
@@ -75,7 +76,7 @@ void declare_remove(Command &profile) {
     declare_db(command, o->db);
     declare_json(command, o->json);
     command.group("Filters, instead of ids");
-    o->filter.add_options(command);
+    declare_key_filter(command, o->filter);
     command.example("lensprof profile remove 3");
     command.run([o](Streams &streams) { return remove(*o, streams); });
 }
@@ -114,7 +115,7 @@ int set(SetOptions &o, Streams &streams) {
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile set: nothing to change; give for example --lens NAME or --clear "
                       "distance");
-    o.key.check_names();
+    check_names(o.key);
     check_contradictions(o);
     remove_duplicates(o.ids);
     const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
@@ -146,7 +147,7 @@ void declare_set(Command &profile) {
     declare_db(command, o->db);
     declare_json(command, o->json);
     command.group("New camera, lens and setting; default unchanged");
-    Keys keys = o->key.add_options(command);
+    Keys keys = declare_key_filter(command, o->key);
     keys.number("crop-factor", o->crop_factor, crop_factors, "43.27 mm divided by the sensor diagonal");
     command.list("--clear", o->unknown, clearable,
                  "set these to unknown, separated by commas: crop-factor, focal, aperture, distance; unit makes the "

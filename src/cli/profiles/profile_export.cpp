@@ -5,7 +5,7 @@
 
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/foreign_options.hpp"
-#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/key_options.hpp"
 #include "cli/profiles/profile_blob.hpp"
 #include "cli/profiles/profile_split.hpp"
 #include "cli/program/commands.hpp"
@@ -17,6 +17,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/key_filter.hpp"
 #include "photo/pictures/picture.hpp"
 
 namespace lensprof {
@@ -46,9 +47,9 @@ void declare(Command &command, ExportOptions &o) {
     declare_listed_databases(command, o.dbs, "; ids and --all refer to the first, filters to the first with a match");
     declare_json(command, o.json);
     command.group("Filters, instead of ids");
-    o.filter.add_options(command).number(
-        "crop-factor", o.crop_factor, crop_factors,
-        "43.27 mm divided by the sensor diagonal, for profiles without one; needed by lensfun and lcp");
+    declare_key_filter(command, o.filter)
+        .number("crop-factor", o.crop_factor, crop_factors,
+                "43.27 mm divided by the sensor diagonal, for profiles without one; needed by lensfun and lcp");
     command.footer(about_foreign(true));
 }
 

@@ -7,7 +7,7 @@
 
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/foreign_options.hpp"
-#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/key_options.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/options.hpp"
@@ -18,6 +18,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/key_filter.hpp"
 #include "photo/calibration/profile_store.hpp"
 
 namespace lensprof {
@@ -248,7 +249,7 @@ void print_import(const Import &import, const PartProfiles &parts, size_t files,
 }
 
 int run(const ImportOptions &o, Streams &streams) {
-    o.key.check_names();
+    check_names(o.key);
     std::vector<Input> inputs;
     std::set<std::string> seen;
     for (const std::string &file : o.files)
@@ -304,7 +305,7 @@ void declare_profile_import(Command &profile) {
     declare_json(command, o->json);
     declare_progress(command, o->progress);
     command.group("Camera, lens and setting, for files that do not name them");
-    o->key.add_options(command);
+    declare_key_filter(command, o->key);
     command.footer(about_foreign(false));
     command.example("lensprof profile import pcalib.txt vignette.png --camera \"My Camera\"");
     command.run([o](Streams &streams) { return run(*o, streams); });

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/known_range.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/database_options.hpp"
@@ -12,6 +11,7 @@
 #include "cli/report/report.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/calibration/key_filter.hpp"
 
 namespace lensprof {
 namespace {

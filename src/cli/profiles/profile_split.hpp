@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/profiles/foreign_file.hpp"
-#include "cli/profiles/key_filter.hpp"
+#include "photo/calibration/key_filter.hpp"
 
 namespace lensprof {
 

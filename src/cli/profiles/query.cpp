@@ -4,16 +4,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/key_options.hpp"
 #include "cli/profiles/known_range.hpp"
-#include "cli/profiles/lookup_options.hpp"
-#include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/database_options.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 #include "photo/base/library.hpp"
+#include "photo/calibration/key_filter.hpp"
+#include "photo/correct/lookup_report.hpp"
 #include "photo/pictures/sensor.hpp"
 
 namespace lensprof {
@@ -27,7 +27,7 @@ struct QueryOptions {
 };
 
 void declare(Command &command, QueryOptions &o) {
-    o.lookup.add_keys(o.filter.add_options(command));
+    declare_lookup(declare_key_filter(command, o.filter), o.lookup);
     declare_databases(command, o.dbs);
     declare_json(command, o.json);
     command.footer(
@@ -143,7 +143,7 @@ bool is_ambiguous(const lensprof_lookup &lookup) {
 // The profile for the setting, stored or predicted. False if the key is ambiguous.
 bool answer_lookup(const QueryOptions &o, const Databases &databases, size_t rows, Refusal &refusal, Streams &streams) {
     lensprof_lookup_options options = o.lookup.options();
-    options.any_processing = !o.filter.has_processing();
+    options.any_processing = !o.filter.processing;
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
     key.crop_factor = o.lookup.crop_factor;
     if (key.crop_factor == LENSPROF_UNKNOWN && *key.camera_model)
@@ -168,7 +168,7 @@ bool answer_lookup(const QueryOptions &o, const Databases &databases, size_t row
         return true;
     }
     print_profile(lookup.exact ? lookup.id[0] : 0, *profile, streams.out);
-    print_lookup(found, streams.out);
+    streams.out << lookup_lines(found);
     return true;
 }
 
@@ -185,7 +185,7 @@ void answer(const QueryOptions &o, Refusal &refusal, Streams &streams) {
 
 int run(const QueryOptions &o, Streams &streams) {
     if (!o.filter.has_camera_or_lens()) throw Failure(LENSPROF_ERROR_ARGUMENT, "give at least --camera or --lens");
-    o.filter.check_names();
+    check_names(o.filter);
     Refusal refusal;
     lensprof_lookup_init(&refusal.lookup);
     try {

@@ -6,7 +6,7 @@
 #include "cli/page/page.hpp"
 #include "cli/profiles/database_page.hpp"
 #include "cli/profiles/foreign_file.hpp"
-#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/key_options.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/database_options.hpp"
 #include "cli/program/message.hpp"
@@ -15,6 +15,7 @@
 #include "photo/base/input_file.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/key_filter.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
 
@@ -38,7 +39,7 @@ void declare(Command &command, PageOptions &o) {
     command.folder("--images", o.images, "folder of the pictures of a reconstruction; default: next to it");
     command.group("Profiles of a database");
     command.profile_id("--profile", o.id, "report the profile with this id alone");
-    o.filter.add_options(command);
+    declare_key_filter(command, o.filter);
     declare_listed_databases(command, o.dbs);
     command.footer(
         "The page is one file that needs no network. It contains the pictures before and after, the charts,\n"

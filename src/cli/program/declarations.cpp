@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "cli/program/nearest.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/nearest.hpp"
 
 namespace lensprof {
 

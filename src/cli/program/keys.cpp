@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "cli/program/nearest.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/nearest.hpp"
 
 namespace lensprof {
 

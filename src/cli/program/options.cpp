@@ -12,10 +12,10 @@
 #include "cli/program/exit_code.hpp"
 #include "cli/program/help_text.hpp"
 #include "cli/program/message.hpp"
-#include "cli/program/nearest.hpp"
 #include "cli/program/renamed_options.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/nearest.hpp"
 
 namespace lensprof {
 

@@ -130,41 +130,4 @@ std::string Progress::option_name(const std::string &name) { return option_of(na
 
 std::string Progress::advice(const std::string &situation) { return advice_for(situation); }
 
-Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)
-    : progress_(progress), what_(what), pictures_(pictures), pixels_(pixels), begin_(std::chrono::steady_clock::now()) {
-    show();
-}
-
-void Throughput::add_pixels(uint64_t pixels) {
-    std::lock_guard<std::mutex> lock(mutex_);
-    pixels_done_ += pixels;
-    show();
-}
-
-void Throughput::add_picture() {
-    std::lock_guard<std::mutex> lock(mutex_);
-    pictures_done_++;
-    show();
-}
-
-double Throughput::seconds() const { return seconds_since(begin_); }
-
-double Throughput::megapixels() const {
-    std::lock_guard<std::mutex> lock(mutex_);
-    return 1e-6 * static_cast<double>(pixels_done_);
-}
-
-void Throughput::show() {
-    double s = std::max(seconds(), 1e-6), done = static_cast<double>(pixels_done_);
-    std::string detail = format(", %u of %u pictures", pictures_done_, pictures_);
-    if (pixels_done_ > 0) detail += format(", %.1f pictures/s, %.1f megapixels/s", pictures_done_ / s, 1e-6 * done / s);
-    progress_.update(what_, done / static_cast<double>(std::max<uint64_t>(pixels_, 1)), detail);
-}
-
-std::string Throughput::summary() const {
-    double s = std::max(seconds(), 1e-6), megapixel_count = megapixels();
-    return format("%u pictures, %.1f megapixels in %.1f s: %.1f pictures/s, %.1f megapixels/s", pictures_done_,
-                  megapixel_count, s, pictures_done_ / s, megapixel_count / s);
-}
-
 }  // namespace lensprof
