@@ -90,3 +90,15 @@ function(lensprof_layer name)
     C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
     POSITION_INDEPENDENT_CODE ON)
 endfunction()
+
+# lensprof_library(name SOURCES...): a library for other programs. A shared one lets out only the C functions: templates of
+# the C++ library are instantiated in it.
+function(lensprof_library name)
+  if(DEFINED BUILD_SHARED_LIBS AND NOT BUILD_SHARED_LIBS)
+    add_library(${name} STATIC ${ARGN})
+  else()
+    add_library(${name} SHARED ${ARGN})
+    target_link_options(${name} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
+    set_target_properties(${name} PROPERTIES LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
+  endif()
+endfunction()

@@ -308,6 +308,10 @@ void test_time_left(void **) {
 
 // The advice is a whole command if the user did not give one.
 void test_losses_name_a_command(void **) {
+    std::ostringstream out, err;
+    Streams streams{out, err};
+    Progress command(streams);
+    const CallerScope caller(&command);
     std::vector<Correction> jobs(3);
     for (size_t i = 0; i < jobs.size(); i++) {
         jobs[i].source = std::to_string(i) + ".jpg";

@@ -32,8 +32,9 @@ def example_of(text):
     return code_of(found[1], len(" *     ")) if found else None
 
 
-def program_of(example, variables):
-    return (f'#include <lensprof/lensprof.h>\n{variables}#include "header_examples.h"\n'
+def program_of(name, example, variables):
+    header = "photo.h" if name == "photo.h" else "lensprof.h"
+    return (f'#include <lensprof/lensprof.h>\n#include <lensprof/{header}>\n{variables}#include "header_examples.h"\n'
             f"static void example(void) {{\n{example}}}\n")
 
 
@@ -46,10 +47,15 @@ def faults_of(name, example, variables, include, library, cc):
         return [f"{name}: the example has {count} lines; 3 to {LINES.get(name, 15)} are allowed"]
     with tempfile.TemporaryDirectory() as name_of_folder:
         folder = pathlib.Path(name_of_folder)
-        (folder / "example.c").write_text(program_of(example, variables))
+        (folder / "example.c").write_text(program_of(name, example, variables))
+        libraries = [str(library)]
+        if name == "photo.h":  # of the folder "holiday"
+            libraries.insert(0, str(library.parent / "liblensprof-photo.so"))
+            subprocess.run([library.parent / "lensprof", "simulate", "-o", "holiday"], cwd=folder, check=True,
+                           stdout=subprocess.DEVNULL)
         built = subprocess.run(
             [cc, "-std=c11", "-Wall", "-Wextra", "-Werror", f"-I{include}", f"-I{HERE}", "example.c", "-o", "example",
-             str(library), "-lm", f"-Wl,-rpath,{library.parent}"],
+             *libraries, "-lm", f"-Wl,-rpath,{library.parent}"],
             cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if built.returncode:
             return [f"{name}: the example does not compile:\n{built.stdout}"]

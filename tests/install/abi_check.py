@@ -28,7 +28,7 @@ PROTOTYPE = re.compile(r"^LENSPROF_API\s+(?:LENSPROF_MUST_USE\s+)?([^;{}]*?\blen
 
 def stub_source(include):
     """A function for every prototype; the return values do not matter."""
-    lines = ['#include <lensprof/lensprof.h>', '#pragma GCC diagnostic ignored "-Wreturn-type"']
+    lines = ['#include <lensprof/lensprof.h>', '#include <lensprof/photo.h>', '#pragma GCC diagnostic ignored "-Wreturn-type"']
     for header in sorted((include / "lensprof").glob("*.h")):
         text = re.sub(r"/\*.*?\*/", "", header.read_text(encoding="utf-8"), flags=re.DOTALL)
         lines += [f"{' '.join(prototype.split())} {{ __builtin_unreachable(); }}" for prototype in PROTOTYPE.findall(text)]

@@ -80,6 +80,15 @@ if quiet cmake -S "$source_dir/examples" -B "$work/examples" -DCMAKE_PREFIX_PATH
     "$work/examples/find_profile" "$work/x.db" | grep -q "found profile 1" || wrong "find_profile from the installed library"
 fi
 
+if quiet "$CC" -std=c99 -Wall -Wextra -Werror $(pkg-config --cflags lensprof-photo) "$source_dir/examples/photo.c" \
+    -o "$work/photo" $(pkg-config --libs lensprof-photo); then
+    mkdir "$work/copies"
+    quiet "$prefix/bin/lensprof" simulate -o "$work/scene"
+    rm -f "$work/scene"/*.pto "$work/scene"/*.json
+    LD_LIBRARY_PATH=$lib_dir "$work/photo" "$work/scene" "$work/copies" || wrong "photo through pkg-config does not run"
+    [ "$(ls "$work/copies" | wc -l)" = "$(ls "$work/scene"/*.png | wc -l)" ] || wrong "photo does not write every copy"
+fi
+
 say "moved to another place"
 mv "$prefix" "$work/moved"
 [ "$(env -i "$work/moved/bin/lensprof" version)" = "lensprof $version" ] || wrong "the program does not run when moved"

@@ -90,7 +90,9 @@ def check_numbers(cc, include, listed):
             for name, value in listed.items()
             if "." not in value
         )
-        said = compile_text(cc, ["-std=c11"], include, "#include <lensprof/lensprof.h>\n" + asserts, ".c")
+        present = [name for name in ("lensprof.h", "photo.h") if (pathlib.Path(include) / "lensprof" / name).exists()]
+        headers = "".join(f"#include <lensprof/{name}>\n" for name in present)
+        said = compile_text(cc, ["-std=c11"], include, headers + asserts, ".c")
         if said:
             violations.append(said)
     return violations

@@ -57,7 +57,8 @@ CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h"
 FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h", "rendering.h"}
 FORMATS_API = FIT_API | {"hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
-WHOLE_API = FORMATS_API | STORE_API | {"lensprof.h"}
+PHOTO_API = FIT_API | STORE_API | {"photo.h"}
+WHOLE_API = FORMATS_API | PHOTO_API | {"lensprof.h"}
 
 
 class Layer:
@@ -96,7 +97,7 @@ ROOMS = {
                 "sampling", "flat", "rendering", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "correct"],
+    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "correct", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
@@ -124,7 +125,8 @@ PUBLIC = {
     "hugin.h": FIT_API,
     "formats.h": FORMATS_API,
     "store.h": STORE_API,
-    "lensprof.h": WHOLE_API,
+    "photo.h": FIT_API,
+    "lensprof.h": FORMATS_API | STORE_API,
 }
 
 

@@ -9,7 +9,7 @@ usage: symbol_rules.py [--nm NM] [--cc CC] CHECK
   layer NAME ARCHIVE OBJECTS_FOLDER [BELOW]
                                        falloff, fit, formats or store refer only to themselves, the core, the layer with
                                        its objects in BELOW and their library
-  exports LIBRARY HEADERS              exported symbols = exported_symbols.txt = LENSPROF_API of the headers
+  exports LIBRARY HEADERS LIST         exported symbols = LIST = LENSPROF_API of the headers
   self-check                           every check must find a planted violation
 
 Prints violations; exit 1 if there are any.
@@ -153,8 +153,9 @@ def check_layer(nm, name, archive, folder, below=None):
 
 
 def declared_functions(headers):
-    found = set()
-    for header in sorted(pathlib.Path(headers).glob("*.h")):
+    """Of the headers in a folder except photo.h, whose library is another; or of one header."""
+    found, place = set(), pathlib.Path(headers)
+    for header in [place] if place.is_file() else sorted(set(place.glob("*.h")) - {place / "photo.h"}):
         text = re.sub(r"/\*.*?\*/", " ", header.read_text(encoding="utf-8"), flags=re.DOTALL)
         text = re.sub(r"^\s*#.*$", "", text, flags=re.MULTILINE)
         found |= set(re.findall(r"\bLENSPROF_API\b[^;({]*?(\w+)\s*\(", text))
@@ -162,7 +163,7 @@ def declared_functions(headers):
 
 
 def check_exports(nm, library, headers, listed):
-    exported = {name for name, kind, _ in nm.symbols(library, "--dynamic", "--defined-only") if kind != "A"}
+    exported = {name for name, kind, _ in nm.symbols(library, "--dynamic", "--defined-only") if kind not in "Abdrt"}
     declared = declared_functions(headers)
     cpp = sorted(name for name in exported - listed if name.startswith("_Z"))
     violations = [
@@ -179,10 +180,10 @@ def check_exports(nm, library, headers, listed):
     return violations
 
 
-def read_list():
-    lines = [line.strip() for line in LIST.read_text().splitlines() if line.strip() and not line.startswith("#")]
+def read_list(path):
+    lines = [line.strip() for line in pathlib.Path(path).read_text().splitlines() if line.strip() and not line.startswith("#")]
     if lines != sorted(set(lines)):
-        sys.exit(f"{LIST}: is not sorted or names a function twice")
+        sys.exit(f"{path}: is not sorted or names a function twice")
     return set(lines)
 
 
@@ -320,7 +321,7 @@ def main():
     elif options.check == "layer":
         violations = check_layer(nm, *options.arguments)
     else:
-        violations = check_exports(nm, *options.arguments, read_list())
+        violations = check_exports(nm, *options.arguments[:2], read_list(options.arguments[2]))
     print("\n".join(violations) or f"symbol_rules: {options.check} {' '.join(options.arguments)}: no violation")
     return 1 if violations else 0
 

@@ -2,6 +2,7 @@
 /* Prints sizes and offsets of structs and values of constants as the C compiler sees them. test_abi.py
  * compares them with the tables of the Python package. */
 #include <lensprof/lensprof.h>
+#include <lensprof/photo.h>
 
 #include <stdio.h>
 
@@ -582,6 +583,85 @@ static void print_structs(void) {
     FIELD(lensprof_store_summary, focal_mm);
     FIELD(lensprof_store_summary, aperture);
     FIELD(lensprof_store_summary, distance_m);
+    STRUCT(lensprof_notice);
+    FIELD(lensprof_notice, severity);
+    FIELD(lensprof_notice, reserved);
+    FIELD(lensprof_notice, item);
+    FIELD(lensprof_notice, text);
+    STRUCT(lensprof_events);
+    FIELD(lensprof_events, struct_size);
+    FIELD(lensprof_events, reserved);
+    FIELD(lensprof_events, user);
+    FIELD(lensprof_events, progress);
+    FIELD(lensprof_events, notice);
+    STRUCT(lensprof_picture_info);
+    FIELD(lensprof_picture_info, struct_size);
+    FIELD(lensprof_picture_info, width);
+    FIELD(lensprof_picture_info, height);
+    FIELD(lensprof_picture_info, sample);
+    FIELD(lensprof_picture_info, layout);
+    FIELD(lensprof_picture_info, reduction);
+    FIELD(lensprof_picture_info, read_width);
+    FIELD(lensprof_picture_info, read_height);
+    FIELD(lensprof_picture_info, orientation);
+    FIELD(lensprof_picture_info, icc_bytes);
+    STRUCT(lensprof_picture_metadata);
+    FIELD(lensprof_picture_metadata, struct_size);
+    FIELD(lensprof_picture_metadata, is_corrected);
+    FIELD(lensprof_picture_metadata, key);
+    FIELD(lensprof_picture_metadata, exposure_time_s);
+    FIELD(lensprof_picture_metadata, iso);
+    FIELD(lensprof_picture_metadata, f_number);
+    FIELD(lensprof_picture_metadata, ev);
+    FIELD(lensprof_picture_metadata, captured);
+    STRUCT(lensprof_picture_options);
+    FIELD(lensprof_picture_options, struct_size);
+    FIELD(lensprof_picture_options, jpeg_quality);
+    FIELD(lensprof_picture_options, like);
+    STRUCT(lensprof_scene_options);
+    FIELD(lensprof_scene_options, struct_size);
+    FIELD(lensprof_scene_options, one_lens);
+    FIELD(lensprof_scene_options, images);
+    FIELD(lensprof_scene_options, image_list);
+    STRUCT(lensprof_scene_info);
+    FIELD(lensprof_scene_info, struct_size);
+    FIELD(lensprof_scene_info, images);
+    FIELD(lensprof_scene_info, left_out);
+    FIELD(lensprof_scene_info, matches);
+    FIELD(lensprof_scene_info, reference);
+    FIELD(lensprof_scene_info, is_reconstruction);
+    STRUCT(lensprof_calibrate_options);
+    FIELD(lensprof_calibrate_options, struct_size);
+    FIELD(lensprof_calibrate_options, method);
+    FIELD(lensprof_calibrate_options, modes);
+    FIELD(lensprof_calibrate_options, loss);
+    FIELD(lensprof_calibrate_options, falloff_curves);
+    FIELD(lensprof_calibrate_options, gamma_from);
+    FIELD(lensprof_calibrate_options, free);
+    FIELD(lensprof_calibrate_options, pairs);
+    FIELD(lensprof_calibrate_options, seed);
+    FIELD(lensprof_calibrate_options, max_side);
+    FIELD(lensprof_calibrate_options, one_lens);
+    FIELD(lensprof_calibrate_options, use_stored);
+    FIELD(lensprof_calibrate_options, prior_weight);
+    FIELD(lensprof_calibrate_options, exif_sigma);
+    FIELD(lensprof_calibrate_options, databases);
+    FIELD(lensprof_calibrate_options, database_count);
+    FIELD(lensprof_calibrate_options, reserved);
+    STRUCT(lensprof_copy);
+    FIELD(lensprof_copy, source);
+    FIELD(lensprof_copy, target);
+    STRUCT(lensprof_correct_options);
+    FIELD(lensprof_correct_options, struct_size);
+    FIELD(lensprof_correct_options, exposure);
+    FIELD(lensprof_correct_options, linear);
+    FIELD(lensprof_correct_options, overwrite);
+    FIELD(lensprof_correct_options, threads);
+    FIELD(lensprof_correct_options, force_falloff);
+    FIELD(lensprof_correct_options, strength);
+    FIELD(lensprof_correct_options, databases);
+    FIELD(lensprof_correct_options, database_count);
+    FIELD(lensprof_correct_options, reserved);
 }
 
 static void print_values(void) {
@@ -857,6 +937,9 @@ static void print_values(void) {
     VALUE(LENSPROF_RESPONSE_FROM_RAW);
     VALUE(LENSPROF_NAMES_LENSES);
     VALUE(LENSPROF_NAMES_CAMERAS);
+    VALUE(LENSPROF_COPY_EXPOSURE_MEAN);
+    VALUE(LENSPROF_COPY_EXPOSURE_KEEP);
+    VALUE(LENSPROF_COPY_EXPOSURE_REFERENCE);
     VALUE(LENSPROF_FREE_RESPONSE);
     VALUE(LENSPROF_FREE_K1);
     VALUE(LENSPROF_FREE_K2);

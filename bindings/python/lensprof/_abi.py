@@ -7,7 +7,7 @@ of those in C; users see subclasses of them in the modules by topic.
 from __future__ import annotations
 
 from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64,
-                    c_size_t, c_ssize_t, c_uint32, c_uint8, c_void_p)
+                    c_size_t, c_ssize_t, c_uint32, c_uint64, c_uint8, c_void_p)
 from enum import IntEnum, IntFlag
 
 VERSION = "0.3.0"  # of the headers
@@ -414,6 +414,13 @@ class StoreNames(IntEnum):
     """lensprof_store_names; see lensprof/store.h."""
     LENSES = 0
     CAMERAS = 1
+
+
+class CopyExposure(IntEnum):
+    """lensprof_copy_exposure; see lensprof/photo.h."""
+    MEAN = 0
+    KEEP = 1
+    REFERENCE = 2
 
 
 class Free(IntFlag):
@@ -1224,6 +1231,143 @@ class StoreSummary(Structure):
     ]
 
 
+class Notice(Structure):
+    _fields_ = [
+        ("severity", c_uint32),
+        ("reserved", c_uint32),
+        ("item", c_char_p),
+        ("text", c_char_p),
+    ]
+
+
+OnStep = CFUNCTYPE(c_int, c_char_p, c_double, c_char_p, c_void_p)
+
+
+OnNotice = CFUNCTYPE(None, POINTER(Notice), c_void_p)
+
+
+class Events(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("user", c_void_p),
+        ("progress", OnStep),
+        ("notice", OnNotice),
+    ]
+
+
+class Picture(Structure):
+    """Opaque."""
+
+
+class PictureInfo(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("sample", c_uint32),
+        ("layout", c_uint32),
+        ("reduction", c_uint32),
+        ("read_width", c_uint32),
+        ("read_height", c_uint32),
+        ("orientation", c_uint32),
+        ("icc_bytes", c_uint64),
+    ]
+
+
+class PictureMetadata(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("is_corrected", c_uint32),
+        ("key", ProfileKey),
+        ("exposure_time_s", c_double),
+        ("iso", c_double),
+        ("f_number", c_double),
+        ("ev", c_double),
+        ("captured", c_char * 40),
+    ]
+
+
+class PictureOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("jpeg_quality", c_uint32),
+        ("like", POINTER(Picture)),
+    ]
+
+
+class Scene(Structure):
+    """Opaque."""
+
+
+class SceneOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("one_lens", c_uint32),
+        ("images", c_char_p),
+        ("image_list", c_char_p),
+    ]
+
+
+class SceneInfo(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("images", c_uint32),
+        ("left_out", c_uint32),
+        ("matches", c_uint32),
+        ("reference", c_uint32),
+        ("is_reconstruction", c_uint32),
+    ]
+
+
+class Calibration(Structure):
+    """Opaque."""
+
+
+class CalibrateOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("method", c_uint32),
+        ("modes", c_uint32),
+        ("loss", c_uint32),
+        ("falloff_curves", c_uint32),
+        ("gamma_from", c_uint32),
+        ("free", c_uint32),
+        ("pairs", c_uint32),
+        ("seed", c_uint32),
+        ("max_side", c_uint32),
+        ("one_lens", c_uint32),
+        ("use_stored", c_uint32),
+        ("prior_weight", c_double),
+        ("exif_sigma", c_double),
+        ("databases", POINTER(c_char_p)),
+        ("database_count", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class Copy(Structure):
+    _fields_ = [
+        ("source", c_char_p),
+        ("target", c_char_p),
+    ]
+
+
+class CorrectOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("exposure", c_uint32),
+        ("linear", c_uint32),
+        ("overwrite", c_uint32),
+        ("threads", c_uint32),
+        ("force_falloff", c_uint32),
+        ("strength", c_double),
+        ("databases", POINTER(c_char_p)),
+        ("database_count", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
 # Prefix in C of the members of each enumeration.
 ENUMS = {
     "LENSPROF_": Status,
@@ -1259,6 +1403,7 @@ ENUMS = {
     "LENSPROF_DISTANCE_": DistanceRule,
     "LENSPROF_RESPONSE_FROM_": ResponseFrom,
     "LENSPROF_NAMES_": StoreNames,
+    "LENSPROF_COPY_EXPOSURE_": CopyExposure,
     "LENSPROF_FREE_": Free,
 }
 
@@ -1309,6 +1454,16 @@ STRUCTS = {
     "lensprof_store_group": StoreGroup,
     "lensprof_store_stats": StoreStats,
     "lensprof_store_summary": StoreSummary,
+    "lensprof_notice": Notice,
+    "lensprof_events": Events,
+    "lensprof_picture_info": PictureInfo,
+    "lensprof_picture_metadata": PictureMetadata,
+    "lensprof_picture_options": PictureOptions,
+    "lensprof_scene_options": SceneOptions,
+    "lensprof_scene_info": SceneInfo,
+    "lensprof_calibrate_options": CalibrateOptions,
+    "lensprof_copy": Copy,
+    "lensprof_correct_options": CorrectOptions,
 }
 
 OPAQUE = {
@@ -1319,6 +1474,9 @@ OPAQUE = {
     "lensprof_pto": Pto,
     "lensprof_rendering": Rendering,
     "lensprof_store": Store,
+    "lensprof_picture": Picture,
+    "lensprof_scene": Scene,
+    "lensprof_calibration": Calibration,
 }
 
 CALLBACKS = {
@@ -1326,6 +1484,8 @@ CALLBACKS = {
     "lensprof_import_visitor": ImportVisitor,
     "lensprof_camera_visitor": CameraVisitor,
     "lensprof_fault_visitor": FaultVisitor,
+    "lensprof_on_step": OnStep,
+    "lensprof_on_notice": OnNotice,
 }
 
 # The function that sets a structure's defaults, and the types whose sizes it takes.
@@ -1355,6 +1515,14 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     LookupOptions: ("lensprof_init_sized", [LookupOptions]),
     Lookup: ("lensprof_init_sized", [Lookup]),
     StoreStats: ("lensprof_init_sized", [StoreStats]),
+    Events: ("lensprof_init_sized", [Events]),
+    PictureInfo: ("lensprof_init_sized", [PictureInfo]),
+    PictureMetadata: ("lensprof_picture_metadata_init_sized", [PictureMetadata]),
+    PictureOptions: ("lensprof_init_sized", [PictureOptions]),
+    SceneOptions: ("lensprof_init_sized", [SceneOptions]),
+    SceneInfo: ("lensprof_init_sized", [SceneInfo]),
+    CalibrateOptions: ("lensprof_calibrate_options_init_sized", [CalibrateOptions]),
+    CorrectOptions: ("lensprof_correct_options_init_sized", [CorrectOptions]),
 }
 
 # name: (restype, argtypes)
@@ -1533,4 +1701,46 @@ FUNCTIONS = {
     "lensprof_store_list_names": (c_int, [POINTER(Store), c_uint32, c_char_p, POINTER(StoreSummary), c_uint32,
                                           POINTER(c_uint32), POINTER(ErrorText)]),
     "lensprof_correct": (c_int, [POINTER(Profile), POINTER(Exposure), POINTER(Target), POINTER(ErrorText)]),
+}
+
+# The same for liblensprof-photo.
+PHOTO_FUNCTIONS = {
+    # photo.h
+    "lensprof_picture_metadata_init_sized": (None, [POINTER(PictureMetadata), c_size_t]),
+    "lensprof_picture_open": (c_int, [c_char_p, POINTER(POINTER(Picture)), POINTER(ErrorText)]),
+    "lensprof_picture_open_memory": (c_int, [c_void_p, c_size_t, POINTER(POINTER(Picture)), POINTER(ErrorText)]),
+    "lensprof_picture_destroy": (None, [POINTER(Picture)]),
+    "lensprof_picture_get_info": (c_int, [POINTER(Picture), c_uint32, POINTER(PictureInfo), POINTER(ErrorText)]),
+    "lensprof_picture_get_metadata": (c_int, [POINTER(Picture), POINTER(PictureMetadata), POINTER(ErrorText)]),
+    "lensprof_picture_get_icc": (c_int, [POINTER(Picture), c_void_p, c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
+    "lensprof_picture_read": (c_int, [POINTER(Picture), c_uint32, POINTER(Target), POINTER(ErrorText)]),
+    "lensprof_picture_write": (c_int, [c_char_p, POINTER(Image), POINTER(PictureOptions), POINTER(ErrorText)]),
+    "lensprof_picture_encode": (c_int, [c_char_p, POINTER(Image), POINTER(PictureOptions), c_void_p, c_size_t,
+                                        POINTER(c_size_t), POINTER(ErrorText)]),
+    "lensprof_scene_open": (c_int, [POINTER(c_char_p), c_uint32, POINTER(SceneOptions), POINTER(Events),
+                                    POINTER(POINTER(Scene)), POINTER(ErrorText)]),
+    "lensprof_scene_destroy": (None, [POINTER(Scene)]),
+    "lensprof_scene_get_info": (c_int, [POINTER(Scene), POINTER(SceneInfo), POINTER(ErrorText)]),
+    "lensprof_scene_image_at": (c_int, [POINTER(Scene), c_uint32, POINTER(Camera), POINTER(c_char_p), POINTER(c_char_p),
+                                        POINTER(ErrorText)]),
+    "lensprof_scene_match_at": (c_int, [POINTER(Scene), c_uint32, POINTER(Match), POINTER(ErrorText)]),
+    "lensprof_scene_left_out_at": (c_int, [POINTER(Scene), c_uint32, POINTER(c_char_p), POINTER(c_char_p),
+                                           POINTER(ErrorText)]),
+    "lensprof_scene_save": (c_int, [POINTER(Scene), c_char_p, POINTER(ErrorText)]),
+    "lensprof_calibrate_options_init_sized": (None, [POINTER(CalibrateOptions), c_size_t]),
+    "lensprof_calibrate": (c_int, [POINTER(Scene), POINTER(CalibrateOptions), POINTER(Events),
+                                   POINTER(POINTER(Calibration)), POINTER(ErrorText)]),
+    "lensprof_calibration_open": (c_int, [c_char_p, c_char_p, POINTER(POINTER(Calibration)), POINTER(ErrorText)]),
+    "lensprof_calibration_destroy": (None, [POINTER(Calibration)]),
+    "lensprof_calibration_get_fit": (POINTER(Fit), [POINTER(Calibration)]),
+    "lensprof_calibration_exposure_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Exposure), POINTER(c_double),
+                                                 POINTER(ErrorText)]),
+    "lensprof_calibration_count_profiles": (c_uint32, [POINTER(Calibration)]),
+    "lensprof_calibration_profile_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Profile), POINTER(ErrorText)]),
+    "lensprof_calibration_finding_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Finding), POINTER(ErrorText)]),
+    "lensprof_calibration_store": (c_int, [POINTER(Calibration), c_char_p, POINTER(c_uint32), POINTER(ErrorText)]),
+    "lensprof_calibration_save": (c_int, [POINTER(Calibration), c_char_p, POINTER(ErrorText)]),
+    "lensprof_correct_options_init_sized": (None, [POINTER(CorrectOptions), c_size_t]),
+    "lensprof_correct_files": (c_int, [POINTER(Calibration), POINTER(Copy), c_uint32, POINTER(CorrectOptions),
+                                       POINTER(Events), POINTER(c_uint32), POINTER(ErrorText)]),
 }

@@ -1,7 +1,8 @@
-"""The shared library: finding it, errors, and handles that must be released.
+"""The shared libraries: finding them, errors, and handles that must be released.
 
 Search order: the file named by the environment variable LENSPROF_LIBRARY, the folder of this package, the system's
-loader.
+loader. The photograph library is loaded when it is used first: LENSPROF_PHOTO_LIBRARY, the folder of this package, that
+of the base library, the system's loader.
 """
 from __future__ import annotations
 
@@ -21,12 +22,12 @@ from ._abi import ItemKind, Status
 S = TypeVar("S", bound=ctypes.Structure)
 
 
-def _file_names() -> list[str]:
+def _file_names(name: str = "lensprof") -> list[str]:
     if sys.platform == "win32":
-        return ["lensprof.dll"]
+        return [f"{name}.dll"]
     if sys.platform == "darwin":
-        return ["liblensprof.0.3.dylib", "liblensprof.dylib"]
-    return ["liblensprof.so.0.3", "liblensprof.so"]
+        return [f"lib{name}.0.3.dylib", f"lib{name}.dylib"]
+    return [f"lib{name}.so.0.3", f"lib{name}.so"]
 
 
 def _find() -> ctypes.CDLL:
@@ -58,16 +59,42 @@ def _check_version(library: ctypes.CDLL) -> None:
 def _load() -> ctypes.CDLL:
     library = _find()
     _check_version(library)
-    for name, (restype, argtypes) in _abi.FUNCTIONS.items():
+    _declare(library, _abi.FUNCTIONS)
+    return library
+
+
+def _declare(library: ctypes.CDLL, functions: dict) -> None:
+    for name, (restype, argtypes) in functions.items():
         try:
             function = getattr(library, name)
         except AttributeError:
             raise ImportError(f"{library._name}: has no function {name}; install a complete lensprof") from None
         function.restype, function.argtypes = restype, argtypes
-    return library
 
 
 lib = _load()
+_photo: Optional[ctypes.CDLL] = None
+
+
+def photo() -> ctypes.CDLL:
+    """The photograph library."""
+    global _photo
+    if _photo is None:
+        named, names = os.environ.get("LENSPROF_PHOTO_LIBRARY"), _file_names("lensprof-photo")
+        folders = [pathlib.Path(__file__).parent, pathlib.Path(lib._name).parent]
+        beside = [str(folder / name) for folder in folders for name in names if (folder / name).exists()]
+        library = None
+        for name in [named] if named else beside + names:
+            with contextlib.suppress(OSError):
+                library = ctypes.CDLL(name)
+                break
+        if library is None:
+            raise ImportError(f"{named or names[0]}: the photograph library of lensprof cannot be loaded, which reads "
+                              "pictures and calibrates folders; install lensprof with it (`make install`), or set "
+                              "LENSPROF_PHOTO_LIBRARY to its file")
+        _declare(library, _abi.PHOTO_FUNCTIONS)
+        _photo = library
+    return _photo
 
 
 def initialise(struct: Any) -> None:
@@ -75,7 +102,7 @@ def initialise(struct: Any) -> None:
     for kind in type(struct).__mro__:
         if kind in _abi.INITS:
             name, sizes = _abi.INITS[kind]
-            getattr(lib, name)(ctypes.byref(struct), *map(ctypes.sizeof, sizes))
+            getattr(photo() if name in _abi.PHOTO_FUNCTIONS else lib, name)(ctypes.byref(struct), *map(ctypes.sizeof, sizes))
 
 
 def initialised(kind: Type[S], **fields: object) -> S:

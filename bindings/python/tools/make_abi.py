@@ -53,7 +53,9 @@ def preprocess(include: pathlib.Path, cc: str, extra: str = "", options: tuple =
         pathlib.Path(folder, "stdint.h").write_text(standard)
         pathlib.Path(folder, "stddef.h").write_text('#include "stdint.h"\n')
         command = [*cc.split(), "-E", "-undef", "-nostdinc", "-I", folder, "-I", str(include), *options, "-x", "c", "-"]
-        done = subprocess.run(command, input=f"#include <lensprof/lensprof.h>\n{extra}", capture_output=True, text=True)
+        names = [name for name in ("lensprof.h", "photo.h") if (include / "lensprof" / name).exists()]
+        source = "".join(f"#include <lensprof/{name}>\n" for name in names) + extra
+        done = subprocess.run(command, input=source, capture_output=True, text=True)
     if done.returncode:
         raise Refused(f"{' '.join(command)}:\n{done.stderr}")
     return done.stdout
@@ -227,6 +229,18 @@ def wrapped(head: str, items: list, tail: str) -> str:
     return "\n".join([*lines, line if items else head + tail]) + "\n"
 
 
+def functions_table(table: str, interface: Interface, names: set) -> str:
+    body, header = f"\n{table} = {{\n", None
+    for name, (result, parameters) in interface.functions.items():
+        if name not in names:
+            continue
+        if interface.headers[name] != header:
+            header = interface.headers[name]
+            body += f"    # {header}\n"
+        body += wrapped(f'    "{name}": ({result}, [', parameters, "]),")
+    return body + "}\n"
+
+
 def member_prefix(names: list) -> str:
     return os.path.commonprefix(names).rpartition("_")[0] + "_"
 
@@ -281,14 +295,9 @@ def python_text(interface: Interface) -> str:
     for name, (function, sizes) in interface.inits.items():
         body += f'    {class_name(name)}: ("{function}", [{", ".join(map(class_name, sizes))}]),\n'
     body += "}\n"
-    body += "\n# name: (restype, argtypes)\nFUNCTIONS = {\n"
-    header = None
-    for name, (result, parameters) in interface.functions.items():
-        if interface.headers[name] != header:
-            header = interface.headers[name]
-            body += f"    # {header}\n"
-        body += wrapped(f'    "{name}": ({result}, [', parameters, "]),")
-    body += "}\n"
+    photo = {name for name in interface.functions if interface.headers[name] == "photo.h"}
+    body += "\n# name: (restype, argtypes)" + functions_table("FUNCTIONS", interface, set(interface.functions) - photo)
+    body += "\n# The same for liblensprof-photo." + functions_table("PHOTO_FUNCTIONS", interface, photo)
     used = sorted(set(re.findall(r"\b(?:c_\w+|POINTER|CFUNCTYPE|Structure)\b", body)))
     return (f"# Generated from include/lensprof by {COMMAND}: do not edit; `make abi` regenerates it.\n"
             '"""The C interface as tables: structures, enumerations, constants and functions of the public headers.\n\n'
@@ -303,7 +312,7 @@ def dump_text(interface: Interface) -> str:
     text = (f"/* Generated from include/lensprof by {COMMAND}: do not edit; `make abi` regenerates it. */\n"
             "/* Prints sizes and offsets of structs and values of constants as the C compiler sees them. test_abi.py\n"
             " * compares them with the tables of the Python package. */\n"
-            "#include <lensprof/lensprof.h>\n\n#include <stdio.h>\n\n"
+            "#include <lensprof/lensprof.h>\n#include <lensprof/photo.h>\n\n#include <stdio.h>\n\n"
             '#define STRUCT(type) printf("struct %s %zu %zu\\n", #type, sizeof(type), _Alignof(type))\n'
             "#define FIELD(type, name) "
             'printf("field %s %s %zu %zu\\n", #type, #name, offsetof(type, name), sizeof(((type *)0)->name))\n'

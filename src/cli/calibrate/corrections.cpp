@@ -12,6 +12,7 @@
 #include "photo/base/shell_word.hpp"
 #include "photo/correct/picture_model.hpp"
 #include "photo/correct/project_model.hpp"
+#include "photo/correct/scene_copies.hpp"
 #include "photo/pictures/picture.hpp"
 
 namespace lensprof {
@@ -33,15 +34,6 @@ Correction job_of(const InputPicture &picture) {
 using ByFile = std::map<std::string, CorrectedPicture>;
 
 using Reasons = std::map<std::string, std::string>;  // by file
-
-// The mean exposure, lowered so that no picture is lifted by more than 1 EV: what is brighter than half the limit
-// clips.
-lensprof_exposure common_exposure(const std::vector<lensprof_exposure> &exposures) {
-    constexpr double largest_lift_ev = 1.0;
-    lensprof_exposure common = mean_exposure(exposures);
-    for (const lensprof_exposure &exposure : exposures) common.ev = std::min(common.ev, exposure.ev + largest_lift_ev);
-    return common;
-}
 
 // Uses the project and finds its images by file, because somebody may have edited it.
 void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {

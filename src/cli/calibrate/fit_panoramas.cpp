@@ -9,9 +9,9 @@
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/base/utf8.hpp"
+#include "photo/calibration/calibration.hpp"
 #include "photo/calibration/outcome.hpp"
 #include "photo/calibration/preview.hpp"
-#include "photo/calibration/project_fit.hpp"
 #include "photo/correct/project_model.hpp"
 #include "photo/scene/photographs.hpp"
 
@@ -27,6 +27,7 @@ Project project_of(const Panorama &panorama) {
     for (const InputPicture *picture : panorama.pictures) {
         project.files.push_back(picture->file);
         project.names.push_back(picture->name);
+        project.metadata.push_back(picture->metadata);
     }
     read_found(panorama.geometry, project);
     project.by_matches = panorama.matches.are_all;
@@ -90,29 +91,26 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     options.one_lens = o.one_lens;
     if (panorama.summary["camera"] == camera_stationary)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, panorama.name + still_camera_reason(), LENSPROF_REASON_FEW_PAIRS);
-    check_pictures(project, options.pixels.max_side);
-    const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
-    choose_storing(o, metadata[project.reference].key, project.by_matches, panorama, options.store);
-    const lensprof_profile_key key = profile_key(options, project, metadata, events);
-    const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
+    choose_storing(o, project.metadata[project.reference].key, project.by_matches, panorama, options.store);
     if (panorama.summary["cameras_fit"] == false) events.warn(panorama.name, poor_cameras_note);
-    ProjectFit state(events);
-    state.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
-    fit_project(options, project, metadata, prior, state, events);
-    Json page = fit_page_data(
-        {state.report, state.input, state.best, state.input.images, project, metadata, "", "", false}, progress);
+    Calibration calibration(project, options, events);
+    ProjectFit &state = calibration.fit;
+    Json page = fit_page_data({state.report, state.input, state.best, state.input.images, calibration.project,
+                               calibration.metadata, "", "", false},
+                              progress);
     OutputFiles outputs;
-    outputs.add(panorama.project, state.best.corrects() ? result_text(state, project, panorama.project)
-                                                        : project_text_at(project, panorama.project));
+    outputs.add(panorama.project, state.best.corrects() ? result_text(state, calibration.project, panorama.project)
+                                                        : project_text_at(calibration.project, panorama.project));
     stop_if_cancelled();
     if (!options.store.no_store)
-        store_result(state.report, key, options.store, {method_name(options.fit.method), project.path, &prior});
+        store_result(state.report, calibration.key, options.store,
+                     {method_name(options.fit.method), project.path, &calibration.prior});
     const Outcome outcome = outcome_of(state.report, options.store, project.path, true);
     outputs.commit();
     const bool is_stored = state.report.profile_id != 0;
     if (!is_stored && (!options.store.no_store || !state.report.fit.usable))
         panorama.summary["not_stored"] = state.report.verdict.text();
-    panorama.summary["key"] = key_json(key);
+    panorama.summary["key"] = key_json(calibration.key);
     panorama.summary["database"] = is_stored ? Json(store_path(options.store.db)) : Json();
     panorama.summary["warnings"] = warnings_of(events, outcome);
     panorama.summary["result"] = result_of(state.report);

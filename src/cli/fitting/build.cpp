@@ -22,6 +22,7 @@
 #include "photo/base/file_kind.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/calibration/calibration.hpp"
 #include "photo/calibration/exposure_file.hpp"
 #include "photo/calibration/preview.hpp"
 #include "photo/calibration/project_fit.hpp"
@@ -38,7 +39,7 @@ struct BuildOptions : ProjectFitOptions {
     std::string images, image_list, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview, report,
         compare;
     bool track_colours = false;
-    std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: according to the project
+    std::vector<uint32_t> free_words;  // LENSPROF_FREE_... of --fit free
     bool json = false, progress = false;
 };
 
@@ -88,7 +89,7 @@ void declare_build_fit(Command &command, BuildOptions &o) {
     Keys keys = declare_fit(command, o.fit, choices);
     keys.choice("falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
                 "number of falloff curves: 1, 3 (one per channel) or auto (default: chosen by held-out error)");
-    keys.list("free", o.free,
+    keys.list("free", o.free_words,
               {{"response", LENSPROF_FREE_RESPONSE},
                {"falloff", falloff_flags},
                {"center", LENSPROF_FREE_CENTER},
@@ -157,39 +158,28 @@ void check_outputs(const BuildOptions &o, std::vector<std::string> reserved) {
     }
 }
 
-// Reconstructions from film are rare. Sensors of phones are small.
-CameraKind default_kind(const lensprof_profile_key &key) {
-    constexpr double min_phone_crop_factor = 4.5;
-    const bool is_phone = key.crop_factor != LENSPROF_UNKNOWN && key.crop_factor >= min_phone_crop_factor;
-    return {is_phone ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_STILL, KindFrom::reconstruction};
-}
-
-BuildReport build(const BuildOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                  const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Json &page,
-                  Streams &streams) {
-    Progress progress(streams, o.progress);
-    ProjectFit state(progress);
-    state.report.camera_kind = kind;
-    fit_project(o, project, metadata, prior, state, progress);
-    BuildReport &report = state.report;
-    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(state.input.pairs, project));
-    if (!o.exposures_out.empty() && (state.best.corrects() || o.store.force))
-        outputs.add(o.exposures_out, exposures_text(state, project, metadata, o.exposures_out));
-    if (!o.gain_chart.empty() && !state.input.points.empty() && (state.best.corrects() || o.store.force))
-        outputs.add(o.gain_chart, gain_chart(o.gain_chart, project.path, gain_curves(state)));
-    if (!o.pto_out.empty() && (state.best.corrects() || o.store.force))
-        outputs.add(o.pto_out, result_text(state, project, o.pto_out));
-    if (!o.preview.empty() && state.best.corrects()) write_preview(o.preview, project, state.best, progress);
+// Everything that is written of a calibration. The page of the report lacks its verdict.
+void add_outputs(const BuildOptions &o, Calibration &calibration, OutputFiles &outputs, Json &page, Streams &streams,
+                 Events &events) {
+    ProjectFit &fit = calibration.fit;
+    Project &project = calibration.project;
+    const bool is_written = fit.best.corrects() || o.store.force;
+    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(fit.input.pairs, project));
+    if (!o.exposures_out.empty() && is_written)
+        outputs.add(o.exposures_out, exposures_text(fit, project, calibration.metadata, o.exposures_out));
+    if (!o.gain_chart.empty() && !fit.input.points.empty() && is_written)
+        outputs.add(o.gain_chart, gain_chart(o.gain_chart, project.path, gain_curves(fit)));
+    if (!o.pto_out.empty() && is_written) outputs.add(o.pto_out, result_text(fit, project, o.pto_out));
+    if (!o.preview.empty() && fit.best.corrects()) write_preview(o.preview, project, fit.best, events);
     if (!o.report.empty())
-        page = fit_page_data(
-            {report, state.input, state.best, state.input.images, project, metadata, command_text(streams.words)},
-            progress);
-    progress.clear();
-    if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
+        page = fit_page_data({fit.report, fit.input, fit.best, fit.input.images, project, calibration.metadata,
+                              command_text(streams.words)},
+                             events);
+    events.clear();
+    if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && fit.report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path
                           + (o.points.empty() ? ": the EXIF exposures do not differ" : ": --points does not read EXIF")
                           + "; gamma depends on the prior");
-    return std::move(state.report);
 }
 
 // Checks that need no overlaps, which take time to find.
@@ -228,8 +218,7 @@ Project open_reconstruction(const BuildOptions &o, Events &events) {
 }
 
 // The project, or the pictures instead.
-Project open_project(const BuildOptions &o, Streams &streams) {
-    Progress progress(streams, o.progress);
+Project open_project(const BuildOptions &o, Events &progress) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, progress);
     for (const auto &[option, is_given] :
          {std::pair("--images", !o.images.empty()), std::pair("--reconstruction list", !o.image_list.empty()),
@@ -265,56 +254,33 @@ Project open_project(const BuildOptions &o, Streams &streams) {
     return project_of_pictures(list, o.one_lens, progress);
 }
 
-// The free parameters: by --fit free, else by the v lines; all if these have nothing photometric, as in a project that
-// was only aligned.
-void choose_unknowns(const BuildOptions &o, Project &project, Streams &streams) {
-    uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), free_in_project = 0;
-    for (const auto &image : project.images) free_in_project |= image.free;
-    if (!free && !free_in_project) {
-        note(streams, project.path
-                          + ": no photometric v lines; estimating response, falloff, exposures and white balances "
-                            "(use --fit free=... to change this)");
-        free = all_flags;
-    }
-    for (auto &image : project.images) image.free = free ? free : image.free;
-}
-
 // Runs the command after option parsing; `names` receives the images as soon as they are known.
 int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Streams &streams) {
     Progress events(streams, o.progress);
-    Project project = open_project(o, streams);
+    Project project = open_project(o, events);
     names = project.names;
-    if (project.images.size() < 2)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": has only one image; give at least two that overlap",
-                      LENSPROF_REASON_FEW_PAIRS);
     std::vector<std::string> inputs = project.files;
     inputs.push_back(project.path);
     inputs.insert(inputs.end(), project.sources.begin(), project.sources.end());
     check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
-    choose_unknowns(o, project, streams);
-    if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.pixels.max_side);
-    auto metadata = picture_metadata(o, project);
-    lensprof_profile_key key = profile_key(o, project, metadata, events);
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
-    check_store(o.store);
-    CameraKind kind = camera_kind_of(o.fit, key, metadata[project.reference]);
-    if (project.is_reconstruction && kind.from == KindFrom::none) kind = default_kind(key);
+    Calibration calibration(std::move(project), o, events);
     OutputFiles outputs;
-    EarlierProfile prior;
-    if (uses_stored_prior(o.fit))
-        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_requested, key, project.path);
     Json page;
-    BuildReport report = build(o, project, metadata, prior, kind, outputs, page, streams);
-    int code =
-        finish_fit(report, key, o.store,
-                   {method_name(o.fit.method), project.path, o.json, true, o.report, &page, &outputs, &prior}, streams);
+    add_outputs(o, calibration, outputs, page, streams, events);
+    BuildReport &report = calibration.fit.report;
+    const int code = finish_fit(report, calibration.key, o.store,
+                                {method_name(o.fit.method), calibration.project.path, o.json, true, o.report, &page,
+                                 &outputs, &calibration.prior},
+                                streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
+    const bool is_refused = !report.fit.usable && !report.fit.equalizes;
     for (const std::string &file : {o.exposures_out, o.pto_out})
-        if (!report.fit.usable && !report.fit.equalizes && !file.empty() && !o.store.force)
+        if (is_refused && !file.empty() && !o.store.force)
             print_message(streams, file + ": not written (use --force to write it anyway)");
-    if (!report.fit.usable && !report.fit.equalizes && !o.preview.empty())
+    if (is_refused && !o.preview.empty())
         print_message(streams, o.preview + ": not written: the result corrects nothing");
     return code;
 }
@@ -359,7 +325,10 @@ void declare_build(Command &program) {
     auto o = std::make_shared<BuildOptions>();
     declare(command, *o);
     command.example("lensprof build photos --report report.html");
-    command.run([o](Streams &streams) { return run(*o, streams); });
+    command.run([o](Streams &streams) {
+        o->free = std::accumulate(o->free_words.begin(), o->free_words.end(), 0u, std::bit_or<>());
+        return run(*o, streams);
+    });
 }
 
 }  // namespace lensprof

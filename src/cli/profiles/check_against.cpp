@@ -13,6 +13,7 @@
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/calibration/project_fit.hpp"
+#include "photo/scene/open_scene.hpp"
 
 namespace lensprof {
 namespace {
@@ -180,7 +181,9 @@ void warn_of_earlier_correction(const Project &project, const std::vector<Pictur
 TrialReport measure(const Project &project, const std::vector<StoredProfile> &profiles, Progress &progress,
                     Streams &streams) {
     const std::vector<PictureMetadata> metadata = picture_metadata({}, project);
-    DrawnPairs sampled = draw_pairs(project, progress);
+    const ProjectFitOptions options;
+    if (!project.is_reconstruction) check_pictures(project, options.pixels.max_side);
+    DrawnPairs sampled = first_pairs(options, project, progress);
     progress.clear();
     uint32_t first = 0;
     sampled.pairs = pairs_of_one_setting(project, metadata, std::move(sampled.pairs), first, streams);
@@ -220,7 +223,9 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     const std::vector<StoredProfile> profiles = read_by_ids(db, ids);
     Progress progress(streams, o.progress);
     WarningsAlone warnings(progress);
-    const Project project = project_of_words(pictures, o.images, warnings);
+    SceneOptions options;
+    options.reconstruction.images = o.images;
+    const Project project = open_scene(pictures, options, warnings);
     if (project.images.size() < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);

@@ -82,6 +82,8 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
     return Store(store);
 }
 
+Pto::Pto(const Pto &other) : unique_ptr(other ? parse_pto(pto_text(*other), "project").release() : nullptr) {}
+
 Pto read_pto(const std::string &path) { return parse_pto(read_text(path, max_text_bytes), path); }
 
 Pto parse_pto(const std::string &text, const std::string &item) {

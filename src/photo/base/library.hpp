@@ -59,7 +59,17 @@ void require_folder(const std::string &path);
 struct PtoDestroy {
     void operator()(lensprof_pto *pto) const { lensprof_pto_destroy(pto); }
 };
-using Pto = std::unique_ptr<lensprof_pto, PtoDestroy>;
+
+// Copying it copies the project.
+struct Pto : std::unique_ptr<lensprof_pto, PtoDestroy> {
+    using std::unique_ptr<lensprof_pto, PtoDestroy>::unique_ptr;
+    Pto(const Pto &other);
+    Pto(Pto &&) = default;
+    Pto &operator=(Pto other) {
+        swap(other);
+        return *this;
+    }
+};
 
 Pto read_pto(const std::string &path);
 Pto parse_pto(const std::string &text, const std::string &item);  // `item` is its name in a Failure

@@ -69,6 +69,18 @@ void warn_of_unjoined_images(const BuildReport &report, Events &events) {
 
 }  // namespace
 
+std::unique_ptr<lensprof_profile> profile_of_setting(const BuildReport &report, const SettingReport &setting,
+                                                     const Storing &how) {
+    auto profile = profile_of(*report.held, setting.number);
+    profile->key = setting.key;
+    lensprof_provenance &provenance = profile->provenance;
+    provenance.not_usable = !setting.found.usable;
+    set_text(provenance.method, sizeof provenance.method, how.method);
+    set_text(provenance.source, sizeof provenance.source, source_of(how.source));
+    if (setting.is_turn_unknown) turn_profile_to_sensor(0, *profile);
+    return profile;
+}
+
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {
     return source + ": not usable: " + verdict.headline()
            + (store.force || store.no_store ? std::string() : "; nothing was stored" + advice("force"));
@@ -76,14 +88,11 @@ std::string not_usable_text(const std::string &source, const Verdict &verdict, c
 
 namespace {
 
-// The profile of one setting, which is stored if `is_usable` or forced.
-int64_t store_setting(const BuildReport &report, const SettingReport &setting, bool is_usable,
-                      const StoreOptions &store, const Storing &how) {
+int64_t store_setting(const BuildReport &report, const SettingReport &setting, const StoreOptions &store,
+                      const Storing &how) {
+    const bool is_usable = setting.found.usable != 0;
     const EarlierProfile *prior = how.prior;
-    auto profile = profile_of(*report.held, setting.number);
-    profile->key = setting.key;
-    profile->provenance.not_usable = !is_usable;
-    if (setting.is_turn_unknown) turn_profile_to_sensor(0, *profile);
+    const auto profile = profile_of_setting(report, setting, how);
     const int64_t prior_id = prior && holds_prior(setting.found) && prior->is_own ? prior->id : 0;
     return store_profile(store, *profile, {how.method, how.source, is_usable, prior_id});
 }
@@ -142,7 +151,7 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
         SettingReport single;
         single.key = key, single.is_reference = true, single.is_turn_unknown = report.is_turn_unknown;
         single.number = LENSPROF_FIT_REFERENCE, single.found = report.fit;
-        report.profile_id = store_setting(report, single, report.fit.usable != 0, store, how);
+        report.profile_id = store_setting(report, single, store, how);
     }
     std::vector<SettingReport *> order;  // the reference first
     for (SettingReport &setting : report.settings) order.push_back(&setting);
@@ -153,7 +162,7 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
         if (!setting.found.images || !(setting.found.usable || store.force) || !setting.no_key.empty()) continue;
         setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
         if (setting.has_same_key) continue;  // a lookup could not distinguish them
-        setting.profile_id = store_setting(report, setting, setting.found.usable != 0, store, how);
+        setting.profile_id = store_setting(report, setting, store, how);
         if (setting.is_reference) report.profile_id = setting.profile_id;
     }
 }

@@ -17,6 +17,10 @@ struct Storing {
     const EarlierProfile *prior = nullptr;  // the prior of the fit; or NULL
 };
 
+// The profile of a lens setting: its key, method and source; not yet the time.
+std::unique_ptr<lensprof_profile> profile_of_setting(const BuildReport &report, const SettingReport &setting,
+                                                     const Storing &how);
+
 // Stores the profiles of every usable lens setting, or of all if forced.
 void store_result(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Storing &how);
 

@@ -349,6 +349,7 @@ void report_cameras(const Project &project, const std::vector<PictureMetadata> &
 }  // namespace
 
 std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project) {
+    if (!project.metadata.empty()) return project.metadata;
     std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
     if (o.points.empty() && project.pairs.empty()) require_one_kind(project.files);
     for (uint32_t i = 0; i < metadata.size(); i++) {

@@ -6,7 +6,6 @@
 
 #include "photo/calibration/fit.hpp"
 #include "photo/calibration/lens_settings.hpp"
-#include "photo/calibration/overlapping_pictures.hpp"
 #include "photo/calibration/stored_prior.hpp"
 #include "photo/scene/project.hpp"
 
@@ -23,6 +22,7 @@ struct ProjectFitOptions {
     uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: chosen by held-out error
     SamplingOptions pixels;
     bool one_lens = false;  // all images are treated as one lens setting
+    uint32_t free = 0;      // LENSPROF_FREE_... of every image; 0: according to the project, or all
 };
 
 // Input and result of a fit. Not copyable: the options of `input` point to other members.
@@ -48,6 +48,11 @@ std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const 
 lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
                                  const std::vector<PictureMetadata> &metadata, Events &events);
 
+struct DrawnPairs {
+    std::vector<lensprof_pair> pairs;
+    uint32_t channels = 3;  // or 1 if all pictures are grey
+};
+
 // The pairs that fit_project starts with; none for tracks of the method radiance.
 DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Events &progress);
 
@@ -65,6 +70,6 @@ std::vector<GainCurve> gain_curves(ProjectFit &state);
 
 // The text of the project with the result, to be written to `path`. A project stores five modes and one falloff; a
 // result with more is refitted with these.
-std::string result_text(ProjectFit &state, Project &project, const std::string &path);
+std::string result_text(const ProjectFit &state, Project &project, const std::string &path);
 
 }  // namespace lensprof

@@ -10,7 +10,7 @@ namespace {
 constexpr uint32_t project_modes = 5;  // Ra..Re
 
 // A project stores five modes and one falloff: refits with these instead of truncating a better result.
-Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, const std::string &item,
+Fitted fit_for_project(FitInput input, const Fitted &best, uint32_t reference, const std::string &item,
                        Events &progress) {
     const auto can_hold = [](const auto &found) {
         return found.response.modes <= project_modes && found.vignettings == 1;
@@ -28,7 +28,7 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
 
 }  // namespace
 
-std::string result_text(ProjectFit &state, Project &project, const std::string &path) {
+std::string result_text(const ProjectFit &state, Project &project, const std::string &path) {
     const Fitted stored = fit_for_project(state.input, state.best, state.report.reference, state.item, state.events);
     lensprof_error error{};
     check(lensprof_pto_set_result(project.pto.get(), &stored.result.response, &green_falloff(stored.result),

@@ -120,7 +120,7 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
         throw NotThisOne(LENSPROF_ERROR_NOT_FOUND,
                          job.source + ": no profile for " + describe_key(key) + " in " + databases_.names() + " ("
                              + missing + (missing.empty() || is_all ? "" : "; ") + (is_all ? "" : lookup.reason)
-                             + describe_nearest(nearest_names(databases_, key, lookup)) + "); calibrate pictures of it"
+                             + describe_nearest(nearest_names(databases_, key, lookup)) + "); make one"
                              + advice("make_profile") + ", " + missing_options(key, lookup)
                              + ", or give a profile with " + option_name("profile"));
     if (lookup.exact && lookup.falloff_store == 0)
@@ -148,7 +148,7 @@ static void check_error(const lensprof_lookup &lookup, const lensprof_profile_ke
     constexpr double largest_sigma = 0.1;  // of M in the corner
     if (lookup.sigma == LENSPROF_UNKNOWN || lookup.sigma <= largest_sigma) return;
     std::string step =
-        "calibrate pictures of this setting" + advice("make_profile") + ", or use " + option_name("doubtful");
+        "make a profile of this setting" + advice("make_profile") + ", or use " + option_name("doubtful");
     if (std::hypot(lookup.falloff_sigma, lookup.distance_sigma) <= largest_sigma && lookup.sensor_sigma > largest_sigma)
         step = std::string(*key.camera_model ? "the size of the camera's sensor is unknown" : "EXIF names no camera")
                + "; give " + option_name("crop_factor") + ", or the camera with " + option_name("camera") + " and "
@@ -163,9 +163,9 @@ void PictureModels::check_possible(const PictureMetadata &metadata, Correction &
     const std::string doubt = impossible_falloff(profile, metadata.size.width, metadata.size.height);
     if (doubt.empty() || options_.lookup.doubtful) return;
     if (!options_.profile)
-        throw NotThisOne(LENSPROF_ERROR_NOT_FOUND,
-                         job.source + ": " + doubt + ", as with no lens; calibrate pictures of it"
-                             + advice("make_profile") + ", or use " + option_name("doubtful"));
+        throw NotThisOne(LENSPROF_ERROR_NOT_FOUND, job.source + ": " + doubt + ", as with no lens; make a profile"
+                                                       + advice("make_profile") + ", or use "
+                                                       + option_name("doubtful"));
     job.note = doubt + ", as with no lens";
 }
 

@@ -18,9 +18,10 @@ struct Project {
     std::string path;  // of the .pto, or of the input used instead
     Pto pto;           // NULL if the project does not come from a file
     std::vector<lensprof_pto_image> images;
-    std::vector<std::string> names;  // as written in the project
-    std::vector<std::string> files;  // path of each picture
-    uint32_t reference = 0;          // image whose exposure is fixed
+    std::vector<std::string> names;         // as written in the project
+    std::vector<std::string> files;         // path of each picture
+    std::vector<PictureMetadata> metadata;  // of each; empty: not read yet
+    uint32_t reference = 0;                 // image whose exposure is fixed
 
     // Response and falloff per image, for a file of exposures, which has no Pto.
     std::vector<std::shared_ptr<const lensprof_profile>> models;

@@ -1,0 +1,235 @@
+// Scenes calibrated, and results asked, stored and saved.
+#include <cmath>
+#include <filesystem>
+
+#include "photo/api/handles.hpp"
+#include "photo/api/sized.hpp"
+#include "photo/calibration/exposure_file.hpp"
+#include "photo/calibration/outcome.hpp"
+#include "photo/correct/project_model.hpp"
+#include "photo/report/falloff.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t first_calibrate_options = sizeof(lensprof_calibrate_options);
+
+// The options of a fit that the caller gives; nothing is stored yet.
+ProjectFitOptions options_of(const lensprof_calibrate_options &from) {
+    ProjectFitOptions o;
+    o.store.no_store = true;
+    for (uint32_t i = 0; i < from.database_count; i++) {
+        require(from.databases, "databases"), require(from.databases[i], "database");
+        o.store.dbs.emplace_back(from.databases[i]);
+    }
+    if (!o.store.dbs.empty()) o.store.db = o.store.dbs.front();
+    o.fit.method = from.method, o.fit.modes = from.modes, o.fit.loss = from.loss;
+    o.fit.gamma_from = from.gamma_from;
+    o.fit.prior_weight = from.prior_weight;
+    if (!(from.exif_sigma < 0.0)) o.fit.exif_sigma = from.exif_sigma;
+    o.fit.stored = from.use_stored != 0;
+    o.falloff_curves = from.falloff_curves;
+    o.free = from.free;
+    o.pixels = {from.seed, from.pairs, from.max_side};
+    o.one_lens = from.one_lens != 0;
+    if (from.method > LENSPROF_METHOD_RADIANCE) throw Failure(LENSPROF_ERROR_ARGUMENT, "method: is unknown");
+    if (from.falloff_curves != 0 && from.falloff_curves != 1 && from.falloff_curves != 3)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "falloff_curves: is neither 0, 1 nor 3");
+    if (from.max_side && from.max_side < 64) throw Failure(LENSPROF_ERROR_ARGUMENT, "max_side: is below 64");
+    return o;
+}
+
+// The settings of a result; without several, the only one.
+std::vector<SettingReport> settings_of(const Calibration &calibration) {
+    const BuildReport &report = calibration.fit.report;
+    if (!report.settings.empty()) return report.settings;
+    SettingReport single;
+    single.key = calibration.key, single.is_reference = true, single.is_turn_unknown = report.is_turn_unknown;
+    single.number = LENSPROF_FIT_REFERENCE, single.found = report.fit;
+    return {single};
+}
+
+Storing storing_of(const Calibration &calibration) {
+    return {method_name(calibration.options.fit.method), calibration.project.path, &calibration.prior};
+}
+
+const Calibration &fitted(const lensprof_calibration *calibration) {
+    require(calibration, "calibration");
+    if (!calibration->of_scene)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, calibration->result.path + ": was opened, and has no fit");
+    return *calibration->of_scene;
+}
+
+void require_known(const lensprof_profile_key &key, const std::string &file) {
+    if (!*key.camera_model && !*key.lens)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      file + ": EXIF names neither camera nor lens; set the key of the profile and store that");
+}
+
+std::string file_text(const lensprof_calibration &handle, const std::string &path) {
+    const Calibration &calibration = fitted(&handle);
+    const std::filesystem::path name = std::filesystem::path(path).filename();
+    if (!handle.corrects())
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, path + ": not written: " + calibration.fit.report.verdict.headline());
+    if (name.extension() == ".pto") {
+        Project copy = calibration.project;
+        return result_text(calibration.fit, copy, path);
+    }
+    if (name.extension() == ".json" && name.string().rfind("exposures", 0) == 0)
+        return exposures_text(calibration.fit, calibration.project, calibration.metadata, path);
+    lensprof_export_options options;
+    lensprof_export_options_init(&options);
+    options.format = lensprof_format_detect(nullptr, 0, path.c_str());
+    const lensprof_format_info *format = lensprof_format_get_info(options.format);
+    if (!format || !format->is_written || options.format == LENSPROF_FORMAT_MAP
+        || options.format == LENSPROF_FORMAT_DNG_OPCODES)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      path + ": the name is not that of a format that holds a profile; use .pto, exposures.json, "
+                             "profile.json or another of lensprof/formats.h");
+    const auto settings = settings_of(calibration);
+    const SettingReport *reference = &settings[0];
+    for (const SettingReport &setting : settings)
+        if (setting.is_reference) reference = &setting;
+    options.width = calibration.project.images[calibration.project.reference].camera.width;
+    options.height = calibration.project.images[calibration.project.reference].camera.height;
+    const auto profile = profile_of_setting(calibration.fit.report, *reference, storing_of(calibration));
+    const lensprof_profile *profiles[] = {profile.get()};
+    return written(path, [&](void *data, size_t capacity, size_t *count, lensprof_error *why) {
+        return lensprof_export(profiles, 1, &options, data, capacity, count, why);
+    });
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+void lensprof_calibrate_options_init_sized(lensprof_calibrate_options *options, size_t size) {
+    lensprof_init_sized(options, size);
+    if (size < first_calibrate_options) return;
+    options->modes = LENSPROF_MODES_AUTO, options->loss = LENSPROF_LOSS_ROBUST;
+    options->gamma_from = LENSPROF_GAMMA_AUTO;
+    options->seed = 1, options->max_side = SamplingOptions{}.max_side;
+    options->use_stored = 1;
+    options->prior_weight = 1.0, options->exif_sigma = -1.0;
+}
+
+lensprof_status lensprof_calibrate(const lensprof_scene *scene, const lensprof_calibrate_options *given,
+                                   const lensprof_events *events, lensprof_calibration **calibration,
+                                   lensprof_error *error) {
+    std::unique_ptr<lensprof_calibration> handle(new (std::nothrow) lensprof_calibration);
+    if (!handle) return report_failure(LENSPROF_ERROR_MEMORY, "calibration: out of memory", error);
+    return photo_call("calibration", handle->events, error, [&] {
+        handle->events.set(events);
+        require(scene, "scene"), require(calibration, "calibration");
+        lensprof_calibrate_options defaults;
+        lensprof_calibrate_options_init(&defaults);
+        const auto options = options_of(taken(given, defaults, first_calibrate_options, "options"));
+        handle->of_scene.emplace(scene->project, options, handle->events);
+        report_findings(handle->of_scene->fit.report.verdict, scene->project.path, handle->events);
+        handle->result = with_result(*handle->of_scene);
+        handle->events.set(nullptr);
+        *calibration = handle.release();
+    });
+}
+
+lensprof_status lensprof_calibration_open(const char *path, const char *images, lensprof_calibration **calibration,
+                                          lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        require(path, "path"), require(calibration, "calibration");
+        auto handle = std::make_unique<lensprof_calibration>();
+        handle->result = is_exposure_file(path) ? read_exposures(path, images ? images : "") : read_project(path);
+        *calibration = handle.release();
+    });
+}
+
+void lensprof_calibration_destroy(lensprof_calibration *calibration) { delete calibration; }
+
+const lensprof_fit *lensprof_calibration_get_fit(const lensprof_calibration *calibration) {
+    return calibration && calibration->of_scene ? calibration->of_scene->fit.best.held.get() : nullptr;
+}
+
+lensprof_status lensprof_calibration_exposure_at(const lensprof_calibration *calibration, uint32_t image,
+                                                 lensprof_exposure *exposure, double *errors, lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        require(calibration, "calibration"), require(exposure, "exposure");
+        const Project &result = calibration->result;
+        require_index(image, result.images.size(), "image");
+        if (calibration->of_scene)
+            *exposure = calibration->of_scene->fit.best.exposures[image];
+        else
+            *exposure = relative_to_joined(result)[image];
+        if (result.images[image].left_out) exposure->ev = NAN;
+        if (!errors) return;
+        std::fill(errors, errors + 4, NAN);
+        if (!calibration->of_scene || result.images[image].left_out) return;
+        const auto &quality = calibration->of_scene->fit.report.quality[image];
+        errors[0] = quality.ev_sigma;
+        std::copy_n(quality.white_balance_sigma, 3, errors + 1);
+    });
+}
+
+uint32_t lensprof_calibration_count_profiles(const lensprof_calibration *calibration) {
+    if (!calibration || !calibration->of_scene) return 0;
+    return static_cast<uint32_t>(std::max<size_t>(calibration->of_scene->fit.report.settings.size(), 1));
+}
+
+lensprof_status lensprof_calibration_profile_at(const lensprof_calibration *calibration, uint32_t index,
+                                                lensprof_profile *profile, lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        require(profile, "profile");
+        const auto settings = settings_of(fitted(calibration));
+        require_index(index, settings.size(), "profile");
+        if (!settings[index].found.images)
+            throw Failure(LENSPROF_ERROR_NOT_FOUND, settings[index].label + ": none of its pictures agrees with the "
+                                                                            "others, so that it has no profile");
+        const auto found =
+            profile_of_setting(calibration->of_scene->fit.report, settings[index], storing_of(*calibration->of_scene));
+        check(lensprof_profile_copy(profile, found.get()), "profile");
+    });
+}
+
+lensprof_status lensprof_calibration_finding_at(const lensprof_calibration *calibration, uint32_t index,
+                                                lensprof_finding *finding, lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        require(finding, "finding");
+        const auto &findings = fitted(calibration).fit.report.verdict.findings;
+        if (index >= findings.size()) throw Failure(LENSPROF_ERROR_NOT_FOUND, "finding: there are no more");
+        const Finding &from = findings[index];
+        lensprof_finding found;
+        lensprof_finding_init(&found);
+        found.code = from.code, found.severity = from.severity, found.rule_severity = from.severity;
+        found.item = from.item, found.measured = from.measured, found.limit = from.limit;
+        found.value_count = static_cast<uint32_t>(std::min(from.values.size(), std::size(found.value)));
+        std::copy_n(from.values.begin(), found.value_count, found.value);
+        set_text(found.text, sizeof found.text, from.text);
+        give(found, finding, sizeof found, "finding");
+    });
+}
+
+lensprof_status lensprof_calibration_store(lensprof_calibration *calibration, const char *database, uint32_t *stored,
+                                           lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        const Calibration &of = fitted(calibration);
+        BuildReport report = of.fit.report;
+        StoreOptions store = of.options.store;
+        store.no_store = false, store.db = database ? database : "";
+        if (report.settings.empty()) require_known(of.key, of.project.path);
+        for (SettingReport &setting : report.settings)
+            if (!*setting.key.camera_model && !*setting.key.lens) setting.no_key = "EXIF names neither camera nor lens";
+        store_result(report, of.key, store, storing_of(of));
+        uint32_t count = report.settings.empty() && report.profile_id;
+        for (const SettingReport &setting : report.settings) count += setting.profile_id != 0;
+        if (!count) throw Failure(LENSPROF_ERROR_NOT_USABLE, not_usable_text(of.project.path, report.verdict, store));
+        if (stored) *stored = count;
+    });
+}
+
+lensprof_status lensprof_calibration_save(lensprof_calibration *calibration, const char *path, lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        require(calibration, "calibration"), require(path, "path");
+        check_not_reserved(path, "result", calibration->result.files);
+        const std::string text = file_text(*calibration, path);
+        write_file(path, text.data(), text.size());
+    });
+}

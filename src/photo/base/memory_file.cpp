@@ -1,0 +1,65 @@
+#include "photo/base/memory_file.hpp"
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "photo/base/failure.hpp"
+#include "photo/base/output_file.hpp"
+
+namespace lensprof {
+namespace {
+
+std::string temporary_name() {
+    const char *folder = std::getenv("TMPDIR");
+    return std::string(folder && *folder ? folder : "/tmp") + "/lensprof-XXXXXX";
+}
+
+[[noreturn]] void fail(const std::string &what) {
+    throw Failure(LENSPROF_ERROR_WRITE, what + ": " + system_text(errno) + "; set TMPDIR to a folder with space");
+}
+
+}  // namespace
+
+MemoryFile::MemoryFile(const void *data, size_t size) {
+#ifdef MFD_CLOEXEC
+    file_ = memfd_create("lensprof", MFD_CLOEXEC);
+    if (file_ >= 0) path_ = "/proc/self/fd/" + std::to_string(file_);
+#endif
+    if (file_ < 0) {
+        path_ = temporary_name();
+        file_ = mkstemp(path_.data());
+        is_named_ = file_ >= 0;
+    }
+    if (file_ < 0) fail("bytes of a picture");
+    const auto *from = static_cast<const uint8_t *>(data);
+    for (size_t done = 0; done < size;) {
+        const ssize_t written = write(file_, from + done, size - done);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) {
+            this->~MemoryFile();
+            fail("bytes of a picture");
+        }
+        done += static_cast<size_t>(written);
+    }
+}
+
+MemoryFile::~MemoryFile() {
+    if (file_ >= 0) close(file_);
+    if (is_named_) unlink(path_.c_str());
+}
+
+TemporaryFolder::TemporaryFolder() : path_(temporary_name()) {
+    if (!mkdtemp(path_.data())) fail(path_);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,165 @@
+"""The photograph library from Python: pictures, scenes, calibrations, corrected copies."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import lensprof as lp
+
+PROGRAM = os.environ["LENSPROF_PROGRAM"]
+
+
+def run(*words):
+    return subprocess.run([PROGRAM, *map(str, words)], check=True, capture_output=True, text=True).stdout
+
+
+class WithScene(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls._folder = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls._folder.name)
+        cls.photos = cls.folder / "photos"
+        run("simulate", "-o", cls.photos)
+        for other in [*cls.photos.glob("*.pto"), *cls.photos.glob("*.json")]:
+            other.unlink()
+        cls.files = sorted(cls.photos.glob("*.png"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls._folder.cleanup()
+
+    def setUp(self):
+        catch = warnings.catch_warnings()
+        catch.__enter__()
+        warnings.simplefilter("ignore", lp.Notice)
+        self.addCleanup(catch.__exit__, None, None, None)
+
+
+class TestPictures(WithScene):
+    def test_read_and_write(self):
+        picture = lp.read_picture(self.files[0])
+        self.assertEqual(picture.pixels.shape, (600, 800, 3))
+        self.assertEqual(picture.metadata.key.lens, "Simulated Lens")
+        np.testing.assert_array_equal(lp.read_picture(self.files[0].read_bytes()).pixels, picture.pixels)
+        self.assertLess(lp.read_picture(self.files[0], max_side=100).pixels.shape[1], 300)
+        for name, pixels in (("a.png", picture.pixels), ("b.tif", picture.pixels.astype(np.uint16) * 257),
+                             ("c.tif", picture.pixels / np.float32(255)), ("d.png", picture.pixels[::-1, ::2, 0].copy())):
+            lp.write_picture(self.folder / name, pixels, like=picture)
+            np.testing.assert_array_equal(lp.read_picture(self.folder / name).pixels, pixels)
+        self.assertEqual(lp.read_picture(self.folder / "a.png").metadata.key.lens, "Simulated Lens")
+        encoded = lp.encode_picture(".png", picture.pixels)
+        np.testing.assert_array_equal(lp.read_picture(encoded).pixels, picture.pixels)
+        self.assertLess(len(lp.encode_picture(".jpg", picture.pixels, jpeg_quality=30)), len(encoded))
+
+    def test_refused(self):
+        for source, status in ((self.folder / "missing.png", lp.Status.ERROR_READ), (b"GIF89a", lp.Status.ERROR_READ),
+                               (b"", lp.Status.ERROR_READ), (self.folder, lp.Status.ERROR_READ)):
+            with self.assertRaises(lp.Error) as caught:
+                lp.read_picture(source)
+            self.assertIs(caught.exception.status, status)
+        with self.assertRaises(lp.Error):
+            lp.write_picture(self.folder / "a.xyz", np.zeros((2, 2), np.uint8))
+        self.assertFalse((self.folder / "a.xyz").exists())
+        with self.assertRaises(TypeError):
+            lp.write_picture(self.folder / "a.png", np.zeros((2, 2), np.int64))
+
+
+class TestCalibration(WithScene):
+    def test_as_build(self):
+        built = json.loads(run("build", self.photos, "--no-store", "--json"))
+        calibration = lp.calibrate(self.photos)
+        self.assertTrue(calibration.usable and calibration.equalizes)
+        self.assertEqual(list(calibration.exposures["name"]), [file.name for file in self.files])
+        self.assertEqual(list(calibration.exposures["ev"]), [image["ev"] for image in built["images"]])
+        self.assertEqual(list(calibration.exposures["ev_sigma"]), [image["ev_sigma"] for image in built["images"]])
+        self.assertEqual(list(calibration.profiles[0].vignetting[0].k), built["vignetting"]["k"][0])
+        self.assertEqual([finding.text for finding in calibration.findings], [f["text"] for f in built["findings"]])
+
+    def test_scene(self):
+        scene = lp.Scene.open([self.files[0], self.files[1], self.files[2]])
+        self.assertEqual([image.camera.width for image in scene.images], [800] * 3)
+        self.assertEqual((scene.left_out, len(scene.matches), scene.is_reconstruction), ({}, 0, False))
+        scene.save(self.folder / "found.pto")
+        self.assertEqual(len(lp.Scene.open(self.folder / "found.pto").images), 3)
+
+    def test_saved_and_corrected(self):
+        calibration = lp.calibrate(self.photos)
+        for name in ("exposures.json", "result.pto", "profile.json", "pcalib.txt"):
+            calibration.save(self.folder / name)
+        read = lp.Calibration.read(self.folder / "exposures.json")
+        np.testing.assert_array_equal(read.exposures["ev"], calibration.exposures["ev"])
+        lp.correct_file(self.files[1], calibration, self.folder / "one.png")
+        lp.correct_file(self.files[1], read, self.folder / "two.png")
+        one, two = (lp.read_picture(self.folder / name).pixels for name in ("one.png", "two.png"))
+        np.testing.assert_array_equal(one, two)
+        self.assertGreater(np.abs(one.astype(int) - lp.read_picture(self.files[1]).pixels).mean(), 1)
+        count = lp.correct_files([(file, self.folder / f"all-{file.name}") for file in self.files], calibration)
+        self.assertEqual(count, len(self.files))
+        with self.assertRaises(lp.Error) as caught:
+            lp.correct_file(self.files[1], calibration, self.files[1])
+        self.assertIs(caught.exception.status, lp.Status.ERROR_ARGUMENT)
+
+    def test_stored(self):
+        database = self.folder / "profiles.db"
+        self.assertEqual(lp.calibrate(self.photos, use_stored=False).store(database), 1)
+        self.assertEqual(lp.correct_files([(self.files[0], self.folder / "by-profile.png")], databases=[database]), 1)
+
+    def test_arrays(self):
+        frames = (lp.read_picture(file).pixels for file in self.files[:4])
+        calibration = lp.calibrate(frames, names=["a", "b", "c", "d"])
+        self.assertEqual(list(calibration.exposures["name"]), ["a", "b", "c", "d"])
+        self.assertTrue(calibration.equalizes)
+        with self.assertRaises(ValueError):
+            lp.calibrate([np.zeros((8, 8), np.uint8)], names=["../a"])
+
+    def test_refused(self):
+        for paths, status in ((self.folder / "missing", lp.Status.ERROR_READ), (self.files[:1], lp.Status.ERROR_NOT_USABLE),
+                              ([], lp.Status.ERROR_ARGUMENT)):
+            with self.assertRaises(lp.Error) as caught:
+                lp.Scene.open(paths)
+            self.assertIs(caught.exception.status, status)
+        scene = lp.Scene.open(self.photos)
+        with self.assertRaises(ValueError):
+            scene.calibrate(method=77)
+        scene.close()
+        with self.assertRaises(ValueError):
+            scene.calibrate()
+
+    def test_progress(self):
+        steps = []
+        lp.calibrate(self.photos, progress=lambda step, done: steps.append((step, done)))
+        self.assertIn("fitting", {step for step, _ in steps})
+        self.assertTrue(all(0 <= done <= 1 for _, done in steps))
+        with self.assertRaises(lp.Error) as caught:
+            lp.Scene.open(self.photos, progress=lambda step, done: True)
+        self.assertIs(caught.exception.status, lp.Status.ERROR_CANCELLED)
+        with self.assertRaises(ZeroDivisionError):
+            lp.Scene.open(self.photos, progress=lambda step, done: 1 / 0)
+
+    def test_notices(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            lp.Scene.open([*self.files, self.files[0]])
+            (self.folder / "broken.png").write_bytes(b"\x89PNG\r\n")
+            lp.Scene.open([*self.files, self.folder / "broken.png"])
+        self.assertIn("broken.png", "".join(str(warning.message) for warning in caught))
+
+
+class TestMissing(unittest.TestCase):
+    def test_only_the_base_library(self):
+        code = ("import lensprof as lp\nprint(lp.version())\ntry:\n    lp.read_picture('a.png')\n"
+                "except ImportError as error:\n    print(error)")
+        done = subprocess.run(["/usr/bin/env", "python3", "-c", code], capture_output=True, text=True,
+                              env={**os.environ, "LENSPROF_PHOTO_LIBRARY": "/nowhere/liblensprof-photo.so"})
+        if "No module named" in done.stderr:
+            self.skipTest("another python3")
+        self.assertIn("install lensprof with it", done.stdout, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
