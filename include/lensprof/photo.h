@@ -347,6 +347,49 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_correct_files(const lens
                                                                       const lensprof_events *events, uint32_t *written,
                                                                       lensprof_error *error);
 
+/* ---- The whole job of a folder ---------------------------------------------------------------------------------- */
+
+typedef struct lensprof_folder_options {
+    uint32_t struct_size;
+    uint32_t one_lens;            /* 1: all pictures of a panorama are from one camera and lens, whatever EXIF states */
+    uint32_t no_store;            /* 1: profiles are not stored */
+    uint32_t overwrite;           /* 1: replace files in the output folder that this function did not write */
+    uint32_t threads;             /* that correct pictures; 0: all cores */
+    uint32_t database_count;      /* 0: the user's own and the installed one */
+    const char *const *databases; /* searched in order; profiles are stored in the first */
+} lensprof_folder_options;
+
+/* Defaults: zero. */
+static inline void lensprof_folder_options_init(lensprof_folder_options *options) {
+    lensprof_init_sized(options, sizeof *options);
+}
+
+typedef struct lensprof_folder_result {
+    uint32_t struct_size;
+    uint32_t found;     /* pictures */
+    uint32_t panoramas; /* groups of overlapping pictures; */
+    uint32_t fitted;    /* of these, fitted by this call: the others were, by an earlier one */
+    uint32_t corrected; /* pictures with a corrected copy; */
+    uint32_t written;   /* of these, by this call */
+    uint32_t left_out;  /* pictures without one; calibrate.json has the reasons */
+    uint32_t reserved;  /* 0 */
+} lensprof_folder_result;
+
+/* Zero. */
+static inline void lensprof_folder_result_init(lensprof_folder_result *result) {
+    lensprof_init_sized(result, sizeof *result);
+}
+
+/* Finds all panoramas in pictures and folders (with subfolders), fits them, stores their profiles, and corrects them;
+ * other pictures are corrected by the databases. The folder `output` receives a copy of each under its own name, per
+ * panorama a project and a mosaic, contact sheets, and calibrate.json with all numbers and reasons. A second call does
+ * what is missing or has changed, also after a cancellation. Originals are never modified. A panorama that somebody has
+ * edited in Hugin in between is corrected as its project states, with a notice. `options`, `events` and `result` may be
+ * NULL. A picture or panorama that fails does not stop the others. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibrate_folder(
+    const char *const *paths, uint32_t count, const char *output, const lensprof_folder_options *options,
+    const lensprof_events *events, lensprof_folder_result *result, lensprof_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,7 +1,7 @@
 // Which files `calibrate` recognises as its own: records, locks, and existing files that block outputs.
 #include "calibrate_runs.hpp"
-#include "cli/calibrate/ledger.hpp"
 #include "cli/calibrate/summary.hpp"
+#include "photo/folder/ledger.hpp"
 
 #include <sys/file.h>
 
@@ -247,7 +247,7 @@ void test_reasons_are_whole(void **) {
     std::string reason = "img0.png: ";
     for (int i = 0; i < 60; i++) reason += "because" + std::to_string(i) + (i == 50 ? "; " : " ");
     reason += "use this";
-    CalibrateOptions o;
+    FolderOptions o;
     o.output = "out";
     Inputs inputs;
     inputs.left_out.push_back({"img0.png", reason});

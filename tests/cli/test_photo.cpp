@@ -297,6 +297,35 @@ void test_bad_copies(void **) {
     assert_false(fs::exists(to_a));
 }
 
+// The whole job: a second call has nothing to do, and the folder is that of the command.
+void test_folder(void **) {
+    const std::string in = photos(), out = work("out"), db = work("p.db");
+    const char *path = in.c_str(), *database = db.c_str();
+    lensprof_folder_options options;
+    lensprof_folder_options_init(&options);
+    options.databases = &database, options.database_count = 1;
+    lensprof_folder_result result;
+    lensprof_folder_result_init(&result);
+    lensprof_error error{};
+    must_be_ok(lensprof_calibrate_folder(&path, 1, out.c_str(), &options, nullptr, &result, &error), error);
+    assert_int_equal(result.found, 6);
+    assert_int_equal(result.corrected, 6);
+    assert_int_equal(result.written, 6);
+    assert_int_equal(result.fitted, 1);
+    must_be_ok(lensprof_calibrate_folder(&path, 1, out.c_str(), &options, nullptr, &result, &error), error);
+    assert_int_equal(result.written, 0);
+    assert_int_equal(result.fitted, 0);
+    const Json json = json_of({"calibrate", in, "-o", out, "--db", db, "--json"});
+    assert_int_equal(json["now"]["corrected"], 0);
+    assert_true(fs::exists(db));
+    assert_status(LENSPROF_ERROR_ARGUMENT, "input", [&](auto *why) {
+        return lensprof_calibrate_folder(&path, 1, in.c_str(), &options, nullptr, nullptr, why);
+    });
+    assert_status(LENSPROF_ERROR_ARGUMENT, "NULL", [&](auto *why) {
+        return lensprof_calibrate_folder(&path, 1, nullptr, nullptr, nullptr, nullptr, why);
+    });
+}
+
 struct Counted {
     int steps = 0, notices = 0, last = 1 << 30;
     static int on_step(const char *, double, const char *, void *user) {
@@ -336,9 +365,9 @@ void test_cancelled(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        CLI_TEST(test_as_build),   CLI_TEST(test_scene),      CLI_TEST(test_saved),
-        CLI_TEST(test_profiles),   CLI_TEST(test_pictures),   CLI_TEST(test_bad_pictures),
-        CLI_TEST(test_bad_scenes), CLI_TEST(test_bad_copies), CLI_TEST(test_cancelled),
+        CLI_TEST(test_as_build),  CLI_TEST(test_scene),        CLI_TEST(test_saved),      CLI_TEST(test_profiles),
+        CLI_TEST(test_pictures),  CLI_TEST(test_bad_pictures), CLI_TEST(test_bad_scenes), CLI_TEST(test_bad_copies),
+        CLI_TEST(test_cancelled), CLI_TEST(test_folder),
     };
     return cmocka_run_group_tests(tests, make_photos, remove_folder);
 }

@@ -97,7 +97,7 @@ ROOMS = {
                 "sampling", "flat", "rendering", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "correct", "api"],
+    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "correct", "folder", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 

@@ -662,6 +662,23 @@ static void print_structs(void) {
     FIELD(lensprof_correct_options, databases);
     FIELD(lensprof_correct_options, database_count);
     FIELD(lensprof_correct_options, reserved);
+    STRUCT(lensprof_folder_options);
+    FIELD(lensprof_folder_options, struct_size);
+    FIELD(lensprof_folder_options, one_lens);
+    FIELD(lensprof_folder_options, no_store);
+    FIELD(lensprof_folder_options, overwrite);
+    FIELD(lensprof_folder_options, threads);
+    FIELD(lensprof_folder_options, database_count);
+    FIELD(lensprof_folder_options, databases);
+    STRUCT(lensprof_folder_result);
+    FIELD(lensprof_folder_result, struct_size);
+    FIELD(lensprof_folder_result, found);
+    FIELD(lensprof_folder_result, panoramas);
+    FIELD(lensprof_folder_result, fitted);
+    FIELD(lensprof_folder_result, corrected);
+    FIELD(lensprof_folder_result, written);
+    FIELD(lensprof_folder_result, left_out);
+    FIELD(lensprof_folder_result, reserved);
 }
 
 static void print_values(void) {

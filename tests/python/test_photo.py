@@ -117,6 +117,13 @@ class TestCalibration(WithScene):
         with self.assertRaises(ValueError):
             lp.calibrate([np.zeros((8, 8), np.uint8)], names=["../a"])
 
+    def test_folder(self):
+        out = self.folder / "out"
+        done = lp.calibrate_folder(self.photos, out, store=False)
+        self.assertEqual(len(done["pictures"]), len(self.files))
+        self.assertTrue((out / self.files[0].name).exists())
+        self.assertEqual(lp.calibrate_folder(self.photos, out, store=False), done)
+
     def test_refused(self):
         for paths, status in ((self.folder / "missing", lp.Status.ERROR_READ), (self.files[:1], lp.Status.ERROR_NOT_USABLE),
                               ([], lp.Status.ERROR_ARGUMENT)):

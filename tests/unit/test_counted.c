@@ -199,6 +199,7 @@ static void test_table_is_complete(void **state) {
     assert_int_equal(glob(LENSPROF_INCLUDE "/lensprof/*.h", 0, NULL, &headers), 0);
     assert_int_equal(glob(LENSPROF_INCLUDE "/../src/formats/each_format.h", GLOB_APPEND, NULL, &headers), 0);
     for (size_t h = 0; h < headers.gl_pathc; h++) {
+        if (strstr(headers.gl_pathv[h], "/photo.h")) continue; /* of another library: tests/cli/test_photo.cpp */
         FILE *file = fopen(headers.gl_pathv[h], "rb");
         assert_non_null(file);
         text[fread(text, 1, sizeof text - 1, file)] = 0;

@@ -21,7 +21,7 @@ from .formats import (FormatInfo, Pto, PtoImage, detect_format, export_profiles,
 from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
 from .photo import (EXPOSURES_DTYPE, Calibration, CalibrateOptions, Notice, Picture, PictureMetadata, Scene,
-                    SceneImage, calibrate, correct_file, correct_files, encode_picture, read_picture, write_picture)
+                    SceneImage, calibrate, calibrate_folder, correct_file, correct_files, encode_picture, read_picture, write_picture)
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 from .reason import Finding, Item, reason_name, reason_text
 from .rendering import RenderingResult, RenderingShot, fit_rendering
@@ -41,7 +41,7 @@ __all__ = [
     "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
     "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Scene", "SceneImage", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames",
-    "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "calibrate", "correct", "correct_file",
+    "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "calibrate", "calibrate_folder", "correct", "correct_file",
     "correct_files", "detect_format", "emor_table", "encode_picture",
     "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "fit_rendering", "format_info", "half_diagonal", "import_profiles",
     "layout_channels", "layout_samples", "lensfun_read_cameras", "lookup_in", "map_read", "map_write", "points_read",

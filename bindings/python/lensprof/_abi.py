@@ -1368,6 +1368,31 @@ class CorrectOptions(Structure):
     ]
 
 
+class FolderOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("one_lens", c_uint32),
+        ("no_store", c_uint32),
+        ("overwrite", c_uint32),
+        ("threads", c_uint32),
+        ("database_count", c_uint32),
+        ("databases", POINTER(c_char_p)),
+    ]
+
+
+class FolderResult(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("found", c_uint32),
+        ("panoramas", c_uint32),
+        ("fitted", c_uint32),
+        ("corrected", c_uint32),
+        ("written", c_uint32),
+        ("left_out", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
 # Prefix in C of the members of each enumeration.
 ENUMS = {
     "LENSPROF_": Status,
@@ -1464,6 +1489,8 @@ STRUCTS = {
     "lensprof_calibrate_options": CalibrateOptions,
     "lensprof_copy": Copy,
     "lensprof_correct_options": CorrectOptions,
+    "lensprof_folder_options": FolderOptions,
+    "lensprof_folder_result": FolderResult,
 }
 
 OPAQUE = {
@@ -1523,6 +1550,8 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     SceneInfo: ("lensprof_init_sized", [SceneInfo]),
     CalibrateOptions: ("lensprof_calibrate_options_init_sized", [CalibrateOptions]),
     CorrectOptions: ("lensprof_correct_options_init_sized", [CorrectOptions]),
+    FolderOptions: ("lensprof_init_sized", [FolderOptions]),
+    FolderResult: ("lensprof_init_sized", [FolderResult]),
 }
 
 # name: (restype, argtypes)
@@ -1743,4 +1772,6 @@ PHOTO_FUNCTIONS = {
     "lensprof_correct_options_init_sized": (None, [POINTER(CorrectOptions), c_size_t]),
     "lensprof_correct_files": (c_int, [POINTER(Calibration), POINTER(Copy), c_uint32, POINTER(CorrectOptions),
                                        POINTER(Events), POINTER(c_uint32), POINTER(ErrorText)]),
+    "lensprof_calibrate_folder": (c_int, [POINTER(c_char_p), c_uint32, c_char_p, POINTER(FolderOptions),
+                                          POINTER(Events), POINTER(FolderResult), POINTER(ErrorText)]),
 }

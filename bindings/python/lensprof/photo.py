@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import json
 import os
 import pathlib
 import tempfile
@@ -479,6 +480,25 @@ def calibrate(pictures: Any, names: Optional[Sequence[str]] = None, progress: Un
             progress, one_lens=one_lens, **options)
     calibration.exposures["name"] = [name[:-len(".png")] for name in calibration.exposures["name"]]
     return calibration
+
+
+def calibrate_folder(paths: Union[PathLike, Sequence[PathLike]], output: PathLike, databases: Sequence[PathLike] = (),
+                     store: bool = True, one_lens: bool = False, overwrite: bool = False, threads: int = 0,
+                     progress: Union[Progress, bool, None] = None) -> dict[str, Any]:
+    """The whole job of a folder: all its panoramas are found, fitted, stored and corrected, other pictures are corrected
+    by the databases. A second call does what is missing or has changed. Returns the content of output/calibrate.json
+    (docs/json.md)."""
+    names = [_path(path) for path in ([paths] if isinstance(paths, (str, os.PathLike)) else list(paths))]
+    array = (c_char_p * max(len(names), 1))(*names)
+    options = initialised(_abi.FolderOptions, one_lens=int(one_lens), no_store=int(not store), overwrite=int(overwrite),
+                          threads=threads)
+    held = _paths(options, databases)  # noqa: F841
+    library, error = photo(), _abi.ErrorText()
+    with _events(progress) as events:
+        status = library.lensprof_calibrate_folder(array, len(names), _path(output), byref(options), events, None,
+                                                   byref(error))
+    check(status, "the folder cannot be calibrated", error)
+    return dict(json.loads((pathlib.Path(output) / "calibrate.json").read_text("utf-8")))
 
 
 class _CorrectOptions(Struct, _abi.CorrectOptions):

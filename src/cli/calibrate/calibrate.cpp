@@ -4,26 +4,37 @@
 #include <memory>
 #include <sstream>
 
-#include "cli/calibrate/corrections.hpp"
 #include "cli/calibrate/folder_page.hpp"
-#include "cli/calibrate/inputs.hpp"
-#include "cli/calibrate/ledger.hpp"
-#include "cli/calibrate/panoramas.hpp"
-#include "cli/calibrate/sheet.hpp"
 #include "cli/calibrate/summary.hpp"
+#include "cli/fitting/fit_page.hpp"
 #include "cli/page/page.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
-#include "photo/base/input_file.hpp"
+#include "cli/program/progress.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
-#include "photo/pictures/named_pictures.hpp"
-#include "photo/registration/registration.hpp"
+#include "photo/base/utf8.hpp"
+#include "photo/folder/calibrate_folder.hpp"
 
 namespace lensprof {
 namespace {
+
+struct CalibrateOptions : FolderOptions {
+    std::string report;
+    bool json = false, progress = false;
+};
+
+// The part of a panorama in the report, without pictures.
+Json page_of_panorama(Calibration &calibration, const std::vector<std::string> &warnings, Events &events) {
+    ProjectFit &fit = calibration.fit;
+    Json page = fit_page_data(
+        {fit.report, fit.input, fit.best, fit.input.images, calibration.project, calibration.metadata, "", "", false},
+        events);
+    add_fit_verdict(page, fit.report, warnings);
+    return page;
+}
 
 void declare(Command &command, CalibrateOptions &o) {
     command.files("FILE", o.inputs, "pictures and folders of pictures (with subfolders)");
@@ -60,40 +71,6 @@ void declare(Command &command, CalibrateOptions &o) {
     command.example("lensprof calibrate holiday -o holiday/calibrated");
 }
 
-// Checks for files in the way of outputs before anything is computed.
-void check_existing_files(const CalibrateOptions &o, const Inputs &inputs, const Ledger &ledger) {
-    std::vector<std::string> outputs = sheet_names(o, inputs.pictures.size());
-    outputs.insert(outputs.begin(), (std::filesystem::path(o.output) / summary_name).string());
-    for (const InputPicture &picture : inputs.pictures) outputs.push_back(picture.target);
-    for (const std::string &file : outputs) {
-        if (is_folder(file))
-            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is a folder; give another output folder with -o");
-        if (!o.overwrite && !ledger.contains(file) && ledger.is_foreign(file))
-            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": exists and was not written by calibrate; give another folder "
-                                                  "with -o, or use --overwrite");
-    }
-}
-
-// Writes only if it has changed: a run that finds everything done changes nothing.
-void write_summary(const CalibrateOptions &o, const Json &json, Ledger &ledger) {
-    const std::string file = (std::filesystem::path(o.output) / summary_name).string();
-    std::ostringstream text;
-    print_json(json, text);
-    const std::string key = digest_of_text(text.str());
-    if (!ledger.is_current(file, key)) {
-        ledger.begin(file, key);
-        ledger.save();
-        write_file(file, text.str().data(), text.str().size());
-        ledger.finish(file);
-    }
-    ledger.save();
-}
-
-// A database in the output folder needs no check before the folder is created.
-void check_database(const CalibrateOptions &o) {
-    if (o.store.db.empty() || !is_in_new_folder(o.store.db, o.output)) check_store(o.store);
-}
-
 // Failure for a report that cannot be written, before anything is computed.
 void check_report(const CalibrateOptions &o) {
     if (o.report.empty()) return;
@@ -108,57 +85,28 @@ void check_report(const CalibrateOptions &o) {
     if (!is_in_new_folder(o.report, o.output)) check_output_file(o.report);
 }
 
-int run(const CalibrateOptions &o, Streams &streams) {
-    Progress progress(streams, o.progress);
+int run(CalibrateOptions &o, Streams &streams) {
+    Progress events(streams, o.progress);
     check_report(o);
-    check_output_folder(o.output);
-    check_database(o);
-    FolderLock lock(o.output);
-    const Inputs inputs = find_inputs(o.inputs, o.output, progress);
-    if (has_ledger(o.output)) remove_stale_temporaries(o.output);
-    Ledger ledger(o.output, o.overwrite);
-    check_existing_files(o, inputs, ledger);
-    if (inputs.pictures.empty() && inputs.unreadable)
-        throw Failure(LENSPROF_ERROR_READ,
-                      (inputs.found > 1 ? inputs.label + ": none of the pictures can be read; the first: " : "")
-                          + inputs.left_out[0].reason);
-    if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
-    make_folder(o.output);
-    lock.acquire();
-    Panoramas panoramas;
-    try {
-        panoramas = find_panoramas(o, inputs, ledger, progress);
-        remove_obsolete_panoramas(o, panoramas, ledger);
-        fit_panoramas(o, panoramas, ledger, progress);
-    } catch (const Json::exception &) {  // somebody edited the records
-        throw Failure(LENSPROF_ERROR_WRITE, (std::filesystem::path(o.output) / calibrate_records).string()
-                                                + ": invalid records of earlier runs; remove this file and run again");
-    }
-    CorrectedPictures pictures = plan_corrections(o, inputs, panoramas);
-    write_corrections(o, pictures, ledger, progress);
-    write_sheets(o, pictures, ledger, progress);
-    progress.clear();
-    Json json = summary_json(o, inputs, panoramas, pictures);
-    write_summary(o, json, ledger);
+    o.describe = page_of_panorama;
+    FolderResult result = calibrate_folder(o, events);
+    const auto &[inputs, panoramas, pictures, summary, is_stored] = result;
+    events.clear();
     if (!o.report.empty()) {
-        const std::string page = folder_page(inputs, panoramas, pictures, json, command_text(streams.words), progress);
+        const std::string page = folder_page(inputs, panoramas, pictures, summary, command_text(streams.words), events);
         write_file(o.report, page.data(), page.size());
     }
     if (o.json) {
+        Json json = summary;
         json["now"] = {
             {"registered", panoramas.is_registered}, {"fitted", panoramas.fitted}, {"corrected", pictures.written}};
         print_json(json, streams.out);
     } else {
         print_summary(o, inputs, panoramas, pictures, streams.out);
+        if (!o.report.empty()) streams.out << one_line("report    " + o.report) << "\n";
     }
-    const bool is_stored = std::any_of(panoramas.list.begin(), panoramas.list.end(), [](const Panorama &p) {
-        return p.summary["result"].is_object() && !p.summary["result"]["profile"].is_null();
-    });
     if (!pictures.list.empty() || is_stored) return static_cast<int>(ExitCode::done);
-    print_message(streams, inputs.label + ": nothing could be corrected; see the reasons in "
-                               + (std::filesystem::path(o.output) / summary_name).string()
-                               + ", and where none is given, give pictures that overlap by a third, or a database "
-                                 "that contains the lens");
+    print_message(streams, nothing_corrected(o, inputs));
     return static_cast<int>(ExitCode::not_usable);
 }
 

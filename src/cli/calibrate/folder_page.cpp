@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "cli/calibrate/attempt.hpp"
-#include "cli/calibrate/sheet.hpp"
 #include "cli/calibrate/summary.hpp"
 #include "cli/page/page.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/preview.hpp"
+#include "photo/folder/attempt.hpp"
+#include "photo/folder/sheet.hpp"
 #include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
@@ -55,7 +55,7 @@ Json facts_json(const Inputs &inputs, const Panoramas &panoramas, const Correcte
 
 // The mosaics, then the pictures.
 // Returns the names of pictures that cannot be read.
-std::vector<std::string> add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Progress &progress,
+std::vector<std::string> add_views(const Panoramas &panoramas, const CorrectedPictures &pictures, Events &progress,
                                    Json &page) {
     Json views = Json::array();
     const auto mosaic_side = static_cast<uint32_t>(
@@ -109,7 +109,7 @@ Json looked_up_json(const CorrectedPictures &pictures) {
 }  // namespace
 
 std::string folder_page(const Inputs &inputs, const Panoramas &panoramas, const CorrectedPictures &pictures,
-                        const Json &summary, const std::string &command, Progress &progress) {
+                        const Json &summary, const std::string &command, Events &progress) {
     Json page = new_page("folder", inputs.label, "Calibration of a folder of pictures", command);
     const std::vector<std::string> unreadable = add_views(panoramas, pictures, progress, page);
     page["verdict"] = verdict_json(inputs, panoramas, pictures, summary, unreadable);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/calibrate/sheet.hpp"
 #include "cli/program/help_text.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/utf8.hpp"
+#include "photo/folder/sheet.hpp"
 #include "photo/report/falloff.hpp"
 
 namespace lensprof {
@@ -41,13 +41,6 @@ std::string entry(const std::string &text) {
     return "  " + lines + "\n";
 }
 
-std::vector<LeftOutPicture> all_left_out(const Inputs &inputs, const CorrectedPictures &pictures) {
-    std::vector<LeftOutPicture> all(inputs.left_out);
-    all.insert(all.end(), pictures.left_out.begin(), pictures.left_out.end());
-    std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.file < b.file; });
-    return all;
-}
-
 void print_panoramas(const Panoramas &panoramas, std::ostream &out) {
     size_t members = 0, corrected = 0;
     for (const Panorama &panorama : panoramas.list)
@@ -80,30 +73,7 @@ std::string panorama_line(const Panorama &panorama) {
     return reason.empty() ? text : text + "; " + reason;
 }
 
-Json summary_json(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
-                  const CorrectedPictures &pictures) {
-    Json json = {{"schema", json_schema},
-                 {"software", std::string("lensprof ") + lensprof_version()},
-                 {"inputs", o.inputs},
-                 {"found", inputs.found},
-                 {"unreadable", inputs.unreadable}};
-    json["panoramas"] = Json::array(), json["pictures"] = Json::array(), json["left_out"] = Json::array();
-    for (const Panorama &panorama : panoramas.list) json["panoramas"].push_back(panorama.summary);
-    for (const CorrectedPicture &picture : pictures.list) {
-        Json entry = {{"file", picture.picture->file}, {"output", picture.picture->target}};
-        entry["panorama"] = picture.panorama.empty() ? Json() : Json(picture.panorama);
-        entry["ev"] = picture.ev ? Json(*picture.ev) : Json();
-        if (picture.job.profile_id) entry["profile"] = picture.job.profile_id;
-        if (picture.job.lookup) entry["lookup"] = lookup_json(*picture.job.lookup);
-        json["pictures"].push_back(entry);
-    }
-    for (const LeftOutPicture &entry : all_left_out(inputs, pictures))
-        json["left_out"].push_back({{"file", entry.file}, {"reason", entry.reason}});
-    json["sheets"] = sheet_names(o, pictures.list.size());
-    return json;
-}
-
-void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
+void print_summary(const FolderOptions &o, const Inputs &inputs, const Panoramas &panoramas,
                    const CorrectedPictures &pictures, std::ostream &out) {
     out << "read      " << counted(inputs.found, "picture");
     if (inputs.unreadable) out << ", " << inputs.unreadable << " of them unreadable";
@@ -131,7 +101,6 @@ void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panora
                     + (pictures.list.empty() ? "" : ", calibrate_sheet.jpg")
                     + (panoramas.list.empty() ? "" : ", panorama_*.pto") + (has_mosaics ? ", panorama_*.jpg" : ""))
         << "\n";
-    if (!o.report.empty()) out << one_line("report    " + o.report) << "\n";
 }
 
 }  // namespace lensprof

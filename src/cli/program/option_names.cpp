@@ -43,6 +43,9 @@ std::string advice_for(const std::string &situation) {
     static const std::map<std::string, std::string> advice = {
         {"accept", "; it does correct these pictures: use --no-store to accept it"},
         {"apply", "lensprof apply"},
+        {"apply_database", " --db"},
+        {"apply_project", "lensprof apply --pto"},
+        {"build_project", "; use `lensprof build` for a project"},
         {"exif_used", " (--fit exif-sigma=0 ignores EXIF)"},
         {"exposure_file_wanted", "; give the file that `lensprof build --write exposures=FILE` wrote"},
         {"exposure_of_options", "; it is that of --ev or --times"},
@@ -52,6 +55,8 @@ std::string advice_for(const std::string &situation) {
         {"free_parameters", " (use --fit free=... to change this)"},
         {"fixed_balance", " (Er and Eb on the v lines, or --fit free=all)"},
         {"make_profile", " with `lensprof build`"},
+        {"name_pictures", "; run `lensprof build` on the pictures with --camera and --lens"},
+        {"name_project", "; run `lensprof build` on the project with --camera and --lens"},
         {"no_profile", "; see `lensprof profile list`"},
         {"one_lens", " (use --one-lens to treat all as one)"},
         {"one_visit", ", with --reconstruction list=FILE"},

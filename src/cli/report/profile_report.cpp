@@ -1,4 +1,4 @@
-// A profile as JSON and as a table.
+// A profile as a table.
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
@@ -20,35 +20,6 @@ void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
 }
 
 }  // namespace
-
-Json provenance_json(const lensprof_provenance &p) {
-    return {{"method", p.method},
-            {"software", p.software},
-            {"source", p.source},
-            {"created_unix_s", p.created_unix_s},
-            {"images", p.images},
-            {"pairs", p.pairs},
-            {"heldout_rms", number_or_null(p.heldout_rms)},
-            {"inlier_share", number_or_null(p.inlier_share)},
-            {"doubt", p.doubt},
-            {"prior_id", p.prior_id ? Json(p.prior_id) : Json()},
-            {"forced", p.forced != 0},
-            {"gamma_sigma", p.gamma_sigma > 0.0 ? Json(p.gamma_sigma) : Json()}};
-}
-
-Json profile_json(int64_t id, const lensprof_profile &profile) {
-    const lensprof_profile *const pointer = &profile;
-    lensprof_export_options options;
-    lensprof_export_options_init(&options);
-    options.format = LENSPROF_FORMAT_JSON;
-    const auto write = [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
-        return lensprof_export(&pointer, 1, &options, text, capacity, count, error);
-    };
-    Json json = Json::parse(written("profile as JSON", write));
-    json["response"]["values"] = samples_json(profile.response, profile.responses);
-    if (id) json["id"] = id;
-    return json;
-}
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;

@@ -28,9 +28,6 @@ void print_comparison(const BuildReport &report, const TrueValues &truth, std::o
 void print_vignettings(const lensprof_profile &profile, std::ostream &out);
 void print_response(const lensprof_response &r, std::ostream &out);
 
-Json provenance_json(const lensprof_provenance &provenance);
-// `id` is the id in the database; 0 = none.
-Json profile_json(int64_t id, const lensprof_profile &profile);
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);
 
 }  // namespace lensprof

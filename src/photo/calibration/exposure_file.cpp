@@ -62,21 +62,25 @@ Json image_json(const ProjectFit &state, const Project &project, uint32_t i, con
 
 }  // namespace
 
-std::string exposures_text(const ProjectFit &state, const Project &project,
-                           const std::vector<PictureMetadata> &metadata, const std::string &path) {
+Json exposures_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata,
+                    const std::string &path) {
     const fs::path folder = fs::path(absolute_path(path)).parent_path();
     Json images = Json::array();
     for (uint32_t i = 0; i < project.names.size(); i++) images.push_back(image_json(state, project, i, folder));
     const lensprof_exposure mean = mean_exposure(state.best.exposures);
-    const Json all = {{"schema", exposures_schema},
-                      {"file", "lensprof exposures"},
-                      {"software", std::string("lensprof ") + lensprof_version()},
-                      {"reference", project.names[state.best.reference]},
-                      {"mean", {{"ev", mean.ev}, {"white_balance", mean.white_balance}}},
-                      {"cameras", cameras_json(state, project, metadata)},
-                      {"lenses", lenses_json(state, project, metadata)},
-                      {"images", images}};
-    return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return {{"schema", exposures_schema},
+            {"file", "lensprof exposures"},
+            {"software", std::string("lensprof ") + lensprof_version()},
+            {"reference", project.names[state.best.reference]},
+            {"mean", {{"ev", mean.ev}, {"white_balance", mean.white_balance}}},
+            {"cameras", cameras_json(state, project, metadata)},
+            {"lenses", lenses_json(state, project, metadata)},
+            {"images", images}};
+}
+
+std::string exposures_text(const ProjectFit &state, const Project &project,
+                           const std::vector<PictureMetadata> &metadata, const std::string &path) {
+    return exposures_json(state, project, metadata, path).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace lensprof

@@ -9,6 +9,10 @@
 
 namespace lensprof {
 
+// The file as JSON; file names are relative to the folder of `path`.
+Json exposures_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata,
+                    const std::string &path);
+
 // The text of the file, to be written to `path`: file names are relative to its folder.
 std::string exposures_text(const ProjectFit &state, const Project &project,
                            const std::vector<PictureMetadata> &metadata, const std::string &path);

@@ -1,6 +1,8 @@
 #include "photo/correct/project_model.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 namespace lensprof {
 
@@ -48,6 +50,26 @@ std::vector<lensprof_exposure> joined_exposures(const Project &project, const st
     for (size_t i = 0; i < all.size(); i++)
         if (!project.images[i].left_out) joined.push_back(all[i]);
     return joined;
+}
+
+Fitted result_of_scene(const Project &project) {
+    Fitted fitted;
+    lensprof_fit_result_init(&fitted.result);
+    fitted.result.vignettings = 1;
+    fitted.reference = project.reference;
+    for (uint32_t i = 0; i < project.images.size(); i++) {
+        const auto model = model_of_project(project, i);
+        lensprof_fit_result of_image{};
+        of_image.images = 1, of_image.vignettings = model->vignettings;
+        std::copy_n(model->vignetting, std::size(of_image.vignetting), of_image.vignetting);
+        of_image.response = model->response[0];
+        fitted.setting_of.push_back(i);
+        fitted.settings.push_back(of_image);
+    }
+    fitted.exposures = relative_to_joined(project);
+    for (size_t i = 0; i < project.images.size(); i++)
+        if (project.images[i].left_out) fitted.exposures[i].ev = NAN;
+    return fitted;
 }
 
 }  // namespace lensprof

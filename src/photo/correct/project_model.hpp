@@ -4,12 +4,16 @@
 #include <memory>
 #include <vector>
 
+#include "photo/calibration/fit.hpp"
 #include "photo/scene/project.hpp"
 
 namespace lensprof {
 
 // Response and falloff of an image.
 std::shared_ptr<const lensprof_profile> model_of_project(const Project &project, uint32_t image);
+
+// The scene as the result of a fit, for what is drawn of results.
+Fitted result_of_scene(const Project &project);
 
 // The response of the reference if the images have several: all outputs are encoded with it so that they look alike.
 // NULL if the images share one response.

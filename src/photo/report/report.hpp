@@ -129,6 +129,10 @@ Json response_json(const lensprof_response *responses, uint32_t count);
 Json samples_json(const lensprof_response *responses, uint32_t count);  // curve samples for plotting, for any kind
 Json key_json(const lensprof_profile_key &key);
 
+Json provenance_json(const lensprof_provenance &provenance);
+// `id` is the id in the database; 0 = none.
+Json profile_json(int64_t id, const lensprof_profile &profile);
+
 // Maker and model without repeating the maker: "Canon EOS 6D" for "Canon" and "Canon EOS 6D".
 std::string camera_name(const std::string &maker, const std::string &model);
 

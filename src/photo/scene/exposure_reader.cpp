@@ -173,10 +173,9 @@ bool is_exposure_file(const std::string &path) {
     return read_head(path, 256).find("\"lensprof exposures\"") != std::string::npos;
 }
 
-Project read_exposures(const std::string &path, const std::string &images) {
+Project exposures_of(const Json &all, const std::string &path, const std::string &images) {
     const Reader reader(path);
-    Json all = Json::parse(read_text(path, max_file_bytes), nullptr, false);
-    if (all.is_discarded() || !all.is_object() || !all.contains("file") || all["file"] != "lensprof exposures")
+    if (!all.is_object() || !all.contains("file") || all["file"] != "lensprof exposures")
         reader.fail("is not a file of exposures");
     if (reader.member(all, "schema") != exposures_schema) reader.fail("has another format version");
     Project project;
@@ -194,6 +193,10 @@ Project read_exposures(const std::string &path, const std::string &images) {
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (project.names[i] == reference) project.reference = i;
     return project;
+}
+
+Project read_exposures(const std::string &path, const std::string &images) {
+    return exposures_of(Json::parse(read_text(path, max_file_bytes), nullptr, false), path, images);
 }
 
 }  // namespace lensprof

@@ -9,8 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/report/report.hpp"
 #include "photo/base/output_file.hpp"
+#include "photo/report/report.hpp"
 
 namespace lensprof {
 

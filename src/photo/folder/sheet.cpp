@@ -1,12 +1,12 @@
-#include "cli/calibrate/sheet.hpp"
+#include "photo/folder/sheet.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "cli/calibrate/attempt.hpp"
 #include "photo/base/events.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
+#include "photo/folder/attempt.hpp"
 #include "photo/pictures/contact_sheet.hpp"
 #include "photo/pictures/thumbnail.hpp"
 
@@ -19,9 +19,9 @@ std::string note_of(const CorrectedPicture &picture) {
     return picture.ev ? format("%+.2f EV, panorama ", *picture.ev) + picture.panorama : correction_note(picture.job);
 }
 
-void write_sheet(const std::string &path, const CorrectedPicture *first, size_t count, Progress &progress) {
+void write_sheet(const std::string &path, const CorrectedPicture *first, size_t count, Events &events) {
     ContactSheet sheet(count);
-    for_each_parallel(static_cast<uint32_t>(count), "contact sheet", progress, [&](uint32_t i) {
+    for_each_parallel(static_cast<uint32_t>(count), "contact sheet", events, [&](uint32_t i) {
         const InputPicture &picture = *first[i].picture;
         sheet.put(i, {small_copy(picture.file, picture, sheet.side()),
                       small_copy(picture.target, picture, sheet.side()), picture.name, note_of(first[i])});
@@ -37,14 +37,14 @@ Picture small_copy(const std::string &file, const InputPicture &picture, uint32_
     return copy;
 }
 
-std::vector<std::string> sheet_names(const CalibrateOptions &o, size_t pictures) {
+std::vector<std::string> sheet_names(const FolderOptions &o, size_t pictures) {
     std::vector<std::string> names;
     for (size_t page = 0; page * per_page < pictures; page++)
         names.push_back((std::filesystem::path(o.output) / sheet_name(page)).string());
     return names;
 }
 
-void write_sheets(const CalibrateOptions &o, const CorrectedPictures &pictures, Ledger &ledger, Progress &progress) {
+void write_sheets(const FolderOptions &o, const CorrectedPictures &pictures, Ledger &ledger, Events &events) {
     const std::vector<std::string> names = sheet_names(o, pictures.list.size());
     for (size_t page = 0; page < names.size(); page++) {
         stop_if_cancelled();
@@ -57,7 +57,7 @@ void write_sheets(const CalibrateOptions &o, const CorrectedPictures &pictures, 
         if (ledger.is_current(names[page], key)) continue;
         ledger.begin(names[page], key);
         ledger.save();
-        write_sheet(names[page], &pictures.list[first], count, progress);
+        write_sheet(names[page], &pictures.list[first], count, events);
         ledger.finish(names[page]);
         ledger.save();
     }

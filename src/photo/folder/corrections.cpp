@@ -1,11 +1,10 @@
-#include "cli/calibrate/corrections.hpp"
+#include "photo/folder/corrections.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
-#include "cli/calibrate/attempt.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
@@ -13,6 +12,7 @@
 #include "photo/correct/picture_model.hpp"
 #include "photo/correct/project_model.hpp"
 #include "photo/correct/scene_copies.hpp"
+#include "photo/folder/attempt.hpp"
 #include "photo/pictures/picture.hpp"
 
 namespace lensprof {
@@ -31,14 +31,22 @@ Correction job_of(const InputPicture &picture) {
     return job;
 }
 
+// A command of the caller, if it has one, with words for a shell.
+std::string with_words(std::string command, const std::vector<std::string> &words) {
+    for (const std::string &word : words)
+        if (!command.empty()) command += " " + shell_word(word);
+    return command;
+}
+
 using ByFile = std::map<std::string, CorrectedPicture>;
 
 using Reasons = std::map<std::string, std::string>;  // by file
 
 // Uses the project and finds its images by file, because somebody may have edited it.
 void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
-    const std::string text = read_text(panorama.project, max_text_bytes);
-    const Project project = read_project(panorama.project);
+    const std::string text = read_text(panorama.project, max_text_bytes)
+                             + panorama.exposures.dump(-1, ' ', true, Json::error_handler_t::replace);
+    const Project project = panorama.corrected_scene();
     const ImagesByFile images(project);
     const std::vector<lensprof_exposure> exposures = relative_to_joined(project);
     const lensprof_exposure common = common_exposure(joined_exposures(project, exposures));
@@ -57,7 +65,7 @@ void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reaso
         corrected_picture.job.exposure = exposures[*image], corrected_picture.job.target_exposure = common,
         corrected_picture.job.encoding = encoding;
         corrected_picture.job.model_name = std::filesystem::path(panorama.project).filename().string();
-        corrected_picture.job.command = "lensprof apply --pto " + shell_word(panorama.project);
+        corrected_picture.job.command = with_words(advice("apply_project"), {panorama.project});
         corrected.emplace(picture->file, std::move(corrected_picture));
     }
 }
@@ -77,12 +85,13 @@ void plan_panorama(const Panorama &panorama, ByFile &corrected, Reasons &reasons
 }
 
 // Uses a profile of the databases; returns the reason on failure, else "".
-std::string plan_by_profile(const CalibrateOptions &o, const PictureModels &models, const InputPicture &picture,
+std::string plan_by_profile(const FolderOptions &o, const PictureModels &models, const InputPicture &picture,
                             ByFile &corrected) {
     if (!models.are_used()) return "no profile database exists yet";
     CorrectedPicture corrected_picture{&picture, "", std::nullopt, "", job_of(picture)};
-    corrected_picture.job.command = "lensprof apply " + shell_word(picture.file);
-    for (const std::string &db : o.store.dbs) corrected_picture.job.command += " --db " + shell_word(db);
+    corrected_picture.job.command = with_words(advice("apply"), {picture.file});
+    for (const std::string &db : o.store.dbs)
+        corrected_picture.job.command += with_words(advice("apply_database"), {db});
     try {
         models.choose(picture.metadata, corrected_picture.job);
     } catch (const NotThisOne &failure) {
@@ -98,7 +107,7 @@ std::string plan_by_profile(const CalibrateOptions &o, const PictureModels &mode
 
 }  // namespace
 
-CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas) {
+CorrectedPictures plan_corrections(const FolderOptions &o, const Inputs &inputs, const Panoramas &panoramas) {
     ByFile corrected;
     Reasons reasons = panoramas.unjoined;
     for (const Panorama &panorama : panoramas.list) plan_panorama(panorama, corrected, reasons);
@@ -128,7 +137,7 @@ CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inpu
     return pictures;
 }
 
-void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, Ledger &ledger, Progress &progress) {
+void write_corrections(const FolderOptions &o, CorrectedPictures &pictures, Ledger &ledger, Events &events) {
     std::vector<Correction> jobs;
     for (const CorrectedPicture &entry : pictures.list) {
         if (ledger.is_current(entry.picture->target, entry.key)) continue;
@@ -138,7 +147,7 @@ void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, L
     ledger.save();
     CorrectionKind kind;
     kind.threads = o.threads;
-    const Corrected corrected = write_corrected(jobs, kind, nullptr, progress);
+    const Corrected corrected = write_corrected(jobs, kind, nullptr, events);
     std::map<std::string, std::string> damaged;
     for (const FailedPicture &picture : corrected.failed) damaged[picture.file] = picture.failure.what();
     for (const Correction &job : jobs)

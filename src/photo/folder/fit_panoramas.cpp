@@ -1,18 +1,19 @@
 // Fit, profile, project and mosaic of each panorama.
 #include <algorithm>
 
-#include "cli/calibrate/attempt.hpp"
-#include "cli/calibrate/panoramas.hpp"
-#include "cli/fitting/fit_page.hpp"
 #include "photo/base/events.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/base/utf8.hpp"
 #include "photo/calibration/calibration.hpp"
+#include "photo/calibration/exposure_file.hpp"
 #include "photo/calibration/outcome.hpp"
 #include "photo/calibration/preview.hpp"
 #include "photo/correct/project_model.hpp"
+#include "photo/folder/attempt.hpp"
+#include "photo/folder/panoramas.hpp"
+#include "photo/scene/exposure_reader.hpp"
 #include "photo/scene/photographs.hpp"
 
 namespace lensprof {
@@ -73,19 +74,19 @@ private:
 };
 
 // The panorama is not stored if EXIF does not name camera and lens, unless the caller names them.
-void choose_storing(const CalibrateOptions &o, const lensprof_profile_key &exif, bool by_matches, Panorama &panorama,
+void choose_storing(const FolderOptions &o, const lensprof_profile_key &exif, bool by_matches, Panorama &panorama,
                     StoreOptions &store) {
     panorama.summary["not_stored"] = nullptr;
-    if (o.store.no_store) panorama.summary["not_stored"] = "--no-store";
+    if (o.store.no_store) panorama.summary["not_stored"] = option_name("no_store");
     if (o.store.no_store || *exif.camera_model || *exif.lens) return;
     store.no_store = true;
-    panorama.summary["not_stored"] = std::string("EXIF does not name camera and lens; run `lensprof build` on the ")
-                                     + (by_matches ? "pictures" : "project") + " with --camera and --lens";
+    panorama.summary["not_stored"] =
+        "EXIF does not name camera and lens" + advice(by_matches ? "name_pictures" : "name_project");
 }
 
 // Fits and stores; the project text goes to `outputs`, which are committed with the profile.
-void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &project, Progress &progress) {
-    PanoramaEvents events(progress);
+void fit_and_store(const FolderOptions &o, Panorama &panorama, Project &project, Events &of_folder) {
+    PanoramaEvents events(of_folder);
     ProjectFitOptions options;
     options.store = o.store;
     options.one_lens = o.one_lens;
@@ -95,9 +96,6 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     if (panorama.summary["cameras_fit"] == false) events.warn(panorama.name, poor_cameras_note);
     Calibration calibration(project, options, events);
     ProjectFit &state = calibration.fit;
-    Json page = fit_page_data({state.report, state.input, state.best, state.input.images, calibration.project,
-                               calibration.metadata, "", "", false},
-                              progress);
     OutputFiles outputs;
     outputs.add(panorama.project, state.best.corrects() ? result_text(state, calibration.project, panorama.project)
                                                         : project_text_at(calibration.project, panorama.project));
@@ -114,19 +112,23 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     panorama.summary["database"] = is_stored ? Json(store_path(options.store.db)) : Json();
     panorama.summary["warnings"] = warnings_of(events, outcome);
     panorama.summary["result"] = result_of(state.report);
-    add_fit_verdict(page, state.report, panorama.summary["warnings"].get<std::vector<std::string>>());
-    panorama.page = valid_json(page);
+    panorama.exposures = Json();
+    if (state.best.corrects())
+        panorama.exposures = exposures_json(state, calibration.project, calibration.metadata, panorama.project);
+    if (o.describe)
+        panorama.page = valid_json(
+            o.describe(calibration, panorama.summary["warnings"].get<std::vector<std::string>>(), of_folder));
 }
 
 // A failed panorama does not stop the others. If a picture could not be read, the next run tries again; if the pictures
 // are unsuitable, it does not.
-void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Progress &progress) {
+void fit_one(const FolderOptions &o, Panorama &panorama, Ledger &ledger, Events &events) {
     Project project = project_of(panorama);
     ledger.begin(panorama.project, panorama.key);
     ledger.save();
     bool is_final = true;
     try {
-        fit_and_store(o, panorama, project, progress);
+        fit_and_store(o, panorama, project, events);
     } catch (const Failure &failure) {
         if (!is_of_pictures(failure)) throw;
         is_final = failure.group() == LENSPROF_ERROR_NOT_USABLE;
@@ -136,21 +138,23 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
         write_project(project, panorama.project);
     }
     ledger.finish(panorama.project);
+    const std::string text = read_text(panorama.project, max_text_bytes);
+    panorama.written = digest_of_text(text);
     Json files = Json::array();
     for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(canonical_path(picture->file)));
     panorama.summary = valid_json(panorama.summary);
-    ledger.notes["results"][ascii_path(panorama.name)] = {
-        {"key", is_final ? panorama.key : std::string()},
-        {"files", files},
-        {"source", ascii_path(panorama.source)},
-        {"summary", panorama.summary},
-        {"page", panorama.page},
-        {"project", ascii_path(read_text(panorama.project, max_text_bytes))}};
+    ledger.notes["results"][ascii_path(panorama.name)] = {{"key", is_final ? panorama.key : std::string()},
+                                                          {"files", files},
+                                                          {"source", ascii_path(panorama.source)},
+                                                          {"summary", panorama.summary},
+                                                          {"page", panorama.page},
+                                                          {"exposures", panorama.exposures},
+                                                          {"project", ascii_path(text)}};
     ledger.save();
 }
 
 // Whether the profile that an earlier run stored is still there.
-bool is_stored(const CalibrateOptions &o, const Json &summary) {
+bool is_stored(const FolderOptions &o, const Json &summary) {
     const Json &result = summary["result"];
     const auto has_profile = [](const Json &setting) { return !setting["profile"].is_null(); };
     if (!result.is_object()
@@ -170,17 +174,21 @@ bool is_stored(const CalibrateOptions &o, const Json &summary) {
 }
 
 // The result of an earlier run with its project, which is rewritten if somebody removed it.
-bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
+bool recall(const FolderOptions &o, Panorama &panorama, Ledger &ledger) {
     const Json &notes = ledger.notes;
     const std::string name = ascii_path(panorama.name);
     if (!notes.contains("results") || !notes["results"].contains(name)) return false;
     const Json &known = notes["results"][name];
     if (known.value("key", "") != panorama.key || !is_stored(o, known["summary"])) return false;
+    const bool is_fitted = known["summary"]["result"].is_object();
+    if (is_fitted && o.describe && known.value("page", Json()).is_null()) return false;  // of a caller without a report
     panorama.summary = known["summary"];
-    panorama.page = known.value("page", Json());     // earlier versions did not record it
+    panorama.page = known.value("page", Json());
+    panorama.exposures = known.value("exposures", Json());
     panorama.summary["project"] = panorama.project;  // the folder may be spelled differently
-    if (ledger.is_current(panorama.project, panorama.key)) return true;
     const std::string text = path_of_ascii(known["project"].get<std::string>());
+    panorama.written = digest_of_text(text);
+    if (ledger.is_current(panorama.project, panorama.key)) return true;
     ledger.begin(panorama.project, panorama.key);
     ledger.save();
     write_file(panorama.project, text.data(), text.size());
@@ -190,43 +198,49 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
 }
 
 // The mosaic shows the current project, which may have been edited since the fit.
-void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
+void draw_preview(Panorama &panorama, Ledger &ledger, Events &events) {
     const std::string text = read_text(panorama.project, max_text_bytes), key = digest_of_text("preview\n" + text);
     if (ledger.is_current(panorama.preview, key)) return;
-    const Project project = read_project(panorama.project);
-    Fitted fitted;
-    lensprof_fit_result_init(&fitted.result);
-    fitted.result.vignettings = 1;
-    fitted.reference = project.reference;
-    for (uint32_t i = 0; i < project.images.size(); i++) {
-        fitted.setting_of.push_back(i);
-        fitted.settings.emplace_back();
-        fitted.settings[i].images = fitted.settings[i].vignettings = 1;
-        fitted.settings[i].vignetting[0] = project.images[i].vignetting;
-        fitted.settings[i].response = model_of_project(project, i)->response[0];
-    }
-    fitted.exposures = relative_to_joined(project);
-    for (size_t i = 0; i < project.images.size(); i++)
-        if (project.images[i].left_out) fitted.exposures[i].ev = NAN;
     ledger.begin(panorama.preview, key);
     ledger.save();
-    write_preview(panorama.preview, project, fitted, progress);
+    const Project scene = panorama.corrected_scene();
+    write_preview(panorama.preview, scene, result_of_scene(scene), events);
     ledger.finish(panorama.preview);
     ledger.save();
 }
 
 }  // namespace
 
-void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledger, Progress &progress) {
+bool Panorama::is_edited() const { return written != digest_of_text(read_text(project, max_text_bytes)); }
+
+Project Panorama::corrected_scene() const {
+    Project scene = read_project(project);
+    if (exposures.is_null() || is_edited()) return scene;
+    const Project known = exposures_of(exposures, project, "");
+    const ImagesByFile images(known);
+    for (uint32_t i = 0; i < scene.images.size(); i++) {
+        const auto image = images.find(scene.files[i]);
+        if (!image) return scene;
+        scene.models.push_back(known.models[*image]);
+        scene.images[i].exposure = known.images[*image].exposure;
+        scene.images[i].left_out = known.images[*image].left_out;
+        if (*image == known.reference) scene.reference = i;
+    }
+    return scene;
+}
+
+void fit_panoramas(const FolderOptions &o, Panoramas &panoramas, Ledger &ledger, Events &events) {
     for (Panorama &panorama : panoramas.list) {
         stop_if_cancelled();
         if (!recall(o, panorama, ledger)) {
-            fit_one(o, panorama, ledger, progress);
+            fit_one(o, panorama, ledger, events);
             panoramas.fitted++;
         }
-        for (const Json &warning : panorama.summary["warnings"]) progress.warn({}, warning.get<std::string>());
+        for (const Json &warning : panorama.summary["warnings"]) events.warn({}, warning.get<std::string>());
         if (!panorama.equalizes()) continue;
-        const std::string failure = failure_of([&] { draw_preview(panorama, ledger, progress); });
+        if (panorama.is_edited())
+            events.note(panorama.project, "was edited since the fit; its pictures are corrected as it states");
+        const std::string failure = failure_of([&] { draw_preview(panorama, ledger, events); });
         panorama.summary["preview"] = failure.empty() ? Json(panorama.preview) : Json();
         if (failure.empty()) continue;
         ledger.abandon(panorama.preview);

@@ -1,4 +1,4 @@
-#include "cli/calibrate/noted_matches.hpp"
+#include "photo/folder/noted_matches.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cli/calibrate/ledger.hpp"
+#include "photo/folder/ledger.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,10 +11,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/calibrate/attempt.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/folder/attempt.hpp"
 #include "photo/pictures/named_pictures.hpp"
 
 namespace lensprof {
@@ -157,7 +157,7 @@ void Ledger::begin(const std::string &file, const std::string &key) {
         throw ForeignFile(LENSPROF_ERROR_ARGUMENT, file + ": "
                                                        + (contains(file) ? "was modified after calibrate wrote it"
                                                                          : "exists and was not written by calibrate")
-                                                       + "; move it away, or use --overwrite");
+                                                       + "; move it away, or use " + option_name("overwrite"));
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) fs::remove(file, ignored);
     begun_[name_of(file)] = {key, ""};

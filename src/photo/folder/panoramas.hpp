@@ -1,24 +1,29 @@
 // The panoramas of a folder: found, fitted and stored once, regardless of the number of runs.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "cli/calibrate/inputs.hpp"
-#include "cli/calibrate/ledger.hpp"
-#include "cli/calibrate/noted_matches.hpp"
-#include "cli/program/progress.hpp"
+#include "photo/base/events.hpp"
+#include "photo/calibration/calibration.hpp"
 #include "photo/calibration/profile_store.hpp"
+#include "photo/folder/inputs.hpp"
+#include "photo/folder/ledger.hpp"
+#include "photo/folder/noted_matches.hpp"
 
 namespace lensprof {
 
-struct CalibrateOptions {
+struct FolderOptions {
     std::vector<std::string> inputs;
-    std::string output, report;
+    std::string output;
     StoreOptions store;  // only databases and no_store are used
-    bool one_lens = false, overwrite = false, json = false, progress = false;
+    bool one_lens = false, overwrite = false;
     uint32_t threads = 0;
+
+    // What a report needs of a calibration and its warnings; it is kept for later runs. Empty: nothing.
+    std::function<Json(Calibration &, const std::vector<std::string> &warnings, Events &)> describe;
 };
 
 constexpr const char *camera_stationary = "stood still";  // value of `camera` in a summary: not a panorama, not fitted
@@ -32,8 +37,16 @@ struct Panorama {
     std::string source;    // the source stored in the provenance
     std::string key;       // hash of its pictures and the options
     Json summary;          // docs/json.md; `result` is null if the fit failed
-    Json page;             // its part of a report, without pictures (fit_page_data); null if the fit failed
+    Json page;             // what FolderOptions.describe made of it; null if the fit failed
+    std::string written;   // digest of the project file as written
+    Json exposures;        // exposures, responses and falloffs (exposures.json), with which it is corrected
     bool equalizes() const;
+
+    // Whether somebody has edited the project file since the fit.
+    bool is_edited() const;
+
+    // The scene with its result; that of its project file if that was edited. Failure.
+    Project corrected_scene() const;
 };
 
 struct Panoramas {
@@ -46,13 +59,13 @@ struct Panoramas {
 
 // Takes panoramas from the ledger if the pictures are unchanged, else from registration. Panoramas of an earlier run
 // keep their names.
-Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger &ledger, Progress &progress);
+Panoramas find_panoramas(const FolderOptions &o, const Inputs &inputs, Ledger &ledger, Events &events);
 
 // Fits and stores the panoramas missing from the ledger, writes their projects and their mosaics before and after.
 // Removes projects and mosaics of panoramas that no longer exist.
-void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledger, Progress &progress);
+void fit_panoramas(const FolderOptions &o, Panoramas &panoramas, Ledger &ledger, Events &events);
 
 // Removes projects and mosaics of panoramas that are no more.
-void remove_obsolete_panoramas(const CalibrateOptions &o, const Panoramas &panoramas, Ledger &ledger);
+void remove_obsolete_panoramas(const FolderOptions &o, const Panoramas &panoramas, Ledger &ledger);
 
 }  // namespace lensprof

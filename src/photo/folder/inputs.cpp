@@ -1,13 +1,13 @@
-#include "cli/calibrate/inputs.hpp"
+#include "photo/folder/inputs.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 
-#include "cli/calibrate/attempt.hpp"
 #include "photo/base/file_kind.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/folder/attempt.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
@@ -26,9 +26,7 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
         if (!is_folder(word) && !is_picture_name(word) && path_exists(word))
             throw Failure(
                 LENSPROF_ERROR_ARGUMENT,
-                word
-                    + ": is neither a picture (.jpg, .png, .tif, camera raw) nor a folder; use `lensprof build` for a "
-                      "project");
+                word + ": is neither a picture (.jpg, .png, .tif, camera raw) nor a folder" + advice("build_project"));
         if (canonical_path(word) == canonical_path(output))
             throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": is the folder of the pictures; give another output folder with "
                                                     "-o");
@@ -124,13 +122,13 @@ namespace {
 
 // Examines the pictures in parallel.
 void examine_pictures(const Photographs &list, const std::vector<NamedPicture> &named, const std::string &output,
-                      Inputs &inputs, Progress &progress) {
+                      Inputs &inputs, Events &events) {
     std::map<std::string, std::string> subfolders;
     for (const NamedPicture &picture : named) subfolders.emplace(picture.file, picture.subfolder);
     std::vector<InputPicture> all(list.files.size());
     std::vector<std::string> reasons(all.size());
     std::vector<char> unreadable(all.size(), 0);
-    for_each_parallel(static_cast<uint32_t>(all.size()), "scanning pictures", progress, [&](uint32_t i) {
+    for_each_parallel(static_cast<uint32_t>(all.size()), "scanning pictures", events, [&](uint32_t i) {
         all[i].file = list.files[i], all[i].name = list.names[i];
         bool is_unreadable = false;
         reasons[i] = examine_picture(all[i], fs::path(output) / subfolders.at(all[i].file), is_unreadable);
@@ -166,18 +164,18 @@ std::string sheet_name(size_t page) {
     return "calibrate_sheet" + (page ? std::to_string(page + 1) : std::string()) + ".jpg";
 }
 
-Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Progress &progress) {
+Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Events &events) {
     check_output(words, output);
     std::vector<UnlistedFolder> unlisted;
     std::vector<std::string> other_kinds;
     std::vector<NamedPicture> named = named_pictures(words, output, other_kinds, &unlisted);
-    for (const std::string &text : other_kinds) progress.warn({}, text);
+    for (const std::string &text : other_kinds) events.warn({}, text);
     extract_below(named, has_ledger);
     const Photographs list = list_photographs(words, named);
     Inputs inputs;
     inputs.label = list.label;
     inputs.found = list.files.size() + list.left_out.size();
-    examine_pictures(list, named, output, inputs, progress);
+    examine_pictures(list, named, output, inputs, events);
     leave_out_duplicates(inputs);
     list_replaced(named, inputs);
     for (const auto &[file, why] : list.left_out) inputs.left_out.push_back({file, file + ": " + why});

@@ -1,6 +1,6 @@
-#include "cli/calibrate/attempt.hpp"
+#include "photo/folder/attempt.hpp"
 
-#include "cli/calibrate/ledger.hpp"
+#include "photo/folder/ledger.hpp"
 
 namespace lensprof {
 

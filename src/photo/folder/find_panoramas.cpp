@@ -4,10 +4,10 @@
 
 #include <lensprof/lensprof.h>
 
-#include "cli/calibrate/attempt.hpp"
-#include "cli/calibrate/panoramas.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/folder/attempt.hpp"
+#include "photo/folder/panoramas.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/scene/photographs.hpp"
 
@@ -60,7 +60,7 @@ bool has_odd_name(const InputPicture &picture, const std::string &output) {
                        [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; });
 }
 
-Groups register_groups(const CalibrateOptions &o, const std::vector<const InputPicture *> &given, Progress &progress) {
+Groups register_groups(const FolderOptions &o, const std::vector<const InputPicture *> &given, Events &events) {
     std::vector<std::string> files;
     std::vector<const InputPicture *> all;
     Groups groups;
@@ -74,7 +74,7 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
         all.push_back(picture);
     }
     if (files.empty()) return groups;
-    const Registration found = register_pictures(files, o.one_lens, progress);
+    const Registration found = register_pictures(files, o.one_lens, events);
     for (const auto &[number, reason] : found.unreadable) groups.unreadable[files[number]] = reason;
     for (const CopiedPicture &picture : found.copies)
         groups.copies[files[picture.copy]] =
@@ -178,12 +178,12 @@ std::string name_in_earlier_run(const Json &notes, const std::string &key, const
     return {};
 }
 
-std::string file_of(const CalibrateOptions &o, const std::string &name, const char *end) {
+std::string file_of(const FolderOptions &o, const std::string &name, const char *end) {
     return (std::filesystem::path(o.output) / ("panorama_" + name + end)).string();
 }
 
 // Named after the first picture, with a number if the name is used by something else.
-std::string new_name(const CalibrateOptions &o, const Group &group, const std::set<std::string> &used_names,
+std::string new_name(const FolderOptions &o, const Group &group, const std::set<std::string> &used_names,
                      const std::set<std::string> &targets, const Ledger &ledger) {
     std::string base = std::filesystem::path(group.pictures[0]->name).replace_extension().relative_path().string();
     std::replace(base.begin(), base.end(), '/', '-');
@@ -203,7 +203,7 @@ std::string new_name(const CalibrateOptions &o, const Group &group, const std::s
 }
 
 // Keeps the names of earlier runs if possible: by pictures and options, then by any of the pictures.
-std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<Group> &groups,
+std::vector<std::string> names_of(const FolderOptions &o, const std::vector<Group> &groups,
                                   const std::vector<std::string> &keys, const std::set<std::string> &targets,
                                   const Ledger &ledger) {
     std::set<std::string> used_names;
@@ -239,7 +239,7 @@ bool Panorama::equalizes() const {
     return result.is_object() && (result["usable"] == true || result["equalizes"] == true);
 }
 
-Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger &ledger, Progress &progress) {
+Panoramas find_panoramas(const FolderOptions &o, const Inputs &inputs, Ledger &ledger, Events &events) {
     std::vector<const InputPicture *> all;
     std::set<std::string> targets;
     for (const InputPicture &picture : inputs.pictures) {
@@ -250,7 +250,7 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
     Groups groups;
     const std::string key = key_of(all, o.one_lens ? "one lens" : "");
     if (!recall(ledger.notes, key, all, groups)) {
-        groups = register_groups(o, all, progress);
+        groups = register_groups(o, all, events);
         panoramas.is_registered = true;
         ledger.notes["registration"] = json_of(groups, key);
         ledger.save();
@@ -280,7 +280,7 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
     return panoramas;
 }
 
-void remove_obsolete_panoramas(const CalibrateOptions &o, const Panoramas &panoramas, Ledger &ledger) {
+void remove_obsolete_panoramas(const FolderOptions &o, const Panoramas &panoramas, Ledger &ledger) {
     if (!ledger.notes.is_object() || !ledger.notes.contains("results")) return;
     Json kept = Json::object();
     for (const auto &[name, result] : ledger.notes["results"].items()) {

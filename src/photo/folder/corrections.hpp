@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/calibrate/panoramas.hpp"
 #include "photo/correct/correction.hpp"
+#include "photo/folder/panoramas.hpp"
 
 namespace lensprof {
 
@@ -27,10 +27,10 @@ struct CorrectedPictures {
 
 // How each picture is corrected: with the project of its panorama, as `apply --pto` does, else with a looked-up
 // profile, as `apply` does.
-CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas);
+CorrectedPictures plan_corrections(const FolderOptions &o, const Inputs &inputs, const Panoramas &panoramas);
 
 // Writes the copies missing from the ledger. A picture that cannot be corrected is left out. Throws ForeignFile, before
 // the first copy is written, if a copy was modified by somebody and its correction has changed.
-void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, Ledger &ledger, Progress &progress);
+void write_corrections(const FolderOptions &o, CorrectedPictures &pictures, Ledger &ledger, Events &events);
 
 }  // namespace lensprof

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/calibrate/ledger.hpp"
-#include "cli/program/progress.hpp"
+#include "photo/base/events.hpp"
+#include "photo/folder/ledger.hpp"
 #include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
@@ -35,7 +35,7 @@ struct Inputs {
 // pictures of one folder that would share one corrected copy; subfolders that cannot be listed are reported in the same
 // list. Failure (usage) if `output` is one of the input folders, if pictures of two folders would share one copy, or if
 // a copy would overwrite an input.
-Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Progress &progress);
+Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Events &events);
 
 constexpr const char *summary_name = "calibrate.json";
 

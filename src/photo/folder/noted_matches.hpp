@@ -5,7 +5,7 @@
 
 #include <lensprof/lensprof.h>
 
-#include "cli/report/report.hpp"
+#include "photo/report/report.hpp"
 
 namespace lensprof {
 
