@@ -41,6 +41,19 @@ bool leads_into(const std::vector<uint8_t> &note, const NoteDirectory &directory
     return offset >= base + directory.end && offset < base + note.size();
 }
 
+// Whether offsets count from `base` bytes before the note rather than from its start: more of them lead into the note,
+// or, for a base that is smaller than the note, the first values then follow the directory more closely.
+bool counts_from(uint64_t base, const std::vector<uint8_t> &note, const NoteDirectory &directory) {
+    uint64_t based = 0, own = 0, first = UINT64_MAX;
+    for (const size_t entry : directory.outside) {
+        based += leads_into(note, directory, entry, base);
+        own += leads_into(note, directory, entry, 0);
+        first = std::min<uint64_t>(first, directory.order.get(&note[entry + 8], 4));
+    }
+    if (based != own || based == 0) return based > own;
+    return first >= base + directory.end;
+}
+
 }  // namespace
 
 std::vector<uint8_t> moved_note(std::vector<uint8_t> note, uint64_t from, uint64_t to) {
@@ -48,11 +61,7 @@ std::vector<uint8_t> moved_note(std::vector<uint8_t> note, uint64_t from, uint64
         for (const bool big : {false, true}) {
             const NoteDirectory directory = read_note_directory(note, start, TiffByteOrder{big});
             if (directory.end == 0) continue;
-            const auto count = [&](uint64_t base) {
-                return std::count_if(directory.outside.begin(), directory.outside.end(),
-                                     [&](size_t entry) { return leads_into(note, directory, entry, base); });
-            };
-            if (from == 0 || count(from) <= count(0)) return note;  // they count from the start of the note
+            if (from == 0 || !counts_from(from, note, directory)) return note;
             for (const size_t entry : directory.outside)
                 if (leads_into(note, directory, entry, from)) {
                     const uint64_t offset = directory.order.get(&note[entry + 8], 4) - from + to;

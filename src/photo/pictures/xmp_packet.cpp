@@ -39,6 +39,25 @@ bool is_rdf(const pugi::xml_node &node, const char *name) {
     return local_name(node.name()) == name && namespace_at(node, prefix_of(node.name())) == rdf;
 }
 
+// With ">" in values of attributes escaped, which XML permits there but some readers take for the end of the element.
+std::string escaped(const std::string &text) {
+    std::string all;
+    bool in_tag = false, in_value = false;  // pugixml writes values in double quotes and escapes these in them
+    for (size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (!in_tag && text.compare(at, 9, "<![CDATA[") == 0) {
+            const size_t end = text.find("]]>", at) + 3;
+            all.append(text, at, end - at);
+            at = end - 1;
+            continue;
+        }
+        if (in_tag && c == '"') in_value = !in_value;
+        if (!in_value && (c == '<' || c == '>')) in_tag = c == '<';
+        all += in_value && c == '>' ? "&gt;" : std::string(1, c);
+    }
+    return all;
+}
+
 struct DepthCheck : pugi::xml_tree_walker {
     bool for_each(pugi::xml_node &) override { return depth() < max_depth; }
 };
@@ -178,10 +197,9 @@ void Xmp::add(const std::string &space, const std::string &prefix,
 std::string Xmp::packet() const {
     if (properties().empty()) return {};
     std::ostringstream text;
-    text << "<?xpacket begin=\"\xef\xbb\xbf\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n";
     document_.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
-    text << "\n<?xpacket end=\"w\"?>";
-    return text.str();
+    return "<?xpacket begin=\"\xef\xbb\xbf\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n" + escaped(text.str())
+           + "\n<?xpacket end=\"w\"?>";
 }
 
 }  // namespace lensprof
