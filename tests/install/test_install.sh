@@ -22,6 +22,7 @@ lib_dir=$(dirname "$(find "$prefix" -name liblensprof.so)")
 for header in "$source_dir"/include/lensprof/*.h; do
     cmp -s "$header" "$prefix/include/lensprof/$(basename "$header")" || wrong "$(basename "$header") was changed"
 done
+if ldd "$lib_dir/liblensprof-photo.so" | grep libexiv2; then wrong "liblensprof-photo uses Exiv2, which is GPL"; fi
 [ -f "$lib_dir/liblensprof-core.a" ] || wrong "liblensprof-core.a is not installed"
 if grep -rl "$build_dir" "$prefix/include" "$lib_dir/cmake" "$lib_dir/pkgconfig"; then wrong "these files name the build folder"; fi
 

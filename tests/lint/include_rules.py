@@ -106,7 +106,7 @@ ROOM_HEADERS = {
     "src/photo/registration": {"Eigen/*", "opencv2/*"},
     "src/photo/reconstruction": {"sqlite3.h"},
     "src/photo/pictures": {"OpenEXR/*", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "jxl/*", "libheif/*", "libraw/*",
-                           "png.h", "tiffio.h", "webp/*"},
+                           "png.h", "pugixml.hpp", "tiffio.h", "webp/*", "zlib.h"},
 }
 
 # Headers that each public header may include in addition to <stddef.h> and <stdint.h>: nothing above its own layer.

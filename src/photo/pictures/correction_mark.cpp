@@ -6,28 +6,15 @@
 #include <iterator>
 #include <vector>
 
-#include <exiv2/exiv2.hpp>
-
 #include "photo/base/format.hpp"
 #include "photo/pictures/codec.hpp"
+#include "photo/pictures/xmp_packet.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr char uri[] = "urn:lensprof:correction:1/", prefix[] = "lensprof";
+constexpr char mark_namespace[] = "urn:lensprof:correction:1/", mark_prefix[] = "lensprof";
 constexpr const char *falloff_words[] = {"kept", "removed", "added"};
-
-std::string read_property(const Exiv2::XmpData &xmp, const char *name) {
-    const auto datum = xmp.findKey(Exiv2::XmpKey(std::string("Xmp.") + prefix + "." + name));
-    return datum == xmp.end() ? std::string() : datum->toString();
-}
-
-void set_property(const char *name, const std::string &value, Exiv2::XmpData &xmp) {
-    const Exiv2::XmpKey key(std::string("Xmp.") + prefix + "." + name);
-    const auto old = xmp.findKey(key);
-    if (old != xmp.end()) xmp.erase(old);
-    if (!value.empty()) xmp[key.key()] = value;
-}
 
 void add_bytes(const std::vector<uint8_t> &bytes, uint64_t &hash) {
     for (const uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
@@ -54,35 +41,39 @@ std::string digest_of(const std::string &path) {
     return format("%016llx", static_cast<unsigned long long>(hash));
 }
 
-void register_correction_mark() { Exiv2::XmpProperties::registerNs(uri, prefix); }
-
-std::optional<CorrectionMark> correction_mark_of(const Exiv2::XmpData &xmp) {
-    const std::string falloff = read_property(xmp, "Falloff");
+std::optional<CorrectionMark> correction_mark_of(const Xmp &xmp) {
+    const auto read = [&](const char *name) { return xmp.text(mark_namespace, name); };
+    const std::string falloff = read("Falloff");
     for (size_t i = 0; i < std::size(falloff_words); i++) {
         if (falloff != falloff_words[i]) continue;
         CorrectionMark mark;
         mark.falloff = static_cast<CorrectionMark::Falloff>(i);
-        mark.linear = read_property(xmp, "Encoding") == "linear";
-        mark.is_exposure_measured = read_property(xmp, "Exposure") == "measured";
-        mark.software = read_property(xmp, "Software");
-        mark.model = read_property(xmp, "Model");
-        mark.source = read_property(xmp, "Source");
-        mark.digest = read_property(xmp, "SourceDigest");
+        mark.linear = read("Encoding") == "linear";
+        mark.is_exposure_measured = read("Exposure") == "measured";
+        mark.software = read("Software");
+        mark.model = read("Model");
+        mark.source = read("Source");
+        mark.digest = read("SourceDigest");
         return mark;
     }
     return std::nullopt;
 }
 
-void set_correction_mark(const CorrectionMark &mark, Exiv2::XmpData &xmp) {
+void set_correction_mark(const CorrectionMark &mark, Xmp &xmp) {
     const auto older = correction_mark_of(xmp);
     const bool keeps = older && mark.falloff == CorrectionMark::Falloff::kept;
-    set_property("Falloff", falloff_words[static_cast<size_t>(keeps ? older->falloff : mark.falloff)], xmp);
-    set_property("Encoding", mark.linear ? "linear" : "", xmp);
-    set_property("Exposure", mark.is_exposure_measured ? "measured" : "", xmp);
-    set_property("Software", mark.software, xmp);
-    set_property("Model", mark.model, xmp);
-    set_property("Source", mark.source, xmp);
-    set_property("SourceDigest", mark.digest, xmp);
+    std::vector<std::pair<std::string, std::string>> texts = {
+        {"Falloff", falloff_words[static_cast<size_t>(keeps ? older->falloff : mark.falloff)]},
+        {"Encoding", mark.linear ? "linear" : ""},
+        {"Exposure", mark.is_exposure_measured ? "measured" : ""},
+        {"Software", mark.software},
+        {"Model", mark.model},
+        {"Source", mark.source},
+        {"SourceDigest", mark.digest}};
+    texts.erase(std::remove_if(texts.begin(), texts.end(), [](const auto &text) { return text.second.empty(); }),
+                texts.end());
+    xmp.remove_if([](const std::string &space, const std::string &) { return space == mark_namespace; });
+    xmp.add(mark_namespace, mark_prefix, texts);
 }
 
 }  // namespace lensprof

@@ -5,11 +5,9 @@
 #include <optional>
 #include <string>
 
-namespace Exiv2 {
-class XmpData;
-}
-
 namespace lensprof {
+
+class Xmp;
 
 // Properties of the namespace urn:lensprof:correction:1/ (docs/formats.md).
 struct CorrectionMark {
@@ -33,12 +31,9 @@ struct CorrectionMark {
 // photographs. Failure (unreadable).
 std::string digest_of(const std::string &path);
 
-// Call once, before XMP is read or written.
-void register_correction_mark();
-
-std::optional<CorrectionMark> correction_mark_of(const Exiv2::XmpData &xmp);
+std::optional<CorrectionMark> correction_mark_of(const Xmp &xmp);
 
 // Replaces an older mark. A new mark that keeps the falloff retains the older mark's statement about it.
-void set_correction_mark(const CorrectionMark &mark, Exiv2::XmpData &xmp);
+void set_correction_mark(const CorrectionMark &mark, Xmp &xmp);
 
 }  // namespace lensprof

@@ -1,16 +1,16 @@
 // The exposure in EXIF: time, aperture, ISO, and whether they were set manually.
 #pragma once
 
-#include <exiv2/exiv2.hpp>
-
+#include "photo/pictures/exif_fields.hpp"
 #include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 
-// Fills exposure_time_s, f_number, open_f_number, iso, exif_ev, captured and is_manual.
-void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata);
+// Fills exposure_time_s, f_number, open_f_number, iso, exif_ev, captured and is_manual. `maker_iso`: in the maker note,
+// used if EXIF has no number.
+void read_exposure(const Exif &exif, std::optional<double> maker_iso, PictureMetadata &metadata);
 
 // Writes the known values; the aperture is taken from the key.
-void write_exposure(const PictureMetadata &metadata, Exiv2::ExifData &exif);
+void write_exposure(const PictureMetadata &metadata, Exif &exif);
 
 }  // namespace lensprof

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "photo/pictures/exif_tags.hpp"
 #include "photo/pictures/exif_value.hpp"
 
 namespace lensprof {
@@ -11,8 +12,8 @@ struct StatedSize {
     double width, height;  // px of the frame as the camera took it; NaN = unknown
 };
 
-StatedSize read_stated_size(const Exiv2::ExifData &exif) {
-    return {read_number(exif, {"Exif.Photo.PixelXDimension"}), read_number(exif, {"Exif.Photo.PixelYDimension"})};
+StatedSize read_stated_size(const Exif &exif) {
+    return {read_number(exif, {exif_tags::pixel_width}), read_number(exif, {exif_tags::pixel_height})};
 }
 
 bool is_size_of(StatedSize stated, PictureSize size) {
@@ -37,19 +38,19 @@ double shown_diagonal(StatedSize stated, PictureSize size) {
 }
 
 // 43.27 mm over the sensor diagonal, from the pixel pitch; NaN without it.
-double read_pitched_crop(const Exiv2::ExifData &exif, StatedSize stated) {
-    const double unit = read_number(exif, {"Exif.Photo.FocalPlaneResolutionUnit"}) == 3 ? 10.0 : 25.4;  // mm: cm, inch
+double read_pitched_crop(const Exif &exif, StatedSize stated) {
+    const double unit = read_number(exif, {exif_tags::pitch_unit}) == 3 ? 10.0 : 25.4;  // mm: cm, inch
     return std::hypot(36.0, 24.0)
-           / std::hypot(stated.width / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit,
-                        stated.height / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit);
+           / std::hypot(stated.width / read_number(exif, {exif_tags::pitch_x}) * unit,
+                        stated.height / read_number(exif, {exif_tags::pitch_y}) * unit);
 }
 
 // From the 35 mm equivalent focal length, which is rounded to whole mm; if the pixel pitch agrees with it, or there is
 // no equivalent, from the pitch. The pitch counts if the pixels are those of the camera. A small picture may have been
 // resized by a program that updated its stated size: then the pitch alone is not trusted.
-double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm, StatedSize stated, PictureSize size) {
+double read_crop_factor(const Exif &exif, double focal_mm, StatedSize stated, PictureSize size) {
     constexpr double min_pixels = 3e6, same = 0.1;
-    const double equivalent = read_number(exif, {"Exif.Photo.FocalLengthIn35mmFilm"}) / focal_mm;
+    const double equivalent = read_number(exif, {exif_tags::focal_length_35mm}) / focal_mm;
     const bool has_pixels = is_size_of(stated, size) || size.shown_diagonal < 1.0;
     const double pitched = has_pixels ? read_pitched_crop(exif, stated) : NAN;
     const auto is_plausible = [](double crop) { return crop > 0.2 && crop < 50.0; };
@@ -61,7 +62,7 @@ double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm, StatedSize
 
 }  // namespace
 
-void read_sensor(const Exiv2::ExifData &exif, bool is_raw, PictureMetadata &metadata) {
+void read_sensor(const Exif &exif, bool is_raw, PictureMetadata &metadata) {
     const StatedSize stated = read_stated_size(exif);
     PictureSize &size = metadata.size;
     if (!is_raw) size.shown_diagonal = shown_diagonal(stated, size);  // raw files have margins

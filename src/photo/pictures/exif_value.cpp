@@ -10,21 +10,61 @@
 
 namespace lensprof {
 
-double number(const Exiv2::Exifdatum &datum) {
-    if (datum.count() == 0) return NAN;
-    if (const auto *value = dynamic_cast<const Exiv2::URationalValue *>(&datum.value()))
-        return static_cast<double>(value->value_[0].first) / value->value_[0].second;
-    if (const auto *value = dynamic_cast<const Exiv2::RationalValue *>(&datum.value()))
-        return static_cast<double>(value->value_[0].first) / value->value_[0].second;
-    return static_cast<double>(datum.toFloat());
+namespace {
+
+// An integer of up to four bytes; `size` with its sign.
+double integer_of(const uint8_t *bytes, size_t size, bool is_signed, TiffByteOrder order) {
+    const uint32_t value = order.get(bytes, size);
+    const uint64_t range = uint64_t(1) << (8 * size);
+    return is_signed && value >= range / 2 ? static_cast<double>(value) - static_cast<double>(range) : value;
 }
 
-double read_number(const Exiv2::ExifData &exif, std::initializer_list<const char *> keys) {
-    for (const char *key : keys) {
-        const auto datum = exif.findKey(Exiv2::ExifKey(key));
-        if (datum != exif.end()) return number(*datum);
+double floating_of(const uint8_t *bytes, size_t size, TiffByteOrder order) {
+    uint64_t bits = order.get(bytes, 4);
+    if (size == 4) {
+        const uint32_t half = static_cast<uint32_t>(bits);
+        float value;
+        std::memcpy(&value, &half, sizeof value);
+        return static_cast<double>(value);
     }
+    const uint64_t other = order.get(bytes + 4, 4);
+    bits = order.big ? bits << 32 | other : other << 32 | bits;
+    double value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+}  // namespace
+
+double number_of(const ExifField *field, TiffByteOrder order, size_t index) {
+    enum : uint16_t {
+        signed_byte = 6,
+        signed_short = 8,
+        signed_long = 9,
+        signed_rational = 10,
+        single = 11,
+        twice = 12
+    };
+    const size_t size = field ? tiff_type_bytes(field->type) : 0;
+    if (size == 0 || field->type == exif_ascii || field->bytes.size() / size <= index) return NAN;
+    const uint8_t *bytes = &field->bytes[index * size];
+    const bool is_signed = field->type == signed_byte || field->type == signed_short || field->type == signed_long
+                           || field->type == signed_rational;
+    if (field->type == single || field->type == twice) return floating_of(bytes, size, order);
+    if (size < 8) return integer_of(bytes, size, is_signed, order);
+    return integer_of(bytes, 4, is_signed, order) / integer_of(bytes + 4, 4, is_signed, order);
+}
+
+double read_number(const Exif &exif, std::initializer_list<ExifTag> tags) {
+    for (const ExifTag tag : tags)
+        if (const ExifField *field = exif.find(tag)) return number_of(field, exif.order);
     return NAN;
+}
+
+std::optional<std::pair<uint32_t, uint32_t>> read_fraction(const Exif &exif, ExifTag tag) {
+    const ExifField *field = exif.find(tag);
+    if (!field || field->type != exif_rational || field->bytes.size() < 8) return std::nullopt;
+    return std::make_pair(exif.order.get(&field->bytes[0], 4), exif.order.get(&field->bytes[4], 4));
 }
 
 // EXIF text is ASCII by the standard; text that is neither ASCII nor UTF-8 is treated as Latin-1. It ends at the first
@@ -50,19 +90,18 @@ std::string clean_text(const std::string &raw) {
 
 // The bytes of text of any type: some programs write BYTE or UNDEFINED, the latter after a character code (EXIF 2.32
 // section 4.6.5, UserComment).
-static std::string raw_text(const Exiv2::Exifdatum &datum) {
+std::string read_text(const Exif &exif, ExifTag tag) {
     static const char ascii_code[8] = {'A', 'S', 'C', 'I', 'I', '\0', '\0', '\0'};
-    const Exiv2::TypeId type = datum.typeId();
-    if (type != Exiv2::unsignedByte && type != Exiv2::signedByte && type != Exiv2::undefined) return datum.toString();
-    std::string text(static_cast<size_t>(datum.size()), '\0');
-    datum.copy(reinterpret_cast<Exiv2::byte *>(&text[0]), Exiv2::littleEndian);
-    return text.compare(0, sizeof ascii_code, ascii_code, sizeof ascii_code) == 0 ? text.substr(sizeof ascii_code)
-                                                                                  : text;
-}
-
-std::string read_text(const Exiv2::ExifData &exif, const char *key) {
-    const auto datum = exif.findKey(Exiv2::ExifKey(key));
-    return datum == exif.end() || datum->count() == 0 ? std::string() : clean_text(raw_text(*datum));
+    const ExifField *field = exif.find(tag);
+    if (!field) return {};
+    std::string text(field->bytes.begin(), field->bytes.end());
+    if (const size_t size = tiff_type_bytes(field->type); size > 1) {
+        text.clear();
+        for (size_t i = 0; size < 8 && i < field->bytes.size() / size; ++i)
+            text += (i ? " " : "") + std::to_string(std::llround(number_of(field, exif.order, i)));
+    }
+    if (text.compare(0, sizeof ascii_code, ascii_code, sizeof ascii_code) == 0) text.erase(0, sizeof ascii_code);
+    return clean_text(text);
 }
 
 bool is_name(const std::string &text) {
@@ -82,7 +121,7 @@ std::optional<double> in_range(double value, double below) {
 namespace {
 
 // The fraction with small terms that is within 1e-9 of the value, by continued fractions.
-Exiv2::URational to_rational(double value) {
+std::pair<uint32_t, uint32_t> to_rational(double value) {
     double p0 = 0, q0 = 1, p1 = 1, q1 = 0, rest = value;
     for (int i = 0; i < 40; ++i) {
         const double integer = std::floor(rest);
@@ -97,8 +136,17 @@ Exiv2::URational to_rational(double value) {
 
 }  // namespace
 
-void set_rational(Exiv2::ExifData &exif, const char *key, double value) {
-    if (value > 0 && value < 4e9) exif[key] = to_rational(value);
+void set_fraction(Exif &exif, ExifTag tag, uint32_t numerator, uint32_t denominator) {
+    std::vector<uint8_t> bytes(8);
+    exif.order.put(&bytes[0], 4, numerator);
+    exif.order.put(&bytes[4], 4, denominator);
+    exif.set(tag, exif_rational, 1, std::move(bytes));
+}
+
+void set_rational(Exif &exif, ExifTag tag, double value) {
+    if (!(value > 0 && value < 4e9)) return;
+    const auto [numerator, denominator] = to_rational(value);
+    set_fraction(exif, tag, numerator, denominator);
 }
 
 }  // namespace lensprof

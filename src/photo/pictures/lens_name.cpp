@@ -1,12 +1,10 @@
 #include "photo/pictures/lens_name.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
-#include <iterator>
 #include <optional>
 
+#include "photo/pictures/exif_tags.hpp"
 #include "photo/pictures/exif_value.hpp"
 
 namespace lensprof {
@@ -25,14 +23,7 @@ bool is_list(const std::string &name) {
            || name.find(" *OR* ") != std::string::npos;
 }
 
-std::string xmp_text(const Exiv2::XmpData &xmp, const char *key) {
-    const auto datum = std::find_if(xmp.begin(), xmp.end(), [&](const auto &entry) { return entry.key() == key; });
-    return datum == xmp.end() ? std::string() : clean_text(datum->toString());
-}
-
-struct FocalRange {
-    double shortest, longest;  // mm
-};
+std::string xmp_text(const Xmp &xmp, const char *space, const char *name) { return clean_text(xmp.text(space, name)); }
 
 bool is_same(const FocalRange &a, const FocalRange &b) {
     constexpr double tolerance = 0.05;  // relative: the rounding of names
@@ -51,18 +42,9 @@ std::optional<FocalRange> range_of_name(const std::string &name) {
     return first > 0 && second >= first ? std::optional<FocalRange>({first, second}) : std::nullopt;
 }
 
-// Canon's focal lengths are integers in a unit that is stated, too: longest, shortest, units per mm.
-std::optional<FocalRange> canon_range(const Exiv2::ExifData &exif) {
-    const auto datum = exif.findKey(Exiv2::ExifKey("Exif.CanonCs.Lens"));
-    if (datum == exif.end() || datum->count() < 3 || datum->toLong(2) <= 0 || datum->toLong(1) <= 0)
-        return std::nullopt;
-    const double units = datum->toFloat(2);
-    return FocalRange{datum->toFloat(1) / units, datum->toFloat(0) / units};
-}
-
 // aux:LensInfo "24/1 70/1 0/0 0/0": shortest and longest focal length, and f-numbers.
-std::optional<FocalRange> adobe_range(const Exiv2::XmpData &xmp) {
-    const std::string text = xmp_text(xmp, "Xmp.aux.LensInfo");
+std::optional<FocalRange> adobe_range(const Xmp &xmp) {
+    const std::string text = xmp_text(xmp, xmp_names::adobe_lens, "LensInfo");
     double value[2];
     const char *at = text.c_str();
     for (double &number : value) {
@@ -82,52 +64,13 @@ bool has_range(const std::string &name, const std::optional<FocalRange> &stated)
     return !range || !stated || name.find('+') != std::string::npos || is_same(*range, *stated);
 }
 
-// What Exiv2 prints for the first number that means a lens: its name, a list of names or, if it does not know it or
-// several share it, the number.
-std::string print_number(const Exiv2::ExifData &exif) {
-    std::string unknown;
-    for (const char *key : {"Exif.CanonCs.LensType", "Exif.NikonLd1.LensIDNumber", "Exif.NikonLd2.LensIDNumber",
-                            "Exif.NikonLd3.LensIDNumber", "Exif.Pentax.LensType", "Exif.PentaxDng.LensType",
-                            "Exif.Minolta.LensID", "Exif.SonyMinolta.LensID", "Exif.Sony1.LensID", "Exif.Sony2.LensID",
-                            "Exif.OlympusEq.LensType", "Exif.Panasonic.LensType", "Exif.Samsung2.LensType"}) {
-        const auto datum = exif.findKey(Exiv2::ExifKey(key));
-        if (datum == exif.end() || datum->count() == 0) continue;
-        const std::string name = clean_text(datum->print(&exif));
-        if (is_name(name)) return name;
-        const bool is_number = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
-        if (unknown.empty() && is_number && name != "0" && name != "65535") unknown = name;
-    }
-    return unknown;
-}
-
-void add_numbers(Exiv2::ExifData &exif, const char *key, Exiv2::TypeId type, const std::string &numbers) {
-    const auto value = Exiv2::Value::create(type);
-    if (value->read(numbers) == 0) exif.add(Exiv2::ExifKey(key), value.get());
-}
-
 // Adobe stores the maker's number, which means what it means in the maker notes. Nikon's is only the first of the eight
 // numbers that identify a lens.
-std::string print_adobe_number(const Exiv2::ExifData &exif, const Exiv2::XmpData &xmp) {
-    const std::string number = xmp_text(xmp, "Xmp.aux.LensID"), maker = read_text(exif, "Exif.Image.Make");
+std::string lens_of_adobe_number(const Exif &exif, const Xmp &xmp) {
+    const std::string number = xmp_text(xmp, xmp_names::adobe_lens, "LensID");
     if (number.empty() || number.find_first_not_of("0123456789 ") != std::string::npos) return {};
-    static const struct {
-        const char *maker, *key;
-        Exiv2::TypeId type;
-    } keys[] = {{"Canon", "Exif.CanonCs.LensType", Exiv2::unsignedShort},
-                {"SONY", "Exif.Sony2.LensID", Exiv2::unsignedLong}};
-    for (const auto &entry : keys) {
-        if (maker.compare(0, std::strlen(entry.maker), entry.maker) != 0) continue;
-        Exiv2::ExifData exif_of_maker;
-        exif_of_maker["Exif.Image.Make"] = maker;
-        exif_of_maker["Exif.Image.Model"] = read_text(exif, "Exif.Image.Model");
-        add_numbers(exif_of_maker, entry.key, entry.type, number);
-        if (const auto range = adobe_range(xmp))  // by which Exiv2 distinguishes lenses of one number
-            add_numbers(exif_of_maker, "Exif.CanonCs.Lens", Exiv2::unsignedShort,
-                        std::to_string(std::lround(range->longest)) + " " + std::to_string(std::lround(range->shortest))
-                            + " 1");
-        return print_number(exif_of_maker);
-    }
-    return {};
+    return lens_of_number(read_text(exif, exif_tags::make), read_text(exif, exif_tags::model), number,
+                          adobe_range(xmp));
 }
 
 // Whether what Exiv2 printed is one lens, with the stated focal lengths.
@@ -137,13 +80,14 @@ bool is_one_lens(const std::string &name, const std::optional<FocalRange> &state
 
 }  // namespace
 
-LensName read_lens(const Exiv2::ExifData &exif, const Exiv2::XmpData &xmp) {
-    const std::string model = read_text(exif, "Exif.Photo.LensModel"), canon = read_text(exif, "Exif.Canon.LensModel"),
-                      adobe = xmp_text(xmp, "Xmp.aux.Lens"), cipa = xmp_text(xmp, "Xmp.exifEX.LensModel");
+LensName read_lens(const Exif &exif, const Xmp &xmp, const MakerNotes &notes) {
+    const std::string model = read_text(exif, exif_tags::lens_model), &canon = notes.lens_model,
+                      adobe = xmp_text(xmp, xmp_names::adobe_lens, "Lens"),
+                      cipa = xmp_text(xmp, xmp_names::exif_2, "LensModel");
     for (const std::string &name : {model, canon})
         if (is_in_words(name)) return {name, ""};
-    const std::string by_number = print_number(exif), by_adobe_number = print_adobe_number(exif, xmp);
-    if (is_one_lens(by_number, canon_range(exif))) return {by_number, ""};
+    const std::string &by_number = notes.lens_of_number, by_adobe_number = lens_of_adobe_number(exif, xmp);
+    if (is_one_lens(by_number, notes.lens_range)) return {by_number, ""};
     for (const std::string &name : {cipa, adobe})
         if (is_in_words(name)) return {name, ""};
     if (is_one_lens(by_adobe_number, adobe_range(xmp))) return {by_adobe_number, ""};

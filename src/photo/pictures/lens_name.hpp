@@ -3,7 +3,9 @@
 
 #include <string>
 
-#include <exiv2/exiv2.hpp>
+#include "photo/pictures/exif_fields.hpp"
+#include "photo/pictures/maker_notes.hpp"
+#include "photo/pictures/xmp_packet.hpp"
 
 namespace lensprof {
 
@@ -16,6 +18,6 @@ struct LensName {
 // The first of: EXIF's LensModel and Canon's own; the lens with the number in the maker notes; the names in XMP (CIPA's
 // LensModel, Adobe's aux:Lens); the lens with the number in aux:LensID; a name of numbers alone ("24.0-70.0 mm f/2.8"),
 // which fits many lenses. A number counts only if it means one lens, and that has the stated focal lengths.
-LensName read_lens(const Exiv2::ExifData &exif, const Exiv2::XmpData &xmp);
+LensName read_lens(const Exif &exif, const Xmp &xmp, const MakerNotes &notes);
 
 }  // namespace lensprof

@@ -96,20 +96,24 @@ std::vector<uint8_t> block_of(const std::vector<uint8_t> &note, uint32_t offset,
 
 }  // namespace
 
-void repair_maker_note(Exiv2::Image &image) {
-    Exiv2::ExifData &exif = image.exifData();
+void repair_maker_note(MakerExif &maker_exif) {
+    Exiv2::ExifData &exif = maker_exif.data;
     const auto datum = exif.findKey(Exiv2::ExifKey("Exif.Photo.MakerNote"));
-    const double offset = read_number(exif, {"Exif.MakerNote.Offset"});
-    const std::string order_name = read_text(exif, "Exif.MakerNote.ByteOrder"),
-                      maker = read_text(exif, "Exif.Image.Make");
-    if (datum == exif.end() || datum->size() <= 0 || !(offset >= 8 && offset < kMaxNoteBytes) || maker.size() < 4)
+    const auto text = [&](const char *key) {
+        const auto found = exif.findKey(Exiv2::ExifKey(key));
+        return found == exif.end() ? std::string() : clean_text(found->toString());
+    };
+    const auto place = exif.findKey(Exiv2::ExifKey("Exif.MakerNote.Offset"));
+    const long offset = place == exif.end() || place->count() == 0 ? 0 : place->toLong();
+    const std::string order_name = text("Exif.MakerNote.ByteOrder"), maker = text("Exif.Image.Make");
+    if (datum == exif.end() || datum->size() <= 0 || offset < 8 || offset >= long(kMaxNoteBytes) || maker.size() < 4)
         return;
     std::vector<uint8_t> note(static_cast<size_t>(datum->size()));
     datum->copy(note.data(), Exiv2::invalidByteOrder);
     const TiffByteOrder stated{order_name == "MM"}, other{!stated.big};
     if (note.size() > kMaxNoteBytes || !is_in_other_order(note, stated)) return;
     const std::vector<uint8_t> block =
-        block_of(note, static_cast<uint32_t>(offset), other, maker, read_text(exif, "Exif.Image.Model") + "    ");
+        block_of(note, static_cast<uint32_t>(offset), other, maker, text("Exif.Image.Model") + "    ");
     Exiv2::ExifData repaired;
     if (Exiv2::ExifParser::decode(repaired, block.data(), static_cast<uint32_t>(block.size()))
         == Exiv2::invalidByteOrder)
@@ -120,7 +124,7 @@ void repair_maker_note(Exiv2::Image &image) {
     for (auto entry = exif.begin(); entry != exif.end();) entry = is_of_maker(*entry) ? exif.erase(entry) : ++entry;
     for (const Exiv2::Exifdatum &entry : repaired)
         if (is_of_maker(entry)) exif.add(entry);
-    image.setByteOrder(other.big ? Exiv2::bigEndian : Exiv2::littleEndian);
+    maker_exif.order = other.big ? Exiv2::bigEndian : Exiv2::littleEndian;
 }
 
 }  // namespace lensprof

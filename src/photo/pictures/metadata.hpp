@@ -1,4 +1,4 @@
-// Camera, lens and exposure from the metadata of a picture file (EXIF, maker notes), through Exiv2.
+// Camera, lens and exposure from the metadata of a picture file (EXIF, XMP, maker notes).
 //
 // Threads: any function may run in several threads concurrently.
 #pragma once
@@ -85,15 +85,15 @@ std::string read_xmp_packet(const std::string &path);
 // Copies EXIF, maker notes, IPTC, XMP and comment of one picture to another (JPEG, PNG or TIFF) and replaces that file,
 // completely or not at all. Skipped is what would no longer be true: the thumbnail, sizes of the old file, and in TIFF
 // all tags that describe pixel storage; also tags of parts that a copy leaves out (other_parts.hpp). Pixels, colour
-// profile and resolution of the target stay. Adds `mark`, if given. Returns false for a BigTIFF, which Exiv2 does not
-// support.
+// profile and resolution of the target stay. Adds `mark`, if given. Returns false for a BigTIFF, whose
+// metadata are not supported.
 bool copy_metadata(const std::string &source, const std::string &target, const CorrectionMark *mark = nullptr);
 
 // Writes the known fields as EXIF into a picture file and replaces only these (aperture from the key). Returns false
 // for a BigTIFF. Throws Failure.
 bool write_metadata(const std::string &path, const PictureMetadata &metadata);
 
-// A mark as a standalone XMP packet, for files that Exiv2 does not support; and the reverse.
+// A mark as a standalone XMP packet, for files whose metadata are not edited; and the reverse.
 std::string packet_of_mark(const CorrectionMark &mark);
 std::optional<CorrectionMark> mark_of_packet(const std::string &packet);
 

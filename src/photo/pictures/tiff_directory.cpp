@@ -54,11 +54,16 @@ std::vector<uint8_t> TiffReader::read(uint64_t offset, uint64_t count) {
 }
 
 TiffDirectory TiffReader::directory(uint64_t pointer) {
+    TiffDirectory directory = directory_at(order_.get(read(pointer, 4).data(), 4));
+    directory.pointer = pointer;
+    return directory;
+}
+
+TiffDirectory TiffReader::directory_at(uint64_t offset) {
     if (++directories_ > max_directories) throw UnusableTiff(TiffDefect::circle);
-    const uint64_t offset = order_.get(read(pointer, 4).data(), 4);
     const uint32_t count = order_.get(read(offset, 2).data(), 2);
     const std::vector<uint8_t> bytes = read(offset + 2, count * entry_bytes + 4);
-    TiffDirectory directory{pointer, offset, {}, order_.get(&bytes[count * entry_bytes], 4)};
+    TiffDirectory directory{0, offset, {}, order_.get(&bytes[count * entry_bytes], 4)};
     for (size_t position = 0; directory.entries.size() < count; position += entry_bytes) {
         TiffEntry entry{static_cast<uint16_t>(order_.get(&bytes[position], 2)),
                         static_cast<uint16_t>(order_.get(&bytes[position + 2], 2)),

@@ -75,6 +75,7 @@ public:
 
     // The directory that the offset at `pointer` points to.
     TiffDirectory directory(uint64_t pointer);
+    TiffDirectory directory_at(uint64_t offset);  // without a pointer
     TiffDirectory first() { return directory(4); }
 
     // Pointers to the directories of the SubIFDs tag; empty without the tag. A directory may have 65535 entries, so
