@@ -318,7 +318,7 @@ void test_folder(void **) {
     const Json json = json_of({"calibrate", in, "-o", out, "--db", db, "--json"});
     assert_int_equal(json["now"]["corrected"], 0);
     assert_true(fs::exists(db));
-    assert_status(LENSPROF_ERROR_ARGUMENT, "input", [&](auto *why) {
+    assert_status(LENSPROF_ERROR_ARGUMENT, "folder of the pictures", [&](auto *why) {
         return lensprof_calibrate_folder(&path, 1, in.c_str(), &options, nullptr, nullptr, why);
     });
     assert_status(LENSPROF_ERROR_ARGUMENT, "NULL", [&](auto *why) {

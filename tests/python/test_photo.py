@@ -109,6 +109,15 @@ class TestCalibration(WithScene):
         self.assertEqual(lp.calibrate(self.photos, use_stored=False).store(database), 1)
         self.assertEqual(lp.correct_files([(self.files[0], self.folder / "by-profile.png")], databases=[database]), 1)
 
+    def test_plot(self):
+        try:
+            import matplotlib  # noqa: F401
+        except ImportError:
+            self.skipTest("no matplotlib")
+        figure = lp.calibrate(self.photos).plot()
+        figure.savefig(self.folder / "profile.png")
+        self.assertEqual(len(figure.axes), 2)
+
     def test_arrays(self):
         frames = (lp.read_picture(file).pixels for file in self.files[:4])
         calibration = lp.calibrate(frames, names=["a", "b", "c", "d"])
@@ -155,6 +164,13 @@ class TestCalibration(WithScene):
             (self.folder / "broken.png").write_bytes(b"\x89PNG\r\n")
             lp.Scene.open([*self.files, self.folder / "broken.png"])
         self.assertIn("broken.png", "".join(str(warning.message) for warning in caught))
+
+
+class TestTypedUse(WithScene):
+    def test_runs(self):
+        import typed_use
+
+        self.assertEqual(typed_use.main(self.photos), 0)
 
 
 class TestMissing(unittest.TestCase):

@@ -60,8 +60,9 @@ def _bar() -> Optional[Progress]:
             for other in bars.values():
                 other.close()
             bars[step] = tqdm(total=100, desc=step, unit="%", leave=False)
-        bars[step].n = round(100 * done)
-        bars[step].refresh()
+        if bars[step].n != round(100 * done):
+            bars[step].n = round(100 * done)
+            bars[step].refresh()
 
     return show
 
@@ -402,7 +403,7 @@ class Calibration(Handle):
         """Draws response and relative illuminance with matplotlib, and returns the figure."""
         if not self.profiles:
             raise ValueError("a result that was read has no profiles to plot")
-        return plot_profile(self.profiles[0])
+        return self.profiles[0].plot()
 
     def _ask(self, function: Any, *rest: Any) -> None:
         error = _abi.ErrorText()
@@ -538,19 +539,3 @@ def correct_files(copies: Iterable[tuple[PathLike, PathLike]], calibration: Opti
 def correct_file(source: PathLike, calibration: Optional[Calibration], target: PathLike, **options: Any) -> None:
     """Writes one corrected copy; as correct_files."""
     correct_files([(source, target)], calibration, **options)
-
-
-def plot_profile(profile: Profile) -> Any:
-    """Draws the response, and the relative illuminance from the centre to the corner, with matplotlib."""
-    from matplotlib.figure import Figure  # type: ignore[import-untyped,import-not-found,unused-ignore]
-
-    figure = Figure(figsize=(9, 4), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    light = np.linspace(0.0, 1.0, 256)
-    left.plot(light, [profile.response[0].eval(x) for x in light])
-    left.set(xlabel="irradiance", ylabel="grey value", title="response")
-    radii = np.linspace(0.0, 1.0, 101)
-    for curve, color in zip(profile.vignetting, ("tab:green",) if len(profile.vignetting) == 1 else ("r", "g", "b")):
-        right.plot(radii, [curve.eval(r * r) for r in radii], color=color)
-    right.set(xlabel="radius, half diagonals", ylabel="relative illuminance", title="vignetting", ylim=(0, 1.05))
-    return figure

@@ -158,6 +158,12 @@ class Profile(Value, _abi.Profile):
               f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the "
               "covariance must be finite and symmetric")
 
+    def plot(self) -> Any:
+        """Draws response and relative illuminance with matplotlib, and returns the figure."""
+        from ._plot import plot_profile
+
+        return plot_profile(self)
+
     def falloff(self, width: int, height: int, x: float, y: float, channel: int = 0) -> tuple[float, float | None]:
         """Relative illuminance of a channel at pixel (x, y) of a frame, including the gain grid, and its standard error
         from the covariance of the falloff; None if that is unknown."""

@@ -60,6 +60,7 @@ std::string advice_for(const std::string &situation) {
         {"no_profile", "; see `lensprof profile list`"},
         {"one_lens", " (use --one-lens to treat all as one)"},
         {"one_visit", ", with --reconstruction list=FILE"},
+        {"output", " with -o"},
         {"prior_alone", " Use --fit stored=none to fit them alone"},
         {"prior_given", ", or --fit stored=none to fit the pictures alone"},
         {"still_camera",

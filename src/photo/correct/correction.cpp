@@ -25,11 +25,12 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
         }
         const std::string target = canonical_path(job.target);
         if (target == canonical_path(job.source) || is_same_file(job.source, job.target))
-            throw Failure(LENSPROF_ERROR_ARGUMENT,
-                          job.source + ": would be overwritten by its correction; give another folder with -o");
+            throw Failure(
+                LENSPROF_ERROR_ARGUMENT,
+                job.source + ": would be overwritten by its correction; give another folder" + advice("output"));
         if (read.count(target))
             throw Failure(LENSPROF_ERROR_ARGUMENT,
-                          job.target + ": would overwrite an input picture; give another folder with -o");
+                          job.target + ": would overwrite an input picture; give another folder" + advice("output"));
         if (!written.insert(target).second)
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           job.target + ": two pictures would get this name; correct them one folder at a time");

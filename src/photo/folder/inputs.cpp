@@ -28,8 +28,8 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
                 LENSPROF_ERROR_ARGUMENT,
                 word + ": is neither a picture (.jpg, .png, .tif, camera raw) nor a folder" + advice("build_project"));
         if (canonical_path(word) == canonical_path(output))
-            throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": is the folder of the pictures; give another output folder with "
-                                                    "-o");
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          output + ": is the folder of the pictures; give another output folder" + advice("output"));
     }
 }
 
@@ -63,7 +63,8 @@ void check_targets(const Inputs &inputs, const std::vector<NamedPicture> &named)
         const std::string target = canonical_path(picture.target);
         if (read.count(target))
             throw Failure(LENSPROF_ERROR_ARGUMENT, picture.file + ": its corrected copy would be " + picture.target
-                                                       + ", which is an input picture; give another folder with -o");
+                                                       + ", which is an input picture; give another folder"
+                                                       + advice("output"));
         const auto [other, is_new] = written.try_emplace(target, picture.file);
         if (!is_new)
             throw Failure(LENSPROF_ERROR_ARGUMENT,

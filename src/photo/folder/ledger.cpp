@@ -77,7 +77,7 @@ bool has_ledger(const std::string &folder) {
     return failure_of([&] {
                if (object_of(read_text(path, max_text_bytes)).is_null())
                    throw Failure(LENSPROF_ERROR_READ, path + ": is not a record of calibrate; delete it, or give "
-                                                              "another folder with -o");
+                                                              "another folder" + advice("output"));
            })
         .empty();
 }
@@ -97,7 +97,7 @@ void FolderLock::acquire() {
         return;  // some file systems have no locks
     close(file_);
     throw Failure(LENSPROF_ERROR_WRITE, folder_ + ": another calibrate is using this folder; wait until it ends, or give "
-                                              "another folder with -o");
+                                              "another folder" + advice("output"));
 }
 
 Ledger::Ledger(const std::string &folder, bool overwrite)
