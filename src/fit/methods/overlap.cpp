@@ -28,7 +28,10 @@ constexpr Part kParts[] = {{true, true, LENSPROF_PROFILE_PRIOR_USED},
 
 // The profile with a covariance restricted to this part of it; NULL if that contains no information.
 std::unique_ptr<lensprof_profile> part_of(const lensprof_profile &profile, const Part &part) {
-    auto restricted = std::make_unique<lensprof_profile>(profile);
+    auto restricted = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(restricted.get());
+    if (lensprof_profile_copy(restricted.get(), &profile) != LENSPROF_OK)
+        return nullptr;  // the caller's may be shorter
     const uint32_t n = restricted->covariance_size,
                    modes = lp_covariance_modes(restricted->response, restricted->responses);
     for (uint32_t i = 0; i < n; i++) {

@@ -21,7 +21,8 @@ Correction copy_of_picture(const CopyNames &names) {
 lensprof_exposure common_exposure(const std::vector<lensprof_exposure> &exposures) {
     constexpr double largest_common_lift_ev = 1.0;
     lensprof_exposure common = mean_exposure(exposures);
-    for (const lensprof_exposure &exposure : exposures) common.ev = std::min(common.ev, exposure.ev + largest_common_lift_ev);
+    for (const lensprof_exposure &exposure : exposures)
+        common.ev = std::min(common.ev, exposure.ev + largest_common_lift_ev);
     return common;
 }
 
