@@ -286,6 +286,16 @@ void test_bad_copies(void **) {
     refused(LENSPROF_ERROR_ARGUMENT, "img000.png", {{good.c_str(), good.c_str()}});
     refused(LENSPROF_ERROR_ARGUMENT, "to_a.png", {{good.c_str(), to_a.c_str()}, {good.c_str(), to_a.c_str()}});
     refused(LENSPROF_ERROR_ARGUMENT, "NULL", {{good.c_str(), nullptr}});
+    lensprof_correct_options overwriting;  // but not pictures of the scene
+    lensprof_correct_options_init(&overwriting);
+    overwriting.overwrite = 1;
+    const Bytes before = load(photos("img001.png"));
+    const std::string other = photos("img001.png");
+    const lensprof_copy over = {good.c_str(), other.c_str()};
+    assert_status(LENSPROF_ERROR_ARGUMENT, "img001.png", [&](auto *why) {
+        return lensprof_correct_files(calibration.get(), &over, 1, &overwriting, nullptr, nullptr, why);
+    });
+    assert_true(load(other) == before);
     lensprof_correct_options options;
     lensprof_correct_options_init(&options);
     const std::string db = work("none.db");

@@ -35,6 +35,7 @@ ProjectFitOptions options_of(const lensprof_calibrate_options &from) {
     if (from.method > LENSPROF_METHOD_RADIANCE) throw Failure(LENSPROF_ERROR_ARGUMENT, "method: is unknown");
     if (from.falloff_curves != 0 && from.falloff_curves != 1 && from.falloff_curves != 3)
         throw Failure(LENSPROF_ERROR_ARGUMENT, "falloff_curves: is neither 0, 1 nor 3");
+    if (std::isnan(from.exif_sigma)) throw Failure(LENSPROF_ERROR_ARGUMENT, "exif_sigma: is not a number");
     if (from.max_side && from.max_side < 64) throw Failure(LENSPROF_ERROR_ARGUMENT, "max_side: is below 64");
     return o;
 }

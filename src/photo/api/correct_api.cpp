@@ -72,6 +72,8 @@ lensprof_status lensprof_correct_files(const lensprof_calibration *calibration, 
             calibration ? copies_of_scene(calibration->result, names, o.exposure) : copies_by_profile(names, o);
         std::vector<std::string> inputs;
         for (const CopyNames &copy : names) inputs.push_back(copy.source);
+        if (calibration)
+            inputs.insert(inputs.end(), calibration->result.files.begin(), calibration->result.files.end());
         const CorrectionKind kind = kind_of(o);
         check_targets(jobs, inputs, "");
         check_older_outputs(jobs, kind, false);
