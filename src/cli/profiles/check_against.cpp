@@ -60,24 +60,13 @@ std::vector<StoredProfile> read_by_ids(const std::string &db, const std::vector<
 }
 
 // Notes on a scene announce estimates, which are not made here; warnings concern the pictures.
-class WarningsAlone : public Events {
+class WarningsAlone : public ForwardedEvents {
 public:
-    explicit WarningsAlone(Events &to) : to_(to) {}
+    using ForwardedEvents::ForwardedEvents;
 
-    void update(const std::string &step, double fraction, const std::string &detail) override {
-        to_.update(step, fraction, detail);
-    }
-    void update_items(const std::string &step, uint32_t done, uint32_t count) override {
-        to_.update_items(step, done, count);
-    }
-    void clear() override { to_.clear(); }
     void notice(uint32_t severity, const std::string &item, const std::string &text) override {
-        if (severity == LENSPROF_SEVERITY_WARNING) to_.notice(severity, item, text);
+        if (severity == LENSPROF_SEVERITY_WARNING) ForwardedEvents::notice(severity, item, text);
     }
-    bool is_cancelled() override { return to_.is_cancelled(); }
-
-private:
-    Events &to_;
 };
 
 // The pairs of one camera at one lens setting, as in a profile: the setting with most pairs. `first` receives its image

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "cli/profiles/exposures_only.hpp"
-#include "photo/base/joined_sets.hpp"
+#include "fit/base/joined_sets.hpp"
 #include "photo/base/mixed_bits.hpp"
 
 namespace lensprof {

@@ -36,6 +36,24 @@ public:
     virtual std::string advice(const std::string &situation);
 };
 
+// Passes everything on; a derived class changes a part.
+class ForwardedEvents : public Events {
+public:
+    explicit ForwardedEvents(Events &to) : to_(to) {}
+
+    void update(const std::string &step, double fraction, const std::string &detail) override;
+    void clear() override;
+    void finish(const std::string &summary) override;
+    void update_items(const std::string &step, uint32_t done, uint32_t count) override;
+    void notice(uint32_t severity, const std::string &item, const std::string &text) override;
+    bool is_cancelled() override;
+    std::string option_name(const std::string &name) override;
+    std::string advice(const std::string &situation) override;
+
+private:
+    Events &to_;
+};
+
 struct Notice {
     uint32_t severity;
     std::string item, text;

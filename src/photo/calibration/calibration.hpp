@@ -1,7 +1,6 @@
 // The calibration of a scene: what it was made from, its fit, and what is made of that.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@ namespace lensprof {
 
 // The fit refers to the events, which must live as long.
 struct Calibration {
-    // Fits. `kind` is that of the cameras; empty: according to the pictures. Failure.
+    // Fits. Failure.
     Calibration(Project of, const ProjectFitOptions &o, Events &events);
 
     ProjectFitOptions options;

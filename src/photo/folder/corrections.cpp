@@ -10,7 +10,6 @@
 #include "photo/base/paths.hpp"
 #include "photo/base/shell_word.hpp"
 #include "photo/correct/picture_model.hpp"
-#include "photo/correct/project_model.hpp"
 #include "photo/correct/scene_copies.hpp"
 #include "photo/folder/attempt.hpp"
 #include "photo/pictures/picture.hpp"
@@ -23,10 +22,7 @@ std::string copy_key(const InputPicture &picture, const std::string &model) {
 }
 
 Correction job_of(const InputPicture &picture) {
-    Correction job;
-    job.source = picture.file, job.target = picture.target;
-    lensprof_exposure_init(&job.exposure);
-    lensprof_exposure_init(&job.target_exposure);
+    Correction job = copy_of_picture({picture.file, picture.target});
     job.pixels = uint64_t(picture.metadata.size.width) * picture.metadata.size.height;
     return job;
 }
@@ -46,27 +42,22 @@ using Reasons = std::map<std::string, std::string>;  // by file
 void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     const std::string text = read_text(panorama.project, max_text_bytes)
                              + panorama.exposures.dump(-1, ' ', true, Json::error_handler_t::replace);
-    const Project project = panorama.corrected_scene();
-    const ImagesByFile images(project);
-    const std::vector<lensprof_exposure> exposures = relative_to_joined(project);
-    const lensprof_exposure common = common_exposure(joined_exposures(project, exposures));
-    const auto encoding = common_encoding(project);
+    const Project scene = panorama.corrected_scene();
+    const SceneCorrection correction(scene, LENSPROF_COPY_EXPOSURE_MEAN,
+                                     std::filesystem::path(panorama.project).filename().string());
     for (const InputPicture *picture : panorama.pictures) {
-        const auto image = images.find(picture->file);
-        if (!image || project.images[*image].left_out) {
+        const auto image = correction.find(picture->file);
+        if (!image || correction.is_left_out(*image)) {
             reasons[picture->file] = picture->file
                                      + (image ? ": disagrees with the other pictures of panorama " + panorama.name
                                               : ": is not in " + panorama.project);
             continue;
         }
-        CorrectedPicture corrected_picture{picture, panorama.name, exposures[*image].ev - common.ev,
-                                           copy_key(*picture, text), job_of(*picture)};
-        corrected_picture.job.model = model_of_project(project, *image);
-        corrected_picture.job.exposure = exposures[*image], corrected_picture.job.target_exposure = common,
-        corrected_picture.job.encoding = encoding;
-        corrected_picture.job.model_name = std::filesystem::path(panorama.project).filename().string();
-        corrected_picture.job.command = with_words(advice("apply_project"), {panorama.project});
-        corrected.emplace(picture->file, std::move(corrected_picture));
+        Correction job = job_of(*picture);
+        correction.put_into(*image, job);
+        job.command = with_words(advice("apply_project"), {panorama.project});
+        const double ev = job.exposure.ev - job.target_exposure.ev;
+        corrected.emplace(picture->file, CorrectedPicture{picture, panorama.name, ev, copy_key(*picture, text), job});
     }
 }
 

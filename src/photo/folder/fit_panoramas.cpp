@@ -55,22 +55,15 @@ Json result_of(const BuildReport &report) {
     return result;
 }
 
-// Notices are kept for the summary, and progress is shown.
-class PanoramaEvents : public NoticeList {
+// Notices are kept for the summary; the rest is passed on.
+class PanoramaEvents : public ForwardedEvents {
 public:
-    explicit PanoramaEvents(Events &of_folder) : of_folder_(of_folder) {}
+    using ForwardedEvents::ForwardedEvents;
 
-    void update(const std::string &step, double fraction, const std::string &detail) override {
-        of_folder_.update(step, fraction, detail);
+    void notice(uint32_t severity, const std::string &item, const std::string &text) override {
+        kept.notice(severity, item, text);
     }
-    void update_items(const std::string &step, uint32_t done, uint32_t count) override {
-        of_folder_.update_items(step, done, count);
-    }
-    void clear() override { of_folder_.clear(); }
-    bool is_cancelled() override { return of_folder_.is_cancelled(); }
-
-private:
-    Events &of_folder_;
+    NoticeList kept;
 };
 
 // The panorama is not stored if EXIF does not name camera and lens, unless the caller names them.
@@ -110,7 +103,7 @@ void fit_and_store(const FolderOptions &o, Panorama &panorama, Project &project,
         panorama.summary["not_stored"] = state.report.verdict.text();
     panorama.summary["key"] = key_json(calibration.key);
     panorama.summary["database"] = is_stored ? Json(store_path(options.store.db)) : Json();
-    panorama.summary["warnings"] = warnings_of(events, outcome);
+    panorama.summary["warnings"] = warnings_of(events.kept, outcome);
     panorama.summary["result"] = result_of(state.report);
     panorama.exposures = Json();
     if (state.best.corrects())

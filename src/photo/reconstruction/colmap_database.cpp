@@ -9,10 +9,10 @@
 
 #include <sqlite3.h>
 
+#include "fit/base/joined_sets.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
-#include "photo/base/joined_sets.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/reconstruction/readers.hpp"
 

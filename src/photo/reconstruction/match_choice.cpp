@@ -8,7 +8,7 @@
 #include <set>
 #include <tuple>
 
-#include "photo/base/joined_sets.hpp"
+#include "fit/base/joined_sets.hpp"
 #include "photo/base/mixed_bits.hpp"
 #include "photo/reconstruction/link_order.hpp"
 
