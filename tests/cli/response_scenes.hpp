@@ -79,7 +79,7 @@ inline Colour mixed(const Shot &shot, const Colour &in) {
 // The light on the sensor, relative to its saturation; not clipped.
 inline Field sensor_light(const Shot &shot) {
     Field field{shot.width, shot.height, std::vector<Colour>(size_t(shot.width) * shot.height)};
-    const lensprof::Scene scene(shot.seed, shot.scene);
+    const lensprof::SimulatedScene scene(shot.seed, shot.scene);
     const double per_px = 1.0 / shot.width;
     for (uint32_t y = 0; y < shot.height; y++)
         for (uint32_t x = 0; x < shot.width; x++) {

@@ -3,7 +3,7 @@
 #include <deque>
 
 #include "photo/scene/block_sampling.hpp"
-#include "photo/scene/reconstruction_project.hpp"
+#include "photo/scene/reconstruction_scene.hpp"
 
 #include "moving_scenes.hpp"
 
@@ -108,7 +108,7 @@ void test_is_deterministic(void **) {
 // Pictures in blocks of two, and all in one block: the same links, and about as many pairs.
 void test_blocks(void **) {
     Events progress;
-    const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, {}, 0, 1}, progress);
+    const Scene project = scene_of_reconstruction(work("model"), {work("pictures"), false, {}, {}, 0, 1}, progress);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     std::vector<lensprof_pair> pairs[2];

@@ -28,7 +28,7 @@ struct Known {
 
 Known known_of(std::vector<PictureMetadata> metadata, const FitOptions &options = {}) {
     std::vector<lensprof_fit_image> images(metadata.size());
-    Project project;
+    Scene project;
     project.path = "pictures";
     for (size_t i = 0; i < metadata.size(); i++) project.names.push_back("img" + std::to_string(i) + ".jpg");
     project.files = project.names;

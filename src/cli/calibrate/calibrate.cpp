@@ -28,9 +28,9 @@ struct CalibrateOptions : FolderOptions {
 
 // The part of a panorama in the report, without pictures.
 Json page_of_panorama(Calibration &calibration, const std::vector<std::string> &warnings, Events &events) {
-    ProjectFit &fit = calibration.fit;
+    SceneFit &fit = calibration.fit;
     Json page = fit_page_data(
-        {fit.report, fit.input, fit.best, fit.input.images, calibration.project, calibration.metadata, "", "", false},
+        {fit.report, fit.input, fit.best, fit.input.images, calibration.scene, calibration.metadata, "", "", false},
         events);
     add_fit_verdict(page, fit.report, warnings);
     return page;

@@ -25,7 +25,7 @@
 #include "photo/pictures/other_parts.hpp"
 #include "photo/pictures/raw_kind.hpp"
 #include "photo/report/falloff.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 #include "photo/scene/static_camera.hpp"
 
 namespace lensprof {
@@ -80,58 +80,58 @@ constexpr uint32_t lens_flags =
 
 // The project with the orientations. A sequence is aligned from its pictures alone: everything is free, except the
 // falloff, which a stationary camera does not show.
-Project sequence(const Options &o) {
-    Project project = o.pto.empty() ? static_project(o.files, true) : read_project(o.pto);
-    refuse_crops(project, "align");
-    if (project.images.size() < 2)
+Scene sequence(const Options &o) {
+    Scene scene = o.pto.empty() ? static_scene(o.files, true) : read_hugin_project(o.pto);
+    refuse_crops(scene, "align");
+    if (scene.images.size() < 2)
         throw Failure(
             LENSPROF_ERROR_NOT_USABLE,
-            (o.pto.empty() ? project.files[0] : o.pto) + ": a single frame cannot be aligned; give at least two",
+            (o.pto.empty() ? scene.files[0] : o.pto) + ": a single frame cannot be aligned; give at least two",
             LENSPROF_REASON_FEW_PAIRS);
-    require_one_kind(project.files);
-    project.reference = 0;
-    for (uint32_t i = 0; i < project.images.size(); i++) {
-        auto &image = project.images[i];
+    require_one_kind(scene.files);
+    scene.reference = 0;
+    for (uint32_t i = 0; i < scene.images.size(); i++) {
+        auto &image = scene.images[i];
         image.free = image_flags | (o.pto.empty() ? static_cast<uint32_t>(LENSPROF_FREE_RESPONSE) : lens_flags);
         image.ev_of = image.red_of = image.blue_of = i;
         lensprof_exposure_init(&image.exposure);
     }
-    return project;
+    return scene;
 }
 
 // The frames to write, as indices of the project's images.
-std::vector<uint32_t> frames_of(const Options &o, const Project &project) {
+std::vector<uint32_t> frames_of(const Options &o, const Scene &scene) {
     std::vector<uint32_t> frames;
-    for (uint32_t i = 0; i < project.files.size() && (o.files.empty() || o.pto.empty()); i++) frames.push_back(i);
+    for (uint32_t i = 0; i < scene.files.size() && (o.files.empty() || o.pto.empty()); i++) frames.push_back(i);
     if (!frames.empty()) return frames;
-    const ImagesByFile images(project);
+    const ImagesByFile images(scene);
     for (const std::string &file : o.files) frames.push_back(images.at(file, "--project"));
     return frames;
 }
 
-Fitted fit_sequence(const Options &o, const Project &project, std::vector<double> &white_shares, Progress &progress) {
+Fitted fit_sequence(const Options &o, const Scene &scene, std::vector<double> &white_shares, Progress &progress) {
     FitInput input;
     input.options = fit_options(o.fit);
-    input.options.free &= project.images[0].free;
-    input.options.reference = project.reference;
-    auto pictures = read_pictures(project, o.pixels.max_side, progress);
+    input.options.free &= scene.images[0].free;
+    input.options.reference = scene.reference;
+    auto pictures = read_pictures(scene, o.pixels.max_side, progress);
     input.options.channels = channel_count(pictures);
     lensprof_sample_options sampling;
     lensprof_sample_options_init(&sampling);
     sampling.pairs = o.pixels.pairs;
     sampling.seed = o.pixels.seed;
     std::vector<lensprof_link> links;
-    input.pairs = project.pto ? sample_pairs(project, pictures, sampling, {}, progress, &links)
-                              : sample_still(project, pictures, sampling, 0.0, progress);
+    input.pairs = scene.pto ? sample_pairs(scene, pictures, sampling, {}, progress, &links)
+                            : sample_still(scene, pictures, sampling, 0.0, progress);
     input.options.links = links.data();
     input.options.link_count = static_cast<uint32_t>(links.size());
-    input.options.refine = !project.pto && o.fit.modes == LENSPROF_MODES_AUTO;
-    input.images = fit_images(project);
+    input.options.refine = !scene.pto && o.fit.modes == LENSPROF_MODES_AUTO;
+    input.images = fit_images(scene);
     std::vector<PictureMetadata> metadata;
-    for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
-    add_known_exposures(o.fit, project, metadata, input.images, progress);
+    for (const std::string &file : scene.files) metadata.push_back(read_metadata(file));
+    add_known_exposures(o.fit, scene, metadata, input.images, progress);
     for (const SamplePicture &picture : pictures) white_shares.push_back(white_share(picture.picture));
-    return fit(input, project.reference, o.pto.empty() ? project.files[0] : o.pto, progress, nullptr);
+    return fit(input, scene.reference, o.pto.empty() ? scene.files[0] : o.pto, progress, nullptr);
 }
 
 lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_exposure> &exposures) {
@@ -143,7 +143,7 @@ lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_e
 }
 
 // The merged picture has no frame of its own.
-void check_merge(const Options &o, const Project &project) {
+void check_merge(const Options &o, const Scene &scene) {
     check_merged_name(o.merge);
     const std::string folder = std::filesystem::path(absolute_path(o.merge)).parent_path().string();
     if (!is_folder(folder))
@@ -151,8 +151,8 @@ void check_merge(const Options &o, const Project &project) {
                       o.merge + ": its folder does not exist; create it, or give another name");
     check_output_file(o.merge);
     std::vector<Correction> job(1);
-    job[0].source = project.files[0], job[0].target = o.merge;
-    check_targets(job, project.files, "");
+    job[0].source = scene.files[0], job[0].target = o.merge;
+    check_targets(job, scene.files, "");
     check_older_outputs(job, o.kind, false);
 }
 
@@ -164,26 +164,26 @@ size_t frame_like(const std::vector<lensprof_exposure> &exposures, const lenspro
 }
 
 // Outputs next to the frames they come from.
-std::vector<Correction> make_jobs(const Options &o, const Project &project, const std::vector<uint32_t> &frames) {
+std::vector<Correction> make_jobs(const Options &o, const Scene &scene, const std::vector<uint32_t> &frames) {
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
-        const SeveralPictures several = several_pictures(project.files[i]);
+        const SeveralPictures several = several_pictures(scene.files[i]);
         if (!several.what.empty())
-            throw Failure(LENSPROF_ERROR_READ, project.files[i] + ": " + several.what
+            throw Failure(LENSPROF_ERROR_READ, scene.files[i] + ": " + several.what
                                                    + ", but only the first would be written; " + several.next_step);
-        std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
-        if (raw_kind(project.files[i]) || is_read_alone(project.files[i])) name.replace_extension(".tif");
+        std::filesystem::path name = std::filesystem::path(scene.files[i]).filename();
+        if (raw_kind(scene.files[i]) || is_read_alone(scene.files[i])) name.replace_extension(".tif");
         Correction job;
-        job.source = project.files[i];
+        job.source = scene.files[i];
         job.target = (std::filesystem::path(o.folder()) / name).string();
-        job.model_name = "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on";
+        job.model_name = "frames of " + std::filesystem::path(scene.files[0]).filename().string() + " on";
         jobs.push_back(std::move(job));
     }
     if (!o.merge.empty()) {
-        check_merge(o, project);
+        check_merge(o, scene);
         return jobs;
     }
-    check_targets(jobs, project.files, "");
+    check_targets(jobs, scene.files, "");
     check_older_outputs(jobs, o.kind, true);
     return jobs;
 }
@@ -227,30 +227,29 @@ Json report(const Options &o, const lensprof_fit_result &r, const Verdict &verdi
 }
 
 // Frames that disagree with the others have no exposure and stay unchanged.
-void leave_out_unjoined(const Fitted &fitted, const Project &project, std::vector<uint32_t> &frames,
+void leave_out_unjoined(const Fitted &fitted, const Scene &scene, std::vector<uint32_t> &frames,
                         std::vector<Correction> &jobs, Streams &streams) {
     for (size_t n = frames.size(); n-- > 0;) {
         if (!std::isnan(fitted.exposures[frames[n]].ev)) continue;
-        if (fitted.corrects())
-            warn(streams, project.files[frames[n]] + ": left out: it disagrees with the other frames");
+        if (fitted.corrects()) warn(streams, scene.files[frames[n]] + ": left out: it disagrees with the other frames");
         frames.erase(frames.begin() + static_cast<ptrdiff_t>(n));
         jobs.erase(jobs.begin() + static_cast<ptrdiff_t>(n));
     }
 }
 
 int align(const Options &o, Streams &streams) {
-    Project project = sequence(o);
-    std::vector<uint32_t> frames = frames_of(o, project);
-    std::vector<Correction> jobs = make_jobs(o, project, frames);
-    check_pictures(project, o.pixels.max_side);
+    Scene scene = sequence(o);
+    std::vector<uint32_t> frames = frames_of(o, scene);
+    std::vector<Correction> jobs = make_jobs(o, scene, frames);
+    check_pictures(scene, o.pixels.max_side);
     if (o.merge.empty()) check_output_folder(o.folder());
     Progress progress(streams, o.progress);
     std::vector<double> white_shares;  // number of the project's pictures
-    Fitted fitted = fit_sequence(o, project, white_shares, progress);
+    Fitted fitted = fit_sequence(o, scene, white_shares, progress);
     Verdict verdict = fitted.verdict;
-    name_images(project.names, verdict);
+    name_images(scene.names, verdict);
     std::vector<lensprof_exposure> exposures;
-    leave_out_unjoined(fitted, project, frames, jobs, streams);
+    leave_out_unjoined(fitted, scene, frames, jobs, streams);
     for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);
     Corrected written;
     if (fitted.corrects()) {
@@ -266,7 +265,7 @@ int align(const Options &o, Streams &streams) {
         written = write_all(o, jobs, exposures, progress);
     }
     progress.clear();
-    const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
+    const std::string &item = o.pto.empty() ? scene.files[0] : o.pto;
     if (!fitted.corrects()) {
         if (o.pto.empty() && !verdict.findings.empty())
             verdict.findings[0].text += "; frames of a moving camera need --project";

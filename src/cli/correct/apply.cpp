@@ -20,7 +20,7 @@
 #include "photo/correct/correction.hpp"
 #include "photo/correct/lookup_report.hpp"
 #include "photo/correct/overlaps.hpp"
-#include "photo/correct/project_model.hpp"
+#include "photo/correct/scene_model.hpp"
 #include "photo/correct/seeded_exif.hpp"
 
 namespace lensprof {
@@ -83,13 +83,13 @@ void print_notes(const std::vector<Correction> &jobs, Streams &streams) {
 Corrected merge(const ApplyOptions &o, const ApplySource &source, const ApplyWork &work, Progress &progress) {
     std::vector<PlacedCorrection> placed;
     for (const Correction &job : work.jobs) placed.push_back({job, source.images->at(job.source, "--pto")});
-    return write_from_overlaps(*source.project, placed, work.lit, o.kind, progress);
+    return write_from_overlaps(*source.scene, placed, work.lit, o.kind, progress);
 }
 
 // Pictures of several cameras match only if one response encodes them: that of the project's reference or, if responses
 // come from profiles, that of the first picture.
 void encode_alike(const ApplySource &source, std::vector<Correction> &jobs, Streams &streams) {
-    auto encoding = source.has_model ? common_encoding(*source.project) : nullptr;
+    auto encoding = source.has_model ? common_encoding(*source.scene) : nullptr;
     const auto &first = jobs[0].model->response[0];
     const bool differ = std::any_of(jobs.begin(), jobs.end(), [&](const Correction &job) {
         return !std::equal(std::begin(first.table), std::end(first.table), std::begin(job.model->response[0].table));
@@ -97,7 +97,7 @@ void encode_alike(const ApplySource &source, std::vector<Correction> &jobs, Stre
     if (!source.has_model && differ) encoding = std::make_shared<lensprof_response>(first);
     if (!encoding) return;
     for (Correction &job : jobs) job.encoding = encoding;
-    note(streams, source.project->path + ": has several cameras; all outputs are encoded with the response of "
+    note(streams, source.scene->path + ": has several cameras; all outputs are encoded with the response of "
                       + (source.has_model ? std::string("the reference") : jobs[0].source)
                       + " (use --set exposure=keep to encode each with its own)");
 }
@@ -144,9 +144,9 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
         for (CropCorrection &crop : job.crops) set_target(crop);
         if (!job.crops.empty()) job.target_exposure = job.exposure;  // what is not of a crop is not corrected
     }
-    if (source.project && chosen != OutputExposure::keep && !o.kind.linear && !o.kind.simulate)
+    if (source.scene && chosen != OutputExposure::keep && !o.kind.linear && !o.kind.simulate)
         encode_alike(source, work.jobs, streams);
-    if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);
+    if (o.seed_exif) seed_exif(work.jobs, *source.scene, source.exposures);
     if (!o.sheet.empty()) check_sheet(o, work.jobs.size());
     make_folder(o.output);
     Progress progress(streams, o.progress);

@@ -53,29 +53,29 @@ std::string target_name(const ApplyOptions &o, const NamedPicture &picture, cons
 }
 
 // A picture with another aspect ratio is not one the project was made with; another size is accepted.
-void check_shape(const Project &project, uint32_t image, const std::string &file, PictureSize size) {
-    const auto &camera = project.images[image].camera;
+void check_shape(const Scene &scene, uint32_t image, const std::string &file, PictureSize size) {
+    const auto &camera = scene.images[image].camera;
     const double expected = static_cast<double>(camera.width) / camera.height,
                  shape = static_cast<double>(size.width) / size.height;
     const bool is_same = size.width == camera.width && size.height == camera.height;
-    const bool is_scalable = project.models.empty() && !project.images[image].of_crop;
+    const bool is_scalable = scene.models.empty() && !scene.images[image].of_crop;
     if (is_scalable ? std::abs(shape / expected - 1.0) > 0.01 : !is_same)
         throw Failure(LENSPROF_ERROR_READ,
-                      file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
+                      file + format(": is %u x %u pixels, but ", size.width, size.height) + scene.path
                           + format(" states %u x %u; use the pictures that the project was made with", camera.width,
                                    camera.height));
 }
 
 // A project without a result would change nothing; nobody wants that.
-void check_has_result(const Project &project) {
-    for (const auto &image : project.images) {
+void check_has_result(const Scene &scene) {
+    for (const auto &image : scene.images) {
         bool response = std::any_of(image.emor, image.emor + 5, [](double a) { return a != 0.0; });
         bool falloff = std::any_of(image.vignetting.k, image.vignetting.k + 3, [](double k) { return k != 0.0; });
         if (response || falloff || image.response_type == 1) return;
     }
     throw Failure(
         LENSPROF_ERROR_ARGUMENT,
-        project.path
+        scene.path
             + ": has neither response nor falloff; give the project that `lensprof build --write pto=FILE` wrote");
 }
 
@@ -125,27 +125,26 @@ std::filesystem::path name_below(const std::string &name) {
 // The images of the project that a file holds: one, or several in crops of their own.
 std::vector<uint32_t> images_of_file(const ApplySource &source, uint32_t first) {
     std::vector<uint32_t> images{first};
-    const Project &project = *source.project;
-    for (uint32_t i = first + 1; i < project.files.size() && project.images[first].of_crop; i++)
-        if (project.images[i].of_crop && source.images->find(project.files[i]) == first) images.push_back(i);
+    const Scene &scene = *source.scene;
+    for (uint32_t i = first + 1; i < scene.files.size() && scene.images[first].of_crop; i++)
+        if (scene.images[i].of_crop && source.images->find(scene.files[i]) == first) images.push_back(i);
     return images;
 }
 
 bool is_left_out(const ApplySource &source, const std::string &file, const std::string &option) {
     const std::vector<uint32_t> images = images_of_file(source, source.images->at(file, option));
-    return std::all_of(images.begin(), images.end(),
-                       [&](uint32_t i) { return source.project->images[i].left_out != 0; });
+    return std::all_of(images.begin(), images.end(), [&](uint32_t i) { return source.scene->images[i].left_out != 0; });
 }
 
 // The crops of a picture whose images have a result in the project.
 std::vector<CropCorrection> crops_of(const ApplySource &source, uint32_t first) {
     std::vector<CropCorrection> crops;
     for (const uint32_t i : images_of_file(source, first)) {
-        const lensprof_pto_image &image = source.project->images[i];
+        const lensprof_pto_image &image = source.scene->images[i];
         if (!image.of_crop || image.left_out) continue;
         CropCorrection crop{{}, image.crop_circular != 0, nullptr, source.exposures[i], {}};
         std::copy_n(image.crop, 4, crop.crop);
-        if (source.has_model) crop.model = model_of_project(*source.project, i);
+        if (source.has_model) crop.model = model_of(*source.scene, i);
         crops.push_back(crop);
     }
     return crops;
@@ -169,14 +168,14 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
     std::filesystem::path named =
         std::filesystem::path(picture.subfolder) / std::filesystem::path(picture.file).filename();
     lensprof_exposure_init(&job.exposure);
-    if (source.project) {
+    if (source.scene) {
         const uint32_t image = source.images->at(picture.file, o.project_option());
-        check_shape(*source.project, image, picture.file, size);
+        check_shape(*source.scene, image, picture.file, size);
         job.exposure = source.exposures[image];
         job.crops = crops_of(source, image);
-        if (source.has_model) job.model = model_of_project(*source.project, image);
+        if (source.has_model) job.model = model_of(*source.scene, image);
         job.model_name = std::filesystem::path(o.project()).filename().string();
-        if (!source.project->models.empty()) named = name_below(source.project->names[image]);
+        if (!source.scene->models.empty()) named = name_below(source.scene->names[image]);
     }
     job.target = target_name(o, picture, named);
     const PictureMetadata metadata = metadata_of(o, picture.file);
@@ -207,17 +206,17 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
                                             Streams &streams) {
     std::vector<PlacedCorrection> placed;
     std::optional<uint32_t> layout;
-    const Project &project = *source.project;
+    const Scene &scene = *source.scene;
     std::set<uint32_t> written;
     for (const Correction &job : work.jobs) {
         written.insert(source.images->at(job.source, "--pto"));
         check_mergeable(job.source, layout);
     }
-    for (uint32_t i = 0; i < project.images.size(); i++) {
-        const std::string &file = project.files[i];
-        if (project.images[i].left_out) continue;
+    for (uint32_t i = 0; i < scene.images.size(); i++) {
+        const std::string &file = scene.files[i];
+        if (scene.images[i].left_out) continue;
         try {
-            check_shape(project, i, file, read_size(file));
+            check_shape(scene, i, file, read_size(file));
             check_mark(o, file, metadata_of(o, file));
             check_mergeable(file, layout);
         } catch (const Failure &failure) {
@@ -226,7 +225,7 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
             continue;
         }
         Correction job;
-        job.source = file, job.exposure = source.exposures[i], job.model = model_of_project(project, i);
+        job.source = file, job.exposure = source.exposures[i], job.model = model_of(scene, i);
         placed.push_back({job, i});
     }
     return placed;
@@ -241,7 +240,7 @@ void warn_of_falloffs(const ApplySource &source, const std::vector<Correction> &
         if (files.empty() || files.back() != file) files.push_back(file);
     };
     for (const Correction &job : jobs) {
-        const lensprof_camera &camera = source.project->images[source.images->at(job.source, "--pto")].camera;
+        const lensprof_camera &camera = source.scene->images[source.images->at(job.source, "--pto")].camera;
         for (const CropCorrection &of : job.crops)
             add(job.source, impossible_falloff(*of.model, static_cast<uint32_t>(of.crop[2] - of.crop[0]),
                                                static_cast<uint32_t>(of.crop[3] - of.crop[1]), of.is_circular));
@@ -279,10 +278,10 @@ ApplySource open_source(const ApplyOptions &o) {
             "no correction given and no database found; give the database with --db FILE, or --pto FILE or --model "
             "FILE");
     if (!o.project().empty()) {
-        source.project =
-            std::make_unique<Project>(o.pto.empty() ? read_exposures(o.exposures, o.images) : read_project(o.pto));
-        source.images = std::make_unique<ImagesByFile>(*source.project);
-        source.exposures = relative_to_joined(*source.project);
+        source.scene =
+            std::make_unique<Scene>(o.pto.empty() ? read_exposures(o.exposures, o.images) : read_hugin_project(o.pto));
+        source.images = std::make_unique<ImagesByFile>(*source.scene);
+        source.exposures = relative_to_joined(*source.scene);
         source.has_model = !from_store;
     } else if (o.exposure == OutputExposure::mean || o.exposure == OutputExposure::reference) {
         throw Failure(LENSPROF_ERROR_ARGUMENT, std::string("--set exposure=")
@@ -297,31 +296,31 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
     Progress events(streams);
     std::vector<NamedPicture> pictures;
     std::vector<std::string> other_kinds;
-    if (o.files.empty() && source.project)
-        for (uint32_t i = 0; i < source.project->files.size(); i++) {
-            const std::string &file = source.project->files[i];
-            const bool is_again = source.project->images[i].of_crop && source.images->find(file) != i;
+    if (o.files.empty() && source.scene)
+        for (uint32_t i = 0; i < source.scene->files.size(); i++) {
+            const std::string &file = source.scene->files[i];
+            const bool is_again = source.scene->images[i].of_crop && source.images->find(file) != i;
             if (!is_again) pictures.push_back({file, "", false});
         }
     else
         pictures = named_pictures(o.files, o.output, other_kinds), extract_outputs(pictures, events);
     for (const std::string &text : other_kinds) warn(streams, text);
-    if (o.merge) refuse_crops(*source.project, "--merge");
+    if (o.merge) refuse_crops(*source.scene, "--merge");
     take_shard(shard_of(o.shard), pictures);
     if (pictures.empty()) throw Failure(LENSPROF_ERROR_ARGUMENT, "no pictures to correct; give pictures or folders");
     ApplyWork work;
     lensprof_exposure_init(&work.mean);
-    if (source.project) work.mean = mean_exposure(joined_exposures(*source.project, source.exposures));
-    std::vector<std::string> inputs = source.project ? source.project->files : std::vector<std::string>();
+    if (source.scene) work.mean = mean_exposure(joined_exposures(*source.scene, source.exposures));
+    std::vector<std::string> inputs = source.scene ? source.scene->files : std::vector<std::string>();
     std::vector<NotThisOne> refused;
     for (const NamedPicture &picture : pictures) {
         inputs.push_back(picture.file);
         note_instead(picture, events);
-        if (source.project && picture.in_folder && !source.images->find(picture.file)) {
+        if (source.scene && picture.in_folder && !source.images->find(picture.file)) {
             work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project()});
             continue;
         }
-        if (source.project && is_left_out(source, picture.file, o.project_option())) {
+        if (source.scene && is_left_out(source, picture.file, o.project_option())) {
             const std::string reason =
                 picture.file + ": not corrected: the project has no exposure for it; use the original";
             warn(streams, reason);
@@ -346,7 +345,7 @@ ApplyWork plan_work(const ApplyOptions &o, const ApplySource &source, Streams &s
     if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
     check_targets(work.jobs, inputs, o.sheet);
     check_older_outputs(work.jobs, o.kind, o.has_output);
-    if (source.has_model && !o.pto.empty()) check_has_result(*source.project);
+    if (source.has_model && !o.pto.empty()) check_has_result(*source.scene);
     if (source.has_model) warn_of_falloffs(source, work.jobs, streams);
     if (o.merge) work.lit = placed_images(o, source, work, streams);
     return work;

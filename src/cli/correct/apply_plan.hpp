@@ -9,13 +9,13 @@
 #include "photo/correct/correction.hpp"
 #include "photo/correct/overlaps.hpp"
 #include "photo/correct/picture_model.hpp"
-#include "photo/correct/project_model.hpp"
+#include "photo/correct/scene_model.hpp"
 
 namespace lensprof {
 
 // The project and, without --profile, its model.
 struct ApplySource {
-    std::unique_ptr<Project> project;
+    std::unique_ptr<Scene> scene;
     std::unique_ptr<ImagesByFile> images;
     std::vector<lensprof_exposure> exposures;
     bool has_model = false;

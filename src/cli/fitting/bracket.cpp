@@ -74,17 +74,17 @@ std::vector<double> given_exposures(const BracketOptions &o) {
     return ev;
 }
 
-std::vector<lensprof_pair> get_pairs(const BracketOptions &o, const Project &project, Progress &progress,
+std::vector<lensprof_pair> get_pairs(const BracketOptions &o, const Scene &scene, Progress &progress,
                                      BuildReport &report, uint32_t &channels) {
     auto clock = std::chrono::steady_clock::now();
-    auto pictures = read_pictures(project, o.pixels.max_side, progress);
+    auto pictures = read_pictures(scene, o.pixels.max_side, progress);
     channels = channel_count(pictures);
     report.load_s = lap(clock);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     options.pairs = o.pixels.pairs;
     options.seed = o.pixels.seed;
-    auto pairs = sample_still(project, pictures, options, o.black, progress);
+    auto pairs = sample_still(scene, pictures, options, o.black, progress);
     report.sample_s = lap(clock);
     return pairs;
 }
@@ -172,15 +172,15 @@ Verdict bracket_verdict(const Fitted &fitted, const std::vector<uint32_t> &membe
     return verdict;
 }
 
-FitInput fit_input(const BracketOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+FitInput fit_input(const BracketOptions &o, const Scene &scene, const std::vector<PictureMetadata> &metadata,
                    const std::vector<double> &ev, ExifUse &exif, Events &events) {
     FitInput input;
     input.options = fit_options(o.fit);
     input.options.free &= LENSPROF_FREE_RESPONSE;
     input.options.vignettings = 1;
     input.options.refine = !o.modes_only && o.fit.modes == LENSPROF_MODES_AUTO;
-    input.images = fit_images(project);
-    if (ev.empty()) exif = add_known_exposures(o.fit, project, metadata, input.images, events);
+    input.images = fit_images(scene);
+    if (ev.empty()) exif = add_known_exposures(o.fit, scene, metadata, input.images, events);
     for (size_t i = 0; i < ev.size(); i++) {
         input.images[i].known_ev = ev[i];
         input.images[i].known_ev_sigma = o.ev_sigma;
@@ -188,40 +188,40 @@ FitInput fit_input(const BracketOptions &o, const Project &project, const std::v
     return input;
 }
 
-BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
+BuildReport fit_bracket(const BracketOptions &o, Scene &scene, const std::vector<PictureMetadata> &metadata,
                         const std::vector<double> &ev, const CameraKind &kind, Json &page, Streams &streams) {
     Progress progress(streams, o.progress);
     BuildReport report;
-    report.names = project.names;
+    report.names = scene.names;
     report.has_falloff = false;
     report.exposures_given = !ev.empty();
-    FitInput input = fit_input(o, project, metadata, ev, report.exif, progress);
+    FitInput input = fit_input(o, scene, metadata, ev, report.exif, progress);
     report.camera_kind = kind;
     input.options.camera_kind = kind.kind;
-    if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);
-    input.pairs = get_pairs(o, project, progress, report, input.options.channels);
+    if (!o.reference.empty()) report.reference = image_of_word(scene, o.reference);
+    input.pairs = get_pairs(o, scene, progress, report, input.options.channels);
     stop_if_cancelled();
     const auto images = input.images;
     const auto members = connected_pictures(input.pairs, static_cast<uint32_t>(images.size()));
     auto place = std::find(members.begin(), members.end(), report.reference);
     if (place == members.end() && !o.reference.empty())
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                      project.names[report.reference] + ": shares almost no unclipped grey values with another "
+                      scene.names[report.reference] + ": shares almost no unclipped grey values with another "
                                                         "picture; choose another reference",
                       LENSPROF_REASON_IMAGE_GROUPS);
     if (place == members.end()) place = members.begin();
     report.reference = *place;
     keep_only(members, input);
     input.options.reference = static_cast<uint32_t>(place - members.begin());
-    Fitted best = fit(input, input.options.reference, project.path, progress, &report.quality);
+    Fitted best = fit(input, input.options.reference, scene.path, progress, &report.quality);
     progress.clear();
     report.fit = best.result, report.held = best.held;
-    report.verdict = bracket_verdict(best, members, project.names);
+    report.verdict = bracket_verdict(best, members, scene.names);
     name_sources(metadata, report.exposures_given, report.verdict);
     report_members(members, images, best, report, streams);
     if (!report.fit.usable) report.fit.equalizes = 0;  // a bracket must determine a response
     if (!o.report.empty())
-        page = fit_page_data({report, input, best, images, project, metadata, command_text(streams.words),
+        page = fit_page_data({report, input, best, images, scene, metadata, command_text(streams.words),
                               "Response from pictures of one scene", false},
                              progress);
     return report;
@@ -229,25 +229,25 @@ BuildReport fit_bracket(const BracketOptions &o, Project &project, const std::ve
 
 int bracket_and_store(const BracketOptions &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
-    Project project = static_project(o.files, o.free_balance);
-    check_pictures(project, o.pixels.max_side);
+    Scene scene = static_scene(o.files, o.free_balance);
+    check_pictures(scene, o.pixels.max_side);
     Progress events(streams);
-    note_several(project.files, events);
-    require_one_kind(project.files);
+    note_several(scene.files, events);
+    require_one_kind(scene.files);
     std::vector<PictureMetadata> metadata;
-    for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
-    lensprof_profile_key key = camera_key(o.store, metadata[0], project.files[0], events);
+    for (const std::string &file : scene.files) metadata.push_back(read_metadata(file));
+    lensprof_profile_key key = camera_key(o.store, metadata[0], scene.files[0], events);
     check_store(o.store);
     CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
-    if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(project.files[0]))
+    if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(scene.files[0]))
         kind = {};  // the response is wanted; that of a camera raw file is known
     OutputFiles outputs;
     Json page;
-    BuildReport report = fit_bracket(o, project, metadata, ev, kind, page, streams);
+    BuildReport report = fit_bracket(o, scene, metadata, ev, kind, page, streams);
     return finish_fit(
         report, key, o.store,
         {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),
-         project.path, o.json, false, o.report, &page, &outputs},
+         scene.path, o.json, false, o.report, &page, &outputs},
         streams);
 }
 

@@ -25,16 +25,16 @@
 #include "photo/calibration/calibration.hpp"
 #include "photo/calibration/exposure_file.hpp"
 #include "photo/calibration/preview.hpp"
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
 #include "photo/scene/photographs.hpp"
-#include "photo/scene/reconstruction_project.hpp"
+#include "photo/scene/reconstruction_scene.hpp"
 
 namespace lensprof {
 namespace {
 
-struct BuildOptions : ProjectFitOptions {
+struct BuildOptions : SceneFitOptions {
     std::vector<std::string> inputs;
     std::string images, image_list, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview, report,
         compare;
@@ -161,23 +161,23 @@ void check_outputs(const BuildOptions &o, std::vector<std::string> reserved) {
 // Everything that is written of a calibration. The page of the report lacks its verdict.
 void add_outputs(const BuildOptions &o, Calibration &calibration, OutputFiles &outputs, Json &page, Streams &streams,
                  Events &events) {
-    ProjectFit &fit = calibration.fit;
-    Project &project = calibration.project;
+    SceneFit &fit = calibration.fit;
+    Scene &scene = calibration.scene;
     const bool is_written = fit.best.corrects() || o.store.force;
-    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(fit.input.pairs, project));
+    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(fit.input.pairs, scene));
     if (!o.exposures_out.empty() && is_written)
-        outputs.add(o.exposures_out, exposures_text(fit, project, calibration.metadata, o.exposures_out));
+        outputs.add(o.exposures_out, exposures_text(fit, scene, calibration.metadata, o.exposures_out));
     if (!o.gain_chart.empty() && !fit.input.points.empty() && is_written)
-        outputs.add(o.gain_chart, gain_chart(o.gain_chart, project.path, gain_curves(fit)));
-    if (!o.pto_out.empty() && is_written) outputs.add(o.pto_out, result_text(fit, project, o.pto_out));
-    if (!o.preview.empty() && fit.best.corrects()) write_preview(o.preview, project, fit.best, events);
+        outputs.add(o.gain_chart, gain_chart(o.gain_chart, scene.path, gain_curves(fit)));
+    if (!o.pto_out.empty() && is_written) outputs.add(o.pto_out, result_text(fit, scene, o.pto_out));
+    if (!o.preview.empty() && fit.best.corrects()) write_preview(o.preview, scene, fit.best, events);
     if (!o.report.empty())
-        page = fit_page_data({fit.report, fit.input, fit.best, fit.input.images, project, calibration.metadata,
+        page = fit_page_data({fit.report, fit.input, fit.best, fit.input.images, scene, calibration.metadata,
                               command_text(streams.words)},
                              events);
     events.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && fit.report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
-        warn(streams, project.path
+        warn(streams, scene.path
                           + (o.points.empty() ? ": the EXIF exposures do not differ" : ": --points does not read EXIF")
                           + "; gamma depends on the prior");
 }
@@ -206,19 +206,19 @@ void check_photographs(const BuildOptions &o, const Photographs &list) {
 }
 
 // Refuses options that need a project with cameras.
-Project open_reconstruction(const BuildOptions &o, Events &events) {
+Scene open_reconstruction(const BuildOptions &o, Events &events) {
     for (const auto &[option, value] : {std::pair("--points", o.points), std::pair("--write preview", o.preview),
                                         std::pair("--write project", o.project_out)})
         if (!value.empty())
             throw Failure(LENSPROF_ERROR_ARGUMENT, std::string(option) + ": is for panoramas, but " + o.inputs[0]
                                                        + " is a reconstruction; omit the option");
-    return project_of_reconstruction(
+    return scene_of_reconstruction(
         o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pixels.pairs, o.pixels.seed},
         events);
 }
 
 // The project, or the pictures instead.
-Project open_project(const BuildOptions &o, Events &progress) {
+Scene open_project(const BuildOptions &o, Events &progress) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, progress);
     for (const auto &[option, is_given] :
          {std::pair("--images", !o.images.empty()), std::pair("--reconstruction list", !o.image_list.empty()),
@@ -240,39 +240,39 @@ Project open_project(const BuildOptions &o, Events &progress) {
                                                    + " is a project; omit the option, or use --write pto=FILE");
     if (is_project) {
         reject_reconstruction_part(o.inputs[0]);
-        Project project = read_project(o.inputs[0]);
+        Scene scene = read_hugin_project(o.inputs[0]);
         for (const auto &[option, value] : {std::pair("--write preview", o.preview), std::pair("--report", o.report)})
-            if (!value.empty()) refuse_crops(project, option);
-        if (o.points.empty()) note_several(project.files, progress);
-        return project;
+            if (!value.empty()) refuse_crops(scene, option);
+        if (o.points.empty()) note_several(scene.files, progress);
+        return scene;
     }
     if (!o.points.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--points: needs the project that its pairs belong to; give the project instead of pictures");
     const Photographs list = find_photographs(o.inputs, progress);
     check_photographs(o, list);
-    return project_of_pictures(list, o.one_lens, progress);
+    return scene_of_pictures(list, o.one_lens, progress);
 }
 
 // Runs the command after option parsing; `names` receives the images as soon as they are known.
 int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Streams &streams) {
     Progress events(streams, o.progress);
-    Project project = open_project(o, events);
-    names = project.names;
-    std::vector<std::string> inputs = project.files;
-    inputs.push_back(project.path);
-    inputs.insert(inputs.end(), project.sources.begin(), project.sources.end());
+    Scene scene = open_project(o, events);
+    names = scene.names;
+    std::vector<std::string> inputs = scene.files;
+    inputs.push_back(scene.path);
+    inputs.insert(inputs.end(), scene.sources.begin(), scene.sources.end());
     check_outputs(o, inputs);
-    if (!o.project_out.empty()) write_project(project, o.project_out);
+    if (!o.project_out.empty()) write_project(scene, o.project_out);
     TrueValues truth;
-    if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
-    Calibration calibration(std::move(project), o, events);
+    if (!o.compare.empty()) truth = read_truth(o.compare, scene.images.size());
+    Calibration calibration(std::move(scene), o, events);
     OutputFiles outputs;
     Json page;
     add_outputs(o, calibration, outputs, page, streams, events);
     BuildReport &report = calibration.fit.report;
     const int code = finish_fit(report, calibration.key, o.store,
-                                {method_name(o.fit.method), calibration.project.path, o.json, true, o.report, &page,
+                                {method_name(o.fit.method), calibration.scene.path, o.json, true, o.report, &page,
                                  &outputs, &calibration.prior},
                                 streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);

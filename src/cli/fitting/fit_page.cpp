@@ -84,7 +84,7 @@ void add_views(const FitPageInput &input, Events &events, Json &page) {
     std::vector<uint32_t> images = images_with_exposure(fitted);
     const size_t image_count = images.size();
     if (!fitted.corrects()) page["views_note"] = "The result is not usable, so no picture was corrected.";
-    if (!fitted.corrects() || images.empty() || !is_regular_file(input.project.files[images[0]])) return;
+    if (!fitted.corrects() || images.empty() || !is_regular_file(input.scene.files[images[0]])) return;
     if (image_count > max_views) {
         std::vector<uint32_t> shown_images;
         for (size_t n = 0; n < max_views; n++) shown_images.push_back(images[n * image_count / max_views]);
@@ -92,8 +92,8 @@ void add_views(const FitPageInput &input, Events &events, Json &page) {
         page["views_note"] = views_note(max_views, image_count);
     }
     const uint32_t side = view_side(images.size());
-    const bool has_mosaic = !input.project.is_reconstruction && images.size() <= 200;
-    auto copies = corrected_copies(input.project, fitted, images, has_mosaic ? std::max(side, 500u) : side, events);
+    const bool has_mosaic = !input.scene.is_reconstruction && images.size() <= 200;
+    auto copies = corrected_copies(input.scene, fitted, images, has_mosaic ? std::max(side, 500u) : side, events);
     Json views = Json::array();
     if (has_mosaic) {
         const Mosaic mosaic = mosaic_of(copies);
@@ -101,7 +101,7 @@ void add_views(const FitPageInput &input, Events &events, Json &page) {
     }
     for (CorrectedCopy &copy : copies) {
         const uint16_t orientation = copy.image < input.metadata.size() ? input.metadata[copy.image].orientation : 1;
-        views.push_back(view_json(input.project.names[copy.image], upright_copy(copy.before, orientation, side),
+        views.push_back(view_json(input.scene.names[copy.image], upright_copy(copy.before, orientation, side),
                                   upright_copy(copy.after, orientation, side)));
     }
     page["views"] = std::move(views);
@@ -111,15 +111,15 @@ void add_views(const FitPageInput &input, Events &events, Json &page) {
 
 Json fit_page_data(const FitPageInput &input, Events &events) {
     const BuildReport &report = input.report;
-    const std::string title = std::filesystem::path(input.project.path).filename().string();
-    Json page = new_page("fit", title.empty() ? input.project.path : title, input.subtitle, input.command);
+    const std::string title = std::filesystem::path(input.scene.path).filename().string();
+    Json page = new_page("fit", title.empty() ? input.scene.path : title, input.subtitle, input.command);
     page["falloffs"] = falloffs_json(report);
-    const std::vector<PairEnds> ends = ends_of_pairs(input.input, input.best, input.project);
+    const std::vector<PairEnds> ends = ends_of_pairs(input.input, input.best, input.scene);
     page["falloff_points"] = report.has_falloff ? falloff_points(ends, input.best) : Json::array();
     page["responses"] = responses_json(report);
     page["typical"] = typical_band(report.camera_kind.kind);
     page["images"] = images_json(input);
-    page["residuals"] = residual_figures(ends, input.best, input.project);
+    page["residuals"] = residual_figures(ends, input.best, input.scene);
     page["left_out"] = Json::array();
     for (const auto &[name, reason] : report.left_out) page["left_out"].push_back({{"name", name}, {"reason", reason}});
     for (size_t i = 0; i < report.names.size(); i++)

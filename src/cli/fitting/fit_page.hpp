@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 
 namespace lensprof {
 
@@ -15,7 +15,7 @@ struct FitPageInput {
     const FitInput &input;  // its pairs are between the images of `best`
     const Fitted &best;
     const std::vector<lensprof_fit_image> &images;  // of the report: with known exposures
-    const Project &project;
+    const Scene &scene;
     const std::vector<PictureMetadata> &metadata;  // of each image of the project
     std::string command;                           // that made the report
     const char *subtitle = "Calibration from overlapping pictures";

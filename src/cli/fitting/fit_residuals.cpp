@@ -17,12 +17,12 @@ constexpr size_t min_in_bin = 5;
 
 uint32_t channel_of(const Fitted &fitted, uint32_t image) { return fitted.falloff_curves_of(image) == 3 ? 1 : 0; }
 
-PairEnd end_of(const Fitted &fitted, const Project &project, const lensprof_pair &pair, int side) {
+PairEnd end_of(const Fitted &fitted, const Scene &scene, const lensprof_pair &pair, int side) {
     PairEnd end{};
     end.image = pair.image[side];
     end.value = pair.value[side][1];
     const lensprof_vignetting falloff = fitted.falloff_of(end.image)[channel_of(fitted, end.image)];
-    const FalloffFrame frame = falloff_frame_of(project.images[end.image]);
+    const FalloffFrame frame = falloff_frame_of(scene.images[end.image]);
     const double r2 =
         lensprof_vignetting_r2(&falloff, frame.width, frame.height, pair.xy[side][0], pair.xy[side][1], nullptr);
     end.r = std::sqrt(r2);
@@ -91,13 +91,13 @@ double corrected(const Fitted &fitted, const lensprof_exposure &mean, const Pair
 
 }  // namespace
 
-std::vector<PairEnds> ends_of_pairs(const FitInput &input, const Fitted &best, const Project &project) {
+std::vector<PairEnds> ends_of_pairs(const FitInput &input, const Fitted &best, const Scene &scene) {
     std::vector<PairEnds> all;
     const std::vector<lensprof_pair> pairs =
         input.observations.empty() ? input.pairs : pairs_of_tracks(input.observations);
     for (const lensprof_pair &pair : pairs) {
         if (std::isnan(best.exposures[pair.image[0]].ev) || std::isnan(best.exposures[pair.image[1]].ev)) continue;
-        const PairEnds ends{{end_of(best, project, pair, 0), end_of(best, project, pair, 1)}};
+        const PairEnds ends{{end_of(best, scene, pair, 0), end_of(best, scene, pair, 1)}};
         if (is_exposed(ends.end[0]) && is_exposed(ends.end[1])) all.push_back(ends);
     }
     return all;
@@ -129,10 +129,10 @@ Json falloff_points(const std::vector<PairEnds> &all, const Fitted &best) {
     return json;
 }
 
-Json residual_figures(const std::vector<PairEnds> &all, const Fitted &best, const Project &project) {
+Json residual_figures(const std::vector<PairEnds> &all, const Fitted &best, const Scene &scene) {
     if (all.empty()) return {};
     const lensprof_exposure mean = mean_exposure(best.exposures);
-    const lensprof_camera &camera = project.images[best.reference].camera;
+    const lensprof_camera &camera = scene.images[best.reference].camera;
     const double aspect = double(camera.height) / camera.width;
     const int rows = std::clamp(static_cast<int>(std::lround(frame_columns * aspect)), 2, 4 * frame_columns);
     std::vector<std::vector<double>> by_radius(radius_bins), by_grey(grey_bins), by_place(size_t(rows) * frame_columns);

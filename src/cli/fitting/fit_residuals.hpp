@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/fitting/fitting.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -22,13 +22,13 @@ struct PairEnds {
 };
 
 // Of the pairs between images that joined, within the grey range.
-std::vector<PairEnds> ends_of_pairs(const FitInput &input, const Fitted &best, const Project &project);
+std::vector<PairEnds> ends_of_pairs(const FitInput &input, const Fitted &best, const Scene &scene);
 
 // Medians of the relative illuminance that pairs show at the end farther from the centre, given the fitted falloff at
 // the nearer one: [{r, m, sigma, count}]; of the images of the reference's setting and camera.
 nlohmann::ordered_json falloff_points(const std::vector<PairEnds> &all, const Fitted &best);
 
 // Joint histograms of green (or grey) before and after, and residuals by radius, by grey value and over the frame.
-nlohmann::ordered_json residual_figures(const std::vector<PairEnds> &all, const Fitted &best, const Project &project);
+nlohmann::ordered_json residual_figures(const std::vector<PairEnds> &all, const Fitted &best, const Scene &scene);
 
 }  // namespace lensprof

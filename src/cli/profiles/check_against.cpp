@@ -12,7 +12,7 @@
 #include "cli/program/progress.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 #include "photo/scene/open_scene.hpp"
 
 namespace lensprof {
@@ -71,9 +71,9 @@ public:
 
 // The pairs of one camera at one lens setting, as in a profile: the setting with most pairs. `first` receives its image
 // with most metadata.
-std::vector<lensprof_pair> pairs_of_one_setting(const Project &project, const std::vector<PictureMetadata> &metadata,
+std::vector<lensprof_pair> pairs_of_one_setting(const Scene &scene, const std::vector<PictureMetadata> &metadata,
                                                 std::vector<lensprof_pair> pairs, uint32_t &first, Streams &streams) {
-    const LensSettings settings = lens_settings(project, metadata, {}, false);
+    const LensSettings settings = lens_settings(scene, metadata, {}, false);
     std::vector<size_t> count(settings.first.size());
     const auto setting_of = [&](const lensprof_pair &pair, int side) { return settings.of_image[pair.image[side]]; };
     const auto has_one_setting = [&](const lensprof_pair &pair) { return setting_of(pair, 0) == setting_of(pair, 1); };
@@ -81,18 +81,16 @@ std::vector<lensprof_pair> pairs_of_one_setting(const Project &project, const st
         if (has_one_setting(pair)) count[setting_of(pair, 0)]++;
     const auto main_setting = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
     first = settings.first[main_setting];
-    const auto is_portrait = [&](uint32_t i) {
-        return project.images[i].camera.height > project.images[i].camera.width;
-    };
+    const auto is_portrait = [&](uint32_t i) { return scene.images[i].camera.height > scene.images[i].camera.width; };
     const auto is_like_first = [&](uint32_t i) {  // the centre of a profile is in one frame
         return settings.of_image[i] == main_setting && is_portrait(i) == is_portrait(first);
     };
     size_t other_pictures = 0;
-    for (uint32_t i = 0; i < project.images.size(); i++) other_pictures += !is_like_first(i);
+    for (uint32_t i = 0; i < scene.images.size(); i++) other_pictures += !is_like_first(i);
     if (other_pictures)
-        warn(streams, project.path + ": " + counted(other_pictures, "picture")
+        warn(streams, scene.path + ": " + counted(other_pictures, "picture")
                           + " of another camera, size or lens setting left out, since a profile describes one "
-                            "setting; using those of " + describe_setting(metadata[first].key, project.names[first]));
+                            "setting; using those of " + describe_setting(metadata[first].key, scene.names[first]));
     const auto is_other = [&](const lensprof_pair &p) {
         return !is_like_first(p.image[0]) || !is_like_first(p.image[1]);
     };
@@ -156,33 +154,32 @@ std::vector<Candidate> try_profiles(const TrialPairs &pairs, const std::vector<S
     return candidates;
 }
 
-void warn_of_earlier_correction(const Project &project, const std::vector<PictureMetadata> &metadata,
-                                Streams &streams) {
+void warn_of_earlier_correction(const Scene &scene, const std::vector<PictureMetadata> &metadata, Streams &streams) {
     for (size_t i = 0; i < metadata.size(); i++)
         if (!metadata[i].corrected_by.empty()) {
-            warn(streams, project.names[i] + ": its falloff was corrected before, " + metadata[i].corrected_by
+            warn(streams, scene.names[i] + ": its falloff was corrected before, " + metadata[i].corrected_by
                               + "; only the remaining falloff is measured");
             return;
         }
 }
 
 // The measured report; figures are filled in.
-TrialReport measure(const Project &project, const std::vector<StoredProfile> &profiles, Progress &progress,
+TrialReport measure(const Scene &scene, const std::vector<StoredProfile> &profiles, Progress &progress,
                     Streams &streams) {
-    const std::vector<PictureMetadata> metadata = picture_metadata({}, project);
-    const ProjectFitOptions options;
-    if (!project.is_reconstruction) check_pictures(project, options.pixels.max_side);
-    DrawnPairs sampled = first_pairs(options, project, progress);
+    const std::vector<PictureMetadata> metadata = picture_metadata({}, scene);
+    const SceneFitOptions options;
+    if (!scene.is_reconstruction) check_pictures(scene, options.pixels.max_side);
+    DrawnPairs sampled = first_pairs(options, scene, progress);
     progress.clear();
     uint32_t first = 0;
-    sampled.pairs = pairs_of_one_setting(project, metadata, std::move(sampled.pairs), first, streams);
-    warn_of_earlier_correction(project, metadata, streams);
+    sampled.pairs = pairs_of_one_setting(scene, metadata, std::move(sampled.pairs), first, streams);
+    warn_of_earlier_correction(scene, metadata, streams);
     const uint32_t kind = camera_kind_of({}, metadata[first].key, metadata[first]).kind;
     TrialReport report;
-    report.pairs = split_for_trial(fit_images(project), sampled.pairs, sampled.channels);
+    report.pairs = split_for_trial(fit_images(scene), sampled.pairs, sampled.channels);
     if (report.pairs.heldout.size() < kMinMeasuredPairs)
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                      project.path
+                      scene.path
                           + format(": its overlaps contain %zu usable pairs, but at least %zu are needed; give "
                                    "pictures that overlap by a third",
                                    report.pairs.heldout.size(), kMinMeasuredPairs),
@@ -214,18 +211,18 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     WarningsAlone warnings(progress);
     SceneOptions options;
     options.reconstruction.images = o.images;
-    const Project project = open_scene(pictures, options, warnings);
-    if (project.images.size() < 2)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": has only one image; give at least two that overlap",
+    const Scene scene = open_scene(pictures, options, warnings);
+    if (scene.images.size() < 2)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, scene.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
-    TrialReport report = measure(project, profiles, progress, streams);
-    report.file = store_path(db), report.path = project.path;
+    TrialReport report = measure(scene, profiles, progress, streams);
+    report.file = store_path(db), report.path = scene.path;
     if (json)
         print_json(trial_json(report), streams.out);
     else
         print_trial(report, streams.out);
     if (report.is_any_better()) return static_cast<int>(ExitCode::done);
-    print_message(streams, project.path
+    print_message(streams, scene.path
                       + ": no profile is better than leaving the falloff uncorrected; give profiles of this lens and "
                         "setting, or make one with `lensprof build`");
     return static_cast<int>(ExitCode::not_usable);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 
 namespace lensprof {
 

@@ -7,7 +7,7 @@
 namespace lensprof {
 
 // Value noise in -1..1 on a lattice of the sphere's space.
-double Scene::noise(double x, double y, double z, uint32_t octave) const {
+double SimulatedScene::noise(double x, double y, double z, uint32_t octave) const {
     double fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
     auto ix = static_cast<uint32_t>(static_cast<int32_t>(fx)), iy = static_cast<uint32_t>(static_cast<int32_t>(fy)),
          iz = static_cast<uint32_t>(static_cast<int32_t>(fz));
@@ -19,7 +19,7 @@ double Scene::noise(double x, double y, double z, uint32_t octave) const {
     return 2.0 * mix(low, high, tz) - 1.0;
 }
 
-double Scene::fractal(const double d[3], double frequency, int octaves) const {
+double SimulatedScene::fractal(const double d[3], double frequency, int octaves) const {
     double sum = 0.0, amplitude = 0.5;
     for (int o = 0; o < octaves; o++, frequency *= 2.03, amplitude *= 0.55)
         sum += amplitude
@@ -27,7 +27,7 @@ double Scene::fractal(const double d[3], double frequency, int octaves) const {
     return sum;
 }
 
-double Scene::draw(double u, double v, uint32_t what) const {
+double SimulatedScene::draw(double u, double v, uint32_t what) const {
     return unit(hash(static_cast<uint32_t>(static_cast<int32_t>(std::floor(u))),
                      static_cast<uint32_t>(static_cast<int32_t>(std::floor(v))), what, seed_));
 }
@@ -37,7 +37,7 @@ const char *scene_word(SceneKind kind) {
     return words[static_cast<int>(kind)];
 }
 
-void Scene::radiance(double longitude, double latitude, double rgb[3]) const {
+void SimulatedScene::radiance(double longitude, double latitude, double rgb[3]) const {
     const Ray ray = {
         longitude,
         latitude,
@@ -51,11 +51,11 @@ void Scene::radiance(double longitude, double latitude, double rgb[3]) const {
     }
 }
 
-double Scene::nearness(double longitude, double latitude) const {
+double SimulatedScene::nearness(double longitude, double latitude) const {
     return std::floor(kLayers * draw(longitude * 9.0, latitude * 14.0, 23)) / (kLayers - 1);
 }
 
-void Scene::landscape(const Ray &ray, double rgb[3]) const {
+void SimulatedScene::landscape(const Ray &ray, double rgb[3]) const {
     const double longitude = ray.longitude, latitude = ray.latitude, *d = ray.d;
     double horizon = 0.06 * fractal(d, 4.0, 3);
     double above = horizon - latitude;  // positive: sky

@@ -22,9 +22,9 @@ const char *scene_word(SceneKind kind);  // "landscape", ...
 // - wall: plaster of panels that are almost alike, their texture 1..3 %, with seams between them;
 // - foliage: leaves before bright gaps, strong fine texture everywhere;
 // - interior: a dark room with bright windows, hard edges over some eight stops.
-class Scene {
+class SimulatedScene {
 public:
-    explicit Scene(uint32_t seed, SceneKind kind = SceneKind::landscape) : seed_(seed), kind_(kind) {}
+    explicit SimulatedScene(uint32_t seed, SceneKind kind = SceneKind::landscape) : seed_(seed), kind_(kind) {}
 
     // Radiance of red, green and blue in a direction (radians, latitude positive down).
     void radiance(double longitude, double latitude, double rgb[3]) const;

@@ -6,7 +6,7 @@
 
 namespace lensprof {
 
-void Scene::sky(const Ray &ray, double rgb[3]) const {
+void SimulatedScene::sky(const Ray &ray, double rgb[3]) const {
     const double low = ramp(-1.2, 0.5, ray.latitude);  // 1: at the horizon
     const double high[3] = {0.09, 0.18, 0.42}, haze[3] = {0.38, 0.46, 0.60};
     const double clouded = draw(0, 0, 31) < 0.5 ? 0.0 : 0.5;
@@ -21,7 +21,7 @@ void Scene::sky(const Ray &ray, double rgb[3]) const {
     for (int c = 0; c < 3; c++) rgb[c] = mix(mix(high[c], haze[c], low), 0.8, cloud) * transmission;
 }
 
-void Scene::wall(const Ray &ray, double rgb[3]) const {
+void SimulatedScene::wall(const Ray &ray, double rgb[3]) const {
     const double u = ray.longitude / 0.9 + draw(0, 0, 41), v = ray.latitude / 0.7 + draw(0, 0, 42);
     const double panel = 1.0 + 0.08 * (draw(u, v, 43) - 0.5);
     const double seam = std::fmax(line(from_whole(u - 0.5) * 0.9, 0.0025), line(from_whole(v - 0.5) * 0.7, 0.0025));
@@ -31,7 +31,7 @@ void Scene::wall(const Ray &ray, double rgb[3]) const {
     for (int c = 0; c < 3; c++) rgb[c] = paint[c] * light * panel * plaster * (1.0 - 0.5 * seam);
 }
 
-void Scene::foliage(const Ray &ray, double rgb[3]) const {
+void SimulatedScene::foliage(const Ray &ray, double rgb[3]) const {
     const double gap = ramp(0.16, 0.24, fractal(ray.d, 22.0, 4));
     const double leaf = std::exp(3.4 * fractal(ray.d, 70.0, 3) + 1.2 * fractal(ray.d, 7.0, 2));
     const double hue = ramp(-0.4, 0.4, fractal(ray.d, 11.0, 2));
@@ -40,7 +40,7 @@ void Scene::foliage(const Ray &ray, double rgb[3]) const {
     for (int c = 0; c < 3; c++) rgb[c] = std::fmax(mix(green[c] * leaf, bright[c], gap), 1e-3);
 }
 
-void Scene::interior(const Ray &ray, double rgb[3]) const {
+void SimulatedScene::interior(const Ray &ray, double rgb[3]) const {
     // Furniture and pictures: flat boxes on a wall lit dimly by the windows.
     const double u = ray.longitude * 5.0, v = ray.latitude * 6.0;
     const double inset = std::fmax(std::fabs(from_whole(u - 0.5)), std::fabs(from_whole(v - 0.5)));

@@ -15,13 +15,13 @@
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/pictures/picture.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 namespace {
 
 // Irradiance of one picture before the lens, as float RGB.
-Picture render(const Truth &truth, const Scene &scene, uint32_t i) {
+Picture render(const Truth &truth, const SimulatedScene &scene, uint32_t i) {
     const auto &camera = truth.cameras[i];
     Picture picture;
     picture.width = picture.frame_width = camera.width;
@@ -128,7 +128,7 @@ PictureMetadata metadata_of(const Truth &truth, uint32_t i) {
     return m;
 }
 
-void write_pictures(const SimulateOptions &o, const Truth &truth, const Scene &scene, Progress &progress) {
+void write_pictures(const SimulateOptions &o, const Truth &truth, const SimulatedScene &scene, Progress &progress) {
     for_each_parallel(static_cast<uint32_t>(truth.files.size()), "rendering", progress, [&](uint32_t i) {
         Picture picture = render(truth, scene, i);
         expose(truth, i, picture);
@@ -147,7 +147,7 @@ void write_pictures(const SimulateOptions &o, const Truth &truth, const Scene &s
 
 int run(const SimulateOptions &o, Streams &streams) {
     check_simulate_options(o);
-    const Scene scene(o.seed, o.scene);
+    const SimulatedScene scene(o.seed, o.scene);
     const Truth truth = make_truth(o, scene);
     make_folder(o.output);
     std::filesystem::path folder(o.output);
@@ -162,7 +162,7 @@ int run(const SimulateOptions &o, Streams &streams) {
     const std::string json = truth_text(truth);
     write_file(truth_file, json.data(), json.size());
     if (o.points || o.test_points) {
-        Project read = read_project(pto);
+        Scene read = read_hugin_project(pto);
         uint32_t levels = o.formats[0].sample == LENSPROF_SAMPLE_U8 ? 255 : 65535;
         auto write = [&](const char *name, uint32_t count, double darkest, bool noisy) {
             std::string text = points_text(simulate_pairs(truth, scene, count, darkest, noisy, levels), read);

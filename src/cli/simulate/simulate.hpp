@@ -82,7 +82,7 @@ private:
 constexpr double kSimulatedFNumber = 2.8;  // a wide, constant aperture, because falloff depends on it
 
 // The truth requested by the options; Failure (usage).
-Truth make_truth(const SimulateOptions &options, const Scene &scene);
+Truth make_truth(const SimulateOptions &options, const SimulatedScene &scene);
 
 // The project as an alignment program would write it: geometry known, exposures unknown.
 std::string project_text(const SimulateOptions &options, const Truth &truth);
@@ -98,35 +98,36 @@ void record(const Truth &truth, uint32_t index, double x, double y, const double
 std::vector<Block> random_blocks(const lensprof_camera &camera, double share, Random &random);
 
 // Radiance of the object in front at a pixel; false if not found.
-bool object_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]);
+bool object_radiance(const Truth &truth, const SimulatedScene &scene, uint32_t index, double x, double y,
+                     double rgb[3]);
 
 // Radiance that image `index` sees at a pixel: of an object, else of the scene; 0 outside the lens's field.
-void seen_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]);
+void seen_radiance(const Truth &truth, const SimulatedScene &scene, uint32_t index, double x, double y, double rgb[3]);
 
 // --set parallax: cameras that also move; then the scene direction of what is seen in a direction.
 void move_cameras(double parallax, Random &random, Truth &truth);
-void moved_direction(const Truth &truth, const Scene &scene, uint32_t index, double direction[2]);
+void moved_direction(const Truth &truth, const SimulatedScene &scene, uint32_t index, double direction[2]);
 
 // --set moving: the scene, cameras and poses; then automatic exposures and white balances.
 void place_moving_cameras(const SimulateOptions &options, Truth &truth);
 void expose_automatically(const SimulateOptions &options, Truth &truth);
 
 // --set clip: shifts all exposures equally until this share of the pixels is white in a channel.
-void clip_lights(double share, const Scene &scene, Truth &truth);
+void clip_lights(double share, const SimulatedScene &scene, Truth &truth);
 
 // --set sharpen: unsharp mask (Gaussian, sigma 1.5 px) of float RGB, clipped to 0..1.
 void sharpen(double gain, Picture &picture);
 
 // Local tone mapping after the response: a pixel is raised by truth.local_tone EV if its surroundings (Gaussian mean of
 // the grey value, sigma a tenth of the width) are black, and lowered by as much if they are white.
-ToneMap tone_map(const Truth &truth, const Scene &scene, uint32_t index);
+ToneMap tone_map(const Truth &truth, const SimulatedScene &scene, uint32_t index);
 double tone_gain(const Truth &truth, uint32_t index, double x, double y);
 void map_tone(double gain, double value[3]);  // white stays white
 
 // `count` correspondences in random overlaps, uniform over ten rings of radius, both ends between `darkest` and 250
 // levels. `noisy` adds objects, local tone mapping, noise, outlier pairs (one end random) and rounding to `levels`
 // steps. Returns fewer if the overlaps are too small.
-std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene, uint32_t count, double darkest,
-                                          bool noisy, uint32_t levels);
+std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const SimulatedScene &scene, uint32_t count,
+                                          double darkest, bool noisy, uint32_t levels);
 
 }  // namespace lensprof

@@ -6,7 +6,7 @@
 
 namespace lensprof {
 
-void clip_lights(double share, const Scene &scene, Truth &truth) {
+void clip_lights(double share, const SimulatedScene &scene, Truth &truth) {
     constexpr uint32_t kGrid = 64;  // points per side of every picture
     std::vector<double> stops;      // of the brightest channel, EV from white
     for (uint32_t i = 0; i < truth.cameras.size(); i++) {

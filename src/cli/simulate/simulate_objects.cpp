@@ -47,7 +47,8 @@ std::vector<Block> random_blocks(const lensprof_camera &camera, double share, Ra
     return blocks;
 }
 
-bool object_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]) {
+bool object_radiance(const Truth &truth, const SimulatedScene &scene, uint32_t index, double x, double y,
+                     double rgb[3]) {
     if (truth.objects.empty()) return false;
     const auto &camera = truth.cameras[index];
     const auto &blocks = truth.objects[index];

@@ -30,7 +30,7 @@ void record(const Truth &truth, uint32_t index, double x, double y, const double
     for (uint32_t c = 0; c < 3; c++) value[c] = lensprof_response_eval(&truth.response, irradiance[c], nullptr);
 }
 
-void seen_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]) {
+void seen_radiance(const Truth &truth, const SimulatedScene &scene, uint32_t index, double x, double y, double rgb[3]) {
     double direction[2];
     rgb[0] = rgb[1] = rgb[2] = 0.0;
     if (object_radiance(truth, scene, index, x, y, rgb)) return;
@@ -81,7 +81,7 @@ std::vector<Edge> possible_overlaps(const std::vector<lensprof_camera> &cameras)
 // The source of pairs. Noise-free ones see only the scene.
 struct Source {
     const Truth &truth;
-    const Scene &scene;
+    const SimulatedScene &scene;
     double darkest;
     bool noisy;
     std::vector<Edge> edges;
@@ -137,8 +137,8 @@ void disturb(const Truth &truth, Random &random, uint32_t levels, lensprof_pair 
 
 }  // namespace
 
-std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene, uint32_t count, double darkest,
-                                          bool noisy, uint32_t levels) {
+std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const SimulatedScene &scene, uint32_t count,
+                                          double darkest, bool noisy, uint32_t levels) {
     Random random(truth.seed * 1000003ull + (noisy ? 1 : 2)), noise(truth.seed * 1000003ull + 3);
     std::vector<lensprof_pair> pairs;
     const Source source{truth, scene, darkest, noisy, possible_overlaps(truth.cameras)};

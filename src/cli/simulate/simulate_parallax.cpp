@@ -17,12 +17,12 @@ void move_cameras(double parallax, Random &random, Truth &truth) {
 
 // The scene consists of layers of one nearness each: takes the first, from near to far, with an object at the shifted
 // position.
-void moved_direction(const Truth &truth, const Scene &scene, uint32_t index, double direction[2]) {
+void moved_direction(const Truth &truth, const SimulatedScene &scene, uint32_t index, double direction[2]) {
     if (truth.positions.empty()) return;
     const auto &camera = truth.cameras[index];
     const double radians_per_px = camera.hfov_deg / camera.width * std::acos(-1.0) / 180.0;
-    for (int layer = Scene::kLayers - 1; layer > 0; layer--) {
-        const double nearness = static_cast<double>(layer) / (Scene::kLayers - 1);
+    for (int layer = SimulatedScene::kLayers - 1; layer > 0; layer--) {
+        const double nearness = static_cast<double>(layer) / (SimulatedScene::kLayers - 1);
         double moved[2];
         for (int k = 0; k < 2; k++)
             moved[k] = direction[k] - nearness * truth.positions[index][static_cast<size_t>(k)] * radians_per_px;

@@ -30,7 +30,7 @@ std::vector<double> blurred(const std::vector<double> &values, uint32_t count, u
 
 }  // namespace
 
-ToneMap tone_map(const Truth &truth, const Scene &scene, uint32_t index) {
+ToneMap tone_map(const Truth &truth, const SimulatedScene &scene, uint32_t index) {
     const auto &camera = truth.cameras[index];
     ToneMap map;
     map.columns = kColumns;

@@ -33,7 +33,7 @@ void add_settings(const SimulateOptions &o, Truth &truth) {
 
 // Parts for the keys objects, parallax, clip and local-tone, and --exif; with separate random numbers, so that the rest
 // stays the same.
-void add_disturbances(const SimulateOptions &o, const Scene &scene, Truth &truth) {
+void add_disturbances(const SimulateOptions &o, const SimulatedScene &scene, Truth &truth) {
     Random random(o.seed * 15485863ull + 3);
     truth.object_share = o.objects;
     truth.local_tone = o.local_tone;
@@ -95,7 +95,7 @@ void check_falloff(lensprof_vignetting falloff) {
 
 }  // namespace
 
-Truth make_truth(const SimulateOptions &o, const Scene &scene) {
+Truth make_truth(const SimulateOptions &o, const SimulatedScene &scene) {
     Truth truth;
     truth.seed = o.seed;
     truth.scene = o.scene;

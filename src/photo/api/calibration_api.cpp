@@ -6,7 +6,7 @@
 #include "photo/api/sized.hpp"
 #include "photo/calibration/exposure_file.hpp"
 #include "photo/calibration/outcome.hpp"
-#include "photo/correct/project_model.hpp"
+#include "photo/correct/scene_model.hpp"
 #include "photo/report/falloff.hpp"
 
 namespace lensprof {
@@ -15,8 +15,8 @@ namespace {
 constexpr size_t first_calibrate_options = sizeof(lensprof_calibrate_options);
 
 // The options of a fit that the caller gives; nothing is stored yet.
-ProjectFitOptions options_of(const lensprof_calibrate_options &from) {
-    ProjectFitOptions o;
+SceneFitOptions options_of(const lensprof_calibrate_options &from) {
+    SceneFitOptions o;
     o.store.no_store = true;
     for (uint32_t i = 0; i < from.database_count; i++) {
         require(from.databases, "databases"), require(from.databases[i], "database");
@@ -51,7 +51,7 @@ std::vector<SettingReport> settings_of(const Calibration &calibration) {
 }
 
 Storing storing_of(const Calibration &calibration) {
-    return {method_name(calibration.options.fit.method), calibration.project.path, &calibration.prior};
+    return {method_name(calibration.options.fit.method), calibration.scene.path, &calibration.prior};
 }
 
 const Calibration &fitted(const lensprof_calibration *calibration) {
@@ -73,11 +73,11 @@ std::string file_text(const lensprof_calibration &handle, const std::string &pat
     if (!handle.corrects())
         throw Failure(LENSPROF_ERROR_NOT_USABLE, path + ": not written: " + calibration.fit.report.verdict.headline());
     if (name.extension() == ".pto") {
-        Project copy = calibration.project;
+        Scene copy = calibration.scene;
         return result_text(calibration.fit, copy, path);
     }
     if (name.extension() == ".json" && name.string().rfind("exposures", 0) == 0)
-        return exposures_text(calibration.fit, calibration.project, calibration.metadata, path);
+        return exposures_text(calibration.fit, calibration.scene, calibration.metadata, path);
     lensprof_export_options options;
     lensprof_export_options_init(&options);
     options.format = lensprof_format_detect(nullptr, 0, path.c_str());
@@ -91,8 +91,8 @@ std::string file_text(const lensprof_calibration &handle, const std::string &pat
     const SettingReport *reference = &settings[0];
     for (const SettingReport &setting : settings)
         if (setting.is_reference) reference = &setting;
-    options.width = calibration.project.images[calibration.project.reference].camera.width;
-    options.height = calibration.project.images[calibration.project.reference].camera.height;
+    options.width = calibration.scene.images[calibration.scene.reference].camera.width;
+    options.height = calibration.scene.images[calibration.scene.reference].camera.height;
     const auto profile = profile_of_setting(calibration.fit.report, *reference, storing_of(calibration));
     const lensprof_profile *profiles[] = {profile.get()};
     return written(path, [&](void *data, size_t capacity, size_t *count, lensprof_error *why) {
@@ -126,8 +126,8 @@ lensprof_status lensprof_calibrate(const lensprof_scene *scene, const lensprof_c
         lensprof_calibrate_options defaults;
         lensprof_calibrate_options_init(&defaults);
         const auto options = options_of(taken(given, defaults, first_calibrate_options, "options"));
-        handle->of_scene.emplace(scene->project, options, handle->events);
-        report_findings(handle->of_scene->fit.report.verdict, scene->project.path, handle->events);
+        handle->of_scene.emplace(scene->scene, options, handle->events);
+        report_findings(handle->of_scene->fit.report.verdict, scene->scene.path, handle->events);
         handle->result = with_result(*handle->of_scene);
         handle->events.set(nullptr);
         *calibration = handle.release();
@@ -139,7 +139,7 @@ lensprof_status lensprof_calibration_open(const char *path, const char *images, 
     return photo_call("calibration", error, [&] {
         require(path, "path"), require(calibration, "calibration");
         auto handle = std::make_unique<lensprof_calibration>();
-        handle->result = is_exposure_file(path) ? read_exposures(path, images ? images : "") : read_project(path);
+        handle->result = is_exposure_file(path) ? read_exposures(path, images ? images : "") : read_hugin_project(path);
         *calibration = handle.release();
     });
 }
@@ -154,7 +154,7 @@ lensprof_status lensprof_calibration_exposure_at(const lensprof_calibration *cal
                                                  lensprof_exposure *exposure, double *errors, lensprof_error *error) {
     return photo_call("calibration", error, [&] {
         require(calibration, "calibration"), require(exposure, "exposure");
-        const Project &result = calibration->result;
+        const Scene &result = calibration->result;
         require_index(image, result.images.size(), "image");
         if (calibration->of_scene)
             *exposure = calibration->of_scene->fit.best.exposures[image];
@@ -215,13 +215,13 @@ lensprof_status lensprof_calibration_store(lensprof_calibration *calibration, co
         BuildReport report = of.fit.report;
         StoreOptions store = of.options.store;
         store.no_store = false, store.db = database ? database : "";
-        if (report.settings.empty()) require_known(of.key, of.project.path);
+        if (report.settings.empty()) require_known(of.key, of.scene.path);
         for (SettingReport &setting : report.settings)
             if (!*setting.key.camera_model && !*setting.key.lens) setting.no_key = "EXIF names neither camera nor lens";
         store_result(report, of.key, store, storing_of(of));
         uint32_t count = report.settings.empty() && report.profile_id;
         for (const SettingReport &setting : report.settings) count += setting.profile_id != 0;
-        if (!count) throw Failure(LENSPROF_ERROR_NOT_USABLE, not_usable_text(of.project.path, report.verdict, store));
+        if (!count) throw Failure(LENSPROF_ERROR_NOT_USABLE, not_usable_text(of.scene.path, report.verdict, store));
         if (stored) *stored = count;
     });
 }

@@ -10,7 +10,7 @@
 #include "photo/base/memory_file.hpp"
 #include "photo/calibration/calibration.hpp"
 #include "photo/pictures/picture.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 struct lensprof_picture {
     std::optional<lensprof::MemoryFile> bytes;  // of a picture in memory
@@ -20,13 +20,13 @@ struct lensprof_picture {
 };
 
 struct lensprof_scene {
-    lensprof::Project project;
+    lensprof::Scene scene;
 };
 
 struct lensprof_calibration {
     lensprof::CallerEvents events;                  // of the call that runs
     std::optional<lensprof::Calibration> of_scene;  // empty: an opened result
-    lensprof::Project result;                       // the scene with its exposures and models
+    lensprof::Scene result;                         // the scene with its exposures and models
 
     bool corrects() const { return !of_scene || of_scene->fit.best.corrects(); }
 };

@@ -32,7 +32,7 @@ lensprof_status lensprof_scene_open(const char *const *paths, uint32_t count, co
         options.reconstruction.images = o.images ? o.images : "";
         options.reconstruction.image_list = o.image_list ? o.image_list : "";
         auto handle = std::make_unique<lensprof_scene>();
-        handle->project = open_scene(names, options, caller);
+        handle->scene = open_scene(names, options, caller);
         *scene = handle.release();
     });
 }
@@ -42,14 +42,14 @@ void lensprof_scene_destroy(lensprof_scene *scene) { delete scene; }
 lensprof_status lensprof_scene_get_info(const lensprof_scene *scene, lensprof_scene_info *info, lensprof_error *error) {
     return photo_call("scene", error, [&] {
         require(scene, "scene"), require(info, "info");
-        const Project &project = scene->project;
+        const Scene &of = scene->scene;
         lensprof_scene_info found;
         lensprof_scene_info_init(&found);
-        found.images = static_cast<uint32_t>(project.images.size());
-        found.left_out = static_cast<uint32_t>(project.left_out.size());
-        found.matches = static_cast<uint32_t>(project.matches.size());
-        found.reference = project.reference;
-        found.is_reconstruction = project.is_reconstruction;
+        found.images = static_cast<uint32_t>(of.images.size());
+        found.left_out = static_cast<uint32_t>(of.left_out.size());
+        found.matches = static_cast<uint32_t>(of.matches.size());
+        found.reference = of.reference;
+        found.is_reconstruction = of.is_reconstruction;
         give(found, info, first_scene_info, "info");
     });
 }
@@ -57,10 +57,10 @@ lensprof_status lensprof_scene_get_info(const lensprof_scene *scene, lensprof_sc
 lensprof_status lensprof_scene_image_at(const lensprof_scene *scene, uint32_t index, lensprof_camera *camera,
                                         const char **name, const char **file, lensprof_error *error) {
     return photo_call("scene", error, [&] {
-        require(scene, "scene"), require_index(index, scene->project.images.size(), "image");
-        if (camera) *camera = scene->project.images[index].camera;
-        if (name) *name = scene->project.names[index].c_str();
-        if (file) *file = scene->project.files[index].c_str();
+        require(scene, "scene"), require_index(index, scene->scene.images.size(), "image");
+        if (camera) *camera = scene->scene.images[index].camera;
+        if (name) *name = scene->scene.names[index].c_str();
+        if (file) *file = scene->scene.files[index].c_str();
     });
 }
 
@@ -68,24 +68,24 @@ lensprof_status lensprof_scene_match_at(const lensprof_scene *scene, uint32_t in
                                         lensprof_error *error) {
     return photo_call("scene", error, [&] {
         require(scene, "scene"), require(match, "match");
-        require_index(index, scene->project.matches.size(), "match");
-        *match = scene->project.matches[index];
+        require_index(index, scene->scene.matches.size(), "match");
+        *match = scene->scene.matches[index];
     });
 }
 
 lensprof_status lensprof_scene_left_out_at(const lensprof_scene *scene, uint32_t index, const char **name,
                                            const char **reason, lensprof_error *error) {
     return photo_call("scene", error, [&] {
-        require(scene, "scene"), require_index(index, scene->project.left_out.size(), "picture");
-        if (name) *name = scene->project.left_out[index].first.c_str();
-        if (reason) *reason = scene->project.left_out[index].second.c_str();
+        require(scene, "scene"), require_index(index, scene->scene.left_out.size(), "picture");
+        if (name) *name = scene->scene.left_out[index].first.c_str();
+        if (reason) *reason = scene->scene.left_out[index].second.c_str();
     });
 }
 
 lensprof_status lensprof_scene_save(const lensprof_scene *scene, const char *path, lensprof_error *error) {
     return photo_call("scene", error, [&] {
         require(scene, "scene"), require(path, "path");
-        Project copy = scene->project;  // names of files become relative to the path
+        Scene copy = scene->scene;  // names of files become relative to the path
         write_project(copy, path);
     });
 }

@@ -9,15 +9,15 @@ constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | LENSPROF_FREE_RED
 
 // The free parameters: as requested, else by the v lines of a project; all if these have nothing photometric, as in a
 // project that was only aligned.
-void choose_unknowns(uint32_t requested, Project &project, Events &events) {
-    uint32_t free = requested, free_in_project = 0;
-    for (const auto &image : project.images) free_in_project |= image.free;
-    if (!free && !free_in_project) {
-        events.note(project.path, "no photometric v lines; estimating response, falloff, exposures and white balances"
-                                      + advice("free_parameters"));
+void choose_unknowns(uint32_t requested, Scene &scene, Events &events) {
+    uint32_t free = requested, free_in_scene = 0;
+    for (const auto &image : scene.images) free_in_scene |= image.free;
+    if (!free && !free_in_scene) {
+        events.note(scene.path, "no photometric v lines; estimating response, falloff, exposures and white balances"
+                                    + advice("free_parameters"));
         free = all_flags;
     }
-    for (auto &image : project.images) image.free = free ? free : image.free;
+    for (auto &image : scene.images) image.free = free ? free : image.free;
 }
 
 // Reconstructions from film are rare. Sensors of phones are small.
@@ -27,49 +27,49 @@ CameraKind kind_of_reconstruction(const lensprof_profile_key &key) {
     return {is_phone ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_STILL, KindFrom::reconstruction};
 }
 
-CameraKind kind_of(const FitOptions &o, const Project &project, const lensprof_profile_key &key,
+CameraKind kind_of(const FitOptions &o, const Scene &scene, const lensprof_profile_key &key,
                    const PictureMetadata &metadata) {
     const CameraKind kind = camera_kind_of(o, key, metadata);
-    return project.is_reconstruction && kind.from == KindFrom::none ? kind_of_reconstruction(key) : kind;
+    return scene.is_reconstruction && kind.from == KindFrom::none ? kind_of_reconstruction(key) : kind;
 }
 
 }  // namespace
 
-Calibration::Calibration(Project of, const ProjectFitOptions &o, Events &events)
-    : options(o), project(std::move(of)), fit(events) {
-    if (!project.pto)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, project.path + ": has exposures, but nothing to fit them to; it is used "
+Calibration::Calibration(Scene of, const SceneFitOptions &o, Events &events)
+    : options(o), scene(std::move(of)), fit(events) {
+    if (!scene.pto)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, scene.path + ": has exposures, but nothing to fit them to; it is used "
                                                               "to correct pictures");
-    if (project.images.size() < 2)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": has only one image; give at least two that overlap",
+    if (scene.images.size() < 2)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, scene.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
-    choose_unknowns(o.free, project, events);
-    if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.pixels.max_side);
-    metadata = picture_metadata(o, project);
-    key = profile_key(o, project, metadata, events);
+    choose_unknowns(o.free, scene, events);
+    if (o.points.empty() && !scene.is_reconstruction) check_pictures(scene, o.pixels.max_side);
+    metadata = picture_metadata(o, scene);
+    key = profile_key(o, scene, metadata, events);
     check_store(o.store);
     if (uses_stored_prior(o.fit))
-        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_requested, key, project.path);
-    fit.report.camera_kind = kind_of(o.fit, project, key, metadata[project.reference]);
-    fit_project(o, project, metadata, prior, fit, events);
+        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_requested, key, scene.path);
+    fit.report.camera_kind = kind_of(o.fit, scene, key, metadata[scene.reference]);
+    fit_scene(o, scene, metadata, prior, fit, events);
 }
 
-Project with_result(const Calibration &calibration) {
-    Project project = calibration.project;
+Scene with_result(const Calibration &calibration) {
+    Scene scene = calibration.scene;
     const Fitted &best = calibration.fit.best;
-    project.reference = best.reference;
-    project.models.clear();
-    for (uint32_t i = 0; i < project.images.size(); i++) {
-        project.images[i].left_out = std::isnan(best.exposures[i].ev);
-        project.images[i].exposure = best.exposures[i];
+    scene.reference = best.reference;
+    scene.models.clear();
+    for (uint32_t i = 0; i < scene.images.size(); i++) {
+        scene.images[i].left_out = std::isnan(best.exposures[i].ev);
+        scene.images[i].exposure = best.exposures[i];
         auto model = std::shared_ptr<lensprof_profile>(new_profile());
         const auto falloffs = best.falloff_of(i);
         model->response[0] = best.response_of(i);
         model->vignettings = best.falloff_curves_of(i);
         std::copy_n(falloffs.begin(), falloffs.size(), model->vignetting);
-        project.models.push_back(model);
+        scene.models.push_back(model);
     }
-    return project;
+    return scene;
 }
 
 }  // namespace lensprof

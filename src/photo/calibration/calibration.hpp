@@ -4,24 +4,24 @@
 #include <string>
 #include <vector>
 
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 
 namespace lensprof {
 
 // The fit refers to the events, which must live as long.
 struct Calibration {
     // Fits. Failure.
-    Calibration(Project of, const ProjectFitOptions &o, Events &events);
+    Calibration(Scene of, const SceneFitOptions &o, Events &events);
 
-    ProjectFitOptions options;
-    Project project;
+    SceneFitOptions options;
+    Scene scene;
     std::vector<PictureMetadata> metadata;
     lensprof_profile_key key{};  // of the reference
     EarlierProfile prior;
-    ProjectFit fit;
+    SceneFit fit;
 };
 
 // The scene with the exposures, responses and falloffs of the result.
-Project with_result(const Calibration &calibration);
+Scene with_result(const Calibration &calibration);
 
 }  // namespace lensprof

@@ -21,30 +21,30 @@ Json camera_json(const lensprof_response &response, const std::string &name) {
     return {{"name", name}, {"response", curve}, {"light_of_level", light}};
 }
 
-Json cameras_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata) {
+Json cameras_json(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata) {
     Json list = Json::array();
     for (const uint32_t first : state.settings.first_of_camera)
         list.push_back(
-            camera_json(state.best.response_of(first), describe_camera(metadata[first].key, project.names[first])));
+            camera_json(state.best.response_of(first), describe_camera(metadata[first].key, scene.names[first])));
     return list;
 }
 
-Json lenses_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata) {
+Json lenses_json(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata) {
     Json list = Json::array();
     for (const uint32_t first : falloff_groups(state.settings).first)
-        list.push_back({{"name", describe_setting(metadata[first].key, project.names[first])},
+        list.push_back({{"name", describe_setting(metadata[first].key, scene.names[first])},
                         {"camera", state.settings.camera_of_image[first]},
                         {"vignetting",
                          vignetting_json(state.best.falloff_of(first).data(), state.best.falloff_curves_of(first))}});
     return list;
 }
 
-Json image_json(const ProjectFit &state, const Project &project, uint32_t i, const fs::path &folder) {
+Json image_json(const SceneFit &state, const Scene &scene, uint32_t i, const fs::path &folder) {
     const lensprof_exposure &exposure = state.best.exposures[i];
-    const lensprof_camera &frame = project.images[i].camera;
-    Json json = {{"name", project.names[i]}};
-    if (path_exists(project.files[i]))
-        json["file"] = fs::path(absolute_path(project.files[i])).lexically_proximate(folder).string();
+    const lensprof_camera &frame = scene.images[i].camera;
+    Json json = {{"name", scene.names[i]}};
+    if (path_exists(scene.files[i]))
+        json["file"] = fs::path(absolute_path(scene.files[i])).lexically_proximate(folder).string();
     json["width"] = frame.width, json["height"] = frame.height;
     json["lens"] = state.settings.of_image[i];
     if (std::isnan(exposure.ev)) {
@@ -62,25 +62,25 @@ Json image_json(const ProjectFit &state, const Project &project, uint32_t i, con
 
 }  // namespace
 
-Json exposures_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata,
+Json exposures_json(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata,
                     const std::string &path) {
     const fs::path folder = fs::path(absolute_path(path)).parent_path();
     Json images = Json::array();
-    for (uint32_t i = 0; i < project.names.size(); i++) images.push_back(image_json(state, project, i, folder));
+    for (uint32_t i = 0; i < scene.names.size(); i++) images.push_back(image_json(state, scene, i, folder));
     const lensprof_exposure mean = mean_exposure(state.best.exposures);
     return {{"schema", exposures_schema},
             {"file", "lensprof exposures"},
             {"software", std::string("lensprof ") + lensprof_version()},
-            {"reference", project.names[state.best.reference]},
+            {"reference", scene.names[state.best.reference]},
             {"mean", {{"ev", mean.ev}, {"white_balance", mean.white_balance}}},
-            {"cameras", cameras_json(state, project, metadata)},
-            {"lenses", lenses_json(state, project, metadata)},
+            {"cameras", cameras_json(state, scene, metadata)},
+            {"lenses", lenses_json(state, scene, metadata)},
             {"images", images}};
 }
 
-std::string exposures_text(const ProjectFit &state, const Project &project,
-                           const std::vector<PictureMetadata> &metadata, const std::string &path) {
-    return exposures_json(state, project, metadata, path).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string exposures_text(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata,
+                           const std::string &path) {
+    return exposures_json(state, scene, metadata, path).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace lensprof

@@ -4,17 +4,17 @@
 
 #include <string>
 
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 #include "photo/scene/exposure_reader.hpp"
 
 namespace lensprof {
 
 // The file as JSON; file names are relative to the folder of `path`.
-Json exposures_json(const ProjectFit &state, const Project &project, const std::vector<PictureMetadata> &metadata,
+Json exposures_json(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata,
                     const std::string &path);
 
 // The text of the file, to be written to `path`: file names are relative to its folder.
-std::string exposures_text(const ProjectFit &state, const Project &project,
-                           const std::vector<PictureMetadata> &metadata, const std::string &path);
+std::string exposures_text(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata,
+                           const std::string &path);
 
 }  // namespace lensprof

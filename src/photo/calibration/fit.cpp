@@ -7,7 +7,7 @@
 #include "photo/base/format.hpp"
 #include "photo/pictures/orientation.hpp"
 #include "photo/report/falloff.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 

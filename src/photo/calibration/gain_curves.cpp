@@ -1,6 +1,6 @@
 // How much the colours of scene points differ between pictures, before and after corrections.
 #include "photo/base/library.hpp"
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 
 namespace lensprof {
 namespace {
@@ -44,7 +44,7 @@ Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string 
 
 }  // namespace
 
-std::vector<GainCurve> gain_curves(ProjectFit &state) {
+std::vector<GainCurve> gain_curves(SceneFit &state) {
     std::vector<GainCurve> curves = {{"before", differences_before(state.input)}};
     if (state.best.result.colour_variance_exposures_only != LENSPROF_UNKNOWN) {
         const Fitted only = fit_exposures_only(state.input, state.report.reference, state.item, state.events);

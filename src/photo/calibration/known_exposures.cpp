@@ -147,7 +147,7 @@ ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetada
     return use;
 }
 
-ExifUse add_known_exposures(const FitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+ExifUse add_known_exposures(const FitOptions &o, const Scene &scene, const std::vector<PictureMetadata> &metadata,
                             std::vector<lensprof_fit_image> &images, Events &events) {
     if (o.exif_sigma == 0.0) return {};
     std::vector<uint32_t> camera_of;
@@ -158,7 +158,7 @@ ExifUse add_known_exposures(const FitOptions &o, const Project &project, const s
         if (std::isnan(exposures.ev[i])) continue;
         if (!is_possible(exposures.ev[i])) {
             exposures.ev[i] = NAN;
-            events.warn(project.files[i], "time, aperture and ISO in its EXIF are not plausible and not used");
+            events.warn(scene.files[i], "time, aperture and ISO in its EXIF are not plausible and not used");
             continue;
         }
         const bool is_repeated =
@@ -166,8 +166,8 @@ ExifUse add_known_exposures(const FitOptions &o, const Project &project, const s
         images[i].known_ev = exposures.ev[i];
         images[i].known_ev_sigma = std::max(o.exif_sigma.value_or(is_repeated ? kRepeatedSigma : kRoundedSigma), 1e-3);
     }
-    const ExifUse use = exif_use(exposures, metadata, project.names);
-    if (!use.note.empty()) events.note(project.path, use.note + advice("exif_used"));
+    const ExifUse use = exif_use(exposures, metadata, scene.names);
+    if (!use.note.empty()) events.note(scene.path, use.note + advice("exif_used"));
     return use;
 }
 

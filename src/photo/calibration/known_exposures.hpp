@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photo/calibration/fit.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -27,7 +27,7 @@ ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetada
 // Sets the requested standard error (exif_sigma). Without a request: EXIF rounds to thirds of a stop and is known
 // to 0.1 EV, but pictures of one camera at one manual exposure agree to 0.03 EV, the scatter of shutter and aperture.
 // Of several such groups only the largest gets this error; between groups the rounding counts. Gives the note.
-ExifUse add_known_exposures(const FitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+ExifUse add_known_exposures(const FitOptions &o, const Scene &scene, const std::vector<PictureMetadata> &metadata,
                             std::vector<lensprof_fit_image> &images, Events &events);
 
 // Adds to findings on the known exposure of a picture where it is from: what EXIF states, or the options.

@@ -67,7 +67,7 @@ LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint
 
 // Whether two images are from one camera: as crops of one file, or according to EXIF, unless sizes or processings
 // differ, or to the project, unless EXIF contradicts. `is_given`: the command line gives the camera of all.
-bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given, uint32_t i,
+bool is_same_camera(const Scene &scene, const std::vector<PictureMetadata> &metadata, bool is_given, uint32_t i,
                     uint32_t j) {
     const lensprof_profile_key &a = metadata[i].key, &b = metadata[j].key;
     const bool is_stated = is_given || (*a.camera_model && *b.camera_model);
@@ -75,9 +75,9 @@ bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &
         is_given
         || (std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.camera_maker, b.camera_maker) == 0);
     if (is_stated && !is_alike) return false;
-    if (project.images[i].of_crop && project.files[i] == project.files[j]) return true;
-    if (project.images[i].response_of == project.images[j].response_of) return true;
-    const lensprof_camera &frame = project.images[i].camera, &other_frame = project.images[j].camera;
+    if (scene.images[i].of_crop && scene.files[i] == scene.files[j]) return true;
+    if (scene.images[i].response_of == scene.images[j].response_of) return true;
+    const lensprof_camera &frame = scene.images[i].camera, &other_frame = scene.images[j].camera;
     const bool is_one_kind =
         a.processing == b.processing
         && std::minmax(frame.width, frame.height) == std::minmax(other_frame.width, other_frame.height);
@@ -86,9 +86,9 @@ bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &
 
 // Numbers cameras in the order of their first images. Images that state their camera come first, so that others do not
 // connect what EXIF separates.
-void number_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given,
+void number_cameras(const Scene &scene, const std::vector<PictureMetadata> &metadata, bool is_given,
                     LensSettings &settings) {
-    const auto count = static_cast<uint32_t>(project.images.size());
+    const auto count = static_cast<uint32_t>(scene.images.size());
     std::vector<uint32_t> order(count), found(count);
     std::iota(order.begin(), order.end(), 0u);
     std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return *metadata[i].key.camera_model != 0; });
@@ -96,7 +96,7 @@ void number_cameras(const Project &project, const std::vector<PictureMetadata> &
     for (const uint32_t i : order) {
         const auto same = std::find_if(members.begin(), members.end(), [&](const std::vector<uint32_t> &camera_images) {
             return std::any_of(camera_images.begin(), camera_images.end(),
-                               [&](uint32_t j) { return is_same_camera(project, metadata, is_given, i, j); });
+                               [&](uint32_t j) { return is_same_camera(scene, metadata, is_given, i, j); });
         });
         found[i] = static_cast<uint32_t>(same - members.begin());
         if (same == members.end()) members.emplace_back();
@@ -113,10 +113,10 @@ bool is_portrait(const lensprof_pto_image &image) { return image.camera.height >
 
 // The turns of all images, unless that of some image of a setting is unknown while others are not. Pictures that may
 // all have been rotated stay as they are.
-void set_turns(const Project &project, const std::vector<PictureMetadata> &metadata, LensSettings &settings) {
+void set_turns(const Scene &scene, const std::vector<PictureMetadata> &metadata, LensSettings &settings) {
     std::vector<uint16_t> &turns = settings.turn_of_image;
     for (size_t i = 0; i < metadata.size(); i++) {
-        const lensprof_camera &frame = project.images[i].camera;
+        const lensprof_camera &frame = scene.images[i].camera;
         turns.push_back(sensor_orientation(frame.width, frame.height, metadata[i].orientation));
     }
     for (uint32_t setting = 0; setting < settings.first.size(); setting++) {
@@ -152,27 +152,27 @@ FalloffGroups falloff_groups(const LensSettings &settings) {
 
 // Images that state most come first; one that states less joins the only setting it may belong to or, if there are
 // several, that of images stating as little.
-LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
-                           const StoreOptions &store, bool one_lens) {
-    const auto count = static_cast<uint32_t>(project.images.size());
-    const std::vector<uint32_t> all(count, 0), reference{project.reference};
+LensSettings lens_settings(const Scene &scene, const std::vector<PictureMetadata> &metadata, const StoreOptions &store,
+                           bool one_lens) {
+    const auto count = static_cast<uint32_t>(scene.images.size());
+    const std::vector<uint32_t> all(count, 0), reference{scene.reference};
     if (one_lens) {
         LensSettings one;
         one.of_image = one.camera_of_image = all, one.first = one.first_of_camera = reference;
-        set_turns(project, metadata, one);
+        set_turns(scene, metadata, one);
         return one;
     }
     std::vector<lensprof_profile_key> keys;
     for (const PictureMetadata &entry : metadata) keys.push_back(stated_key(entry.key, store));
     LensSettings cameras;
-    number_cameras(project, metadata, !store.camera.empty(), cameras);
+    number_cameras(scene, metadata, !store.camera.empty(), cameras);
     std::vector<uint32_t> order(count), found(count), first;
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return stated(keys[a]) > stated(keys[b]); });
     for (uint32_t i : order) {
         const auto is_possible = [&](uint32_t other) {
-            const auto &a = project.images[i], &b = project.images[other];
+            const auto &a = scene.images[i], &b = scene.images[other];
             // Hugin does not link portrait and landscape frames.
             const bool is_linked = a.vignetting_of == b.vignetting_of || is_portrait(a) != is_portrait(b);
             return cameras.camera_of_image[i] == cameras.camera_of_image[other] && is_linked && is_same_crop(a, b)
@@ -190,12 +190,12 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
     }
     if (first.size() > LENSPROF_SETTINGS_MAX)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      project.path + ": its pictures have " + std::to_string(first.size())
+                      scene.path + ": its pictures have " + std::to_string(first.size())
                           + " lens settings, but a fit takes at most " + std::to_string(LENSPROF_SETTINGS_MAX)
                           + "; give fewer pictures, or use " + option_name("one_lens") + " to treat all as one");
     LensSettings settings = in_order(found, first);
     settings.camera_of_image = cameras.camera_of_image, settings.first_of_camera = cameras.first_of_camera;
-    set_turns(project, metadata, settings);
+    set_turns(scene, metadata, settings);
     return settings;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "photo/calibration/profile_store.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -31,8 +31,8 @@ struct LensSettings {
 // Cameras: by Ra..Re, maker and model. Settings per camera: by Va..Vd, lens, focal length, aperture and focus;
 // portrait and landscape frames are one setting. With `one_lens` there is one camera and one setting. Failure (usage)
 // for more settings than a fit takes.
-LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
-                           const StoreOptions &store, bool one_lens);
+LensSettings lens_settings(const Scene &scene, const std::vector<PictureMetadata> &metadata, const StoreOptions &store,
+                           bool one_lens);
 
 // Images whose pictures have the same falloff: of one setting, and rotated in the same way. Numbered in the order of
 // their images; `first` is that of the setting, if possible.

@@ -37,11 +37,11 @@ Picture applied(const Picture &source, const lensprof_apply_options &options, co
 }
 
 // A picture corrected with a result, and the unchanged picture in the same format.
-CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &target,
+CorrectedCopy copy_of(const Scene &scene, uint32_t i, const Fitted &fitted, const lensprof_exposure &target,
                       uint32_t max_side) {
     ReadOptions read;
     read.max_side = max_side;
-    Picture source = read_picture(project.files[i], read);
+    Picture source = read_picture(scene.files[i], read);
     lensprof_apply_options options;
     lensprof_apply_options_init(&options);
     options.responses = options.vignettings = 1;
@@ -52,15 +52,15 @@ CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, 
     options.input = options.output = LENSPROF_ENCODING_LINEAR;
     CorrectedCopy copy;
     copy.image = i;
-    copy.before = applied(source, options, project.files[i]);
+    copy.before = applied(source, options, scene.files[i]);
     options.input = options.output = LENSPROF_ENCODING_RESPONSE;
     options.response = &fitted.response_of(i);
     options.output_response = &fitted.response_of(fitted.reference), options.output_responses = 1;
     const std::array<lensprof_vignetting, 3> falloff = fitted.falloff_of(i);
     options.vignettings = fitted.falloff_curves_of(i), options.vignetting = falloff.data();
     options.source = fitted.exposures[i], options.target = target;
-    copy.after = applied(source, options, project.files[i]);
-    copy.camera = project.images[i].camera;
+    copy.after = applied(source, options, scene.files[i]);
+    copy.camera = scene.images[i].camera;
     return copy;
 }
 
@@ -184,12 +184,12 @@ std::vector<uint32_t> images_with_exposure(const Fitted &fitted) {
     return joined;
 }
 
-std::vector<CorrectedCopy> corrected_copies(const Project &project, const Fitted &fitted,
+std::vector<CorrectedCopy> corrected_copies(const Scene &scene, const Fitted &fitted,
                                             const std::vector<uint32_t> &images, uint32_t max_side, Events &progress) {
     const lensprof_exposure target = mean_exposure(fitted.exposures);  // as `apply --pto` has it
     std::vector<CorrectedCopy> copies(images.size());
     for_each_parallel(static_cast<uint32_t>(copies.size()), "preview", progress,
-                      [&](uint32_t n) { copies[n] = copy_of(project, images[n], fitted, target, max_side); });
+                      [&](uint32_t n) { copies[n] = copy_of(scene, images[n], fitted, target, max_side); });
     return copies;
 }
 
@@ -205,9 +205,9 @@ Mosaic mosaic_of(const std::vector<CorrectedCopy> &copies) {
     return mosaic;
 }
 
-void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Events &progress) {
+void write_preview(const std::string &path, const Scene &scene, const Fitted &fitted, Events &progress) {
     const Mosaic mosaic =
-        mosaic_of(corrected_copies(project, fitted, images_with_exposure(fitted), picture_side, progress));
+        mosaic_of(corrected_copies(scene, fitted, images_with_exposure(fitted), picture_side, progress));
     Picture out = mosaic.before;
     out.height = 2 * mosaic.before.height + gap;
     out.pixels.resize(out.row_bytes * out.height, 128);

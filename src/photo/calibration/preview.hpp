@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photo/calibration/fit.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -20,7 +20,7 @@ struct CorrectedCopy {
 std::vector<uint32_t> images_with_exposure(const Fitted &fitted);
 
 // Copies of these images, with a longer side of at least `max_side` pixels.
-std::vector<CorrectedCopy> corrected_copies(const Project &project, const Fitted &fitted,
+std::vector<CorrectedCopy> corrected_copies(const Scene &scene, const Fitted &fitted,
                                             const std::vector<uint32_t> &images, uint32_t max_side, Events &progress);
 
 // Both of one size, 8 bit RGB, the longer side 1600 pixels.
@@ -35,7 +35,7 @@ void check_preview(const std::string &path);
 // Writes the mosaic before and, below it, after correction, of the images with an exposure in the result: each point is
 // taken from the picture whose centre is nearest. Rectilinear if all cameras look forward or the camera moved, else
 // equirectangular.
-void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Events &progress);
+void write_preview(const std::string &path, const Scene &scene, const Fitted &fitted, Events &progress);
 
 // The mosaics in a picture of write_preview.
 Mosaic read_preview(const std::string &path);

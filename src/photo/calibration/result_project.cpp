@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "photo/base/library.hpp"
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 
 namespace lensprof {
 namespace {
@@ -28,13 +28,13 @@ Fitted fit_for_project(FitInput input, const Fitted &best, uint32_t reference, c
 
 }  // namespace
 
-std::string result_text(const ProjectFit &state, Project &project, const std::string &path) {
+std::string result_text(const SceneFit &state, Scene &scene, const std::string &path) {
     const Fitted stored = fit_for_project(state.input, state.best, state.report.reference, state.item, state.events);
     lensprof_error error{};
-    check(lensprof_pto_set_result(project.pto.get(), &stored.result.response, &green_falloff(stored.result),
+    check(lensprof_pto_set_result(scene.pto.get(), &stored.result.response, &green_falloff(stored.result),
                                   stored.exposures.data(), static_cast<uint32_t>(stored.exposures.size()),
                                   stored.reference, &error),
-          project.path, &error);
+          scene.path, &error);
     if (state.settings.has_several_settings() || state.settings.has_rotated_images()) {
         const FalloffGroups groups = falloff_groups(state.settings);
         std::vector<lensprof_vignetting> falloffs;
@@ -43,20 +43,20 @@ std::string result_text(const ProjectFit &state, Project &project, const std::st
             const size_t curve = stored.falloff_curves_of(first) == 3 ? 1 : 0;
             falloffs.push_back(is_fitted ? stored.falloff_of(first)[curve] : green_falloff(stored.result));
         }
-        check(lensprof_pto_set_settings(project.pto.get(), groups.of_image.data(),
+        check(lensprof_pto_set_settings(scene.pto.get(), groups.of_image.data(),
                                         static_cast<uint32_t>(groups.of_image.size()), falloffs.data(),
                                         static_cast<uint32_t>(falloffs.size()), &error),
-              project.path, &error);
+              scene.path, &error);
     }
     if (state.settings.has_several_cameras()) {
         std::vector<lensprof_response> responses;
         for (const uint32_t first : state.settings.first_of_camera) responses.push_back(stored.response_of(first));
-        check(lensprof_pto_set_cameras(project.pto.get(), state.settings.camera_of_image.data(),
+        check(lensprof_pto_set_cameras(scene.pto.get(), state.settings.camera_of_image.data(),
                                        static_cast<uint32_t>(state.settings.camera_of_image.size()), responses.data(),
                                        static_cast<uint32_t>(responses.size()), &error),
-              project.path, &error);
+              scene.path, &error);
     }
-    return project_text_at(project, path);
+    return project_text_at(scene, path);
 }
 
 }  // namespace lensprof

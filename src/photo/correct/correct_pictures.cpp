@@ -22,7 +22,7 @@
 #include "photo/pictures/picture.hpp"
 #include "photo/pictures/raw_kind.hpp"
 #include "photo/pictures/thumbnail.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 namespace {

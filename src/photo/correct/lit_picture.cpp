@@ -6,9 +6,9 @@ namespace lensprof {
 
 static constexpr double edge_px = 0.05;  // beyond the centres of the outermost pixels
 
-LitPicture::LitPicture(const PlacedCorrection &placed, const CorrectionKind &kind, const Project &project)
+LitPicture::LitPicture(const PlacedCorrection &placed, const CorrectionKind &kind, const Scene &scene)
     : weights_(placed.job),
-      camera_(project.images[placed.image].camera),
+      camera_(scene.images[placed.image].camera),
       vignetting_(placed.job.model->vignetting[0]),
       grey_(read_picture(placed.job.source)),
       samples_(lensprof_layout_samples(grey_.layout)) {
@@ -27,7 +27,7 @@ LitPicture::LitPicture(const PlacedCorrection &placed, const CorrectionKind &kin
             &placed.job.model->response[0], std::pow(static_cast<double>(k) / curve_steps, 2), nullptr);
     mask_.resize(size_t(grey_.width) * grey_.height);
     lensprof_error error{};
-    check(lensprof_pto_draw_mask(project.pto.get(), placed.image, mask_.data(), grey_.width, grey_.height,
+    check(lensprof_pto_draw_mask(scene.pto.get(), placed.image, mask_.data(), grey_.width, grey_.height,
                                  static_cast<ptrdiff_t>(grey_.width), &error),
           file, &error);
     if (std::find(mask_.begin(), mask_.end(), 0) == mask_.end()) mask_.clear();

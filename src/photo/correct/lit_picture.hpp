@@ -8,7 +8,7 @@
 
 #include "photo/correct/correction.hpp"
 #include "photo/correct/light_weights.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -32,7 +32,7 @@ struct PixelScale {
 // A full-size picture and its irradiance.
 class LitPicture {
 public:
-    LitPicture(const PlacedCorrection &placed, const CorrectionKind &kind, const Project &project);
+    LitPicture(const PlacedCorrection &placed, const CorrectionKind &kind, const Scene &scene);
 
     uint32_t width() const { return grey_.width; }
     uint32_t height() const { return grey_.height; }

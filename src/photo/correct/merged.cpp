@@ -9,7 +9,7 @@
 #include "photo/correct/left_out_parts.hpp"
 #include "photo/correct/light_weights.hpp"
 #include "photo/correct/picture_plan.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 namespace {

@@ -34,9 +34,9 @@ constexpr uint32_t rows_per_thread = 4 * block_px;  // processed by a thread at 
 // Irradiance of a picture, from itself and from others.
 class Merge {
 public:
-    Merge(const PlacedCorrection &placed, const CorrectionKind &kind, const Project &project)
+    Merge(const PlacedCorrection &placed, const CorrectionKind &kind, const Scene &scene)
         : kind_(kind),
-          picture_(placed, kind, project),
+          picture_(placed, kind, scene),
           sums_(size_t(picture_.width()) * picture_.height() * picture_.samples()) {
         in_strips([&](uint32_t x, uint32_t y) {
             double weight[3];
@@ -244,21 +244,21 @@ void check_mergeable(const std::string &file, std::optional<uint32_t> &layout) {
     layout = header.layout;
 }
 
-Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCorrection> &jobs,
+Corrected write_from_overlaps(const Scene &scene, const std::vector<PlacedCorrection> &jobs,
                               const std::vector<PlacedCorrection> &all, const CorrectionKind &kind, Events &events) {
     Corrected corrected;
     uint64_t pixels = 0;
     for (const PlacedCorrection &placed : jobs) pixels += placed.job.pixels;
     Throughput throughput(events, "merging", static_cast<uint32_t>(jobs.size()), pixels);
     for (const PlacedCorrection &placed : jobs) {
-        Merge merge(placed, kind, project);
+        Merge merge(placed, kind, scene);
         uint32_t overlapping = 0;
         for (PlacedCorrection other : all) {
             stop_if_cancelled();
-            if (other.image == placed.image || !overlap(merge.picture().camera(), project.images[other.image].camera))
+            if (other.image == placed.image || !overlap(merge.picture().camera(), scene.images[other.image].camera))
                 continue;
             other.job.target_exposure = placed.job.target_exposure;
-            LitPicture lit(other, kind, project);
+            LitPicture lit(other, kind, scene);
             merge.add(lit);
             overlapping++;
         }

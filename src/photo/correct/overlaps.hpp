@@ -21,7 +21,7 @@ void check_mergeable(const std::string &file, std::optional<uint32_t> &layout);
 // own frame. Warns of pictures that no other overlaps, and of pictures whose blocks agree with less than half of the
 // overlapping ones. Memory use, regardless of the number of pictures: two full-size pictures, their irradiance, and
 // sums of 8 bytes per sample and one byte per pixel. The output bytes do not depend on the number of threads.
-Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCorrection> &jobs,
+Corrected write_from_overlaps(const Scene &scene, const std::vector<PlacedCorrection> &jobs,
                               const std::vector<PlacedCorrection> &all, const CorrectionKind &kind, Events &events);
 
 }  // namespace lensprof

@@ -6,7 +6,7 @@
 
 #include "photo/base/output_file.hpp"
 #include "photo/pictures/icc.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "photo/correct/project_model.hpp"
+#include "photo/correct/scene_model.hpp"
 #include "photo/pictures/picture.hpp"
 
 namespace lensprof {
@@ -27,7 +27,7 @@ Correction copy_of_picture(const CopyNames &names) {
     return job;
 }
 
-SceneCorrection::SceneCorrection(const Project &scene, uint32_t exposure, const std::string &name)
+SceneCorrection::SceneCorrection(const Scene &scene, uint32_t exposure, const std::string &name)
     : scene_(scene),
       exposure_(exposure),
       name_(name),
@@ -39,14 +39,14 @@ SceneCorrection::SceneCorrection(const Project &scene, uint32_t exposure, const 
 }
 
 void SceneCorrection::put_into(uint32_t image, Correction &job) const {
-    job.model = model_of_project(scene_, image);
+    job.model = model_of(scene_, image);
     job.exposure = exposures_[image];
     job.target_exposure = exposure_ == LENSPROF_COPY_EXPOSURE_KEEP ? job.exposure : target_;
     job.encoding = encoding_;
     job.model_name = name_;
 }
 
-std::vector<Correction> copies_of_scene(const Project &scene, const std::vector<CopyNames> &names, uint32_t exposure) {
+std::vector<Correction> copies_of_scene(const Scene &scene, const std::vector<CopyNames> &names, uint32_t exposure) {
     const SceneCorrection correction(scene, exposure, std::filesystem::path(scene.path).filename().string());
     std::vector<Correction> jobs;
     for (const CopyNames &copy : names) {

@@ -9,7 +9,7 @@
 #include <lensprof/photo.h>
 
 #include "photo/correct/correction.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -25,7 +25,7 @@ class SceneCorrection {
 public:
     // `exposure`: lensprof_copy_exposure. MEAN is lowered so that no picture is lifted by more than 1 EV: what is
     // brighter than half the limit clips. `name` is that of the model in the copies. `scene` must live as long.
-    SceneCorrection(const Project &scene, uint32_t exposure, const std::string &name);
+    SceneCorrection(const Scene &scene, uint32_t exposure, const std::string &name);
 
     std::optional<uint32_t> find(const std::string &file) const { return images_.find(file); }
     bool is_left_out(uint32_t image) const { return scene_.images[image].left_out != 0; }
@@ -34,7 +34,7 @@ public:
     void put_into(uint32_t image, Correction &job) const;
 
 private:
-    const Project &scene_;
+    const Scene &scene_;
     const uint32_t exposure_;
     const std::string name_;
     const ImagesByFile images_;
@@ -44,6 +44,6 @@ private:
 };
 
 // Failure (NOT_FOUND) for a picture that is not in the result of the scene.
-std::vector<Correction> copies_of_scene(const Project &scene, const std::vector<CopyNames> &names, uint32_t exposure);
+std::vector<Correction> copies_of_scene(const Scene &scene, const std::vector<CopyNames> &names, uint32_t exposure);
 
 }  // namespace lensprof

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "photo/base/median.hpp"
-#include "photo/correct/project_model.hpp"
+#include "photo/correct/scene_model.hpp"
 #include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
@@ -29,15 +29,15 @@ std::optional<double> stated_ev(const std::string &file) {
 
 }  // namespace
 
-void seed_exif(std::vector<Correction> &jobs, const Project &project, const std::vector<lensprof_exposure> &exposures) {
+void seed_exif(std::vector<Correction> &jobs, const Scene &scene, const std::vector<lensprof_exposure> &exposures) {
     std::vector<double> offsets;  // from measured to stated EV
     for (size_t i = 0; i < exposures.size(); i++) {
-        if (project.images[i].left_out) continue;
-        if (const auto stated = stated_ev(project.files[i])) offsets.push_back(*stated - exposures[i].ev);
+        if (scene.images[i].left_out) continue;
+        if (const auto stated = stated_ev(scene.files[i])) offsets.push_back(*stated - exposures[i].ev);
     }
     const double usual = exif_ev_of(usual_time_s, usual_aperture, usual_iso);
     const double offset =
-        offsets.empty() ? usual - mean_exposure(joined_exposures(project, exposures)).ev : median(std::move(offsets));
+        offsets.empty() ? usual - mean_exposure(joined_exposures(scene, exposures)).ev : median(std::move(offsets));
     for (Correction &job : jobs) {
         const PictureMetadata metadata = read_metadata(job.source);
         auto seeded = std::make_shared<PictureMetadata>(unknown_metadata());

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "photo/correct/correction.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -13,6 +13,6 @@ namespace lensprof {
 // between the measured exposures and the pictures' own EXIF; if no picture states its exposure, the mean is 1/60 s at
 // f/2.8 and ISO 100. Unknown aperture and ISO are written with these values. `exposures` are those of all pictures of
 // the project, so that a part of the pictures gets the same values as the whole.
-void seed_exif(std::vector<Correction> &jobs, const Project &project, const std::vector<lensprof_exposure> &exposures);
+void seed_exif(std::vector<Correction> &jobs, const Scene &scene, const std::vector<lensprof_exposure> &exposures);
 
 }  // namespace lensprof

@@ -42,7 +42,7 @@ using Reasons = std::map<std::string, std::string>;  // by file
 void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     const std::string text = read_text(panorama.project, max_text_bytes)
                              + panorama.exposures.dump(-1, ' ', true, Json::error_handler_t::replace);
-    const Project scene = panorama.corrected_scene();
+    const Scene scene = panorama.corrected_scene();
     const SceneCorrection correction(scene, LENSPROF_COPY_EXPOSURE_MEAN,
                                      std::filesystem::path(panorama.project).filename().string());
     for (const InputPicture *picture : panorama.pictures) {

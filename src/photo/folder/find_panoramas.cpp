@@ -34,7 +34,7 @@ std::string key_of(const std::vector<const InputPicture *> &pictures, const std:
     return digest_of_text(text);
 }
 
-Group group_of(const FoundProject &found, const std::vector<const InputPicture *> &all) {
+Group group_of(const FoundScene &found, const std::vector<const InputPicture *> &all) {
     Group group;
     for (const uint32_t number : found.pictures) group.pictures.push_back(all[number]);
     group.geometry = text_of_found(found);
@@ -88,7 +88,7 @@ Groups register_groups(const FolderOptions &o, const std::vector<const InputPict
                                                        : no_overlap_within_camera());
     for (const uint32_t number : found.disconnected)
         groups.unjoined[files[number]] = files[number] + ": " + linked_by_other_camera();
-    for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));
+    for (const FoundScene &scene : found.scenes) groups.list.push_back(group_of(scene, all));
     std::stable_sort(groups.list.begin(), groups.list.end(),
                      [](const Group &a, const Group &b) { return a.pictures.size() > b.pictures.size(); });
     return groups;

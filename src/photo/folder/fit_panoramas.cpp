@@ -10,7 +10,7 @@
 #include "photo/calibration/exposure_file.hpp"
 #include "photo/calibration/outcome.hpp"
 #include "photo/calibration/preview.hpp"
-#include "photo/correct/project_model.hpp"
+#include "photo/correct/scene_model.hpp"
 #include "photo/folder/attempt.hpp"
 #include "photo/folder/panoramas.hpp"
 #include "photo/scene/exposure_reader.hpp"
@@ -22,18 +22,18 @@ namespace {
 // File names need not be UTF-8: invalid bytes are replaced.
 Json valid_json(const Json &json) { return Json::parse(json.dump(-1, ' ', false, Json::error_handler_t::replace)); }
 
-Project project_of(const Panorama &panorama) {
-    Project project;
-    project.path = panorama.source;
+Scene scene_of(const Panorama &panorama) {
+    Scene scene;
+    scene.path = panorama.source;
     for (const InputPicture *picture : panorama.pictures) {
-        project.files.push_back(picture->file);
-        project.names.push_back(picture->name);
-        project.metadata.push_back(picture->metadata);
+        scene.files.push_back(picture->file);
+        scene.names.push_back(picture->name);
+        scene.metadata.push_back(picture->metadata);
     }
-    read_found(panorama.geometry, project);
-    project.by_matches = panorama.matches.are_all;
-    project.matches = panorama.matches.list;
-    return project;
+    read_found(panorama.geometry, scene);
+    scene.by_matches = panorama.matches.are_all;
+    scene.matches = panorama.matches.list;
+    return scene;
 }
 
 // The warnings while a fit was prepared, and those of its result.
@@ -78,25 +78,25 @@ void choose_storing(const FolderOptions &o, const lensprof_profile_key &exif, bo
 }
 
 // Fits and stores; the project text goes to `outputs`, which are committed with the profile.
-void fit_and_store(const FolderOptions &o, Panorama &panorama, Project &project, Events &of_folder) {
+void fit_and_store(const FolderOptions &o, Panorama &panorama, Scene &scene, Events &of_folder) {
     PanoramaEvents events(of_folder);
-    ProjectFitOptions options;
+    SceneFitOptions options;
     options.store = o.store;
     options.one_lens = o.one_lens;
     if (panorama.summary["camera"] == camera_stationary)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, panorama.name + still_camera_reason(), LENSPROF_REASON_FEW_PAIRS);
-    choose_storing(o, project.metadata[project.reference].key, project.by_matches, panorama, options.store);
+    choose_storing(o, scene.metadata[scene.reference].key, scene.by_matches, panorama, options.store);
     if (panorama.summary["cameras_fit"] == false) events.warn(panorama.name, poor_cameras_note);
-    Calibration calibration(project, options, events);
-    ProjectFit &state = calibration.fit;
+    Calibration calibration(scene, options, events);
+    SceneFit &state = calibration.fit;
     OutputFiles outputs;
-    outputs.add(panorama.project, state.best.corrects() ? result_text(state, calibration.project, panorama.project)
-                                                        : project_text_at(calibration.project, panorama.project));
+    outputs.add(panorama.project, state.best.corrects() ? result_text(state, calibration.scene, panorama.project)
+                                                        : project_text_at(calibration.scene, panorama.project));
     stop_if_cancelled();
     if (!options.store.no_store)
         store_result(state.report, calibration.key, options.store,
-                     {method_name(options.fit.method), project.path, &calibration.prior});
-    const Outcome outcome = outcome_of(state.report, options.store, project.path, true);
+                     {method_name(options.fit.method), scene.path, &calibration.prior});
+    const Outcome outcome = outcome_of(state.report, options.store, scene.path, true);
     outputs.commit();
     const bool is_stored = state.report.profile_id != 0;
     if (!is_stored && (!options.store.no_store || !state.report.fit.usable))
@@ -107,7 +107,7 @@ void fit_and_store(const FolderOptions &o, Panorama &panorama, Project &project,
     panorama.summary["result"] = result_of(state.report);
     panorama.exposures = Json();
     if (state.best.corrects())
-        panorama.exposures = exposures_json(state, calibration.project, calibration.metadata, panorama.project);
+        panorama.exposures = exposures_json(state, calibration.scene, calibration.metadata, panorama.project);
     if (o.describe)
         panorama.page = valid_json(
             o.describe(calibration, panorama.summary["warnings"].get<std::vector<std::string>>(), of_folder));
@@ -116,19 +116,19 @@ void fit_and_store(const FolderOptions &o, Panorama &panorama, Project &project,
 // A failed panorama does not stop the others. If a picture could not be read, the next run tries again; if the pictures
 // are unsuitable, it does not.
 void fit_one(const FolderOptions &o, Panorama &panorama, Ledger &ledger, Events &events) {
-    Project project = project_of(panorama);
+    Scene scene = scene_of(panorama);
     ledger.begin(panorama.project, panorama.key);
     ledger.save();
     bool is_final = true;
     try {
-        fit_and_store(o, panorama, project, events);
+        fit_and_store(o, panorama, scene, events);
     } catch (const Failure &failure) {
         if (!is_of_pictures(failure)) throw;
         is_final = failure.group() == LENSPROF_ERROR_NOT_USABLE;
         panorama.summary["result"] = nullptr;
         panorama.summary["not_stored"] = failure.what();
         panorama.summary["warnings"] = Json::array();
-        write_project(project, panorama.project);
+        write_project(scene, panorama.project);
     }
     ledger.finish(panorama.project);
     const std::string text = read_text(panorama.project, max_text_bytes);
@@ -196,7 +196,7 @@ void draw_preview(Panorama &panorama, Ledger &ledger, Events &events) {
     if (ledger.is_current(panorama.preview, key)) return;
     ledger.begin(panorama.preview, key);
     ledger.save();
-    const Project scene = panorama.corrected_scene();
+    const Scene scene = panorama.corrected_scene();
     write_preview(panorama.preview, scene, result_of_scene(scene), events);
     ledger.finish(panorama.preview);
     ledger.save();
@@ -206,10 +206,10 @@ void draw_preview(Panorama &panorama, Ledger &ledger, Events &events) {
 
 bool Panorama::is_edited() const { return written != digest_of_text(read_text(project, max_text_bytes)); }
 
-Project Panorama::corrected_scene() const {
-    Project scene = read_project(project);
+Scene Panorama::corrected_scene() const {
+    Scene scene = read_hugin_project(project);
     if (exposures.is_null() || is_edited()) return scene;
-    const Project known = exposures_of(exposures, project, "");
+    const Scene known = exposures_of(exposures, project, "");
     const ImagesByFile images(known);
     for (uint32_t i = 0; i < scene.images.size(); i++) {
         const auto image = images.find(scene.files[i]);

@@ -46,7 +46,7 @@ struct Panorama {
     bool is_edited() const;
 
     // The scene with its result; that of its project file if that was edited. Failure.
-    Project corrected_scene() const;
+    Scene corrected_scene() const;
 };
 
 struct Panoramas {

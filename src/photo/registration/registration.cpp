@@ -61,31 +61,31 @@ void add_matches(const PictureLink &link, size_t max_count, std::vector<lensprof
 }
 
 // The project of one group; `links` use the group's indices.
-FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<PictureOptics> &optics,
-                        const std::vector<PictureLink> &links) {
-    FoundProject project;
-    project.pictures = std::move(numbers);
-    for (const PictureOptics &o : optics) project.lenses.push_back(o.lens);
+FoundScene scene_of(std::vector<uint32_t> numbers, const std::vector<PictureOptics> &optics,
+                    const std::vector<PictureLink> &links) {
+    FoundScene scene;
+    scene.pictures = std::move(numbers);
+    for (const PictureOptics &o : optics) scene.lenses.push_back(o.lens);
     FoundCameras found = find_cameras(optics, links);
     const bool is_still =
         std::all_of(links.begin(), links.end(), [](const PictureLink &link) { return link.is_still; });
-    project.kind = is_still ? SceneKind::still : found.kind;
-    project.cameras = std::move(found.cameras);
-    project.links = static_cast<uint32_t>(links.size());
+    scene.kind = is_still ? SceneKind::still : found.kind;
+    scene.cameras = std::move(found.cameras);
+    scene.links = static_cast<uint32_t>(links.size());
     std::vector<double> residuals;
     const auto fits_link = [&](size_t n) { return found.link_residuals[n] <= unfit; };
-    for (size_t n = 0; n < links.size(); n++) project.unfit += !fits_link(n);
+    for (size_t n = 0; n < links.size(); n++) scene.unfit += !fits_link(n);
     const size_t max_per_link =
         std::clamp(max_total_matches / std::max<size_t>(1, links.size()), min_matches_kept, max_matches);
     // Scenes are only nearly planar: what stands out is shifted, and matches have the actual positions.
-    project.by_matches = found.kind == SceneKind::plane || !project.cameras_fit();
+    scene.by_matches = found.kind == SceneKind::plane || !scene.cameras_fit();
     for (size_t n = 0; n < links.size(); n++) {
         const bool fits = fits_link(n);
-        if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], project.points);
-        if (!fits || project.by_matches) add_matches(links[n], max_per_link, project.matches);
+        if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], scene.points);
+        if (!fits || scene.by_matches) add_matches(links[n], max_per_link, scene.matches);
     }
-    project.residual = median(residuals);
-    return project;
+    scene.residual = median(residuals);
+    return scene;
 }
 
 std::vector<PictureLink> links_within(const std::vector<PictureLink> &links, const std::vector<uint32_t> &numbers) {
@@ -307,11 +307,11 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Even
         if (grouping.takes(i)) members[grouping.group(i)].push_back(i);
     for (const auto &[group, numbers] : members) {
         events.update("finding cameras", static_cast<double>(group) / static_cast<double>(members.size()));
-        result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
-        result.projects.back().connected_group = components[numbers[0]];
-        for (const uint32_t i : numbers) result.projects.back().camera_ids.push_back(camera_ids[i]);
+        result.scenes.push_back(scene_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
+        result.scenes.back().connected_group = components[numbers[0]];
+        for (const uint32_t i : numbers) result.scenes.back().camera_ids.push_back(camera_ids[i]);
     }
-    std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
+    std::stable_sort(result.scenes.begin(), result.scenes.end(), [](const FoundScene &a, const FoundScene &b) {
         const bool a_still = a.kind == SceneKind::still, b_still = b.kind == SceneKind::still;
         return a_still != b_still ? b_still : a.pictures.size() > b.pictures.size();
     });

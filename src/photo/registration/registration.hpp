@@ -22,7 +22,7 @@ enum class SceneKind {
 
 // A group of pictures that overlap, directly or through others. Each camera has at least two, connected by its own
 // pictures.
-struct FoundProject {
+struct FoundScene {
     std::vector<uint32_t> pictures;  // indices, ascending; the members below use this order
     SceneKind kind = SceneKind::panorama;
     std::vector<lensprof_camera> cameras;
@@ -47,8 +47,8 @@ struct CopiedPicture {
 };
 
 struct Registration {
-    std::vector<FoundProject> projects;  // largest first; stationary cameras last
-    std::vector<uint32_t> isolated;      // pictures that overlap no other,
+    std::vector<FoundScene> scenes;  // largest first; stationary cameras last
+    std::vector<uint32_t> isolated;  // pictures that overlap no other,
     // And those that overlap only pictures of other cameras: with a camera whose own pictures do not overlap, or do.
     std::vector<uint32_t> other_camera, disconnected;
     std::vector<std::pair<uint32_t, std::string>> unreadable;  // and the reasons

@@ -30,8 +30,8 @@ struct BlockMatches {
 
 class BlockSampler {
 public:
-    BlockSampler(const Project &project, const lensprof_sample_options &options, uint32_t max_side,
-                 uint64_t block_bytes, Events &progress);
+    BlockSampler(const Scene &scene, const lensprof_sample_options &options, uint32_t max_side, uint64_t block_bytes,
+                 Events &progress);
 
     void run();
 
@@ -47,7 +47,7 @@ private:
     BlockMatches matches_between(Block &a, Block &b, const std::vector<uint32_t> &numbers) const;
     void sample(Block &a, Block &b, const std::vector<uint32_t> &numbers);
 
-    const Project &project_;
+    const Scene &scene_;
     const lensprof_sample_options options_;
     const uint32_t max_side_;
     Events &progress_;
@@ -57,11 +57,11 @@ private:
     std::string no_samples_reason_;   // why a sampling found nothing
 };
 
-BlockSampler::BlockSampler(const Project &project, const lensprof_sample_options &options, uint32_t max_side,
+BlockSampler::BlockSampler(const Scene &scene, const lensprof_sample_options &options, uint32_t max_side,
                            uint64_t block_bytes, Events &progress)
-    : project_(project), options_(options), max_side_(max_side), progress_(progress) {
-    for (const lensprof_match &match : project.matches) matches_of_link_[images_of(match)]++;
-    const auto count = static_cast<uint32_t>(project.images.size());
+    : scene_(scene), options_(options), max_side_(max_side), progress_(progress) {
+    for (const lensprof_match &match : scene.matches) matches_of_link_[images_of(match)]++;
+    const auto count = static_cast<uint32_t>(scene.images.size());
     block_of_.resize(count);
     uint64_t bytes = block_bytes;  // so that the first image starts a block
     for (const uint32_t image : order_by_links(count, matches_of_link_)) {
@@ -76,33 +76,32 @@ BlockSampler::BlockSampler(const Project &project, const lensprof_sample_options
 uint64_t BlockSampler::bytes_of(uint32_t image) const {
     ReadOptions options;
     options.max_side = max_side_;
-    const Picture header = read_header(project_.files[image], options);
+    const Picture header = read_header(scene_.files[image], options);
     return header.row_bytes * header.height;
 }
 
 void BlockSampler::read(Block &block) {
     block.pictures.resize(block.images.size());
-    for_each_parallel(static_cast<uint32_t>(block.images.size()), "reading pictures", progress_, [&](uint32_t n) {
-        block.pictures[n] = read_sample_picture(project_, block.images[n], max_side_);
-    });
+    for_each_parallel(static_cast<uint32_t>(block.images.size()), "reading pictures", progress_,
+                      [&](uint32_t n) { block.pictures[n] = read_sample_picture(scene_, block.images[n], max_side_); });
     channels = std::max(channels, channel_count(block.pictures));
 }
 
 BlockMatches BlockSampler::matches_between(Block &a, Block &b, const std::vector<uint32_t> &numbers) const {
     BlockMatches found;
-    std::vector<uint32_t> number(project_.images.size());
+    std::vector<uint32_t> number(scene_.images.size());
     for (Block *block : {&a, &b}) {
         for (size_t n = 0; n < block->images.size(); n++) {
             number[block->images[n]] = static_cast<uint32_t>(found.images.size());
             found.images.push_back(block->images[n]);
-            found.views.push_back(sample_image(project_, block->images[n], block->pictures[n], {}));
+            found.views.push_back(sample_image(scene_, block->images[n], block->pictures[n], {}));
         }
         if (&a == &b) break;
     }
     std::set<ImagePair> linked_images;
     for (const uint32_t m : numbers) {
-        found.matches.push_back(project_.matches[m]);
-        linked_images.insert(images_of(project_.matches[m]));
+        found.matches.push_back(scene_.matches[m]);
+        linked_images.insert(images_of(scene_.matches[m]));
         for (uint32_t &image : found.matches.back().image) image = number[image];
     }
     found.links = linked_images.size();
@@ -112,9 +111,9 @@ BlockMatches BlockSampler::matches_between(Block &a, Block &b, const std::vector
 void BlockSampler::sample(Block &a, Block &b, const std::vector<uint32_t> &numbers) {
     const BlockMatches input = matches_between(a, b, numbers);
     lensprof_sample_options options = options_;
-    const size_t total_pairs = options.pairs ? options.pairs : project_.matches.size();
+    const size_t total_pairs = options.pairs ? options.pairs : scene_.matches.size();
     options.pairs =
-        static_cast<uint32_t>(std::max<size_t>(1, total_pairs * input.matches.size() / project_.matches.size()));
+        static_cast<uint32_t>(std::max<size_t>(1, total_pairs * input.matches.size() / scene_.matches.size()));
     std::vector<lensprof_pair> found(options.pairs);
     std::vector<uint32_t> match_of_pair(options.pairs);
     std::vector<lensprof_link> found_links(input.links);
@@ -131,12 +130,12 @@ void BlockSampler::sample(Block &a, Block &b, const std::vector<uint32_t> &numbe
         return;
     }
     std::vector<std::string> names;
-    for (const uint32_t image : input.images) names.push_back(project_.names[image]);
-    check_named(status, project_.path, error, LENSPROF_ITEM_IMAGE, names);
+    for (const uint32_t image : input.images) names.push_back(scene_.names[image]);
+    check_named(status, scene_.path, error, LENSPROF_ITEM_IMAGE, names);
     for (uint32_t p = 0; p < count; p++) {
         for (uint32_t &image : found[p].image) image = input.images[image];
         pairs.push_back(found[p]);
-        points.push_back(project_.match_points[numbers[match_of_pair[p]]]);
+        points.push_back(scene_.match_points[numbers[match_of_pair[p]]]);
     }
     found_links.resize(std::min<size_t>(found_links.size(), link_count));
     for (lensprof_link &link : found_links) {
@@ -147,8 +146,8 @@ void BlockSampler::sample(Block &a, Block &b, const std::vector<uint32_t> &numbe
 
 void BlockSampler::run() {
     std::map<ImagePair, std::vector<uint32_t>> matches_of_blocks;
-    for (uint32_t m = 0; m < project_.matches.size(); m++) {
-        const uint32_t *image = project_.matches[m].image;
+    for (uint32_t m = 0; m < scene_.matches.size(); m++) {
+        const uint32_t *image = scene_.matches[m].image;
         matches_of_blocks[std::minmax(block_of_[image[0]], block_of_[image[1]])].push_back(m);
     }
     size_t done = 0;
@@ -167,7 +166,7 @@ void BlockSampler::run() {
         progress_.update("sampling", double(++done) / double(matches_of_blocks.size()));
     }
     if (pairs.empty())
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, project_.path + ": " + no_samples_reason_, LENSPROF_REASON_FEW_PAIRS);
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, scene_.path + ": " + no_samples_reason_, LENSPROF_REASON_FEW_PAIRS);
     std::sort(links.begin(), links.end(), [](const lensprof_link &a, const lensprof_link &b) {
         return std::pair(a.image[0], a.image[1]) < std::pair(b.image[0], b.image[1]);
     });
@@ -175,11 +174,11 @@ void BlockSampler::run() {
 
 }  // namespace
 
-std::vector<lensprof_pair> sample_in_blocks(const Project &project, const lensprof_sample_options &options,
+std::vector<lensprof_pair> sample_in_blocks(const Scene &scene, const lensprof_sample_options &options,
                                             uint32_t max_side, uint64_t block_bytes, Events &progress,
                                             std::vector<lensprof_link> &links, std::vector<uint32_t> &points,
                                             uint32_t *channels) {
-    BlockSampler sampler(project, options, max_side, block_bytes, progress);
+    BlockSampler sampler(scene, options, max_side, block_bytes, progress);
     sampler.run();
     links = std::move(sampler.links), points = std::move(sampler.points);
     *channels = sampler.channels;

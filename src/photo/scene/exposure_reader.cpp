@@ -140,9 +140,9 @@ std::vector<std::shared_ptr<const lensprof_profile>> models_of(const Reader &rea
 
 void add_image(const Reader &reader, const Json &json,
                const std::vector<std::shared_ptr<const lensprof_profile>> &models, const std::string &images,
-               Project &project) {
+               Scene &scene) {
     const std::string name = reader.text(json, "name");
-    const fs::path folder = fs::path(project.path).parent_path();
+    const fs::path folder = fs::path(scene.path).parent_path();
     const auto side = [&](const char *member) {
         const double value = reader.number(reader.member(json, member), member);
         if (value < 1.0 || value > double(max_image_side) || value != std::floor(value))
@@ -155,16 +155,16 @@ void add_image(const Reader &reader, const Json &json,
     image.left_out = reader.member(json, "ev").is_null();
     lensprof_exposure_init(&image.exposure);
     if (!image.left_out) image.exposure = reader.exposure(json);
-    const auto index = static_cast<uint32_t>(project.images.size());
+    const auto index = static_cast<uint32_t>(scene.images.size());
     image.response_of = image.vignetting_of = image.center_of = image.ev_of = image.red_of = image.blue_of = index;
-    project.images.push_back(image);
-    project.models.push_back(models[reader.index(json, "lens", models.size())]);
-    project.names.push_back(name);
+    scene.images.push_back(image);
+    scene.models.push_back(models[reader.index(json, "lens", models.size())]);
+    scene.names.push_back(name);
     const bool has_file = json.contains("file") && images.empty();
     if (!has_file && images.empty())
         reader.fail("does not state the folder of " + name + "; give it with " + option_name("images"));
-    project.files.push_back(has_file ? (folder / reader.text(json, "file")).lexically_normal().string()
-                                     : picture_of_name(images, name));
+    scene.files.push_back(has_file ? (folder / reader.text(json, "file")).lexically_normal().string()
+                                   : picture_of_name(images, name));
 }
 
 }  // namespace
@@ -173,29 +173,29 @@ bool is_exposure_file(const std::string &path) {
     return read_head(path, 256).find("\"lensprof exposures\"") != std::string::npos;
 }
 
-Project exposures_of(const Json &all, const std::string &path, const std::string &images) {
+Scene exposures_of(const Json &all, const std::string &path, const std::string &images) {
     const Reader reader(path);
     if (!all.is_object() || !all.contains("file") || all["file"] != "lensprof exposures")
         reader.fail("is not a file of exposures");
     if (reader.member(all, "schema") != exposures_schema) reader.fail("has another format version");
-    Project project;
-    project.path = path;
+    Scene scene;
+    scene.path = path;
     const auto models = models_of(reader, all);
     std::set<std::string> names;
     for (const Json &image : reader.list(all, "images")) {
-        add_image(reader, image, models, images, project);
-        if (!names.insert(project.names.back()).second) reader.fail("names " + project.names.back() + " twice");
+        add_image(reader, image, models, images, scene);
+        if (!names.insert(scene.names.back()).second) reader.fail("names " + scene.names.back() + " twice");
     }
-    if (std::all_of(project.images.begin(), project.images.end(), [](const auto &image) { return image.left_out; }))
+    if (std::all_of(scene.images.begin(), scene.images.end(), [](const auto &image) { return image.left_out; }))
         reader.fail("has no exposures");
     const std::string reference = reader.text(all, "reference");
     if (!names.count(reference)) reader.fail("does not contain the reference image " + short_name(reference));
-    for (uint32_t i = 0; i < project.names.size(); i++)
-        if (project.names[i] == reference) project.reference = i;
-    return project;
+    for (uint32_t i = 0; i < scene.names.size(); i++)
+        if (scene.names[i] == reference) scene.reference = i;
+    return scene;
 }
 
-Project read_exposures(const std::string &path, const std::string &images) {
+Scene read_exposures(const std::string &path, const std::string &images) {
     return exposures_of(Json::parse(read_text(path, max_file_bytes), nullptr, false), path, images);
 }
 

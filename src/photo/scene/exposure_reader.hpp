@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -16,7 +16,7 @@ bool is_exposure_file(const std::string &path);
 
 // Reads the file as a project in which each image has a model. Pictures are the files it names, or, if `images` is not
 // empty, the image names in that folder. Failure (unreadable) for a damaged or foreign file.
-Project read_exposures(const std::string &path, const std::string &images);
-Project exposures_of(const nlohmann::ordered_json &all, const std::string &path, const std::string &images);
+Scene read_exposures(const std::string &path, const std::string &images);
+Scene exposures_of(const nlohmann::ordered_json &all, const std::string &path, const std::string &images);
 
 }  // namespace lensprof

@@ -8,10 +8,9 @@
 
 namespace lensprof {
 
-Project open_scene(const std::vector<std::string> &paths, const SceneOptions &options, Events &events) {
+Scene open_scene(const std::vector<std::string> &paths, const SceneOptions &options, Events &events) {
     const bool is_one = paths.size() == 1;
-    if (is_one && is_reconstruction(paths[0]))
-        return project_of_reconstruction(paths[0], options.reconstruction, events);
+    if (is_one && is_reconstruction(paths[0])) return scene_of_reconstruction(paths[0], options.reconstruction, events);
     const std::string &images = options.reconstruction.images;
     if (is_one && options.takes_exposures && is_regular_file(paths[0]) && is_exposure_file(paths[0]))
         return read_exposures(paths[0], images);
@@ -21,13 +20,13 @@ Project open_scene(const std::vector<std::string> &paths, const SceneOptions &op
     for (const std::string &path : paths) refuse_other_kind(path);
     if (is_one && !is_picture_argument(paths[0])) {
         reject_reconstruction_part(paths[0]);
-        return read_project(paths[0]);
+        return read_hugin_project(paths[0]);
     }
     for (const std::string &path : paths)
         if (!is_picture_argument(path))
             throw Failure(LENSPROF_ERROR_READ, path + ": is neither a picture (.jpg, .png, .tif) nor a folder; give a "
                                                       "single project, or pictures and folders");
-    return project_of_pictures(find_photographs(paths, events), options.one_lens, events);
+    return scene_of_pictures(find_photographs(paths, events), options.one_lens, events);
 }
 
 }  // namespace lensprof

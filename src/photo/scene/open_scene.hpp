@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "photo/base/events.hpp"
-#include "photo/scene/project.hpp"
-#include "photo/scene/reconstruction_project.hpp"
+#include "photo/scene/reconstruction_scene.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -18,6 +18,6 @@ struct SceneOptions {
 
 // Takes pictures and folders and finds their overlaps, or takes one project, reconstruction or file of exposures.
 // Failure (ARGUMENT) for paths that are not pictures, (READ), and (NOT_USABLE) if no two pictures overlap.
-Project open_scene(const std::vector<std::string> &paths, const SceneOptions &options, Events &events);
+Scene open_scene(const std::vector<std::string> &paths, const SceneOptions &options, Events &events);
 
 }  // namespace lensprof

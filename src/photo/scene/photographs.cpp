@@ -67,38 +67,38 @@ void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::stri
     events.warn(listed(numbers, names), "left out: " + reason);
 }
 
-std::string reason_left_out(const FoundProject &other, const FoundProject &project) {
+std::string reason_left_out(const FoundScene &other, const FoundScene &scene) {
     if (other.kind == SceneKind::still)
         return "part of another group, whose camera did not move" + advice("still_group");
-    if (other.connected_group == project.connected_group)
+    if (other.connected_group == scene.connected_group)
         return std::string("part of another group: ") + linked_by_other_camera();
     return "part of another group that overlaps none of these pictures; give that group's pictures alone";
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
                   LeftOut &left_out, Events &events) {
-    const FoundProject &project = found.projects[0];
+    const FoundScene &scene = found.scenes[0];
     const std::string unfit =
-        project.unfit
-            ? format(" that fit; %u more do not fit the cameras and are compared only at matched points", project.unfit)
+        scene.unfit
+            ? format(" that fit; %u more do not fit the cameras and are compared only at matched points", scene.unfit)
             : "";
     events.note(label,
                 format("%zu pictures overlap (%s%s; alignment residual %.2f %% of the longer side; %s); estimating "
                        "response, falloff, exposures and white balances%s",
-                       project.pictures.size(), counted(project.links - project.unfit, "link").c_str(), unfit.c_str(),
-                       100.0 * project.residual,
-                       project.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
-                                                          "points"
-                                                        : "a rotating camera",
+                       scene.pictures.size(), counted(scene.links - scene.unfit, "link").c_str(), unfit.c_str(),
+                       100.0 * scene.residual,
+                       scene.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
+                                                        "points"
+                                                      : "a rotating camera",
                        advice("free_parameters").c_str()));
-    const size_t cameras = std::set<uint32_t>(project.camera_ids.begin(), project.camera_ids.end()).size();
+    const size_t cameras = std::set<uint32_t>(scene.camera_ids.begin(), scene.camera_ids.end()).size();
     if (cameras > 1)
         events.note(label, format("the pictures are from %zu cameras, sizes or processings; each gets its own response",
                                   cameras)
                                + advice("one_lens"));
-    if (!project.cameras_fit()) events.warn(label, poor_cameras_note);
-    for (size_t n = 1; n < found.projects.size(); n++)
-        leave_out(found.projects[n].pictures, names, reason_left_out(found.projects[n], project), left_out, events);
+    if (!scene.cameras_fit()) events.warn(label, poor_cameras_note);
+    for (size_t n = 1; n < found.scenes.size(); n++)
+        leave_out(found.scenes[n].pictures, names, reason_left_out(found.scenes[n], scene), left_out, events);
     if (!found.other_camera.empty()) leave_out(found.other_camera, names, no_overlap_within_camera(), left_out, events);
     if (!found.disconnected.empty()) leave_out(found.disconnected, names, linked_by_other_camera(), left_out, events);
     if (!found.isolated.empty())
@@ -150,54 +150,53 @@ Photographs find_photographs(const std::vector<std::string> &words, Events &even
     return list;
 }
 
-Project project_of_pictures(const Photographs &list, bool one_lens, Events &events) {
+Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events) {
     const auto &[label, files, names, left_out] = list;
-    Project project;
-    project.left_out = left_out;
+    Scene scene;
+    scene.left_out = left_out;
     auto clock = std::chrono::steady_clock::now();
     const Registration found = register_pictures(files, one_lens, events);
-    project.register_s = lap(clock);
+    scene.register_s = lap(clock);
     events.clear();
     for (const auto &[number, reason] : found.unreadable) {
-        project.left_out.emplace_back(names[number], reason);
+        scene.left_out.emplace_back(names[number], reason);
         events.warn({}, reason + "; left out");
     }
     for (const CopiedPicture &picture : found.copies)
-        leave_out({picture.copy}, names, "a copy of " + names[picture.original] + picture.how, project.left_out,
-                  events);
+        leave_out({picture.copy}, names, "a copy of " + names[picture.original] + picture.how, scene.left_out, events);
     if (found.unreadable.size() == files.size())
         throw Failure(LENSPROF_ERROR_READ, label + ": none of the pictures can be read; give others");
     if (found.unreadable.size() + found.copies.size() + 1 == files.size() && !found.copies.empty())
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       label + ": has only one photograph and copies of it; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (found.projects.empty() && !found.other_camera.empty())
+    if (found.scenes.empty() && !found.other_camera.empty())
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       label + ": no two pictures of the same camera, size and processing overlap; give more pictures "
                               "per camera, or use " + option_name("one_lens") + " to treat all as one",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (found.projects.empty())
+    if (found.scenes.empty())
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
                       label + ": no two of the pictures overlap, or they have too few recognisable features; give "
                               "pictures that overlap by a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (found.projects[0].kind == SceneKind::still)
+    if (found.scenes[0].kind == SceneKind::still)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, label + still_camera_reason(), LENSPROF_REASON_FEW_PAIRS);
-    report_found(found, names, label, project.left_out, events);
+    report_found(found, names, label, scene.left_out, events);
 
-    const FoundProject &largest = found.projects[0];
-    project.unlinked = found.isolated.size();
-    project.path = label;
+    const FoundScene &largest = found.scenes[0];
+    scene.unlinked = found.isolated.size();
+    scene.path = label;
     for (const uint32_t picture : largest.pictures) {
-        project.names.push_back(names[picture]);
-        project.files.push_back(files[picture]);
+        scene.names.push_back(names[picture]);
+        scene.files.push_back(files[picture]);
     }
-    project.matches = largest.matches, project.by_matches = largest.by_matches;
-    read_found(text_of_found(largest), project);
-    return project;
+    scene.matches = largest.matches, scene.by_matches = largest.by_matches;
+    read_found(text_of_found(largest), scene);
+    return scene;
 }
 
-std::string text_of_found(const FoundProject &found) {
+std::string text_of_found(const FoundScene &found) {
     std::vector<ProjectImage> images;
     for (size_t n = 0; n < found.pictures.size(); n++)
         images.push_back({found.cameras[n], format("image%zu", n), found.camera_ids[n],
@@ -205,14 +204,14 @@ std::string text_of_found(const FoundProject &found) {
     return new_project_text("found by lensprof", images, found.points);
 }
 
-void read_found(const std::string &text, Project &project) {
-    project.pto = parse_pto(text, project.path);
-    project.images.clear();
-    for (size_t n = 0; n < project.files.size(); n++) add_image(project);
+void read_found(const std::string &text, Scene &scene) {
+    scene.pto = parse_pto(text, scene.path);
+    scene.images.clear();
+    for (size_t n = 0; n < scene.files.size(); n++) add_image(scene);
 }
 
-void write_project(Project &project, const std::string &path) {
-    const std::string text = project_text_at(project, path);
+void write_project(Scene &scene, const std::string &path) {
+    const std::string text = project_text_at(scene, path);
     write_file(path, text.data(), text.size());
 }
 

@@ -7,7 +7,7 @@
 #include "photo/base/events.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/registration/registration.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -30,7 +30,7 @@ Photographs find_photographs(const std::vector<std::string> &words, Events &even
 // Finds the overlaps and returns the project of the largest group; pictures left out are listed on standard error. With
 // `one_lens` all pictures are treated as from one camera. All parameters are free. Failure (not_usable) if no two
 // pictures overlap.
-Project project_of_pictures(const Photographs &list, bool one_lens, Events &events);
+Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events);
 
 // Why a picture is not part of a project that it overlaps, directly or through others.
 inline std::string no_overlap_within_camera() {
@@ -52,9 +52,9 @@ constexpr const char *poor_cameras_note =
 
 // The project of a group of pictures, whose images are named image0, image1 and so on; and the same as a Project with
 // path, names and files.
-std::string text_of_found(const FoundProject &found);
-void read_found(const std::string &text, Project &project);
+std::string text_of_found(const FoundScene &found);
+void read_found(const std::string &text, Scene &scene);
 
-void write_project(Project &project, const std::string &path);
+void write_project(Scene &scene, const std::string &path);
 
 }  // namespace lensprof

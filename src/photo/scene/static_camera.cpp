@@ -46,7 +46,7 @@ lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free)
 
 }  // namespace
 
-Project static_project(const std::vector<std::string> &files, bool free_balance) {
+Scene static_scene(const std::vector<std::string> &files, bool free_balance) {
     for (const std::string &file : files) {
         if (is_folder(file))
             throw Failure(LENSPROF_ERROR_READ, file + ": cannot read: it is a folder; give its pictures");
@@ -55,27 +55,27 @@ Project static_project(const std::vector<std::string> &files, bool free_balance)
     if (files.size() < 2)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "one picture shows no difference in exposure; give at least two of the same scene");
-    Project project;
-    project.path = files[0];
-    project.names = project.files = files;
+    Scene scene;
+    scene.path = files[0];
+    scene.names = scene.files = files;
     const uint32_t balance = free_balance ? LENSPROF_FREE_RED | LENSPROF_FREE_BLUE : 0;
     std::set<std::string> seen;
     for (uint32_t i = 0; i < files.size(); i++) {
         if (!seen.insert(file_identity(files[i])).second)
             throw Failure(LENSPROF_ERROR_ARGUMENT, files[i] + ": given twice; give it once");
         PictureSize size = read_size(files[i]);
-        project.images.push_back(still_image(size, i, LENSPROF_FREE_RESPONSE | LENSPROF_FREE_EV | balance));
-        const auto &first = project.images[0].camera;
+        scene.images.push_back(still_image(size, i, LENSPROF_FREE_RESPONSE | LENSPROF_FREE_EV | balance));
+        const auto &first = scene.images[0].camera;
         if (size.width != first.width || size.height != first.height)
             throw Failure(LENSPROF_ERROR_READ, files[i] + ": is " + std::to_string(size.width) + " x "
                                                    + std::to_string(size.height) + " pixels, but " + files[0] + " is "
                                                    + std::to_string(first.width) + " x " + std::to_string(first.height)
                                                    + "; give pictures of one camera that did not move");
     }
-    return project;
+    return scene;
 }
 
-std::vector<lensprof_pair> sample_still(const Project &project, std::vector<SamplePicture> &pictures,
+std::vector<lensprof_pair> sample_still(const Scene &scene, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, double black, Events &progress) {
     constexpr double black_margin = 0.6, max_level = 254.4, max_jpeg_level = 250.5;  // levels of 255
     constexpr uint32_t pairs_per_picture = 10000;
@@ -88,7 +88,7 @@ std::vector<lensprof_pair> sample_still(const Project &project, std::vector<Samp
         any_jpeg = true;
     }
     const GreyRange range{(black + black_margin) / 255.0, (any_jpeg ? max_jpeg_level : max_level) / 255.0, true};
-    return sample_pairs(project, pictures, options, range, progress, nullptr);
+    return sample_pairs(scene, pictures, options, range, progress, nullptr);
 }
 
 }  // namespace lensprof

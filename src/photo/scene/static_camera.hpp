@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -12,11 +12,11 @@ namespace lensprof {
 // at zero because it is equal in all and cancels. Exposures are free, white balances if `free_balance`; the first
 // picture is the reference. Failure (usage) for fewer than two files or a repeated one; Failure (unreadable) with the
 // name of a picture of another size than the first.
-Project static_project(const std::vector<std::string> &files, bool free_balance);
+Scene static_scene(const std::vector<std::string> &files, bool free_balance);
 
 // Samples pairs of such pictures, `options.pairs` or 10000 per picture: values next to black and white are included,
 // because EMoR modes fail at the ends of a response. Grey levels up to `black` of 255 are ignored.
-std::vector<lensprof_pair> sample_still(const Project &project, std::vector<SamplePicture> &pictures,
+std::vector<lensprof_pair> sample_still(const Scene &scene, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, double black, Events &progress);
 
 }  // namespace lensprof

@@ -14,7 +14,7 @@
 
 namespace lensprof {
 
-struct Project {
+struct Scene {
     std::string path;  // of the .pto, or of the input used instead
     Pto pto;           // NULL if the project does not come from a file
     std::vector<lensprof_pto_image> images;
@@ -42,7 +42,7 @@ struct Project {
 };
 
 // Reads a project. The reference is the first image whose Eev is not free, else image 0.
-Project read_project(const std::string &path);
+Scene read_hugin_project(const std::string &path);
 
 // The frame of an image's falloff, in pixels of its file: the picture or, for one of several crops, the crop
 // (lensprof_pto_image.of_crop).
@@ -53,22 +53,22 @@ struct FalloffFrame {
 FalloffFrame falloff_frame_of(const lensprof_pto_image &image);
 
 // Whether an image is a crop of its file; Failure (usage) with the name of what does not support that.
-bool has_crops(const Project &project);
-void refuse_crops(const Project &project, const std::string &option);
+bool has_crops(const Scene &scene);
+void refuse_crops(const Scene &scene, const std::string &option);
 
 // Adds the next image of the Pto; the caller adds its name and file.
-void add_image(Project &project);
+void add_image(Scene &scene);
 
 // The text of a project to be written to `path`: names are relative to the folder of that file.
-std::string project_text_at(Project &project, const std::string &path);
+std::string project_text_at(Scene &scene, const std::string &path);
 
 // The image that a user gives by number or file name.
-uint32_t image_of_word(const Project &project, const std::string &word);
+uint32_t image_of_word(const Scene &scene, const std::string &word);
 
 // Finds images of a project by file identity, regardless of the name.
 class ImagesByFile {
 public:
-    explicit ImagesByFile(const Project &project);
+    explicit ImagesByFile(const Scene &scene);
 
     std::optional<uint32_t> find(const std::string &file) const;
 
@@ -77,7 +77,7 @@ public:
     uint32_t at(const std::string &file, const std::string &option) const;
 
 private:
-    const Project *project_;
+    const Scene *scene_;
     std::map<std::string, uint32_t> images_;  // by file_identity
 };
 
@@ -88,19 +88,19 @@ struct SamplePicture {
 };
 
 // Maximum memory for the reduced pictures of a project with their masks.
-constexpr uint64_t project_max_bytes = uint64_t(8) << 30;
+constexpr uint64_t scene_max_bytes = uint64_t(8) << 30;
 
 // Checks the headers before the first picture is loaded. Failure (unreadable) if a picture is missing, unreadable or of
 // another size than the project states, or if all pictures, reduced to `max_side`, need more memory than
 // project_max_bytes or than the machine has.
-void check_pictures(const Project &project, uint32_t max_side);
+void check_pictures(const Scene &scene, uint32_t max_side);
 
 // Reads a picture, reduced to a longer side of at least `max_side` pixels. Failure with the file name for a size that
 // contradicts the project, an unreadable file, and float samples that are not finite.
-SamplePicture read_sample_picture(const Project &project, uint32_t image, uint32_t max_side);
+SamplePicture read_sample_picture(const Scene &scene, uint32_t image, uint32_t max_side);
 
 // The same for all pictures, several in parallel.
-std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Events &progress);
+std::vector<SamplePicture> read_pictures(const Scene &scene, uint32_t max_side, Events &progress);
 
 // Failure (unreadable) with the first sample that is not finite, in rows of a picture starting at first_row.
 void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduction, const std::string &file);
@@ -115,15 +115,14 @@ struct GreyRange {
 };
 
 // An image as the library samples it, in pixels of its file; its pixels belong to `picture`.
-lensprof_sample_image sample_image(const Project &project, uint32_t image, SamplePicture &picture,
-                                   const GreyRange &range);
+lensprof_sample_image sample_image(const Scene &scene, uint32_t image, SamplePicture &picture, const GreyRange &range);
 
 // Sets the progress function of the options. Places are in pixels of the falloff's frame. `links` receives the links of
 // the pictures; may be NULL. Pictures with matches give pairs at the matches, not through their cameras.
-std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
+std::vector<lensprof_pair> sample_pairs(const Scene &scene, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, const GreyRange &range, Events &progress,
                                         std::vector<lensprof_link> *links);
-std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
+std::vector<lensprof_observation> sample_tracks(const Scene &scene, std::vector<SamplePicture> &pictures,
                                                 lensprof_sample_options options, Events &progress,
                                                 std::vector<lensprof_link> *links);
 
@@ -133,11 +132,11 @@ std::vector<lensprof_observation> sample_tracks(const Project &project, std::vec
 std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations);
 
 // The pairs of a point file, which holds pixels of the pictures; they must refer to images of the project.
-std::vector<lensprof_pair> read_points(const std::string &path, const Project &project);
-std::string points_text(std::vector<lensprof_pair> pairs, const Project &project);
+std::vector<lensprof_pair> read_points(const std::string &path, const Scene &scene);
+std::string points_text(std::vector<lensprof_pair> pairs, const Scene &scene);
 
 // The images of the fit: sizes, links, free parameters, and exposures relative to the reference.
-std::vector<lensprof_fit_image> fit_images(const Project &project);
+std::vector<lensprof_fit_image> fit_images(const Scene &scene);
 
 // Exposures and white balances relative to those of one image.
 std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference);
@@ -146,6 +145,6 @@ std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure>
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);
 
 // The exposures of the project, relative to its reference.
-std::vector<lensprof_exposure> project_exposures(const Project &project);
+std::vector<lensprof_exposure> scene_exposures(const Scene &scene);
 
 }  // namespace lensprof

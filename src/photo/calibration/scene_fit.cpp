@@ -1,4 +1,4 @@
-#include "photo/calibration/project_fit.hpp"
+#include "photo/calibration/scene_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,17 +15,17 @@
 namespace lensprof {
 namespace {
 
-lensprof_fit_options project_options(const ProjectFitOptions &o, const Project &project, lensprof_response &fixed) {
+lensprof_fit_options scene_options(const SceneFitOptions &o, const Scene &scene, lensprof_response &fixed) {
     lensprof_fit_options options = fit_options(o.fit);
-    const auto &lens = project.images[project.reference];
-    uint32_t free_in_project = 0;
-    for (const auto &image : project.images) free_in_project |= image.free & lens_flags;
-    options.free &= free_in_project;
-    options.reference = project.reference;
+    const auto &lens = scene.images[scene.reference];
+    uint32_t free_in_scene = 0;
+    for (const auto &image : scene.images) free_in_scene |= image.free & lens_flags;
+    options.free &= free_in_scene;
+    options.reference = scene.reference;
     options.vignettings = o.falloff_curves;
     options.vignetting = lens.vignetting;
     lensprof_error error{};
-    check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed, &error), project.path, &error);
+    check(lensprof_pto_get_response(scene.pto.get(), scene.reference, &fixed, &error), scene.path, &error);
     options.response = &fixed;
     if (options.free & falloff_flags)
         if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
@@ -34,9 +34,9 @@ lensprof_fit_options project_options(const ProjectFitOptions &o, const Project &
 }
 
 // A profile stores measured properties of a lens: without any to estimate, nothing is stored.
-void check_unknowns(const ProjectFitOptions &o, const Project &project, const lensprof_fit_options &options) {
+void check_unknowns(const SceneFitOptions &o, const Scene &scene, const lensprof_fit_options &options) {
     if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
-        throw Failure(LENSPROF_ERROR_ARGUMENT, project.path
+        throw Failure(LENSPROF_ERROR_ARGUMENT, scene.path
                                            + ": neither response nor falloff is estimated, so there is nothing to "
                                              "store; give " + option_name("no_store") + ", or " + option_name("free_all"));
 }
@@ -50,7 +50,7 @@ bool is_grey(const std::vector<lensprof_pair> &pairs) {
 
 using Pictures = std::vector<SamplePicture>;
 
-lensprof_sample_options sample_options(const ProjectFitOptions &o) {
+lensprof_sample_options sample_options(const SceneFitOptions &o) {
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     options.sampling = o.sampling;
@@ -60,70 +60,70 @@ lensprof_sample_options sample_options(const ProjectFitOptions &o) {
 }
 
 // Passes the links found by sampling to the fit.
-void set_links(ProjectFit &state) {
+void set_links(SceneFit &state) {
     state.input.options.links = state.report.links.data();
     state.input.options.link_count = static_cast<uint32_t>(state.report.links.size());
 }
 
 // Samples pairs or tracks of the pictures; `known`, if not NULL, is the known camera and helps to find them.
-void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &pictures, const Fitted *known,
-                 ProjectFit &state) {
+void draw_points(const SceneFitOptions &o, const Scene &scene, Pictures &pictures, const Fitted *known,
+                 SceneFit &state) {
     auto clock = std::chrono::steady_clock::now();
     FitInput &input = state.input;
     std::vector<lensprof_link> &links = state.report.links;
     lensprof_sample_options options = sample_options(o);
     lensprof_vignetting falloff{};
     if (known) options.response = &known->result.response;
-    if (known && !has_crops(project)) {
+    if (known && !has_crops(scene)) {
         falloff = green_falloff(known->result);
         if (!input.turn_of.empty()) falloff.center[0] = falloff.center[1] = 0.0;  // sampling takes one for all pictures
         options.vignetting = &falloff;
     }
     // The method radiance makes tracks of pairs if sampling by cameras finds no tracks.
-    const bool by_matches = project.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;
+    const bool by_matches = scene.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;
     if (o.fit.method == LENSPROF_METHOD_RADIANCE && !by_matches) {
-        input.observations = sample_tracks(project, pictures, options, state.events, &links);
+        input.observations = sample_tracks(scene, pictures, options, state.events, &links);
         input.pairs = pairs_of_tracks(input.observations);
     } else {
-        input.pairs = sample_pairs(project, pictures, options, {}, state.events, &links);
+        input.pairs = sample_pairs(scene, pictures, options, {}, state.events, &links);
     }
     set_links(state);
     state.report.sample_s += lap(clock);
 }
 
 // Passes what a reconstruction knows of its pairs to the fit.
-void set_points(const Project &project, std::vector<uint32_t> points, FitInput &input) {
+void set_points(const Scene &scene, std::vector<uint32_t> points, FitInput &input) {
     input.points = std::move(points);
     for (const lensprof_pair &pair : input.pairs)
-        input.view_distances.push_back(project.view_distances.at(std::minmax(pair.image[0], pair.image[1])));
+        input.view_distances.push_back(scene.view_distances.at(std::minmax(pair.image[0], pair.image[1])));
 }
 
 // The fitted pairs or tracks, and the pictures they were drawn from (empty if pairs are given).
-Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectFit &state) {
+Pictures get_points(const SceneFitOptions &o, const Scene &scene, SceneFit &state) {
     auto clock = std::chrono::steady_clock::now();
     uint32_t &channels = state.input.options.channels;
-    if (!o.points.empty() || !project.pairs.empty()) {
-        state.input.pairs = o.points.empty() ? project.pairs : read_points(o.points, project);
-        if (o.points.empty()) set_points(project, project.pair_points, state.input);
+    if (!o.points.empty() || !scene.pairs.empty()) {
+        state.input.pairs = o.points.empty() ? scene.pairs : read_points(o.points, scene);
+        if (o.points.empty()) set_points(scene, scene.pair_points, state.input);
         channels = is_grey(state.input.pairs) ? 1 : 3;
         state.report.load_s = lap(clock);
         return {};
     }
-    if (project.is_reconstruction) {
+    if (scene.is_reconstruction) {
         lensprof_sample_options options = sample_options(o);
         options.pairs = 0;  // as many as there are matches, which were selected for this
         std::vector<uint32_t> points;
-        state.input.pairs = sample_in_blocks(project, options, o.pixels.max_side, default_block_bytes, state.events,
+        state.input.pairs = sample_in_blocks(scene, options, o.pixels.max_side, default_block_bytes, state.events,
                                              state.report.links, points, &channels);
-        set_points(project, std::move(points), state.input);
+        set_points(scene, std::move(points), state.input);
         set_links(state);
         state.report.sample_s = lap(clock);
         return {};
     }
-    Pictures pictures = read_pictures(project, o.pixels.max_side, state.events);
+    Pictures pictures = read_pictures(scene, o.pixels.max_side, state.events);
     channels = channel_count(pictures);
     state.report.load_s = lap(clock);
-    draw_points(o, project, pictures, nullptr, state);
+    draw_points(o, scene, pictures, nullptr, state);
     return pictures;
 }
 
@@ -148,7 +148,7 @@ bool explains_more(const Fitted &second, const std::vector<lensprof_link> &secon
 
 // Whether links may connect images once response and falloff are known. Not with a refused result, whose irradiance is
 // wrong.
-bool may_connect_more(const ProjectFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
+bool may_connect_more(const SceneFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
     const uint32_t code = first.verdict.code();
     const bool is_trusted =
         first.corrects() || code == LENSPROF_REASON_IMAGE_GROUPS || code == LENSPROF_REASON_IMAGES_MINORITY;
@@ -158,13 +158,13 @@ bool may_connect_more(const ProjectFitOptions &o, const Fitted &first, const std
 }
 
 // Draws again, comparing irradiance instead of grey values, and fits the new pairs; kept if it explains more.
-void resample(const ProjectFitOptions &o, const Project &project, Pictures &pictures, ProjectFit &state) {
+void resample(const SceneFitOptions &o, const Scene &scene, Pictures &pictures, SceneFit &state) {
     const std::vector<lensprof_pair> pairs = state.input.pairs;
     const std::vector<lensprof_observation> observations = state.input.observations;
     const std::vector<lensprof_link> links = state.report.links;
     std::vector<lensprof_fit_image_quality> quality;
     try {
-        draw_points(o, project, pictures, &state.best, state);
+        draw_points(o, scene, pictures, &state.best, state);
         const Fitted second = fit(state.input, state.report.reference, state.item, state.events, &quality);
         if (explains_more(second, state.report.links, state.best, links)) {
             state.best = second;
@@ -195,7 +195,7 @@ void set_reference(uint32_t reference, FitInput &input) {
 }
 
 // Sets the images' settings, if the method fits several, and cameras.
-void set_settings(const ProjectFitOptions &o, ProjectFit &state, Events &events) {
+void set_settings(const SceneFitOptions &o, SceneFit &state, Events &events) {
     LensSettings &settings = state.settings;
     const bool has_one_falloff = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // with one falloff per camera
     if (has_one_falloff && settings.first.size() > settings.first_of_camera.size()) {
@@ -230,23 +230,23 @@ void set_lens_facts(const std::vector<PictureMetadata> &metadata, std::vector<le
 
 // Failure (usage) for images of several cameras with different responses that should share a fixed one, for more
 // cameras than a fit takes, and if each image has its own camera.
-void check_cameras(const Project &project, uint32_t free, LensSettings &settings) {
+void check_cameras(const Scene &scene, uint32_t free, LensSettings &settings) {
     if (!settings.has_several_cameras()) return;
     const size_t cameras = settings.first_of_camera.size();
     const auto fail = [&](const std::string &reason) {
-        throw Failure(LENSPROF_ERROR_ARGUMENT, project.path + ": its images are from " + std::to_string(cameras)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, scene.path + ": its images are from " + std::to_string(cameras)
                                                    + " cameras, according to their links in Ra..Re and EXIF" + reason);
     };
     if (!(free & LENSPROF_FREE_RESPONSE)) {
-        const auto &first = project.images[settings.first_of_camera[0]];
+        const auto &first = scene.images[settings.first_of_camera[0]];
         for (const uint32_t i : settings.first_of_camera) {
-            const auto &image = project.images[i];
+            const auto &image = scene.images[i];
             if (image.response_type != first.response_type || !std::equal(image.emor, image.emor + 5, first.emor))
-                fail(", and the response of " + project.names[i] + " is fixed while others are estimated; estimate "
+                fail(", and the response of " + scene.names[i] + " is fixed while others are estimated; estimate "
                                                                      "all responses, or give one camera at a time");
         }
         join_cameras(settings);
-    } else if (cameras == project.images.size()) {
+    } else if (cameras == scene.images.size()) {
         fail(", one image each; give more pictures per camera, or use " + option_name("one_lens")
              + " to treat all as one");
     } else if (cameras > LENSPROF_CAMERAS_MAX) {
@@ -256,7 +256,7 @@ void check_cameras(const Project &project, uint32_t free, LensSettings &settings
 }
 
 // The kind of all cameras, if the pictures state it; any if they differ.
-CameraKind common_camera_kind(const ProjectFitOptions &o, const std::vector<PictureMetadata> &metadata,
+CameraKind common_camera_kind(const SceneFitOptions &o, const std::vector<PictureMetadata> &metadata,
                               const LensSettings &settings, const CameraKind &of_reference) {
     for (const uint32_t first : settings.first_of_camera)
         if (of_reference.from != KindFrom::option && settings.has_several_cameras()
@@ -266,15 +266,15 @@ CameraKind common_camera_kind(const ProjectFitOptions &o, const std::vector<Pict
 }
 
 // The images of the smaller of two visits, which a finding names.
-std::string images_of_visit(const Project &project, const BuildReport &report, uint32_t image) {
+std::string images_of_visit(const Scene &scene, const BuildReport &report, uint32_t image) {
     std::vector<uint32_t> images;
     for (uint32_t i = 0; i < report.quality.size(); i++)
         if (report.quality[i].component == report.quality[image].component) images.push_back(i);
-    return listed(images, project.names);
+    return listed(images, scene.names);
 }
 
 // What the fit of a reconstruction found of colours, and of light.
-void report_scene(const Project &project, ProjectFit &state) {
+void report_scene(const Scene &scene, SceneFit &state) {
     if (state.input.points.empty() || !state.input.options.free) return;
     BuildReport &report = state.report;
     const lensprof_fit_result &result = state.best.result;
@@ -286,12 +286,12 @@ void report_scene(const Project &project, ProjectFit &state) {
     }
     for (Finding &finding : state.best.verdict.findings)
         if (finding.code == LENSPROF_REASON_IMAGE_GROUPS && !std::isnan(finding.limit))
-            finding.text += advice("one_visit") + ": " + images_of_visit(project, report, finding.item.index);
+            finding.text += advice("one_visit") + ": " + images_of_visit(scene, report, finding.item.index);
 }
 
 // The result of each setting, if there are several.
-void report_settings(const ProjectFitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
-                     ProjectFit &state) {
+void report_settings(const SceneFitOptions &o, const Scene &scene, const std::vector<PictureMetadata> &metadata,
+                     SceneFit &state) {
     BuildReport &report = state.report;
     const LensSettings &settings = state.settings;
     report.is_turn_unknown = settings.is_turn_unknown[0];
@@ -302,19 +302,18 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         SettingReport setting;
         setting.camera = settings.camera_of_image[first];
         try {
-            setting.key = override_key(metadata[first].key, metadata[first].size, o.store, project.files[first]);
+            setting.key = override_key(metadata[first].key, metadata[first].size, o.store, scene.files[first]);
         } catch (const Failure &failure) {  // the others are stored
             if (failure.group() != LENSPROF_ERROR_ARGUMENT || s == settings.of_image[state.best.result.reference])
                 throw;
             setting.key = metadata[first].key, setting.no_key = failure.what();
         }
-        setting.label = describe_setting(setting.key, project.names[first]);
+        setting.label = describe_setting(setting.key, scene.names[first]);
         if (settings.has_several_cameras())
-            setting.label =
-                describe_camera(metadata[first].key, project.names[settings.first_of_camera[setting.camera]]) + ", "
-                + setting.label;
+            setting.label = describe_camera(metadata[first].key, scene.names[settings.first_of_camera[setting.camera]])
+                            + ", " + setting.label;
         for (const SettingReport &other : report.settings)
-            if (other.label == setting.label) setting.label += ", from " + project.names[first];
+            if (other.label == setting.label) setting.label += ", from " + scene.names[first];
         setting.is_reference = s == settings.of_image[state.best.result.reference];
         setting.number = s, setting.found = state.best.settings[s];
         setting.is_turn_unknown = settings.is_turn_unknown[s];
@@ -322,13 +321,13 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         const bool is_refused = !setting.verdict.texts(LENSPROF_SEVERITY_REFUSAL).empty();
         if (setting.found.images && !setting.found.usable && !is_refused)  // with all others
             setting.verdict.add_first(state.best.verdict.findings.at(0));
-        name_images(project.names, setting.verdict);
+        name_images(scene.names, setting.verdict);
         report.settings.push_back(setting);
     }
 }
 
 // The same for each camera.
-void report_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, ProjectFit &state) {
+void report_cameras(const Scene &scene, const std::vector<PictureMetadata> &metadata, SceneFit &state) {
     BuildReport &report = state.report;
     const LensSettings &settings = state.settings;
     if (!settings.has_several_cameras()) return;
@@ -336,9 +335,9 @@ void report_cameras(const Project &project, const std::vector<PictureMetadata> &
     for (uint32_t k = 0; k < settings.first_of_camera.size(); k++) {
         const uint32_t first = settings.first_of_camera[k];
         CameraReport camera;
-        camera.label = describe_camera(metadata[first].key, project.names[first]);
+        camera.label = describe_camera(metadata[first].key, scene.names[first]);
         for (const CameraReport &other : report.cameras)
-            if (other.label == camera.label) camera.label += ", from " + project.names[first];
+            if (other.label == camera.label) camera.label += ", from " + scene.names[first];
         camera.is_reference = k == settings.camera_of_image[state.best.result.reference];
         camera.found = state.best.cameras[k];
         camera.fit = state.best.settings[camera.found.setting];
@@ -348,49 +347,49 @@ void report_cameras(const Project &project, const std::vector<PictureMetadata> &
 
 }  // namespace
 
-std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project) {
-    if (!project.metadata.empty()) return project.metadata;
-    std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
-    if (o.points.empty() && project.pairs.empty()) require_one_kind(project.files);
+std::vector<PictureMetadata> picture_metadata(const SceneFitOptions &o, const Scene &scene) {
+    if (!scene.metadata.empty()) return scene.metadata;
+    std::vector<PictureMetadata> metadata(scene.files.size(), unknown_metadata());
+    if (o.points.empty() && scene.pairs.empty()) require_one_kind(scene.files);
     for (uint32_t i = 0; i < metadata.size(); i++) {
-        bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
-        if (needed && path_exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
+        bool needed = o.points.empty() || (i == scene.reference && !o.store.no_store);
+        if (needed && path_exists(scene.files[i])) metadata[i] = read_metadata(scene.files[i]);
     }
     return metadata;
 }
 
 // A cropped picture shows the falloff of the lens about another centre, which one falloff for all does not model.
-static void warn_of_other_shapes(const Project &project, const std::vector<PictureMetadata> &metadata, Events &events) {
+static void warn_of_other_shapes(const Scene &scene, const std::vector<PictureMetadata> &metadata, Events &events) {
     constexpr double kLargestDifference = 0.01;  // of the ratio of the sides: resized pictures are rounded
     const auto ratio = [&](uint32_t i) {
         const auto [shorter, longer] = std::minmax(metadata[i].size.width, metadata[i].size.height);
         return shorter > 0 ? double(longer) / shorter : 0.0;
     };
     const auto named = [&](uint32_t i) {
-        return project.files[i] + format(" (%u x %u pixels)", metadata[i].size.width, metadata[i].size.height);
+        return scene.files[i] + format(" (%u x %u pixels)", metadata[i].size.width, metadata[i].size.height);
     };
-    const double wanted = ratio(project.reference);
+    const double wanted = ratio(scene.reference);
     for (uint32_t i = 0; i < metadata.size(); i++) {
         if (!(wanted > 0.0) || !(ratio(i) > 0.0) || std::fabs(ratio(i) / wanted - 1.0) <= kLargestDifference) continue;
-        events.warn(named(i), "not of the shape of " + named(project.reference)
+        events.warn(named(i), "not of the shape of " + named(scene.reference)
                           + "; estimating one centre of the falloff for all; a cropped picture has another one: leave "
                             "it out");
         return;
     }
 }
 
-lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
+lensprof_profile_key profile_key(const SceneFitOptions &o, const Scene &scene,
                                  const std::vector<PictureMetadata> &metadata, Events &events) {
-    const std::string &file = project.files[project.reference];
-    warn_of_truncation(metadata[project.reference], o.store, file, events);
-    const PictureMetadata &reference = metadata[project.reference];
+    const std::string &file = scene.files[scene.reference];
+    warn_of_truncation(metadata[scene.reference], o.store, file, events);
+    const PictureMetadata &reference = metadata[scene.reference];
     lensprof_profile_key key = override_key(reference.key, reference.size, o.store, file);
     if (!o.one_lens) return key;
-    warn_of_other_shapes(project, metadata, events);
-    const LensSettings settings = lens_settings(project, metadata, o.store, false);
+    warn_of_other_shapes(scene, metadata, events);
+    const LensSettings settings = lens_settings(scene, metadata, o.store, false);
     for (uint32_t first : settings.first)
-        if (settings.of_image[first] != settings.of_image[project.reference]) {
-            events.warn(project.files[first],
+        if (settings.of_image[first] != settings.of_image[scene.reference]) {
+            events.warn(scene.files[first],
                         "lens, focal length, aperture or focus differ from " + file
                             + format("; estimating one falloff for all %zu settings", settings.first.size()));
             break;
@@ -398,67 +397,67 @@ lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &proj
     return key;
 }
 
-DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Events &progress) {
-    ProjectFit drawn(progress);
-    get_points(o, project, drawn);
+DrawnPairs first_pairs(const SceneFitOptions &o, const Scene &scene, Events &progress) {
+    SceneFit drawn(progress);
+    get_points(o, scene, drawn);
     stop_if_cancelled();
     return {std::move(drawn.input.pairs), drawn.input.options.channels};
 }
 
-void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                 const EarlierProfile &prior, ProjectFit &state, Events &events) {
+void fit_scene(const SceneFitOptions &o, Scene &scene, const std::vector<PictureMetadata> &metadata,
+               const EarlierProfile &prior, SceneFit &state, Events &events) {
     BuildReport &report = state.report;
     FitInput &input = state.input;
-    report.names = project.names;
-    report.left_out = project.left_out;
-    report.register_s = project.register_s;
-    report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
-    input.options = project_options(o, project, input.fixed);
+    report.names = scene.names;
+    report.left_out = scene.left_out;
+    report.register_s = scene.register_s;
+    report.reference = o.reference.empty() ? scene.reference : image_of_word(scene, o.reference);
+    input.options = scene_options(o, scene, input.fixed);
     report.prior_id = prior.id;
     report.no_prior = prior.reason;
     report.prior_is_composed = prior.is_composed;
     input.options.profile = prior.profile.get();
-    check_unknowns(o, project, input.options);
-    state.settings = lens_settings(project, metadata, o.store, o.one_lens);
+    check_unknowns(o, scene, input.options);
+    state.settings = lens_settings(scene, metadata, o.store, o.one_lens);
     report.camera_kind = common_camera_kind(o, metadata, state.settings, report.camera_kind);
     input.options.camera_kind = report.camera_kind.kind;
     if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR) join_cameras(state.settings);  // all have one response
-    check_cameras(project, input.options.free, state.settings);
-    Pictures pictures = get_points(o, project, state);
+    check_cameras(scene, input.options.free, state.settings);
+    Pictures pictures = get_points(o, scene, state);
     stop_if_cancelled();
-    if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
+    if (scene.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
         events.warn(option_name("sampling_paper"),
                     "needs a camera model, which fits pictures of a moving camera poorly; omit it");
-    input.images = fit_images(project);
-    state.item = o.points.empty() ? project.path : o.points;
+    input.images = fit_images(scene);
+    state.item = o.points.empty() ? scene.path : o.points;
     set_settings(o, state, events);
     set_lens_facts(metadata, input.images);
-    input.options.moving_camera = project.by_matches;
-    input.options.unlinked_images = static_cast<uint32_t>(project.is_reconstruction ? 0 : project.unlinked);
-    if (o.points.empty()) report.exif = add_known_exposures(o.fit, project, metadata, input.images, events);
+    input.options.moving_camera = scene.by_matches;
+    input.options.unlinked_images = static_cast<uint32_t>(scene.is_reconstruction ? 0 : scene.unlinked);
+    if (o.points.empty()) report.exif = add_known_exposures(o.fit, scene, metadata, input.images, events);
     set_reference(report.reference, input);
     const auto setting_of = [&](uint32_t image) { return state.settings.of_image[image]; };
-    if (prior.profile && setting_of(input.options.reference) != setting_of(project.reference)) {
+    if (prior.profile && setting_of(input.options.reference) != setting_of(scene.reference)) {
         input.options.profile = nullptr, report.prior_id = 0;
-        report.no_prior = "the reference has another lens setting than " + project.names[project.reference];
+        report.no_prior = "the reference has another lens setting than " + scene.names[scene.reference];
     }
     state.best = fit(input, report.reference, state.item, state.events, &report.quality);
     const bool has_one_camera = !state.settings.has_several_cameras();  // irradiance is compared with one response
     if (has_one_camera && !pictures.empty() && may_connect_more(o, state.best, report.links))
-        resample(o, project, pictures, state);
-    report_scene(project, state);
+        resample(o, scene, pictures, state);
+    report_scene(scene, state);
     report.fit = state.best.result, report.held = state.best.held;
     report.verdict = state.best.verdict;
     for (Finding &finding : report.verdict.findings)
         if (finding.code == LENSPROF_REASON_WHITE_BALANCE_FIXED) finding.text += advice("fixed_balance");
-    name_images(project.names, report.verdict);
+    name_images(scene.names, report.verdict);
     if (o.points.empty()) name_sources(metadata, false, report.verdict);
-    report_settings(o, project, metadata, state);
-    report_cameras(project, metadata, state);
+    report_settings(o, scene, metadata, state);
+    report_cameras(scene, metadata, state);
     report.exposures = state.best.exposures;
     if (state.best.reference != report.reference)
-        events.warn(project.names[report.reference],
-                    "the reference was left out; exposures are relative to " + project.names[state.best.reference]);
+        events.warn(scene.names[report.reference],
+                    "the reference was left out; exposures are relative to " + scene.names[state.best.reference]);
     report.reference = state.best.reference;
 }
 

@@ -1,4 +1,4 @@
-#include "photo/scene/reconstruction_project.hpp"
+#include "photo/scene/reconstruction_scene.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -57,15 +57,15 @@ bool pair_of_colours(const TrackObservation &a, const TrackObservation &b, lensp
     return true;
 }
 
-void add_pairs_of_colours(const Reconstruction &r, const std::vector<ObservationPair> &chosen, Project &project) {
+void add_pairs_of_colours(const Reconstruction &r, const std::vector<ObservationPair> &chosen, Scene &scene) {
     for (const ObservationPair &chosen_pair : chosen) {
         lensprof_pair pair{};
         if (!pair_of_colours(r.observations[chosen_pair.first], r.observations[chosen_pair.second], pair)) continue;
-        project.pairs.push_back(pair);
-        project.pair_points.push_back(r.observations[chosen_pair.first].point);
+        scene.pairs.push_back(pair);
+        scene.pair_points.push_back(r.observations[chosen_pair.first].point);
     }
-    if (project.pairs.empty())
-        throw Failure(LENSPROF_ERROR_NOT_USABLE, project.path + ": the colours of its points are all clipped (black or white); give its pictures "
+    if (scene.pairs.empty())
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, scene.path + ": the colours of its points are all clipped (black or white); give its pictures "
                                        "with " + option_name("images"),
                       LENSPROF_REASON_FEW_PAIRS);
 }
@@ -166,40 +166,40 @@ void reject_reconstruction_part(const std::string &path) {
     if (!advice.empty()) throw Failure(LENSPROF_ERROR_READ, path + ": is " + advice);
 }
 
-Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Events &events) {
+Scene scene_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Events &events) {
     auto clock = std::chrono::steady_clock::now();
     Reconstruction r = read_reconstruction(path, events);
     if (options.is_by_colours && !r.has_colours)
         throw Failure(LENSPROF_ERROR_ARGUMENT, option_name("track_colours") + ": needs OpenSfM's tracks.csv, but "
                                                    + path + " is a " + r.kind + "; omit the option");
-    Project project;
-    project.path = path;
-    project.by_matches = project.is_reconstruction = true;
-    project.sources = files_of_reconstruction(path);
+    Scene scene;
+    scene.path = path;
+    scene.by_matches = scene.is_reconstruction = true;
+    scene.sources = files_of_reconstruction(path);
     if (!options.image_list.empty()) keep_listed_images(options.image_list, r);
     std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
     if (options.image_list.empty()) report_unused(files, events);
     convert_coordinates(r, files);
-    keep_shard(options.shard, r, files, project.path);
+    keep_shard(options.shard, r, files, scene.path);
     const bool has_pictures = !files.empty() && !options.is_by_colours;
-    report_read(r, project.path, has_pictures, events);
+    report_read(r, scene.path, has_pictures, events);
     const auto chosen = choose_pairs(r, kEnds * pairs_of_image(options, r.images.size()), options.seed);
-    project.view_distances = view_distances(r, chosen);
+    scene.view_distances = view_distances(r, chosen);
     if (has_pictures) {
-        project.matches = matches_of(r, chosen);
+        scene.matches = matches_of(r, chosen);
         for (const ObservationPair &chosen_pair : chosen)
-            project.match_points.push_back(r.observations[chosen_pair.first].point);
+            scene.match_points.push_back(r.observations[chosen_pair.first].point);
     } else {
-        add_pairs_of_colours(r, chosen, project);
+        add_pairs_of_colours(r, chosen, scene);
     }
     for (size_t i = 0; i < r.images.size(); i++) {
-        project.names.push_back(r.images[i].name);
-        project.files.push_back(files.empty() ? r.images[i].name : files[i]);
+        scene.names.push_back(r.images[i].name);
+        scene.files.push_back(files.empty() ? r.images[i].name : files[i]);
     }
-    project.pto = parse_pto(new_project_text("read by lensprof", images_of(r)), path);
-    for (size_t i = 0; i < r.images.size(); i++) add_image(project);
-    project.register_s = lap(clock);
-    return project;
+    scene.pto = parse_pto(new_project_text("read by lensprof", images_of(r)), path);
+    for (size_t i = 0; i < r.images.size(); i++) add_image(scene);
+    scene.register_s = lap(clock);
+    return scene;
 }
 
 }  // namespace lensprof

@@ -7,7 +7,7 @@
 #include "photo/calibration/fit.hpp"
 #include "photo/calibration/lens_settings.hpp"
 #include "photo/calibration/stored_prior.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -15,7 +15,7 @@ constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPRO
 constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
 
 // How a project is sampled, fitted and stored.
-struct ProjectFitOptions {
+struct SceneFitOptions {
     FitOptions fit;
     StoreOptions store;
     std::string points, reference;
@@ -26,10 +26,10 @@ struct ProjectFitOptions {
 };
 
 // Input and result of a fit. Not copyable: the options of `input` point to other members.
-struct ProjectFit {
-    explicit ProjectFit(Events &of_caller) : events(of_caller) {}
-    ProjectFit(const ProjectFit &) = delete;
-    ProjectFit &operator=(const ProjectFit &) = delete;
+struct SceneFit {
+    explicit SceneFit(Events &of_caller) : events(of_caller) {}
+    SceneFit(const SceneFit &) = delete;
+    SceneFit &operator=(const SceneFit &) = delete;
 
     Events &events;
     BuildReport report;  // camera_kind is set by the caller
@@ -41,11 +41,11 @@ struct ProjectFit {
 
 // Metadata of the pictures. If pairs are given, only what the profile key needs is read, because the pictures may be
 // anything.
-std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project);
+std::vector<PictureMetadata> picture_metadata(const SceneFitOptions &o, const Scene &scene);
 
 // The key of the profile: EXIF of the reference picture, overridden by the command line. With one_lens, warns of
 // pictures at other settings.
-lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
+lensprof_profile_key profile_key(const SceneFitOptions &o, const Scene &scene,
                                  const std::vector<PictureMetadata> &metadata, Events &events);
 
 struct DrawnPairs {
@@ -54,11 +54,11 @@ struct DrawnPairs {
 };
 
 // The pairs that fit_project starts with; none for tracks of the method radiance.
-DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Events &progress);
+DrawnPairs first_pairs(const SceneFitOptions &o, const Scene &scene, Events &progress);
 
 // Samples the pictures, or takes given points, and fits. `prior` must outlive `state`.
-void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                 const EarlierProfile &prior, ProjectFit &state, Events &events);
+void fit_scene(const SceneFitOptions &o, Scene &scene, const std::vector<PictureMetadata> &metadata,
+               const EarlierProfile &prior, SceneFit &state, Events &events);
 
 struct GainCurve {
     std::string label;
@@ -66,10 +66,10 @@ struct GainCurve {
 };
 
 // Of a reconstruction, how much colours differ before, with exposures alone, and with the result; else empty.
-std::vector<GainCurve> gain_curves(ProjectFit &state);
+std::vector<GainCurve> gain_curves(SceneFit &state);
 
 // The text of the project with the result, to be written to `path`. A project stores five modes and one falloff; a
 // result with more is refitted with these.
-std::string result_text(const ProjectFit &state, Project &project, const std::string &path);
+std::string result_text(const SceneFit &state, Scene &scene, const std::string &path);
 
 }  // namespace lensprof

@@ -5,25 +5,25 @@
 #include <vector>
 
 #include "photo/calibration/fit.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
 // Response and falloff of an image.
-std::shared_ptr<const lensprof_profile> model_of_project(const Project &project, uint32_t image);
+std::shared_ptr<const lensprof_profile> model_of(const Scene &scene, uint32_t image);
 
 // The scene as the result of a fit, for what is drawn of results.
-Fitted result_of_scene(const Project &project);
+Fitted result_of_scene(const Scene &scene);
 
 // The response of the reference if the images have several: all outputs are encoded with it so that they look alike.
 // NULL if the images share one response.
-std::shared_ptr<const lensprof_response> common_encoding(const Project &project);
+std::shared_ptr<const lensprof_response> common_encoding(const Scene &scene);
 
 // The exposures of the project, relative to its reference or, if the result does not include it, to the first included
 // image.
-std::vector<lensprof_exposure> relative_to_joined(const Project &project);
+std::vector<lensprof_exposure> relative_to_joined(const Scene &scene);
 
 // The exposures of the images included in the result.
-std::vector<lensprof_exposure> joined_exposures(const Project &project, const std::vector<lensprof_exposure> &all);
+std::vector<lensprof_exposure> joined_exposures(const Scene &scene, const std::vector<lensprof_exposure> &all);
 
 }  // namespace lensprof

@@ -5,7 +5,7 @@
 
 #include "photo/base/events.hpp"
 #include "photo/base/shard.hpp"
-#include "photo/scene/project.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -19,7 +19,7 @@ struct ReconstructionOptions {
 
 // Images of one size are linked: EXIF distinguishes cameras and settings. Pictures are compared at the project's
 // matches; without pictures, the colours of the tracks, if any, are its pairs.
-Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Events &events);
+Scene scene_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Events &events);
 
 // Failure (unreadable) for a file that belongs to a reconstruction but is not its main file, with the file to give
 // instead. For names that are not a reconstruction.
