@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/simulate/scene.hpp"
+#include "cli/simulate/simulated_scene.hpp"
 
 #include "picture_files.hpp"
 #include "raw_files.hpp"
@@ -38,7 +38,7 @@ struct Shot {
     uint32_t rendered_width = 800;
     int quarter_turns = 0;  // of the rendering
     JpegKind jpeg = {92, 2, 2};
-    lensprof::SceneKind scene = lensprof::SceneKind::landscape;
+    lensprof::SimulatedKind scene = lensprof::SimulatedKind::landscape;
     uint32_t seed = 1;
     bool monochrome = false;
 };

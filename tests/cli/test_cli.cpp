@@ -199,7 +199,7 @@ void test_project_with_the_result(void **) {
         assert_close(pto_number(text, i, "y"), pto_number(text_of(scene("pano.pto")), i, "y"), 0);
     }
     for (const char *part :
-         {"# rendered by lensprof simulate\n", "\nv Eev1 Er1 Eb1\n", "n\"img003.png\"\n", "\np f2 w3000 h1500"})
+         {"# written by lensprof\n", "\nv Eev1 Er1 Eb1\n", "n\"img003.png\"\n", "\np f2 w3000 h1500"})
         assert_true(contains(text, part));
     json_of(Words{"build", pto, "--no-store", "--json"} + quick);
     must_exit(done, {"apply", "--pto", pto, "-o", work("corrected")});

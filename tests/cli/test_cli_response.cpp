@@ -44,8 +44,8 @@ Shot any_shot(int i) {
     shot.rendered_width = static_cast<uint32_t>(400 + 480 * even(random));
     shot.jpeg.quality = 75 + static_cast<int>(24 * even(random));
     shot.jpeg.step_x = shot.jpeg.step_y = i % 2 ? 1 : 2;
-    const lensprof::SceneKind kinds[] = {lensprof::SceneKind::landscape, lensprof::SceneKind::landscape,
-                                         lensprof::SceneKind::interior, lensprof::SceneKind::foliage};
+    const lensprof::SimulatedKind kinds[] = {lensprof::SimulatedKind::landscape, lensprof::SimulatedKind::landscape,
+                                             lensprof::SimulatedKind::interior, lensprof::SimulatedKind::foliage};
     shot.scene = kinds[i / 2 % 4];
     shot.seed = static_cast<uint32_t>(50 + i);
     return shot;
@@ -242,7 +242,7 @@ void test_bad_input(void **) {
     assert_string_equal(code_of(none).c_str(), "few_pairs");
     assert_true(none["response"].is_null());
     shot = good_shot();
-    shot.scene = lensprof::SceneKind::wall;
+    shot.scene = lensprof::SimulatedKind::wall;
     assert_refused(not_usable, {"response", save_shot("wall.dng", take(shot)), "--no-store"},
                    {"wall.dng", "take a picture with all brightnesses"});
     shot = good_shot();

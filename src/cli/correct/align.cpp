@@ -25,7 +25,11 @@
 #include "photo/pictures/other_parts.hpp"
 #include "photo/pictures/raw_kind.hpp"
 #include "photo/report/falloff.hpp"
+#include "photo/scene/exposures.hpp"
+#include "photo/scene/hugin_project.hpp"
+#include "photo/scene/sampling.hpp"
 #include "photo/scene/scene.hpp"
+#include "photo/scene/scene_pictures.hpp"
 #include "photo/scene/static_camera.hpp"
 
 namespace lensprof {
@@ -121,11 +125,11 @@ Fitted fit_sequence(const Options &o, const Scene &scene, std::vector<double> &w
     sampling.pairs = o.pixels.pairs;
     sampling.seed = o.pixels.seed;
     std::vector<lensprof_link> links;
-    input.pairs = scene.pto ? sample_pairs(scene, pictures, sampling, {}, progress, &links)
-                            : sample_still(scene, pictures, sampling, 0.0, progress);
+    input.pairs = scene.document ? sample_pairs(scene, pictures, sampling, {}, progress, &links)
+                                 : sample_still(scene, pictures, sampling, 0.0, progress);
     input.options.links = links.data();
     input.options.link_count = static_cast<uint32_t>(links.size());
-    input.options.refine = !scene.pto && o.fit.modes == LENSPROF_MODES_AUTO;
+    input.options.refine = !scene.document && o.fit.modes == LENSPROF_MODES_AUTO;
     input.images = fit_images(scene);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : scene.files) metadata.push_back(read_metadata(file));

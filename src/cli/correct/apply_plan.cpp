@@ -21,6 +21,8 @@
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/pictures/raw_kind.hpp"
+#include "photo/scene/exposures.hpp"
+#include "photo/scene/hugin_project.hpp"
 
 namespace lensprof {
 namespace {
@@ -144,7 +146,7 @@ std::vector<CropCorrection> crops_of(const ApplySource &source, uint32_t first) 
         if (!image.of_crop || image.left_out) continue;
         CropCorrection crop{{}, image.crop_circular != 0, nullptr, source.exposures[i], {}};
         std::copy_n(image.crop, 4, crop.crop);
-        if (source.has_model) crop.model = model_of(*source.scene, i);
+        if (source.has_model) crop.model = source.scene->models[i];
         crops.push_back(crop);
     }
     return crops;
@@ -173,9 +175,9 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
         check_shape(*source.scene, image, picture.file, size);
         job.exposure = source.exposures[image];
         job.crops = crops_of(source, image);
-        if (source.has_model) job.model = model_of(*source.scene, image);
+        if (source.has_model) job.model = source.scene->models[image];
         job.model_name = std::filesystem::path(o.project()).filename().string();
-        if (!source.scene->models.empty()) named = name_below(source.scene->names[image]);
+        if (!source.scene->document) named = name_below(source.scene->names[image]);
     }
     job.target = target_name(o, picture, named);
     const PictureMetadata metadata = metadata_of(o, picture.file);
@@ -225,7 +227,7 @@ std::vector<PlacedCorrection> placed_images(const ApplyOptions &o, const ApplySo
             continue;
         }
         Correction job;
-        job.source = file, job.exposure = source.exposures[i], job.model = model_of(scene, i);
+        job.source = file, job.exposure = source.exposures[i], job.model = scene.models[i];
         placed.push_back({job, i});
     }
     return placed;

@@ -19,6 +19,7 @@
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/pictures/raw_kind.hpp"
+#include "photo/scene/scene_pictures.hpp"
 #include "photo/scene/static_camera.hpp"
 
 namespace lensprof {

@@ -28,7 +28,9 @@
 #include "photo/calibration/scene_fit.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
+#include "photo/scene/hugin_project.hpp"
 #include "photo/scene/photographs.hpp"
+#include "photo/scene/point_file.hpp"
 #include "photo/scene/reconstruction_scene.hpp"
 
 namespace lensprof {
@@ -263,7 +265,7 @@ int build_and_store(const BuildOptions &o, std::vector<std::string> &names, Stre
     inputs.push_back(scene.path);
     inputs.insert(inputs.end(), scene.sources.begin(), scene.sources.end());
     check_outputs(o, inputs);
-    if (!o.project_out.empty()) write_project(scene, o.project_out);
+    if (!o.project_out.empty()) write_hugin_project(scene, o.project_out);
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, scene.images.size());
     Calibration calibration(std::move(scene), o, events);

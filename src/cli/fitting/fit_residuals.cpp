@@ -1,4 +1,6 @@
 #include "cli/fitting/fit_residuals.hpp"
+#include "photo/scene/exposures.hpp"
+#include "photo/scene/sampling.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,6 +15,7 @@
 #include "photo/pictures/metadata.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {

@@ -14,6 +14,7 @@
 #include "photo/base/library.hpp"
 #include "photo/calibration/scene_fit.hpp"
 #include "photo/scene/open_scene.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {

@@ -1,8 +1,8 @@
 // Common subjects that are hard for a fit: little texture, too much of it, too much contrast.
 #include <cmath>
 
-#include "cli/simulate/scene.hpp"
 #include "cli/simulate/scene_maths.hpp"
+#include "cli/simulate/simulated_scene.hpp"
 
 namespace lensprof {
 

@@ -15,6 +15,8 @@
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/scene/hugin_project.hpp"
+#include "photo/scene/point_file.hpp"
 #include "photo/scene/scene.hpp"
 
 namespace lensprof {
@@ -155,10 +157,8 @@ int run(const SimulateOptions &o, Streams &streams) {
     Progress progress(streams, o.progress);
     if (!o.no_images) write_pictures(o, truth, scene, progress);
     const std::string pto = (folder / "pano.pto").string(), truth_file = (folder / "truth.json").string();
-    if (!o.moving) {  // a project cannot store the position of a moving camera
-        const std::string project = project_text(o, truth);
-        write_file(pto, project.data(), project.size());
-    }
+    // A project cannot store the position of a moving camera.
+    if (!o.moving) write_hugin_project(aligned_scene(o, truth), pto);
     const std::string json = truth_text(truth);
     write_file(truth_file, json.data(), json.size());
     if (o.points || o.test_points) {

@@ -9,9 +9,10 @@
 #include <lensprof/lensprof.h>
 
 #include "cli/simulate/moving.hpp"
-#include "cli/simulate/scene.hpp"
 #include "cli/simulate/simulate_options.hpp"
+#include "cli/simulate/simulated_scene.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -39,7 +40,7 @@ struct Settings {
 // The complete truth of a simulated sequence.
 struct Truth {
     uint32_t seed = 1;
-    SceneKind scene = SceneKind::landscape;
+    SimulatedKind scene = SimulatedKind::landscape;
     lensprof_response response;
     lensprof_vignetting vignetting[3];  // of red, green, blue
     uint32_t vignettings = 1;
@@ -84,8 +85,8 @@ constexpr double kSimulatedFNumber = 2.8;  // a wide, constant aperture, because
 // The truth requested by the options; Failure (usage).
 Truth make_truth(const SimulateOptions &options, const SimulatedScene &scene);
 
-// The project as an alignment program would write it: geometry known, exposures unknown.
-std::string project_text(const SimulateOptions &options, const Truth &truth);
+// The scene as an alignment program would find it: geometry known, exposures unknown.
+Scene aligned_scene(const SimulateOptions &options, const Truth &truth);
 std::string truth_text(const Truth &truth);  // content of truth.json
 
 // Irradiance that image `index` records for a pixel of radiance `rgb`; 1 = white.

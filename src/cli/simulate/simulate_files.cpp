@@ -1,11 +1,11 @@
 // The text files next to the pictures: the project and truth.json.
 #include <cmath>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/report/report.hpp"
 #include "cli/simulate/simulate.hpp"
-#include "photo/registration/project_text.hpp"
 
 namespace lensprof {
 namespace {
@@ -37,19 +37,22 @@ Json image_json(const Truth &truth, size_t i) {
 
 }  // namespace
 
-// The project as an alignment program would write it: geometry known, exposures unknown.
-std::string project_text(const SimulateOptions &o, const Truth &truth) {
+// The scene as an alignment program would find it: geometry known, exposures unknown.
+Scene aligned_scene(const SimulateOptions &o, const Truth &truth) {
     Random random(truth.seed * 31ull + 5);
-    std::vector<ProjectImage> images;
+    std::vector<NewImage> images;
+    Scene scene;
     for (size_t i = 0; i < truth.cameras.size(); i++) {
         lensprof_camera camera = truth.cameras[i];
         const double degrees_per_px = camera.hfov_deg / camera.width;
         const double e[2] = {random.normal(), random.normal()};
         camera.pitch_deg += o.misalign * degrees_per_px * e[0];
         camera.yaw_deg += o.misalign * degrees_per_px * e[1];
-        images.push_back({camera, truth.files[i]});
+        images.push_back({camera, 0, 0});
+        scene.files.push_back((std::filesystem::path(o.output) / truth.files[i]).string());
     }
-    return new_project_text("rendered by lensprof simulate", images);
+    set_images(images, scene);
+    return scene;
 }
 
 std::string truth_text(const Truth &truth) {

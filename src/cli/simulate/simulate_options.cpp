@@ -12,9 +12,9 @@ const Choices<SimulateFormat> formats = {
     {"tiff32", {".tif", LENSPROF_SAMPLE_F32}}, {"jpeg", {".jpg", LENSPROF_SAMPLE_U8}},
 };
 
-const Choices<SceneKind> scenes = {
-    {"landscape", SceneKind::landscape}, {"sky", SceneKind::sky},           {"wall", SceneKind::wall},
-    {"foliage", SceneKind::foliage},     {"interior", SceneKind::interior},
+const Choices<SimulatedKind> scenes = {
+    {"landscape", SimulatedKind::landscape}, {"sky", SimulatedKind::sky},           {"wall", SimulatedKind::wall},
+    {"foliage", SimulatedKind::foliage},     {"interior", SimulatedKind::interior},
 };
 
 const Choices<std::optional<MovingKind>> moving = {

@@ -9,7 +9,7 @@
 
 #include "cli/program/options.hpp"
 #include "cli/simulate/moving.hpp"
-#include "cli/simulate/scene.hpp"
+#include "cli/simulate/simulated_scene.hpp"
 
 namespace lensprof {
 
@@ -23,7 +23,7 @@ struct SimulateOptions {
     std::string output;
     lensprof_response response;
     std::vector<SimulateFormat> formats = {{".png", LENSPROF_SAMPLE_U8}};
-    SceneKind scene = SceneKind::landscape;
+    SimulatedKind scene = SimulatedKind::landscape;
     std::optional<MovingKind> moving;  // empty: the camera turns
     uint32_t images = 6, rows = 1, seed = 1, points = 0, test_points = 0, width = 800, height = 600;
     double hfov = 50, overlap = 0.4, jitter = 1, mean_ev = 0, clip = 0, noise = 2, outliers = 0, misalign = 0,

@@ -8,6 +8,7 @@
 #include "photo/calibration/outcome.hpp"
 #include "photo/correct/scene_model.hpp"
 #include "photo/report/falloff.hpp"
+#include "photo/scene/hugin_project.hpp"
 
 namespace lensprof {
 namespace {
@@ -72,10 +73,7 @@ std::string file_text(const lensprof_calibration &handle, const std::string &pat
     const std::filesystem::path name = std::filesystem::path(path).filename();
     if (!handle.corrects())
         throw Failure(LENSPROF_ERROR_NOT_USABLE, path + ": not written: " + calibration.fit.report.verdict.headline());
-    if (name.extension() == ".pto") {
-        Scene copy = calibration.scene;
-        return result_text(calibration.fit, copy, path);
-    }
+    if (name.extension() == ".pto") return result_text(calibration.fit, calibration.scene, path);
     if (name.extension() == ".json" && name.string().rfind("exposures", 0) == 0)
         return exposures_text(calibration.fit, calibration.scene, calibration.metadata, path);
     lensprof_export_options options;

@@ -2,6 +2,7 @@
 #include "photo/api/handles.hpp"
 #include "photo/api/sized.hpp"
 #include "photo/registration/registration.hpp"
+#include "photo/scene/hugin_project.hpp"
 #include "photo/scene/open_scene.hpp"
 #include "photo/scene/photographs.hpp"
 
@@ -85,7 +86,6 @@ lensprof_status lensprof_scene_left_out_at(const lensprof_scene *scene, uint32_t
 lensprof_status lensprof_scene_save(const lensprof_scene *scene, const char *path, lensprof_error *error) {
     return photo_call("scene", error, [&] {
         require(scene, "scene"), require(path, "path");
-        Scene copy = scene->scene;  // names of files become relative to the path
-        write_project(copy, path);
+        write_hugin_project(scene->scene, path);
     });
 }

@@ -1,4 +1,5 @@
 #include "photo/calibration/calibration.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 #include <cmath>
 
@@ -37,7 +38,7 @@ CameraKind kind_of(const FitOptions &o, const Scene &scene, const lensprof_profi
 
 Calibration::Calibration(Scene of, const SceneFitOptions &o, Events &events)
     : options(o), scene(std::move(of)), fit(events) {
-    if (!scene.pto)
+    if (scene.document == nullptr && scene.lenses.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT, scene.path + ": has exposures, but nothing to fit them to; it is used "
                                                               "to correct pictures");
     if (scene.images.size() < 2)

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "photo/base/paths.hpp"
+#include "photo/scene/exposures.hpp"
 
 namespace lensprof {
 namespace {

@@ -7,6 +7,7 @@
 #include "photo/base/format.hpp"
 #include "photo/pictures/orientation.hpp"
 #include "photo/report/falloff.hpp"
+#include "photo/scene/exposures.hpp"
 #include "photo/scene/scene.hpp"
 
 namespace lensprof {

@@ -6,6 +6,7 @@
 
 #include "photo/base/parallel.hpp"
 #include "photo/pictures/thumbnail.hpp"
+#include "photo/scene/exposures.hpp"
 
 namespace lensprof {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "photo/base/library.hpp"
 #include "photo/calibration/scene_fit.hpp"
+#include "photo/scene/hugin_project.hpp"
 
 namespace lensprof {
 namespace {
@@ -28,10 +29,11 @@ Fitted fit_for_project(FitInput input, const Fitted &best, uint32_t reference, c
 
 }  // namespace
 
-std::string result_text(const SceneFit &state, Scene &scene, const std::string &path) {
+std::string result_text(const SceneFit &state, const Scene &scene, const std::string &path) {
+    Pto project = hugin_project(scene, path);
     const Fitted stored = fit_for_project(state.input, state.best, state.report.reference, state.item, state.events);
     lensprof_error error{};
-    check(lensprof_pto_set_result(scene.pto.get(), &stored.result.response, &green_falloff(stored.result),
+    check(lensprof_pto_set_result(project.get(), &stored.result.response, &green_falloff(stored.result),
                                   stored.exposures.data(), static_cast<uint32_t>(stored.exposures.size()),
                                   stored.reference, &error),
           scene.path, &error);
@@ -43,7 +45,7 @@ std::string result_text(const SceneFit &state, Scene &scene, const std::string &
             const size_t curve = stored.falloff_curves_of(first) == 3 ? 1 : 0;
             falloffs.push_back(is_fitted ? stored.falloff_of(first)[curve] : green_falloff(stored.result));
         }
-        check(lensprof_pto_set_settings(scene.pto.get(), groups.of_image.data(),
+        check(lensprof_pto_set_settings(project.get(), groups.of_image.data(),
                                         static_cast<uint32_t>(groups.of_image.size()), falloffs.data(),
                                         static_cast<uint32_t>(falloffs.size()), &error),
               scene.path, &error);
@@ -51,12 +53,12 @@ std::string result_text(const SceneFit &state, Scene &scene, const std::string &
     if (state.settings.has_several_cameras()) {
         std::vector<lensprof_response> responses;
         for (const uint32_t first : state.settings.first_of_camera) responses.push_back(stored.response_of(first));
-        check(lensprof_pto_set_cameras(scene.pto.get(), state.settings.camera_of_image.data(),
+        check(lensprof_pto_set_cameras(project.get(), state.settings.camera_of_image.data(),
                                        static_cast<uint32_t>(state.settings.camera_of_image.size()), responses.data(),
                                        static_cast<uint32_t>(responses.size()), &error),
               scene.path, &error);
     }
-    return project_text_at(scene, path);
+    return pto_text(*project);
 }
 
 }  // namespace lensprof

@@ -11,6 +11,9 @@
 #include "photo/calibration/known_exposures.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/scene/block_sampling.hpp"
+#include "photo/scene/point_file.hpp"
+#include "photo/scene/sampling.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {
@@ -24,8 +27,7 @@ lensprof_fit_options scene_options(const SceneFitOptions &o, const Scene &scene,
     options.reference = scene.reference;
     options.vignettings = o.falloff_curves;
     options.vignetting = lens.vignetting;
-    lensprof_error error{};
-    check(lensprof_pto_get_response(scene.pto.get(), scene.reference, &fixed, &error), scene.path, &error);
+    fixed = scene.models[scene.reference]->response[0];
     options.response = &fixed;
     if (options.free & falloff_flags)
         if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)

@@ -11,9 +11,6 @@
 
 namespace lensprof {
 
-constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
-
 // How a project is sampled, fitted and stored.
 struct SceneFitOptions {
     FitOptions fit;
@@ -70,6 +67,6 @@ std::vector<GainCurve> gain_curves(SceneFit &state);
 
 // The text of the project with the result, to be written to `path`. A project stores five modes and one falloff; a
 // result with more is refitted with these.
-std::string result_text(const SceneFit &state, Scene &scene, const std::string &path);
+std::string result_text(const SceneFit &state, const Scene &scene, const std::string &path);
 
 }  // namespace lensprof

@@ -23,6 +23,7 @@
 #include "photo/pictures/raw_kind.hpp"
 #include "photo/pictures/thumbnail.hpp"
 #include "photo/scene/scene.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {

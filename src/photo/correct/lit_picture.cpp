@@ -1,6 +1,7 @@
 #include "photo/correct/lit_picture.hpp"
 
 #include "photo/correct/picture_plan.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 
@@ -25,12 +26,7 @@ LitPicture::LitPicture(const PlacedCorrection &placed, const CorrectionKind &kin
     for (int k = 0; k <= curve_steps; k++)
         curve_[static_cast<size_t>(k)] = lensprof_response_eval(
             &placed.job.model->response[0], std::pow(static_cast<double>(k) / curve_steps, 2), nullptr);
-    mask_.resize(size_t(grey_.width) * grey_.height);
-    lensprof_error error{};
-    check(lensprof_pto_draw_mask(scene.pto.get(), placed.image, mask_.data(), grey_.width, grey_.height,
-                                 static_cast<ptrdiff_t>(grey_.width), &error),
-          file, &error);
-    if (std::find(mask_.begin(), mask_.end(), 0) == mask_.end()) mask_.clear();
+    mask_ = mask_of(scene, placed.image, grey_.width, grey_.height);
 }
 
 void LitPicture::weights(uint32_t x, uint32_t y, double trust, double weight[3]) const {

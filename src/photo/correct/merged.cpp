@@ -10,6 +10,7 @@
 #include "photo/correct/light_weights.hpp"
 #include "photo/correct/picture_plan.hpp"
 #include "photo/scene/scene.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "photo/correct/scene_model.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/scene/exposures.hpp"
 
 namespace lensprof {
 namespace {
@@ -39,7 +40,7 @@ SceneCorrection::SceneCorrection(const Scene &scene, uint32_t exposure, const st
 }
 
 void SceneCorrection::put_into(uint32_t image, Correction &job) const {
-    job.model = model_of(scene_, image);
+    job.model = scene_.models[image];
     job.exposure = exposures_[image];
     job.target_exposure = exposure_ == LENSPROF_COPY_EXPOSURE_KEEP ? job.exposure : target_;
     job.encoding = encoding_;

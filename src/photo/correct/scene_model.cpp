@@ -1,4 +1,5 @@
 #include "photo/correct/scene_model.hpp"
+#include "photo/scene/exposures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,16 +7,7 @@
 
 namespace lensprof {
 
-std::shared_ptr<const lensprof_profile> model_of(const Scene &scene, uint32_t image) {
-    if (!scene.models.empty()) return scene.models[image];
-    auto profile = std::shared_ptr<lensprof_profile>(new_profile());
-    lensprof_error error{};
-    check(lensprof_pto_get_response(scene.pto.get(), image, &profile->response[0], &error), scene.path, &error);
-    profile->vignetting[0] = scene.images[image].vignetting;
-    return profile;
-}
-
-// The reference of the project, or the first image of its result.
+// The reference of the scene, or the first image of its result.
 static uint32_t joined_reference(const Scene &scene) {
     uint32_t reference = scene.reference;
     for (uint32_t i = 0; i < scene.images.size() && scene.images[reference].left_out; i++)
@@ -25,20 +17,13 @@ static uint32_t joined_reference(const Scene &scene) {
 
 std::shared_ptr<const lensprof_response> common_encoding(const Scene &scene) {
     const uint32_t reference = joined_reference(scene);
-    const auto &first = scene.images[reference];
-    const bool has_one_encoding =
-        scene.models.empty()
-            ? std::all_of(scene.images.begin(), scene.images.end(),
-                          [&](const lensprof_pto_image &image) {
-                              return image.response_type == first.response_type
-                                     && std::equal(image.emor, image.emor + 5, first.emor);
-                          })
-            : std::all_of(scene.models.begin(), scene.models.end(), [&](const auto &model) {
-                  const auto &table = model->response[0].table;
-                  return std::equal(std::begin(table), std::end(table), scene.models[reference]->response[0].table);
-              });
+    const lensprof_response &response = scene.models[reference]->response[0];
+    const bool has_one_encoding = std::all_of(scene.models.begin(), scene.models.end(), [&](const auto &model) {
+        const auto &table = model->response[0].table;
+        return std::equal(std::begin(table), std::end(table), response.table);
+    });
     if (has_one_encoding) return nullptr;
-    return std::make_shared<lensprof_response>(model_of(scene, reference)->response[0]);
+    return std::make_shared<lensprof_response>(response);
 }
 
 std::vector<lensprof_exposure> relative_to_joined(const Scene &scene) {
@@ -58,7 +43,7 @@ Fitted result_of_scene(const Scene &scene) {
     fitted.result.vignettings = 1;
     fitted.reference = scene.reference;
     for (uint32_t i = 0; i < scene.images.size(); i++) {
-        const auto model = model_of(scene, i);
+        const auto &model = scene.models[i];
         lensprof_fit_result of_image{};
         of_image.images = 1, of_image.vignettings = model->vignettings;
         std::copy_n(model->vignetting, std::size(of_image.vignetting), of_image.vignetting);

@@ -1,4 +1,4 @@
-// The model that a project with a result contains.
+// The models of a scene with a result.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,6 @@
 
 namespace lensprof {
 
-// Response and falloff of an image.
-std::shared_ptr<const lensprof_profile> model_of(const Scene &scene, uint32_t image);
-
 // The scene as the result of a fit, for what is drawn of results.
 Fitted result_of_scene(const Scene &scene);
 
@@ -19,7 +16,7 @@ Fitted result_of_scene(const Scene &scene);
 // NULL if the images share one response.
 std::shared_ptr<const lensprof_response> common_encoding(const Scene &scene);
 
-// The exposures of the project, relative to its reference or, if the result does not include it, to the first included
+// The exposures of the scene, relative to its reference or, if the result does not include it, to the first included
 // image.
 std::vector<lensprof_exposure> relative_to_joined(const Scene &scene);
 

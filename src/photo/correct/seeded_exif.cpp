@@ -7,6 +7,7 @@
 #include "photo/base/median.hpp"
 #include "photo/correct/scene_model.hpp"
 #include "photo/pictures/metadata.hpp"
+#include "photo/scene/exposures.hpp"
 
 namespace lensprof {
 namespace {

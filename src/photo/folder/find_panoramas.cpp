@@ -17,8 +17,7 @@ namespace {
 // One group of pictures, as stored in the ledger.
 struct Group {
     std::vector<const InputPicture *> pictures;
-    std::string geometry;
-    NotedMatches matches;
+    FoundScene found;
     Json facts;
 };
 
@@ -37,9 +36,8 @@ std::string key_of(const std::vector<const InputPicture *> &pictures, const std:
 Group group_of(const FoundScene &found, const std::vector<const InputPicture *> &all) {
     Group group;
     for (const uint32_t number : found.pictures) group.pictures.push_back(all[number]);
-    group.geometry = text_of_found(found);
-    // Converted through the ledger's text, so that a fit of recalled matches is identical to the byte.
-    if (!read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches))
+    // Converted through the ledger's numbers, so that a fit of what is recalled is identical to the byte.
+    if (!read_noted(json_of(found), found.pictures.size(), group.found))
         throw Failure(LENSPROF_ERROR_WRITE, "internal error: matches of pictures are not finite; please report this");
     group.facts = {{"camera", found.kind == SceneKind::still   ? camera_stationary
                               : found.kind == SceneKind::plane ? "moved over a plane"
@@ -107,10 +105,7 @@ Json json_of(const Groups &groups, const std::string &key) {
     for (const Group &group : groups.list) {
         Json files = Json::array();
         for (const InputPicture *picture : group.pictures) files.push_back(noted_name(picture->file));
-        list.push_back({{"files", files},
-                        {"geometry", group.geometry},
-                        {"matches", json_of(group.matches)},
-                        {"facts", group.facts}});
+        list.push_back({{"files", files}, {"found", json_of(group.found)}, {"facts", group.facts}});
     }
     return {{"key", key},
             {"groups", list},
@@ -152,8 +147,7 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
             if (picture == by_file.end()) return false;
             group.pictures.push_back(picture->second);
         }
-        if (!read_noted(known.value("matches", Json()), known["files"].size(), group.matches)) return false;
-        group.geometry = known["geometry"].get<std::string>();
+        if (!read_noted(known.value("found", Json()), known["files"].size(), group.found)) return false;
         group.facts = known["facts"];
         groups.list.push_back(std::move(group));
     }
@@ -269,8 +263,7 @@ Panoramas find_panoramas(const FolderOptions &o, const Inputs &inputs, Ledger &l
         Panorama panorama;
         panorama.name = names[n];
         panorama.project = file_of(o, panorama.name, ".pto"), panorama.preview = file_of(o, panorama.name, ".jpg");
-        panorama.pictures = group.pictures, panorama.geometry = group.geometry, panorama.key = keys[n];
-        panorama.matches = group.matches;
+        panorama.pictures = group.pictures, panorama.found = group.found, panorama.key = keys[n];
         panorama.source = source_of(ledger.notes, group, names[n]);
         panorama.summary = {{"name", panorama.name}, {"project", panorama.project}, {"preview", nullptr}};
         panorama.summary["pictures"] = group.pictures.size();

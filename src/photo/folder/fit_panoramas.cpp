@@ -14,6 +14,7 @@
 #include "photo/folder/attempt.hpp"
 #include "photo/folder/panoramas.hpp"
 #include "photo/scene/exposure_reader.hpp"
+#include "photo/scene/hugin_project.hpp"
 #include "photo/scene/photographs.hpp"
 
 namespace lensprof {
@@ -30,9 +31,7 @@ Scene scene_of(const Panorama &panorama) {
         scene.names.push_back(picture->name);
         scene.metadata.push_back(picture->metadata);
     }
-    read_found(panorama.geometry, scene);
-    scene.by_matches = panorama.matches.are_all;
-    scene.matches = panorama.matches.list;
+    set_found(panorama.found, scene);
     return scene;
 }
 
@@ -90,8 +89,9 @@ void fit_and_store(const FolderOptions &o, Panorama &panorama, Scene &scene, Eve
     Calibration calibration(scene, options, events);
     SceneFit &state = calibration.fit;
     OutputFiles outputs;
-    outputs.add(panorama.project, state.best.corrects() ? result_text(state, calibration.scene, panorama.project)
-                                                        : project_text_at(calibration.scene, panorama.project));
+    outputs.add(panorama.project, state.best.corrects()
+                                      ? result_text(state, calibration.scene, panorama.project)
+                                      : pto_text(*hugin_project(calibration.scene, panorama.project)));
     stop_if_cancelled();
     if (!options.store.no_store)
         store_result(state.report, calibration.key, options.store,
@@ -128,7 +128,7 @@ void fit_one(const FolderOptions &o, Panorama &panorama, Ledger &ledger, Events 
         panorama.summary["result"] = nullptr;
         panorama.summary["not_stored"] = failure.what();
         panorama.summary["warnings"] = Json::array();
-        write_project(scene, panorama.project);
+        write_hugin_project(scene, panorama.project);
     }
     ledger.finish(panorama.project);
     const std::string text = read_text(panorama.project, max_text_bytes);
@@ -214,7 +214,7 @@ Scene Panorama::corrected_scene() const {
     for (uint32_t i = 0; i < scene.images.size(); i++) {
         const auto image = images.find(scene.files[i]);
         if (!image) return scene;
-        scene.models.push_back(known.models[*image]);
+        scene.models[i] = known.models[*image];
         scene.images[i].exposure = known.images[*image].exposure;
         scene.images[i].left_out = known.images[*image].left_out;
         if (*image == known.reference) scene.reference = i;

@@ -11,7 +11,7 @@
 #include "photo/calibration/profile_store.hpp"
 #include "photo/folder/inputs.hpp"
 #include "photo/folder/ledger.hpp"
-#include "photo/folder/noted_matches.hpp"
+#include "photo/folder/noted_scene.hpp"
 
 namespace lensprof {
 
@@ -32,14 +32,13 @@ struct Panorama {
     std::string name;              // such as "img000", after its first picture when it was found
     std::string project, preview;  // files in the output folder
     std::vector<const InputPicture *> pictures;
-    std::string geometry;  // the project before the fit
-    NotedMatches matches;  // matches that the cameras do not explain
-    std::string source;    // the source stored in the provenance
-    std::string key;       // hash of its pictures and the options
-    Json summary;          // docs/json.md; `result` is null if the fit failed
-    Json page;             // what FolderOptions.describe made of it; null if the fit failed
-    std::string written;   // digest of the project file as written
-    Json exposures;        // exposures, responses and falloffs (exposures.json), with which it is corrected
+    FoundScene found;     // cameras and matches
+    std::string source;   // the source stored in the provenance
+    std::string key;      // hash of its pictures and the options
+    Json summary;         // docs/json.md; `result` is null if the fit failed
+    Json page;            // what FolderOptions.describe made of it; null if the fit failed
+    std::string written;  // digest of the project file as written
+    Json exposures;       // exposures, responses and falloffs (exposures.json), with which it is corrected
     bool equalizes() const;
 
     // Whether somebody has edited the project file since the fit.

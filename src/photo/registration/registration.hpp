@@ -1,4 +1,4 @@
-// Registration of pictures without a project: finds overlaps and cameras, as Hugin projects.
+// Registration of pictures without a project: finds overlaps and cameras.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,6 @@
 #include <lensprof/sample.h>
 
 #include "photo/base/events.hpp"
-#include "photo/registration/project_text.hpp"
 
 namespace lensprof {
 
@@ -18,6 +17,12 @@ enum class SceneKind {
     panorama,  // the camera rotated about one point
     plane,     // it moved over a scene that is nearly a plane
     still      // neither: frames from a tripod or a bracket, which do not show the falloff
+};
+
+// The same point in two images, px of their frames.
+struct ControlPoint {
+    uint32_t image[2];
+    double xy[2][2];
 };
 
 // A group of pictures that overlap, directly or through others. Each camera has at least two, connected by its own

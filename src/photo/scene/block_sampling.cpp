@@ -7,6 +7,8 @@
 #include "photo/base/events.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/reconstruction/link_order.hpp"
+#include "photo/scene/sampling.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {

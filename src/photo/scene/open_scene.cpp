@@ -4,6 +4,7 @@
 #include "photo/base/paths.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
 #include "photo/scene/exposure_reader.hpp"
+#include "photo/scene/hugin_project.hpp"
 #include "photo/scene/photographs.hpp"
 
 namespace lensprof {

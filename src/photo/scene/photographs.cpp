@@ -191,28 +191,17 @@ Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events) 
         scene.names.push_back(names[picture]);
         scene.files.push_back(files[picture]);
     }
-    scene.matches = largest.matches, scene.by_matches = largest.by_matches;
-    read_found(text_of_found(largest), scene);
+    set_found(largest, scene);
     return scene;
 }
 
-std::string text_of_found(const FoundScene &found) {
-    std::vector<ProjectImage> images;
-    for (size_t n = 0; n < found.pictures.size(); n++)
-        images.push_back({found.cameras[n], format("image%zu", n), found.camera_ids[n],
-                          found.lenses[n]});  // a name may contain quotes
-    return new_project_text("found by lensprof", images, found.points);
-}
-
-void read_found(const std::string &text, Scene &scene) {
-    scene.pto = parse_pto(text, scene.path);
-    scene.images.clear();
-    for (size_t n = 0; n < scene.files.size(); n++) add_image(scene);
-}
-
-void write_project(Scene &scene, const std::string &path) {
-    const std::string text = project_text_at(scene, path);
-    write_file(path, text.data(), text.size());
+void set_found(const FoundScene &found, Scene &scene) {
+    std::vector<NewImage> images;
+    for (size_t n = 0; n < found.cameras.size(); n++)
+        images.push_back({found.cameras[n], found.camera_ids[n], found.lenses[n]});
+    set_images(images, scene);
+    scene.control_points = found.points;
+    scene.matches = found.matches, scene.by_matches = found.by_matches;
 }
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// Makes a project of pictures.
+// Makes a scene of pictures.
 #pragma once
 
 #include <string>
@@ -27,12 +27,12 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
 // standard error. Failure (usage) for raw files among others, and if fewer than two pictures remain.
 Photographs find_photographs(const std::vector<std::string> &words, Events &events);
 
-// Finds the overlaps and returns the project of the largest group; pictures left out are listed on standard error. With
+// Finds the overlaps and returns the scene of the largest group; pictures left out are listed on standard error. With
 // `one_lens` all pictures are treated as from one camera. All parameters are free. Failure (not_usable) if no two
 // pictures overlap.
 Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events);
 
-// Why a picture is not part of a project that it overlaps, directly or through others.
+// Why a picture is not part of a scene that it overlaps, directly or through others.
 inline std::string no_overlap_within_camera() {
     return "no two pictures of its camera, size or processing overlap" + advice("one_lens");
 }
@@ -45,16 +45,12 @@ inline std::string still_camera_reason() {
     return ": the camera did not move, so the pictures cannot show the falloff" + advice("still_camera");
 }
 
-// Note for a project whose cameras do not fit.
+// Note for a scene whose cameras do not fit.
 constexpr const char *poor_cameras_note =
     "no camera model fits the pictures well, because of parallax, distortion or moving objects. The pictures are "
     "compared only at matched points; a project or preview of them does not show the scene";
 
-// The project of a group of pictures, whose images are named image0, image1 and so on; and the same as a Project with
-// path, names and files.
-std::string text_of_found(const FoundScene &found);
-void read_found(const std::string &text, Scene &scene);
-
-void write_project(Scene &scene, const std::string &path);
+// Sets what registration has found of the pictures of a group.
+void set_found(const FoundScene &found, Scene &scene);
 
 }  // namespace lensprof

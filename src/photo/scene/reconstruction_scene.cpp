@@ -16,28 +16,23 @@
 #include "photo/reconstruction/match_choice.hpp"
 #include "photo/reconstruction/pictures.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
-#include "photo/registration/project_text.hpp"
 #include "photo/scene/exposure_reader.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double kAnyAngle = 50.0;  // of view, degrees: not used by anything
 // Pairs drawn per image: in proportion to the total, but not less than the minimum.
 constexpr uint32_t kMaxPairsOfImage = 600, kMinPairsOfImage = 150, kMaxPairs = 600000;
 constexpr uint32_t kEnds = 2;                             // each pair counts for two images
 constexpr double kBlackLevel = 2.0, kWhiteLevel = 250.0;  // colours outside are ignored
 
-std::vector<ProjectImage> images_of(const Reconstruction &r) {
+std::vector<NewImage> images_of(const Reconstruction &r) {
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> sizes;  // upright or not
-    std::vector<ProjectImage> images;
-    for (size_t i = 0; i < r.images.size(); i++) {
-        lensprof_camera camera{};
-        camera.width = r.cameras[i].width, camera.height = r.cameras[i].height;
-        camera.hfov_deg = kAnyAngle;
+    std::vector<NewImage> images;
+    for (const auto &camera : r.cameras) {
         const auto size = std::minmax(camera.width, camera.height);
         const auto lens = sizes.emplace(size, static_cast<uint32_t>(sizes.size())).first->second;
-        images.push_back({camera, format("image%zu", i), lens, lens});  // a name may contain quotes
+        images.push_back({camera_of_size(camera.width, camera.height), lens, lens});
     }
     return images;
 }
@@ -196,8 +191,7 @@ Scene scene_of_reconstruction(const std::string &path, const ReconstructionOptio
         scene.names.push_back(r.images[i].name);
         scene.files.push_back(files.empty() ? r.images[i].name : files[i]);
     }
-    scene.pto = parse_pto(new_project_text("read by lensprof", images_of(r)), path);
-    for (size_t i = 0; i < r.images.size(); i++) add_image(scene);
+    set_images(images_of(r), scene);
     scene.register_s = lap(clock);
     return scene;
 }

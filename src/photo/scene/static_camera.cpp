@@ -5,6 +5,8 @@
 
 #include "photo/base/file_kind.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/scene/sampling.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {
@@ -34,10 +36,7 @@ void mask_ringing(SamplePicture &sample) {
 lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free) {
     lensprof_pto_image image;
     lensprof_pto_image_init(&image);
-    image.camera.projection = LENSPROF_PROJECTION_RECTILINEAR;
-    image.camera.width = size.width;
-    image.camera.height = size.height;
-    image.camera.hfov_deg = 50.0;  // any value: all have the same direction
+    image.camera = camera_of_size(size.width, size.height);
     lensprof_exposure_init(&image.exposure);
     image.free = free;
     image.ev_of = image.red_of = image.blue_of = number;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "photo/scene/scene.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 

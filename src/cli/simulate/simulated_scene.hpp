@@ -5,7 +5,7 @@
 
 namespace lensprof {
 
-enum class SceneKind {
+enum class SimulatedKind {
     landscape,
     sky,
     wall,
@@ -13,7 +13,7 @@ enum class SceneKind {
     interior
 };
 
-const char *scene_word(SceneKind kind);  // "landscape", ...
+const char *scene_word(SimulatedKind kind);  // "landscape", ...
 
 // Made of arithmetic and hashes alone: the same on every machine. Median radiance is near 0.16.
 // - landscape: a sky over fields and buildings: smooth gradients, flat patches of many colours and fine texture over
@@ -24,7 +24,7 @@ const char *scene_word(SceneKind kind);  // "landscape", ...
 // - interior: a dark room with bright windows, hard edges over some eight stops.
 class SimulatedScene {
 public:
-    explicit SimulatedScene(uint32_t seed, SceneKind kind = SceneKind::landscape) : seed_(seed), kind_(kind) {}
+    explicit SimulatedScene(uint32_t seed, SimulatedKind kind = SimulatedKind::landscape) : seed_(seed), kind_(kind) {}
 
     // Radiance of red, green and blue in a direction (radians, latitude positive down).
     void radiance(double longitude, double latitude, double rgb[3]) const;
@@ -50,7 +50,7 @@ private:
     void interior(const Ray &ray, double rgb[3]) const;
 
     uint32_t seed_;
-    SceneKind kind_;
+    SimulatedKind kind_;
 };
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-#include "cli/simulate/scene.hpp"
+#include "cli/simulate/simulated_scene.hpp"
 
 #include <cmath>
 
@@ -32,7 +32,7 @@ double SimulatedScene::draw(double u, double v, uint32_t what) const {
                      static_cast<uint32_t>(static_cast<int32_t>(std::floor(v))), what, seed_));
 }
 
-const char *scene_word(SceneKind kind) {
+const char *scene_word(SimulatedKind kind) {
     const char *const words[] = {"landscape", "sky", "wall", "foliage", "interior"};
     return words[static_cast<int>(kind)];
 }
@@ -43,11 +43,11 @@ void SimulatedScene::radiance(double longitude, double latitude, double rgb[3]) 
         latitude,
         {std::cos(latitude) * std::sin(longitude), std::sin(latitude), std::cos(latitude) * std::cos(longitude)}};
     switch (kind_) {
-    case SceneKind::landscape: return landscape(ray, rgb);
-    case SceneKind::sky: return sky(ray, rgb);
-    case SceneKind::wall: return wall(ray, rgb);
-    case SceneKind::foliage: return foliage(ray, rgb);
-    case SceneKind::interior: return interior(ray, rgb);
+    case SimulatedKind::landscape: return landscape(ray, rgb);
+    case SimulatedKind::sky: return sky(ray, rgb);
+    case SimulatedKind::wall: return wall(ray, rgb);
+    case SimulatedKind::foliage: return foliage(ray, rgb);
+    case SimulatedKind::interior: return interior(ray, rgb);
     }
 }
 
