@@ -72,7 +72,7 @@ void test_as_a_project(void **) {
     assert_true(contains(read_text(work("scene.pto"), max_text_bytes), "c n0 N2 x1.250 y2.500 X3.125 Y4.000 t0\n"));
 }
 
-// From another folder, where the names are relative, and unchanged beside the project itself.
+// From another folder, where the names are relative, and unchanged next to the project itself.
 void test_names(void **) {
     Scene scene = scene_of(found_scene());
     std::filesystem::create_directories(work("below"));
