@@ -73,10 +73,10 @@ std::vector<std::string> add_views(const Panoramas &panoramas, const CorrectedPi
     const uint32_t side = view_side(view_count);
     std::vector<Json> copies(view_count);
     for_each_parallel(static_cast<uint32_t>(view_count), "report", progress, [&](uint32_t n) {
-        const InputPicture &picture = *pictures.list[n * picture_count / view_count].picture;
-        const Picture before = small_copy(picture.file, picture, side),
-                      after = small_copy(picture.target, picture, side);
-        if (before.width && after.width) copies[n] = view_json(picture.name, before, after);
+        const CorrectedPicture &picture = pictures.list[n * picture_count / view_count];
+        const InputPicture &input = *picture.picture;
+        const SmallCopies small = small_copies(picture, input.metadata.orientation, side);
+        if (small.before.width && small.after.width) copies[n] = view_json(input.name, small.before, small.after);
     });
     std::vector<std::string> unreadable;
     for (size_t n = 0; n < view_count; n++) {

@@ -22,6 +22,8 @@
 #include "photo/correct/overlaps.hpp"
 #include "photo/correct/scene_model.hpp"
 #include "photo/correct/seeded_exif.hpp"
+#include "photo/pictures/contact_sheet.hpp"
+#include "photo/pictures/thumbnail.hpp"
 
 namespace lensprof {
 namespace {
@@ -127,6 +129,23 @@ void check_sheet(const ApplyOptions &o, size_t pictures) {
                                                  "--overwrite");
 }
 
+// 1 if the metadata of a picture that was read are damaged.
+uint16_t orientation_of(const std::string &file) {
+    try {
+        return read_metadata(file).orientation;
+    } catch (const Failure &) {
+        return 1;
+    }
+}
+
+ContactSheet::Cell sheet_cell(const Correction &job, const Picture &before, const Picture &after, uint32_t side) {
+    const std::string name = std::filesystem::path(job.source).filename().string();
+    if (!before.width) return {Picture(), Picture(), name, "not corrected"};
+    const uint16_t orientation = orientation_of(job.source);
+    return {upright_copy(before, orientation, side), upright_copy(after, orientation, side), name,
+            correction_note(job)};
+}
+
 Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &work, Streams &streams) {
     if (work.jobs.empty()) return {};
     lensprof_exposure reference;
@@ -152,8 +171,11 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
     Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());
     print_notes(work.jobs, streams);
+    const CopySink sink{sheet.side(), [&](uint32_t i, const Picture &before, const Picture &after) {
+                            sheet.put(i, sheet_cell(work.jobs[i], before, after, sheet.side()));
+                        }};
     Corrected written = o.merge ? merge(o, source, work, progress)
-                                : write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
+                                : write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sink, progress);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     return written;

@@ -12,7 +12,6 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t longer_side = 1600, gap = 8;  // px of a mosaic
-constexpr uint32_t picture_side = 500;           // px to which pictures are reduced
 constexpr double max_flat_angle = 55.0 * M_PI / 180.0,
                  max_flat_radius = 8.0;  // forward view; px of a plane at distance 1
 
@@ -207,8 +206,10 @@ Mosaic mosaic_of(const std::vector<CorrectedCopy> &copies) {
 }
 
 void write_preview(const std::string &path, const Scene &scene, const Fitted &fitted, Events &progress) {
-    const Mosaic mosaic =
-        mosaic_of(corrected_copies(scene, fitted, images_with_exposure(fitted), picture_side, progress));
+    write_mosaic(path, mosaic_of(corrected_copies(scene, fitted, images_with_exposure(fitted), tile_side, progress)));
+}
+
+void write_mosaic(const std::string &path, const Mosaic &mosaic) {
     Picture out = mosaic.before;
     out.height = 2 * mosaic.before.height + gap;
     out.pixels.resize(out.row_bytes * out.height, 128);

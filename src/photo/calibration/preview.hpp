@@ -27,6 +27,7 @@ std::vector<CorrectedCopy> corrected_copies(const Scene &scene, const Fitted &fi
 struct Mosaic {
     Picture before, after;
 };
+constexpr uint32_t tile_side = 500;  // px to which its pictures are reduced
 Mosaic mosaic_of(const std::vector<CorrectedCopy> &copies);
 
 // Failure (usage) for a name without a picture extension.
@@ -37,7 +38,10 @@ void check_preview(const std::string &path);
 // equirectangular.
 void write_preview(const std::string &path, const Scene &scene, const Fitted &fitted, Events &progress);
 
-// The mosaics in a picture of write_preview.
+// The same, of a mosaic.
+void write_mosaic(const std::string &path, const Mosaic &mosaic);
+
+// The mosaics in a picture of write_mosaic.
 Mosaic read_preview(const std::string &path);
 
 }  // namespace lensprof

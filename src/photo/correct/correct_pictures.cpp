@@ -140,18 +140,9 @@ Finished copy_dng(const Correction &job) {
     return {nullptr, std::move(output), std::nullopt, true, 0.0};
 }
 
-// The orientation of a picture that was read, for its thumbnails; 1 if its metadata are damaged.
-uint16_t orientation_of(const std::string &file) {
-    try {
-        return read_metadata(file).orientation;
-    } catch (const Failure &) {
-        return 1;
-    }
-}
-
 }  // namespace
 
-Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
+Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, const CopySink *sink,
                           Events &events) {
     auto count = static_cast<uint32_t>(jobs.size());
     uint32_t threads = thread_count(kind.threads);
@@ -159,19 +150,15 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     for (const Correction &job : jobs) pixels += job.pixels;
     Throughput throughput(events, "correcting", count, pixels);
     std::vector<Finished> finished(count);
-    const auto name_of = [&](uint32_t i) { return std::filesystem::path(jobs[i].source).filename().string(); };
     const auto correct_one = [&](uint32_t i) {
         make_folder(std::filesystem::path(absolute_path(jobs[i].target)).parent_path().string());
         if (jobs[i].copies_dng) {
             finished[i] = copy_dng(jobs[i]);
             return;
         }
-        PictureCorrection picture(jobs[i], kind, sheet ? sheet->side() : 0);
+        PictureCorrection picture(jobs[i], kind, sink ? sink->side : 0);
         finished[i] = picture.run(threads / 2 >= count, throughput);
-        if (!sheet) return;
-        const uint16_t orientation = orientation_of(jobs[i].source);
-        sheet->put(i, {picture.before.upright(orientation), picture.after.upright(orientation), name_of(i),
-                       correction_note(jobs[i])});
+        if (sink) sink->put(i, picture.before.upright(1), picture.after.upright(1));
     };
     auto work = [&](uint32_t i) {
         try {
@@ -179,7 +166,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         } catch (const Failure &failure) {
             if (!is_of_input(failure)) throw;
             finished[i] = {nullptr, nullptr, failure, false, 0.0};
-            if (sheet) sheet->put(i, {Picture(), Picture(), name_of(i), "not corrected"});
+            if (sink) sink->put(i, Picture(), Picture());
         }
     };
     Corrected corrected;

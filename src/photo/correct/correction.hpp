@@ -1,6 +1,7 @@
 // Correcting and writing pictures: the part shared by all commands that do so.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,8 +11,8 @@
 #include "photo/base/events.hpp"
 #include "photo/base/library.hpp"
 #include "photo/correct/lookup_report.hpp"
-#include "photo/pictures/contact_sheet.hpp"
 #include "photo/pictures/metadata.hpp"
+#include "photo/pictures/picture.hpp"
 #include "photo/report/report.hpp"
 
 namespace lensprof {
@@ -87,13 +88,22 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
 // mark is refused too, unless `replaces_unmarked` and it is in another folder than its source.
 void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind, bool replaces_unmarked);
 
-// Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are
+// Receives small copies of the pictures, made while they are corrected.
+struct CopySink {
+    uint32_t side;  // the longer one, px, or less for smaller pictures
+
+    // 8 bit RGB without gaps, rotated as stored; empty if the picture was not corrected. Threads: several call it, for
+    // different jobs.
+    std::function<void(uint32_t job, Picture before, Picture after)> put;
+};
+
+// Corrects and writes all pictures; `sink` (NULL = none) receives them before and after. Several pictures are
 // processed in parallel, one per thread, each in strips of rows; with at least twice as many threads as pictures,
 // encoding of a picture gets its own thread. The number of threads does not affect the outputs or messages. A picture
 // that cannot be read or corrected does not stop the others (`failed`). Any other failure, such as a full disk, is
 // thrown: pictures before it are written, that picture and those after it are not. Outputs are marked (CorrectionMark),
 // and missing folders are created.
-Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
+Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, const CopySink *sink,
                           Events &events);
 
 }  // namespace lensprof

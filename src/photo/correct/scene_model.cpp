@@ -2,7 +2,6 @@
 #include "photo/scene/exposures.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 namespace lensprof {
@@ -35,26 +34,6 @@ std::vector<lensprof_exposure> joined_exposures(const Scene &scene, const std::v
     for (size_t i = 0; i < all.size(); i++)
         if (!scene.images[i].left_out) joined.push_back(all[i]);
     return joined;
-}
-
-Fitted result_of_scene(const Scene &scene) {
-    Fitted fitted;
-    lensprof_fit_result_init(&fitted.result);
-    fitted.result.vignettings = 1;
-    fitted.reference = scene.reference;
-    for (uint32_t i = 0; i < scene.images.size(); i++) {
-        const auto &model = scene.models[i];
-        lensprof_fit_result of_image{};
-        of_image.images = 1, of_image.vignettings = model->vignettings;
-        std::copy_n(model->vignetting, std::size(of_image.vignetting), of_image.vignetting);
-        of_image.response = model->response[0];
-        fitted.setting_of.push_back(i);
-        fitted.settings.push_back(of_image);
-    }
-    fitted.exposures = relative_to_joined(scene);
-    for (size_t i = 0; i < scene.images.size(); i++)
-        if (scene.images[i].left_out) fitted.exposures[i].ev = NAN;
-    return fitted;
 }
 
 }  // namespace lensprof

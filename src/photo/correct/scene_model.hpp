@@ -4,13 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "photo/calibration/fit.hpp"
 #include "photo/scene/scene.hpp"
 
 namespace lensprof {
-
-// The scene as the result of a fit, for what is drawn of results.
-Fitted result_of_scene(const Scene &scene);
 
 // The response of the reference if the images have several: all outputs are encoded with it so that they look alike.
 // NULL if the images share one response.

@@ -97,7 +97,7 @@ FolderResult calibrate_folder(const FolderOptions &o, Events &events) {
         throw Failure(LENSPROF_ERROR_READ,
                       (inputs.found > 1 ? inputs.label + ": none of the pictures can be read; the first: " : "")
                           + inputs.left_out[0].reason);
-    if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, events);
+    if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, {}, false, events);
     make_folder(o.output);
     lock.acquire();
     try {
@@ -110,6 +110,7 @@ FolderResult calibrate_folder(const FolderOptions &o, Events &events) {
     }
     result.pictures = plan_corrections(o, inputs, result.panoramas);
     write_corrections(o, result.pictures, ledger, events);
+    write_mosaics(result.panoramas, result.pictures, ledger, events);
     write_sheets(o, result.pictures, ledger, events);
     result.summary = summary_json(o, inputs, result.panoramas, result.pictures);
     write_summary(o, result.summary, ledger);

@@ -128,17 +128,26 @@ CorrectedPictures plan_corrections(const FolderOptions &o, const Inputs &inputs,
     return pictures;
 }
 
+// Enough for what is drawn of them: views of a page, cells of a sheet and parts of a mosaic. At most 0.5 GB.
+static uint32_t small_side(size_t pictures) { return pictures <= 24 ? 960 : 500; }
+static constexpr uint32_t most_small_copies = 450;
+
 void write_corrections(const FolderOptions &o, CorrectedPictures &pictures, Ledger &ledger, Events &events) {
     std::vector<Correction> jobs;
-    for (const CorrectedPicture &entry : pictures.list) {
+    std::vector<CorrectedPicture *> of_job;
+    for (CorrectedPicture &entry : pictures.list) {
         if (ledger.is_current(entry.picture->target, entry.key)) continue;
         jobs.push_back(entry.job);
+        of_job.push_back(&entry);
         ledger.begin(entry.picture->target, entry.key);
     }
     ledger.save();
     CorrectionKind kind;
     kind.threads = o.threads;
-    const Corrected corrected = write_corrected(jobs, kind, nullptr, events);
+    const CopySink sink{small_side(jobs.size()), [&](uint32_t i, Picture before, Picture after) {
+                            if (i < most_small_copies) of_job[i]->small = {std::move(before), std::move(after)};
+                        }};
+    const Corrected corrected = write_corrected(jobs, kind, &sink, events);
     std::map<std::string, std::string> damaged;
     for (const FailedPicture &picture : corrected.failed) damaged[picture.file] = picture.failure.what();
     for (const Correction &job : jobs)

@@ -10,6 +10,11 @@
 
 namespace lensprof {
 
+// 8 bit RGB, rotated as stored.
+struct SmallCopies {
+    Picture before, after;
+};
+
 // A picture corrected by this run or an earlier one.
 struct CorrectedPicture {
     const InputPicture *picture;
@@ -17,6 +22,7 @@ struct CorrectedPicture {
     std::optional<double> ev;  // relative to the mean of the panorama, to which it was matched
     std::string key;           // of the copy
     Correction job;
+    SmallCopies small{};  // empty if it was corrected by an earlier run, or not among the first of very many
 };
 
 struct CorrectedPictures {

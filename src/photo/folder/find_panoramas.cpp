@@ -61,6 +61,7 @@ bool has_odd_name(const InputPicture &picture, const std::string &output) {
 Groups register_groups(const FolderOptions &o, const std::vector<const InputPicture *> &given, Events &events) {
     std::vector<std::string> files;
     std::vector<const InputPicture *> all;
+    std::vector<PictureMetadata> metadata;
     Groups groups;
     for (const InputPicture *picture : given) {
         if (has_odd_name(*picture, o.output)) {
@@ -70,9 +71,10 @@ Groups register_groups(const FolderOptions &o, const std::vector<const InputPict
         }
         files.push_back(picture->file);
         all.push_back(picture);
+        metadata.push_back(picture->metadata);
     }
     if (files.empty()) return groups;
-    const Registration found = register_pictures(files, o.one_lens, events);
+    const Registration found = register_pictures(files, metadata, o.one_lens, events);
     for (const auto &[number, reason] : found.unreadable) groups.unreadable[files[number]] = reason;
     for (const CopiedPicture &picture : found.copies)
         groups.copies[files[picture.copy]] =

@@ -9,7 +9,6 @@
 #include "photo/calibration/calibration.hpp"
 #include "photo/calibration/exposure_file.hpp"
 #include "photo/calibration/outcome.hpp"
-#include "photo/calibration/preview.hpp"
 #include "photo/correct/scene_model.hpp"
 #include "photo/folder/attempt.hpp"
 #include "photo/folder/panoramas.hpp"
@@ -190,18 +189,6 @@ bool recall(const FolderOptions &o, Panorama &panorama, Ledger &ledger) {
     return true;
 }
 
-// The mosaic shows the current project, which may have been edited since the fit.
-void draw_preview(Panorama &panorama, Ledger &ledger, Events &events) {
-    const std::string text = read_text(panorama.project, max_text_bytes), key = digest_of_text("preview\n" + text);
-    if (ledger.is_current(panorama.preview, key)) return;
-    ledger.begin(panorama.preview, key);
-    ledger.save();
-    const Scene scene = panorama.corrected_scene();
-    write_preview(panorama.preview, scene, result_of_scene(scene), events);
-    ledger.finish(panorama.preview);
-    ledger.save();
-}
-
 }  // namespace
 
 bool Panorama::is_edited() const { return written != digest_of_text(read_text(project, max_text_bytes)); }
@@ -233,11 +220,6 @@ void fit_panoramas(const FolderOptions &o, Panoramas &panoramas, Ledger &ledger,
         if (!panorama.equalizes()) continue;
         if (panorama.is_edited())
             events.note(panorama.project, "was edited since the fit; its pictures are corrected as it states");
-        const std::string failure = failure_of([&] { draw_preview(panorama, ledger, events); });
-        panorama.summary["preview"] = failure.empty() ? Json(panorama.preview) : Json();
-        if (failure.empty()) continue;
-        ledger.abandon(panorama.preview);
-        panorama.summary["warnings"].push_back(panorama.preview + ": not drawn: " + failure);
     }
 }
 

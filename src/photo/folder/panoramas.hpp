@@ -60,8 +60,7 @@ struct Panoramas {
 // keep their names.
 Panoramas find_panoramas(const FolderOptions &o, const Inputs &inputs, Ledger &ledger, Events &events);
 
-// Fits and stores the panoramas missing from the ledger, writes their projects and their mosaics before and after.
-// Removes projects and mosaics of panoramas that no longer exist.
+// Fits and stores the panoramas missing from the ledger, and writes their projects.
 void fit_panoramas(const FolderOptions &o, Panoramas &panoramas, Ledger &ledger, Events &events);
 
 // Removes projects and mosaics of panoramas that are no more.

@@ -23,18 +23,22 @@ void write_sheet(const std::string &path, const CorrectedPicture *first, size_t 
     ContactSheet sheet(count);
     for_each_parallel(static_cast<uint32_t>(count), "contact sheet", events, [&](uint32_t i) {
         const InputPicture &picture = *first[i].picture;
-        sheet.put(i, {small_copy(picture.file, picture, sheet.side()),
-                      small_copy(picture.target, picture, sheet.side()), picture.name, note_of(first[i])});
+        SmallCopies copies = small_copies(first[i], picture.metadata.orientation, sheet.side());
+        sheet.put(i, {std::move(copies.before), std::move(copies.after), picture.name, note_of(first[i])});
     });
     sheet.write(path);
 }
 
 }  // namespace
 
-Picture small_copy(const std::string &file, const InputPicture &picture, uint32_t side) {
-    Picture copy;
-    failure_of([&] { copy = upright_copy(file, picture.metadata.orientation, side); });
-    return copy;
+SmallCopies small_copies(const CorrectedPicture &picture, uint16_t orientation, uint32_t side) {
+    const SmallCopies &kept = picture.small;
+    if (kept.before.width)
+        return {upright_copy(kept.before, orientation, side), upright_copy(kept.after, orientation, side)};
+    SmallCopies copies;
+    failure_of([&] { copies.before = upright_copy(picture.picture->file, orientation, side); });
+    failure_of([&] { copies.after = upright_copy(picture.picture->target, orientation, side); });
+    return copies;
 }
 
 std::vector<std::string> sheet_names(const FolderOptions &o, size_t pictures) {

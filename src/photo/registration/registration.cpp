@@ -109,12 +109,13 @@ struct RegisteredPicture {
 };
 
 // Metadata and features per picture.
-std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, Events &events) {
+std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files,
+                                        const std::vector<PictureMetadata> &metadata, Events &events) {
     std::vector<RegisteredPicture> pictures(files.size());
     const uint32_t max_features = most_features_of(files.size());
     for_each_parallel(static_cast<uint32_t>(files.size()), "finding features", events, [&](uint32_t i) {
         try {
-            pictures[i].metadata = read_metadata(files[i]);
+            pictures[i].metadata = metadata.empty() ? read_metadata(files[i]) : metadata[i];
             pictures[i].features = find_features(files[i], max_features);
         } catch (const Failure &failure) {
             if (failure.group() != LENSPROF_ERROR_READ) throw;
@@ -290,11 +291,13 @@ void name_single(const Grouping &grouping, const std::vector<uint32_t> &camera_i
     }
 }
 
-Registration registered(const std::vector<std::string> &files, bool as_one, Events &events) {
-    std::vector<RegisteredPicture> pictures = read_all(files, events);
+Registration registered(const std::vector<std::string> &files, const std::vector<PictureMetadata> &metadata,
+                        bool as_one, Events &events) {
+    std::vector<RegisteredPicture> pictures = read_all(files, metadata, events);
     Registration result;
     for (uint32_t i = 0; i < pictures.size(); i++)
         if (!pictures[i].failure.empty()) result.unreadable.emplace_back(i, pictures[i].failure);
+    for (const RegisteredPicture &picture : pictures) result.metadata.push_back(picture.metadata);
     std::vector<PictureLink> links = Overlaps(files, pictures).find(events, result.copies);
     const std::vector<uint32_t> camera_ids = camera_ids_of(files, pictures, as_one);
     const std::vector<uint32_t> components = groups_of(pictures.size(), links);
@@ -322,10 +325,11 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Even
 
 bool can_register() { return true; }
 
-Registration register_pictures(const std::vector<std::string> &files, bool as_one, Events &events) {
+Registration register_pictures(const std::vector<std::string> &files, const std::vector<PictureMetadata> &metadata,
+                               bool as_one, Events &events) {
     cv::setNumThreads(1);  // each of our threads processes one picture
     try {
-        return registered(files, as_one, events);
+        return registered(files, metadata, as_one, events);
     } catch (const cv::Exception &error) {
         if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
         throw Failure(LENSPROF_ERROR_WRITE,

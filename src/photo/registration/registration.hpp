@@ -10,6 +10,7 @@
 #include <lensprof/sample.h>
 
 #include "photo/base/events.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 
@@ -52,8 +53,9 @@ struct CopiedPicture {
 };
 
 struct Registration {
-    std::vector<FoundScene> scenes;  // largest first; stationary cameras last
-    std::vector<uint32_t> isolated;  // pictures that overlap no other,
+    std::vector<PictureMetadata> metadata;  // of every picture
+    std::vector<FoundScene> scenes;         // largest first; stationary cameras last
+    std::vector<uint32_t> isolated;         // pictures that overlap no other,
     // And those that overlap only pictures of other cameras: with a camera whose own pictures do not overlap, or do.
     std::vector<uint32_t> other_camera, disconnected;
     std::vector<std::pair<uint32_t, std::string>> unreadable;  // and the reasons
@@ -64,7 +66,8 @@ struct Registration {
 bool can_register();
 
 // Groups by camera, processing and size, unless `as_one` treats all as one; raw files are never mixed with others.
-// Failure (usage) without OpenCV.
-Registration register_pictures(const std::vector<std::string> &files, bool as_one, Events &events);
+// `metadata` of each file; empty: it is read. Failure (usage) without OpenCV.
+Registration register_pictures(const std::vector<std::string> &files, const std::vector<PictureMetadata> &metadata,
+                               bool as_one, Events &events);
 
 }  // namespace lensprof

@@ -6,7 +6,8 @@ namespace lensprof {
 
 bool can_register() { return false; }
 
-Registration register_pictures(const std::vector<std::string> &files, bool, Events &) {
+Registration register_pictures(const std::vector<std::string> &files, const std::vector<PictureMetadata> &, bool,
+                               Events &) {
     throw Failure(LENSPROF_ERROR_ARGUMENT,
                   (files.empty() ? std::string("pictures") : files[0])
                       + ": this lensprof was built without OpenCV, which is needed to find overlaps; install "

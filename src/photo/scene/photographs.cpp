@@ -155,7 +155,7 @@ Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events) 
     Scene scene;
     scene.left_out = left_out;
     auto clock = std::chrono::steady_clock::now();
-    const Registration found = register_pictures(files, one_lens, events);
+    const Registration found = register_pictures(files, {}, one_lens, events);
     scene.register_s = lap(clock);
     events.clear();
     for (const auto &[number, reason] : found.unreadable) {
@@ -190,6 +190,7 @@ Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events) 
     for (const uint32_t picture : largest.pictures) {
         scene.names.push_back(names[picture]);
         scene.files.push_back(files[picture]);
+        scene.metadata.push_back(found.metadata[picture]);
     }
     set_found(largest, scene);
     return scene;
