@@ -62,6 +62,14 @@ LENSPROF_API int lensprof_camera_project(const lensprof_camera *camera, double l
  * lensprof_camera_project to 1e-9 px. */
 LENSPROF_API int lensprof_camera_unproject(const lensprof_camera *camera, double x, double y, double direction[2]);
 
+/* The two for `count` directions (longitude, latitude of each) and pixels (x, y of each), bit for bit those of the
+ * functions for one. All arrays have 2 * count numbers; the results may be the same array as the input. Both numbers of
+ * a result are NaN where the function for one returns 0. Return how many are not. Nothing else can fail. */
+LENSPROF_API size_t lensprof_camera_project_many(const lensprof_camera *camera, const double *directions, size_t count,
+                                                 double *xy);
+LENSPROF_API size_t lensprof_camera_unproject_many(const lensprof_camera *camera, const double *xy, size_t count,
+                                                   double *directions);
+
 #ifdef __cplusplus
 }
 #endif

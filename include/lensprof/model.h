@@ -74,6 +74,13 @@ LENSPROF_API double lensprof_response_eval(const lensprof_response *response, do
  * dg/db = 1/f'(g(b)), taken in the grid interval that contains b (0 outside [0,1] and where f is flat). */
 LENSPROF_API double lensprof_response_invert(const lensprof_response *response, double b, double *slope);
 
+/* The two for `count` numbers: values[i] = f(x[i]) and irradiances[i] = g(b[i]), bit for bit those of the functions for
+ * one number. The results may be the same array as the input. slopes[count] may be NULL. Nothing can fail. */
+LENSPROF_API void lensprof_response_eval_many(const lensprof_response *response, const double *x, size_t count,
+                                              double *values, double *slopes);
+LENSPROF_API void lensprof_response_invert_many(const lensprof_response *response, const double *b, size_t count,
+                                                double *irradiances, double *slopes);
+
 /* Kinds of cameras, by how they render. The measured responses of a kind replace an unknown response. */
 typedef enum lensprof_camera_kind {
     LENSPROF_CAMERA_ANY = 0,     /* unknown: a mixture of all kinds below and of gamma curves */
@@ -112,10 +119,19 @@ LENSPROF_API double lensprof_half_diagonal(uint32_t width, uint32_t height);
 /* M as a function of r^2, and its derivative dM/d(r^2) if slope is not NULL. dM/dk_n = r^(2n). */
 LENSPROF_API double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope);
 
+/* The same for `count` numbers, bit for bit. `values` may be `r2`; slopes[count] may be NULL. Nothing can fail. */
+LENSPROF_API void lensprof_vignetting_eval_many(const lensprof_vignetting *vignetting, const double *r2, size_t count,
+                                                double *values, double *slopes);
+
 /* r^2 of pixel (x, y) in a frame of width x height pixels. If not NULL, gradient[2] receives
  * d(r^2)/d(center x, center y). */
 LENSPROF_API double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height,
                                            double x, double y, double *gradient);
+
+/* The same for `count` pixels, bit for bit: xy[2 * count] holds x, y of each, r2[count] receives r^2, and
+ * gradients[2 * count], unless NULL, the two derivatives of each. Nothing can fail. */
+LENSPROF_API void lensprof_vignetting_r2_many(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height,
+                                              const double *xy, size_t count, double *r2, double *gradients);
 
 /* LENSPROF_OK if the numbers are finite, |k| <= 1e6, |center| <= 1 in each coordinate, and M >= 0.001 for every r from
  * the centre to the farthest corner (in any frame shape: r <= 1 + |center|). */
@@ -145,6 +161,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_gain_grid_validate(const
  * 0, 1 or 2. Positions beyond the centres of the outermost pixels use the nearest of them. 1 if there is no grid. */
 LENSPROF_API double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, double x,
                                             double y, uint32_t channel);
+
+/* The same for `count` pixels, bit for bit: xy[2 * count] holds x, y of each. Nothing can fail. */
+LENSPROF_API void lensprof_gain_grid_eval_many(const lensprof_gain_grid *grid, uint32_t width, uint32_t height,
+                                               const double *xy, size_t count, uint32_t channel, double *attenuations);
 
 /* Exposure and white balance of one picture. Frozen value struct. */
 typedef struct lensprof_exposure {

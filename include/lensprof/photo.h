@@ -133,15 +133,19 @@ typedef struct lensprof_picture_options {
     uint32_t struct_size;
     uint32_t jpeg_quality;        /* 1..100; 0 = that of `like` if it is a JPEG, else 95 */
     const lensprof_picture *like; /* EXIF, XMP, ICC profile, resolution and compression are taken from it; or NULL */
+    /* Written as EXIF, over that of `like`: exposure time, ISO (rounded), f-number (that of the key if unknown),
+     * captured, and of the key maker, camera, lens, focal length and distance. What is unknown or empty stays. Or NULL.
+     */
+    const lensprof_picture_metadata *metadata;
 } lensprof_picture_options;
 
-/* Without a picture to take them from. */
+/* Without a picture to take them from, and without metadata. */
 static inline void lensprof_picture_options_init(lensprof_picture_options *options) {
     lensprof_init_sized(options, sizeof *options);
 }
 
 /* Writes the file `path` in the format of its name: .png, .jpg, .tif (or .exr, with OpenEXR). `options` may be NULL.
- * ARGUMENT for pixels that the format does not hold. */
+ * ARGUMENT for pixels that the format does not hold, and for metadata that are neither in range nor unknown. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_picture_write(const char *path, const lensprof_image *pixels,
                                                                       const lensprof_picture_options *options,
                                                                       lensprof_error *error);
@@ -270,6 +274,24 @@ LENSPROF_API void lensprof_calibration_destroy(lensprof_calibration *calibration
  * calibration. Its images are those of the scene. */
 LENSPROF_API const lensprof_fit *lensprof_calibration_get_fit(const lensprof_calibration *calibration);
 
+typedef struct lensprof_calibration_info {
+    uint32_t struct_size;
+    uint32_t images;    /* of lensprof_calibration_exposure_at */
+    uint32_t profiles;  /* lens settings, of lensprof_calibration_profile_at; 0 for an opened result */
+    uint32_t findings;  /* of lensprof_calibration_finding_at; 0 for an opened result */
+    uint32_t usable;    /* 1: a fit whose profile may be stored */
+    uint32_t equalizes; /* 1: corrects the pictures, as every opened result does */
+} lensprof_calibration_info;
+
+/* Zero. */
+static inline void lensprof_calibration_info_init(lensprof_calibration_info *info) {
+    lensprof_init_sized(info, sizeof *info);
+}
+
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibration_get_info(const lensprof_calibration *calibration,
+                                                                             lensprof_calibration_info *info,
+                                                                             lensprof_error *error);
+
 /* Exposure of an image relative to the reference, and its standard errors: EV, and of red, green and blue, relative.
  * `errors` has room for 4 values or is NULL; they are NaN if unknown. An image that was left out has an ev of NaN. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibration_exposure_at(const lensprof_calibration *calibration,
@@ -277,14 +299,14 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibration_exposure_at(
                                                                                 lensprof_exposure *exposure,
                                                                                 double *errors, lensprof_error *error);
 
-/* Lens settings, and the profile of one: falloff and response with covariance, key of EXIF, provenance. */
-LENSPROF_API uint32_t lensprof_calibration_count_profiles(const lensprof_calibration *calibration);
+/* The profile of a lens setting: falloff and response with covariance, key of EXIF, provenance. NOT_FOUND if none of
+ * the setting's images agrees with the others. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibration_profile_at(const lensprof_calibration *calibration,
                                                                                uint32_t index,
                                                                                lensprof_profile *profile,
                                                                                lensprof_error *error);
 
-/* Finding `index` on the result, most severe first, with names of files in its text; NOT_FOUND after the last. */
+/* Finding `index` on the result, most severe first, with names of files in its text. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibration_finding_at(const lensprof_calibration *calibration,
                                                                                uint32_t index,
                                                                                lensprof_finding *finding,

@@ -30,3 +30,9 @@ double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, u
     return lp_grid_value(nodes, grid->columns, lp_grid_cell_at(x, width, grid->columns),
                          lp_grid_cell_at(y, height, grid->rows));
 }
+
+void lensprof_gain_grid_eval_many(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, const double *xy,
+                                  size_t count, uint32_t channel, double *attenuations) {
+    for (size_t i = 0; i < count; i++)
+        attenuations[i] = lensprof_gain_grid_eval(grid, width, height, xy[2 * i], xy[2 * i + 1], channel);
+}

@@ -352,3 +352,24 @@ int lensprof_camera_unproject(const lensprof_camera *camera, double x, double y,
     direction[1] = atan2(v[1], hypot(v[0], v[2]));
     return 1;
 }
+
+size_t lensprof_camera_project_many(const lensprof_camera *camera, const double *directions, size_t count, double *xy) {
+    size_t seen = 0;
+    for (size_t i = 0; i < count; i++, directions += 2, xy += 2)
+        if (lensprof_camera_project(camera, directions[0], directions[1], xy))
+            seen++;
+        else
+            xy[0] = xy[1] = NAN;
+    return seen;
+}
+
+size_t lensprof_camera_unproject_many(const lensprof_camera *camera, const double *xy, size_t count,
+                                      double *directions) {
+    size_t seen = 0;
+    for (size_t i = 0; i < count; i++, xy += 2, directions += 2)
+        if (lensprof_camera_unproject(camera, xy[0], xy[1], directions))
+            seen++;
+        else
+            directions[0] = directions[1] = NAN;
+    return seen;
+}

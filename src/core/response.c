@@ -122,6 +122,17 @@ double lensprof_response_invert(const lensprof_response *response, double b, dou
     }
 }
 
+void lensprof_response_eval_many(const lensprof_response *response, const double *x, size_t count, double *values,
+                                 double *slopes) {
+    for (size_t i = 0; i < count; i++) values[i] = lensprof_response_eval(response, x[i], slopes ? slopes + i : NULL);
+}
+
+void lensprof_response_invert_many(const lensprof_response *response, const double *b, size_t count,
+                                   double *irradiances, double *slopes) {
+    for (size_t i = 0; i < count; i++)
+        irradiances[i] = lensprof_response_invert(response, b[i], slopes ? slopes + i : NULL);
+}
+
 double lp_log_irradiance(const double *table, double b, double by_mode[LENSPROF_EMOR_MODES]) {
     double slope, x = lp_curve_invert(table, b, &slope);
     if (x < LEAST_IRRADIANCE) x = LEAST_IRRADIANCE;

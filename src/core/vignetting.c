@@ -17,6 +17,12 @@ double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2
     return 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
 }
 
+void lensprof_vignetting_eval_many(const lensprof_vignetting *vignetting, const double *r2, size_t count,
+                                   double *values, double *slopes) {
+    for (size_t i = 0; i < count; i++)
+        values[i] = lensprof_vignetting_eval(vignetting, r2[i], slopes ? slopes + i : NULL);
+}
+
 double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height, double x,
                               double y, double *gradient) {
     double w = width, h = height;
@@ -28,6 +34,13 @@ double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t wi
         gradient[1] = -2.0 * dy;
     }
     return dx * dx + dy * dy;
+}
+
+void lensprof_vignetting_r2_many(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height,
+                                 const double *xy, size_t count, double *r2, double *gradients) {
+    for (size_t i = 0; i < count; i++)
+        r2[i] = lensprof_vignetting_r2(vignetting, width, height, xy[2 * i], xy[2 * i + 1],
+                                       gradients ? gradients + 2 * i : NULL);
 }
 
 lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetting) {

@@ -164,7 +164,7 @@ def simulate(folder, seed, response, row):
     truth = scorer.read_truth(folder / "truth.json")
     sizes = tools.sizes_of_pto((folder / "pano.pto").read_text())
     images = [lp.FitImage(i, int(w), int(h)) for i, (w, h) in enumerate(sizes)]
-    pairs = lp.points_read((folder / "points.txt").read_bytes())
+    pairs = lp.formats.read_points(folder / "points.txt")
     shutil.rmtree(folder)
     return images, pairs, truth
 

@@ -44,6 +44,14 @@ Held<lensprof_calibration> calibrated(const lensprof_scene *scene) {
     return Held<lensprof_calibration>(calibration);
 }
 
+lensprof_calibration_info info_of(const lensprof_calibration *calibration) {
+    lensprof_calibration_info info;
+    lensprof_calibration_info_init(&info);
+    lensprof_error error{};
+    must_be_ok(lensprof_calibration_get_info(calibration, &info, &error), error);
+    return info;
+}
+
 Held<lensprof_picture> open_picture(const std::string &path) {
     lensprof_picture *picture = nullptr;
     lensprof_error error{};
@@ -98,15 +106,19 @@ void test_as_build(void **) {
         assert_true(exposure.ev == image["ev"].get<double>());
         assert_true(errors[0] == image["ev_sigma"].get<double>());
     }
-    for (uint32_t i = 0; i < built["findings"].size(); i++) {
+    const uint32_t findings = info_of(calibration.get()).findings;
+    assert_int_equal(findings, built["findings"].size());
+    assert_int_equal(info_of(calibration.get()).images, built["images"].size());
+    for (uint32_t i = 0; i < findings; i++) {
         lensprof_finding finding;
         lensprof_finding_init(&finding);
         must_be_ok(lensprof_calibration_finding_at(calibration.get(), i, &finding, &error), error);
         assert_string_equal(finding.text, built["findings"][i]["text"].get<std::string>().c_str());
     }
-    assert_int_equal(
-        lensprof_calibration_finding_at(calibration.get(), uint32_t(built["findings"].size()), nullptr, &error),
-        LENSPROF_ERROR_ARGUMENT);
+    lensprof_finding none;
+    lensprof_finding_init(&none);
+    assert_int_equal(lensprof_calibration_finding_at(calibration.get(), findings, &none, &error),
+                     LENSPROF_ERROR_ARGUMENT);
 }
 
 void test_scene(void **) {
@@ -156,12 +168,15 @@ void test_saved(void **) {
     assert_true(a.pixels == b.pixels);
     assert_true(a.pixels != read_picture(source).pixels);
     assert_null(lensprof_calibration_get_fit(opened));
-    assert_int_equal(lensprof_calibration_count_profiles(opened), 0);
+    const lensprof_calibration_info info = info_of(opened), whole = info_of(calibration.get());
+    assert_int_equal(info.images, whole.images);
+    assert_true(info.equalizes && whole.equalizes && whole.usable && !info.usable);
+    assert_int_equal(info.profiles + info.findings, 0);
 }
 
 void test_profiles(void **) {
     const auto calibration = calibrated(open_scene(photos()).get());
-    assert_int_equal(lensprof_calibration_count_profiles(calibration.get()), 1);
+    assert_int_equal(info_of(calibration.get()).profiles, 1);
     lensprof_profile profile;
     lensprof_profile_init(&profile);
     lensprof_error error{};
@@ -206,6 +221,35 @@ void test_pictures(void **) {
     assert_status(LENSPROF_ERROR_CAPACITY, "are needed", [&](lensprof_error *why) {
         return lensprof_picture_encode(".png", &view, nullptr, encoded.data(), 10, &count, why);
     });
+}
+
+// What is given replaces that of the other picture in EXIF; the rest of it stays.
+void test_metadata(void **) {
+    const auto like = open_picture(photos("img000.png"));
+    lensprof_picture_metadata metadata, read;
+    lensprof_picture_metadata_init(&metadata), lensprof_picture_metadata_init(&read);
+    metadata.exposure_time_s = 0.008, metadata.iso = 102400, metadata.f_number = 4.0;
+    std::snprintf(metadata.captured, sizeof metadata.captured, "2024:05:01 12:30:15.25");
+    lensprof_picture_options options;
+    lensprof_picture_options_init(&options);
+    options.like = like.get(), options.metadata = &metadata;
+    const Picture all = read_all(like.get());
+    const lensprof_image view = all.view();
+    lensprof_error error{};
+    must_be_ok(lensprof_picture_write(work("exif.jpg").c_str(), &view, &options, &error), error);
+    must_be_ok(lensprof_picture_get_metadata(open_picture(work("exif.jpg")).get(), &read, &error), error);
+    assert_true(read.exposure_time_s == 0.008 && read.iso == 102400 && read.f_number == 4.0);
+    assert_string_equal(read.captured, metadata.captured);
+    assert_string_equal(read.key.lens, "Simulated Lens");
+    metadata.f_number = 0.0;
+    assert_status(LENSPROF_ERROR_ARGUMENT, "f_number", [&](lensprof_error *why) {
+        return lensprof_picture_write(work("bad.jpg").c_str(), &view, &options, why);
+    });
+    metadata.f_number = 4.0, metadata.struct_size = 8;
+    assert_status(LENSPROF_ERROR_STRUCT_SIZE, "metadata", [&](lensprof_error *why) {
+        return lensprof_picture_write(work("bad.jpg").c_str(), &view, &options, why);
+    });
+    assert_false(std::filesystem::exists(work("bad.jpg")));
 }
 
 void test_bad_pictures(void **) {
@@ -377,7 +421,7 @@ int main() {
     const struct CMUnitTest tests[] = {
         CLI_TEST(test_as_build),  CLI_TEST(test_scene),        CLI_TEST(test_saved),      CLI_TEST(test_profiles),
         CLI_TEST(test_pictures),  CLI_TEST(test_bad_pictures), CLI_TEST(test_bad_scenes), CLI_TEST(test_bad_copies),
-        CLI_TEST(test_cancelled), CLI_TEST(test_folder),
+        CLI_TEST(test_cancelled), CLI_TEST(test_folder),       CLI_TEST(test_metadata),
     };
     return cmocka_run_group_tests(tests, make_photos, remove_folder);
 }

@@ -618,6 +618,7 @@ static void print_structs(void) {
     FIELD(lensprof_picture_options, struct_size);
     FIELD(lensprof_picture_options, jpeg_quality);
     FIELD(lensprof_picture_options, like);
+    FIELD(lensprof_picture_options, metadata);
     STRUCT(lensprof_scene_options);
     FIELD(lensprof_scene_options, struct_size);
     FIELD(lensprof_scene_options, one_lens);
@@ -648,6 +649,13 @@ static void print_structs(void) {
     FIELD(lensprof_calibrate_options, databases);
     FIELD(lensprof_calibrate_options, database_count);
     FIELD(lensprof_calibrate_options, reserved);
+    STRUCT(lensprof_calibration_info);
+    FIELD(lensprof_calibration_info, struct_size);
+    FIELD(lensprof_calibration_info, images);
+    FIELD(lensprof_calibration_info, profiles);
+    FIELD(lensprof_calibration_info, findings);
+    FIELD(lensprof_calibration_info, usable);
+    FIELD(lensprof_calibration_info, equalizes);
     STRUCT(lensprof_copy);
     FIELD(lensprof_copy, source);
     FIELD(lensprof_copy, target);

@@ -9,6 +9,7 @@ import pathlib
 import re
 import subprocess
 import unittest
+from enum import IntEnum, IntFlag
 
 from lensprof import _abi, _library
 
@@ -84,8 +85,10 @@ class Tables(unittest.TestCase):
 
     def test_every_function_has_a_pythonic_face(self):
         sources = "".join(path.read_text() for path in PACKAGE.glob("*.py") if path.name != "_abi.py")
-        others = {"lensprof_correct",  # lensprof.correct makes a plan, which has more options
-                  "lensprof_fit_bytes", "lensprof_flat_bytes"}  # the library allocates
+        # one call for arrays is for numbers, too
+        others = {name for name in _abi.FUNCTIONS if f"{name}_many" in _abi.FUNCTIONS}
+        others |= {"lensprof_correct",  # lensprof.correct makes a plan, which has more options
+                   "lensprof_fit_bytes", "lensprof_flat_bytes"}  # the library allocates
         for name in set(_abi.FUNCTIONS) - {name for name, _ in _abi.INITS.values()} - others:
             self.assertRegex(sources, rf"lib(rary)?\.{name}\b")
 
@@ -103,8 +106,11 @@ class Tables(unittest.TestCase):
         self.assertEqual(sorted(lensprof.__all__), lensprof.__all__)
         for name in lensprof.__all__:
             self.assertTrue(hasattr(lensprof, name), name)
+        formats = lensprof.formats.__all__
+        self.assertEqual(sorted(formats), formats)
         for enum in _abi.ENUMS.values():
-            self.assertIn(enum.__name__, lensprof.__all__)
+            self.assertTrue((enum.__name__ in lensprof.__all__) != (enum.__name__ in formats), enum)
+            self.assertTrue(issubclass(enum, (IntEnum, IntFlag)))
 
 
 if __name__ == "__main__":

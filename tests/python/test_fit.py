@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import unittest
+from datetime import datetime, timezone
 import weakref
 
 import numpy as np
@@ -71,12 +72,13 @@ class WholeWay(unittest.TestCase):
         self.assertLess(overlap_rms(after), 1)
 
     def test_profile(self):
-        profile = self.result.profile(lp.ProfileKey(lens="test"), source="a.pto", created_unix_s=5)
+        profile = self.result.profile(lp.ProfileKey(lens="test"), source="a.pto", created=datetime.fromtimestamp(5, timezone.utc))
         profile.validate()
         self.assertEqual((profile.response, profile.vignetting), ((self.result.response,), self.result.vignetting))
         np.testing.assert_array_equal(profile.covariance, self.result.covariance)
         self.assertEqual(profile.provenance, lp.Provenance(
-            method="transfer", software=f"lensprof {lp.version()}", source="a.pto", created_unix_s=5, images=3,
+            method="transfer", software=f"lensprof {lp.version()}", source="a.pto",
+            created=datetime.fromtimestamp(5, timezone.utc), images=3,
             pairs=self.result.pairs, heldout_rms=self.result.heldout_rms, inlier_share=self.result.inlier_share,
             gamma_sigma=self.result.gamma_sigma))
 

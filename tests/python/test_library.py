@@ -75,7 +75,7 @@ class Errors(unittest.TestCase):
 
     def test_text_of_the_library_or_of_the_call(self):
         with refused(self, lp.Status.ERROR_SYNTAX) as caught:
-            lp.points_read("0 1 nonsense")
+            lp.formats.read_points(b"0 1 nonsense")
         self.assertIn("line 1", caught.exception.text)
         self.assertIn("LENSPROF_ERROR_SYNTAX", str(caught.exception))
         with refused(self, lp.Status.ERROR_RESPONSE) as caught:

@@ -1,5 +1,6 @@
 """Responses, falloffs, exposures and cameras compared with their formulas in NumPy."""
 import copy
+import ctypes
 import gc
 import math
 import pickle
@@ -8,6 +9,7 @@ import unittest
 import numpy as np
 
 import lensprof as lp
+from lensprof._library import lib
 from support import refused
 
 
@@ -26,6 +28,30 @@ class Responses(unittest.TestCase):
         response = lp.Response.from_gamma(2)
         np.testing.assert_array_equal(response.eval([-1, 2]), [0, 1])
         np.testing.assert_array_equal(response.eval_slope([-1, 2]), [0, 0])
+
+    def test_arrays_are_bit_for_bit_the_numbers(self):
+        """One call for an array gives what a call of the scalar function gives for each number."""
+        random = np.random.default_rng(1)
+        numbers = random.uniform(-0.2, 1.3, (7, 30))
+        numbers[0, :5] = (np.nan, np.inf, -np.inf, 0.0, 1.0)
+        slope = ctypes.c_double()
+        falloff = lp.Vignetting(k=(-0.3, 0.05, -0.1), center=(0.02, -0.01))
+        curves = [lp.Response(), lp.Response.from_gamma(2.2), lp.Response.from_emor([0.5, -0.2]),
+                  lp.Response.from_table([0, 0.5, 0.5, 1])]
+        cases = [(lib.lensprof_vignetting_eval, falloff, falloff.eval, falloff.eval_slope)]
+        for curve in curves:
+            cases += [(lib.lensprof_response_eval, curve, curve.eval, curve.eval_slope),
+                      (lib.lensprof_response_invert, curve, curve.invert, curve.invert_slope)]
+        for scalar, this, value_of, slope_of in cases:
+            expected = [(scalar(ctypes.byref(this), x, ctypes.byref(slope)), slope.value) for x in numbers.ravel()]
+            for given in (numbers, numbers.T.copy().T, np.repeat(numbers, 2, axis=1)[:, ::2], numbers.tolist()):
+                self.assertEqual(value_of(given).shape, (7, 30))
+                self.assertEqual(value_of(given).tobytes(), np.array(expected)[:, 0].tobytes())
+                self.assertEqual(slope_of(given).tobytes(), np.array(expected)[:, 1].tobytes())
+            self.assertEqual(value_of(numbers[:0]).shape, (0, 30))
+            for one in (0.25, np.float32(0.25), np.array(0.25)):
+                self.assertIs(type(value_of(one)), float)
+                self.assertEqual(value_of(one), scalar(ctypes.byref(this), 0.25, None))
 
     def test_linear_is_the_default(self):
         response = lp.Response()
@@ -239,6 +265,39 @@ class Cameras(unittest.TestCase):
         self.assertEqual(directions.shape, x.shape + (2,))
         np.testing.assert_allclose(camera.project(directions[..., 0], directions[..., 1]), np.stack([x, y], axis=-1),
                                    atol=1e-8)
+
+    def test_arrays_are_bit_for_bit_the_numbers(self):
+        camera = lp.Camera(width=400, height=300, hfov_deg=50, yaw_deg=20, radial=(0.01, -0.02, 0))
+        falloff, grid = lp.Vignetting(k=(-0.3, 0, 0), center=(0.1, 0)), lp.GainGrid([[1, 0.9, 0.8], [0.7, 0.6, 0.5]])
+        random, two = np.random.default_rng(2), (ctypes.c_double * 2)()
+        across, down = random.uniform(-3, 3, (9, 1)), random.uniform(-1.5, 1.5, (2, 1, 8))
+        across[0], down[0, 0, 0] = np.nan, np.inf
+
+        def each(call):
+            return np.array([call(x, y) for x, y in zip(*(a.ravel() for a in np.broadcast_arrays(across, down)))])
+
+        def mapped(function):
+            return lambda x, y: tuple(two) if function(ctypes.byref(camera), x, y, two) else (np.nan, np.nan)
+
+        def gradient(x, y):
+            lib.lensprof_vignetting_r2(ctypes.byref(falloff), 400, 300, x, y, two)
+            return tuple(two)
+        for found, expected in (
+                (camera.project(across, down), each(mapped(lib.lensprof_camera_project))),
+                (camera.unproject(across, down), each(mapped(lib.lensprof_camera_unproject))),
+                (falloff.r2_gradient(400, 300, across, down), each(gradient))):
+            self.assertEqual(found.shape, (2, 9, 8, 2))
+            np.testing.assert_array_equal(found.reshape(-1, 2), expected)
+        for found, expected in (
+                (falloff.r2(400, 300, across, down),
+                 each(lambda x, y: lib.lensprof_vignetting_r2(ctypes.byref(falloff), 400, 300, x, y, None))),
+                (grid.eval(400, 300, across, down, 2),
+                 each(lambda x, y: lib.lensprof_gain_grid_eval(ctypes.byref(grid), 400, 300, x, y, 2)))):
+            self.assertEqual(found.shape, (2, 9, 8))
+            np.testing.assert_array_equal(found.ravel(), expected)
+        self.assertIs(type(falloff.r2(400, 300, 5, 6.0)), float)
+        with self.assertRaises(ValueError):
+            camera.project(np.zeros(2), np.zeros(3))
 
     def test_broadcast_and_unseen(self):
         camera = lp.Camera(width=400, height=300, hfov_deg=50)

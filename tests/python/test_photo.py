@@ -7,6 +7,7 @@ import sys
 import tempfile
 import unittest
 import warnings
+from datetime import datetime
 
 import numpy as np
 
@@ -56,6 +57,30 @@ class TestPictures(WithScene):
         encoded = lp.encode_picture(".png", picture.pixels)
         np.testing.assert_array_equal(lp.read_picture(encoded).pixels, picture.pixels)
         self.assertLess(len(lp.encode_picture(".jpg", picture.pixels, jpeg_quality=30)), len(encoded))
+
+    def test_metadata(self):
+        key = lp.ProfileKey(camera_maker="Acme", camera_model="One", lens="A 50 mm", focal_mm=50, distance_m=2.5)
+        taken = datetime(2024, 5, 1, 12, 30, 15, 250000)
+        given = lp.PictureMetadata(key=key, exposure_time_s=1 / 60, iso=204800, f_number=2.8, captured=taken)
+        pixels = np.zeros((20, 30, 3), np.uint8)
+        for name in ("e.png", "e.jpg", "e.tif"):
+            lp.write_picture(self.folder / name, pixels, metadata=given)
+            read = lp.read_picture(self.folder / name).metadata
+            self.assertEqual((read.exposure_time_s, read.iso, read.f_number, read.captured), (1 / 60, 204800, 2.8, taken))
+            self.assertEqual((read.key.camera_maker, read.key.camera_model, read.key.lens, read.key.focal_mm,
+                              read.key.aperture, read.key.distance_m), ("Acme", "One", "A 50 mm", 50, 2.8, 2.5))
+            self.assertAlmostEqual(read.ev, np.log2(2048 / 60 / 2.8**2), places=12)
+            self.assertIs(read.is_corrected, False)
+        like = lp.read_picture(self.folder / "e.jpg")  # what is not given stays
+        encoded = lp.encode_picture(".png", pixels, like=like, metadata=lp.PictureMetadata(iso=100))
+        read = lp.read_picture(encoded).metadata
+        self.assertEqual((read.iso, read.exposure_time_s, read.key.lens), (100, 1 / 60, "A 50 mm"))
+        self.assertIsNone(lp.read_picture(lp.encode_picture(".png", pixels)).metadata.captured)
+        for wrong in ({"exposure_time_s": 0}, {"exposure_time_s": np.nan}, {"iso": -5}, {"f_number": np.inf},
+                      {"key": lp.ProfileKey(focal_mm=-3)}):
+            with self.assertRaises(lp.Error) as caught:
+                lp.encode_picture(".png", pixels, metadata=lp.PictureMetadata(**wrong))
+            self.assertIs(caught.exception.status, lp.Status.ERROR_ARGUMENT, wrong)
 
     def test_refused(self):
         for source, status in ((self.folder / "missing.png", lp.Status.ERROR_READ), (b"GIF89a", lp.Status.ERROR_READ),
@@ -124,8 +149,41 @@ class TestCalibration(WithScene):
         calibration = lp.calibrate(frames, names=["a", "b", "c", "d"])
         self.assertEqual(list(calibration.exposures["name"]), ["a", "b", "c", "d"])
         self.assertTrue(calibration.equalizes)
-        with self.assertRaises(ValueError):
-            lp.calibrate([np.zeros((8, 8), np.uint8)], names=["../a"])
+        frame = np.zeros((8, 8), np.uint8)
+        for given in ({"names": ["../a"]}, {"names": ["a", "a"]}, {"times": [1.0]}, {"times": [1.0] * 3}, {"metadata": []}):
+            with self.assertRaises(ValueError):
+                lp.calibrate(iter([frame, frame]), **given)
+        with self.assertRaises(TypeError):
+            lp.calibrate(self.photos, times=[1.0])
+
+    def test_arrays_with_exposures(self):
+        """Arrays with what the EXIF of files states have the result of the files; the order is that of the arrays."""
+        photos = self.folder / "exif"
+        run("simulate", "-o", photos, "--exif")
+        pictures = [lp.read_picture(file) for file in sorted(photos.glob("*.png"), reverse=True)]
+        names = [file.stem for file in sorted(photos.glob("*.png"), reverse=True)]
+        metadata = [picture.metadata for picture in pictures]
+        options = {"use_stored": False, "max_side": 400}
+
+        def by_name(calibration):
+            rows = calibration.exposures[np.argsort(calibration.exposures["name"])]
+            return np.column_stack([rows["ev"], rows["ev_sigma"], rows["white_balance"]])
+
+        whole = lp.calibrate(sorted(photos.glob("*.png"), reverse=True), **options)
+        arrays = lp.calibrate((picture.pixels for picture in pictures), names=names, metadata=metadata, **options)
+        self.assertEqual(list(arrays.exposures["name"]), names)
+        np.testing.assert_array_equal(by_name(arrays), by_name(whole))
+        self.assertEqual(arrays.result.gamma_from, lp.GammaFrom.EXPOSURES)
+        self.assertEqual(arrays.result.gamma_sigma, whole.result.gamma_sigma)
+        self.assertEqual(arrays.profiles[0].key, whole.profiles[0].key)
+        # the exposures as times, at one ISO and f-number that nothing states
+        times = [2.0**m.ev for m in metadata]
+        timed = lp.calibrate([picture.pixels for picture in pictures], times=times, **options)
+        self.assertEqual(timed.result.gamma_from, lp.GammaFrom.EXPOSURES)
+        np.testing.assert_allclose(timed.exposures["ev"], arrays.exposures["ev"], atol=0.02)
+        bare = lp.calibrate([picture.pixels for picture in pictures], **options)
+        self.assertNotEqual(bare.result.gamma_from, lp.GammaFrom.EXPOSURES)
+        self.assertGreater(bare.result.gamma_sigma, 2 * timed.result.gamma_sigma)
 
     def test_folder(self):
         out = self.folder / "out"

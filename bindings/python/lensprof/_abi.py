@@ -6,9 +6,18 @@ of those in C; users see subclasses of them in the modules by topic.
 """
 from __future__ import annotations
 
-from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64,
-                    c_size_t, c_ssize_t, c_uint32, c_uint64, c_uint8, c_void_p)
+import typing
+from ctypes import (CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64, c_size_t,
+                    c_ssize_t, c_uint32, c_uint64, c_uint8, c_void_p)
 from enum import IntEnum, IntFlag
+
+if typing.TYPE_CHECKING:
+    from ctypes import _CData
+
+    class Structure(_CData):
+        """The classes that users see declare their fields."""
+else:
+    from ctypes import Structure
 
 VERSION = "0.3.0"  # of the headers
 
@@ -1293,6 +1302,7 @@ class PictureOptions(Structure):
         ("struct_size", c_uint32),
         ("jpeg_quality", c_uint32),
         ("like", POINTER(Picture)),
+        ("metadata", POINTER(PictureMetadata)),
     ]
 
 
@@ -1343,6 +1353,17 @@ class CalibrateOptions(Structure):
         ("databases", POINTER(c_char_p)),
         ("database_count", c_uint32),
         ("reserved", c_uint32),
+    ]
+
+
+class CalibrationInfo(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("images", c_uint32),
+        ("profiles", c_uint32),
+        ("findings", c_uint32),
+        ("usable", c_uint32),
+        ("equalizes", c_uint32),
     ]
 
 
@@ -1487,6 +1508,7 @@ STRUCTS = {
     "lensprof_scene_options": SceneOptions,
     "lensprof_scene_info": SceneInfo,
     "lensprof_calibrate_options": CalibrateOptions,
+    "lensprof_calibration_info": CalibrationInfo,
     "lensprof_copy": Copy,
     "lensprof_correct_options": CorrectOptions,
     "lensprof_folder_options": FolderOptions,
@@ -1549,6 +1571,7 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     SceneOptions: ("lensprof_init_sized", [SceneOptions]),
     SceneInfo: ("lensprof_init_sized", [SceneInfo]),
     CalibrateOptions: ("lensprof_calibrate_options_init_sized", [CalibrateOptions]),
+    CalibrationInfo: ("lensprof_init_sized", [CalibrationInfo]),
     CorrectOptions: ("lensprof_correct_options_init_sized", [CorrectOptions]),
     FolderOptions: ("lensprof_init_sized", [FolderOptions]),
     FolderResult: ("lensprof_init_sized", [FolderResult]),
@@ -1568,16 +1591,26 @@ FUNCTIONS = {
     "lensprof_response_validate": (c_int, [POINTER(Response)]),
     "lensprof_response_eval": (c_double, [POINTER(Response), c_double, POINTER(c_double)]),
     "lensprof_response_invert": (c_double, [POINTER(Response), c_double, POINTER(c_double)]),
+    "lensprof_response_eval_many": (None, [POINTER(Response), POINTER(c_double), c_size_t, POINTER(c_double),
+                                           POINTER(c_double)]),
+    "lensprof_response_invert_many": (None, [POINTER(Response), POINTER(c_double), c_size_t, POINTER(c_double),
+                                             POINTER(c_double)]),
     "lensprof_response_set_typical": (c_int, [POINTER(Response), c_uint32, POINTER(c_double), POINTER(c_double)]),
     "lensprof_emor_table": (POINTER(c_double), [c_uint32]),
     "lensprof_half_diagonal": (c_double, [c_uint32, c_uint32]),
     "lensprof_vignetting_eval": (c_double, [POINTER(Vignetting), c_double, POINTER(c_double)]),
+    "lensprof_vignetting_eval_many": (None, [POINTER(Vignetting), POINTER(c_double), c_size_t, POINTER(c_double),
+                                             POINTER(c_double)]),
     "lensprof_vignetting_r2": (c_double, [POINTER(Vignetting), c_uint32, c_uint32, c_double, c_double,
                                           POINTER(c_double)]),
+    "lensprof_vignetting_r2_many": (None, [POINTER(Vignetting), c_uint32, c_uint32, POINTER(c_double), c_size_t,
+                                           POINTER(c_double), POINTER(c_double)]),
     "lensprof_vignetting_validate": (c_int, [POINTER(Vignetting)]),
     "lensprof_gain_grid_init": (None, [POINTER(GainGrid)]),
     "lensprof_gain_grid_validate": (c_int, [POINTER(GainGrid)]),
     "lensprof_gain_grid_eval": (c_double, [POINTER(GainGrid), c_uint32, c_uint32, c_double, c_double, c_uint32]),
+    "lensprof_gain_grid_eval_many": (None, [POINTER(GainGrid), c_uint32, c_uint32, POINTER(c_double), c_size_t,
+                                            c_uint32, POINTER(c_double)]),
     "lensprof_exposure_init": (None, [POINTER(Exposure)]),
     "lensprof_exposure_validate": (c_int, [POINTER(Exposure)]),
     # profile.h
@@ -1612,6 +1645,8 @@ FUNCTIONS = {
     "lensprof_camera_validate": (c_int, [POINTER(Camera)]),
     "lensprof_camera_project": (c_int, [POINTER(Camera), c_double, c_double, POINTER(c_double)]),
     "lensprof_camera_unproject": (c_int, [POINTER(Camera), c_double, c_double, POINTER(c_double)]),
+    "lensprof_camera_project_many": (c_size_t, [POINTER(Camera), POINTER(c_double), c_size_t, POINTER(c_double)]),
+    "lensprof_camera_unproject_many": (c_size_t, [POINTER(Camera), POINTER(c_double), c_size_t, POINTER(c_double)]),
     # sample.h
     "lensprof_sample_image_init_sized": (None, [POINTER(SampleImage), c_size_t]),
     "lensprof_sample_options_init_sized": (None, [POINTER(SampleOptions), c_size_t]),
@@ -1762,9 +1797,9 @@ PHOTO_FUNCTIONS = {
     "lensprof_calibration_open": (c_int, [c_char_p, c_char_p, POINTER(POINTER(Calibration)), POINTER(ErrorText)]),
     "lensprof_calibration_destroy": (None, [POINTER(Calibration)]),
     "lensprof_calibration_get_fit": (POINTER(Fit), [POINTER(Calibration)]),
+    "lensprof_calibration_get_info": (c_int, [POINTER(Calibration), POINTER(CalibrationInfo), POINTER(ErrorText)]),
     "lensprof_calibration_exposure_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Exposure), POINTER(c_double),
                                                  POINTER(ErrorText)]),
-    "lensprof_calibration_count_profiles": (c_uint32, [POINTER(Calibration)]),
     "lensprof_calibration_profile_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Profile), POINTER(ErrorText)]),
     "lensprof_calibration_finding_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Finding), POINTER(ErrorText)]),
     "lensprof_calibration_store": (c_int, [POINTER(Calibration), c_char_p, POINTER(c_uint32), POINTER(ErrorText)]),

@@ -11,10 +11,11 @@ from . import _abi
 from ._abi import Layout, SampleType
 from ._library import check, lib
 from ._struct import integer
+from ._types import Pixels, Records
 from .model import Exposure
 
 
-def _dtype(kind: type) -> np.dtype:
+def _dtype(kind: type) -> np.dtype[Any]:
     """The structure's layout. NumPy's own conversion, but with xy a 2 x 2 array instead of 2 arrays of 2."""
     one: Any = np.zeros((), dtype=np.dtype(kind))
     names = list(one.dtype.names)
@@ -52,7 +53,7 @@ _SAMPLE_TYPES = {np.dtype(np.uint8): SampleType.U8, np.dtype(np.uint16): SampleT
 _LAYOUTS = {1: Layout.GREY, 2: Layout.GREY_ALPHA, 3: Layout.RGB, 4: Layout.RGBA}
 
 
-def address(array: np.ndarray, kind: type) -> Any:
+def address(array: Pixels, kind: type) -> Any:
     """Pointer to the array's first element; the caller keeps the array alive."""
     return ctypes.cast(array.ctypes.data, ctypes.POINTER(kind))
 
@@ -71,7 +72,7 @@ def sample_dtype(kind: SampleType) -> Any:
     return next(dtype for dtype, sample in _SAMPLE_TYPES.items() if sample == kind)
 
 
-def layout_of(array: np.ndarray, layout: Optional[Layout] = None) -> Layout:
+def layout_of(array: Pixels, layout: Optional[Layout] = None) -> Layout:
     """Layout of a picture of shape (height, width) or (height, width, samples): RGB order by default."""
     if array.ndim not in (2, 3):
         raise ValueError(f"a picture has the shape (height, width) or (height, width, samples), not {array.shape}")
@@ -86,11 +87,11 @@ def layout_of(array: np.ndarray, layout: Optional[Layout] = None) -> Layout:
     return Layout(layout)
 
 
-def _form(array: np.ndarray) -> str:
+def _form(array: Pixels) -> str:
     return f"shape {array.shape} and strides {array.strides}"
 
 
-def _row_bytes(array: np.ndarray, writable: bool, what: str) -> int:
+def _row_bytes(array: Pixels, writable: bool, what: str) -> int:
     """Byte distance of rows; refuses arrays whose pixels of a row are not side by side.
 
     NumPy gives axes of length 0 or 1 any stride.
@@ -106,30 +107,31 @@ def _row_bytes(array: np.ndarray, writable: bool, what: str) -> int:
     return array.strides[0] if array.shape[0] > 1 else step
 
 
-def _checked(array: Any, what: str) -> np.ndarray:
+def _checked(array: Any, what: str) -> Pixels:
     if not isinstance(array, np.ndarray):
         raise TypeError(f"{what} must be a numpy.ndarray, not {type(array).__name__}")
     return array
 
 
-def image(array: np.ndarray, layout: Optional[Layout] = None, what: str = "picture", *,
-          writable: bool = False) -> _abi.Image:
+def image(array: Pixels, layout: Optional[Layout] = None, what: str = "picture", *,
+          writable: bool = False) -> Any:
     """A view on a picture, which may be read-only; the caller keeps the array alive."""
     _checked(array, what)
     sample, layout = sample_type(array.dtype), layout_of(array, layout)
     height, width = (integer(side, f"side of the {what}") for side in array.shape[:2])
-    view = _abi.Image(array.ctypes.data, _row_bytes(array, writable, what), width, height, sample, layout)
+    raw: Any = _abi.Image
+    view = raw(array.ctypes.data, _row_bytes(array, writable, what), width, height, sample, layout)
     check(lib.lensprof_image_validate(ctypes.byref(view)),
           f"{what} of {_form(array)}: sizes must be 1..1048576, samples aligned, rows apart")
     return view
 
 
-def target(array: np.ndarray, layout: Optional[Layout] = None, what: str = "out") -> _abi.Target:
+def target(array: Pixels, layout: Optional[Layout] = None, what: str = "out") -> Any:
     """The same on a picture to be written."""
     return _abi.Target.from_buffer_copy(image(array, layout, what, writable=True))
 
 
-def mask(array: np.ndarray, shape: tuple[int, ...], writable: bool = False) -> tuple[Any, int]:
+def mask(array: Pixels, shape: tuple[int, ...], writable: bool = False) -> tuple[Any, int]:
     """Pointer and row bytes of a mask: uint8 or bool of the given (height, width)."""
     if _checked(array, "mask").dtype not in (np.dtype(np.uint8), np.dtype(np.bool_)):
         raise TypeError(f"a mask of type {array.dtype} is not supported; give uint8 or bool")
@@ -138,7 +140,7 @@ def mask(array: np.ndarray, shape: tuple[int, ...], writable: bool = False) -> t
     return address(array, ctypes.c_uint8), _row_bytes(array, writable, "mask")
 
 
-def structured(array: np.ndarray, dtype: np.dtype, kind: type, what: str) -> tuple[Any, int]:
+def structured(array: Records, dtype: np.dtype[Any], kind: type, what: str) -> tuple[Any, int]:
     """Pointer and length of a one-dimensional structured array."""
     if _checked(array, what).dtype != dtype:
         raise TypeError(f"{what} must be an array of dtype {dtype}, not {array.dtype}")
@@ -147,27 +149,27 @@ def structured(array: np.ndarray, dtype: np.dtype, kind: type, what: str) -> tup
     return address(array, kind), integer(len(array), f"number of {what}")
 
 
-def pairs(array: np.ndarray) -> tuple[Any, int]:
+def pairs(array: Records) -> tuple[Any, int]:
     """Pointer and length of an array of PAIR_DTYPE."""
     return structured(array, PAIR_DTYPE, _abi.Pair, "pairs")
 
 
-def observations(array: np.ndarray) -> tuple[Any, int]:
+def observations(array: Records) -> tuple[Any, int]:
     """Pointer and length of an array of OBSERVATION_DTYPE."""
     return structured(array, OBSERVATION_DTYPE, _abi.Observation, "observations")
 
 
-def matches(array: np.ndarray) -> tuple[Any, int]:
+def matches(array: Records) -> tuple[Any, int]:
     """Pointer and length of an array of MATCH_DTYPE."""
     return structured(array, MATCH_DTYPE, _abi.Match, "matches")
 
 
-def links(array: np.ndarray) -> tuple[Any, int]:
+def links(array: Records) -> tuple[Any, int]:
     """Pointer and length of an array of LINK_DTYPE."""
     return structured(array, LINK_DTYPE, _abi.Link, "links")
 
 
-def exposures(values: Union[np.ndarray, Iterable[Exposure]]) -> np.ndarray:
+def exposures(values: Union[Records, Iterable[Exposure]]) -> Records:
     """An array of EXPOSURE_DTYPE as it is, or Exposure objects gathered in one."""
     if isinstance(values, np.ndarray):
         structured(values, EXPOSURE_DTYPE, _abi.Exposure, "exposures")

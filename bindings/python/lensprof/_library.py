@@ -14,12 +14,12 @@ import pathlib
 import sys
 import threading
 import weakref
-from typing import Any, Callable, Iterator, Optional, Type, TypeVar
+from typing import Any, Callable, Iterator, Optional, TypeVar
 
 from . import _abi
 from ._abi import ItemKind, Status
 
-S = TypeVar("S", bound=ctypes.Structure)
+H = TypeVar("H", bound="Handle")
 
 
 def _file_names(name: str = "lensprof") -> list[str]:
@@ -63,7 +63,7 @@ def _load() -> ctypes.CDLL:
     return library
 
 
-def _declare(library: ctypes.CDLL, functions: dict) -> None:
+def _declare(library: ctypes.CDLL, functions: dict[str, Any]) -> None:
     for name, (restype, argtypes) in functions.items():
         try:
             function = getattr(library, name)
@@ -105,7 +105,7 @@ def initialise(struct: Any) -> None:
             getattr(photo() if name in _abi.PHOTO_FUNCTIONS else lib, name)(ctypes.byref(struct), *map(ctypes.sizeof, sizes))
 
 
-def initialised(kind: Type[S], **fields: object) -> S:
+def initialised(kind: Any, **fields: object) -> Any:
     """A raw structure with its defaults and the given fields."""
     struct = kind()
     initialise(struct)
@@ -142,7 +142,7 @@ class Error(Exception):
         return f"{self.text} ({status_name(self.status)})"
 
 
-def check(status: int, text: str, error: Optional[_abi.ErrorText] = None) -> None:
+def check(status: int, text: str, error: Any = None) -> None:
     """Raises lensprof.Error unless status is OK; `text` is used if the library gives no text."""
     if status != Status.OK:
         if error is None or not error.text:
@@ -157,13 +157,13 @@ class Handle:
     The library allows one thread at a time: calls from several threads wait for each other.
     """
 
-    def __init__(self, pointer, release: Callable[..., None]):
+    def __init__(self, pointer: Any, release: Callable[..., None]):
         self._pointer = pointer
         self._lock = threading.Lock()
         self._release = weakref.finalize(self, release, pointer)
 
     @contextlib.contextmanager
-    def _use(self) -> Iterator[object]:
+    def _use(self) -> Iterator[Any]:
         with self._lock:
             if not self._release.alive:
                 raise ValueError(f"this {type(self).__name__} is closed; open it again")
@@ -174,7 +174,7 @@ class Handle:
         with self._lock:
             self._release()
 
-    def __enter__(self):
+    def __enter__(self: H) -> H:
         return self
 
     def __exit__(self, *exception: object) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 def plot_profile(profile: Any) -> Any:
     """The response, and the relative illuminance from the centre to the corner with its standard error."""
-    from matplotlib.figure import Figure  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    from matplotlib.figure import Figure  # type: ignore[import,unused-ignore]
 
     figure = Figure(figsize=(9, 4), layout="constrained")
     left, right = figure.subplots(1, 2)

@@ -7,29 +7,32 @@ import threading
 from typing import Any, Callable, Iterator, Optional
 
 from . import _abi
+from ._struct import Struct
 
 Function = Callable[[float], Optional[bool]]
 
 
-class WithProgress:
+class ProgressField:
+    """A function or None, which the options keep."""
+
+    def __get__(self, options: Any, owner: Optional[type] = None) -> Optional[Function]:
+        return self if options is None else vars(options).get("progress")  # type: ignore[return-value]
+
+    def __set__(self, options: Any, function: Optional[Function]) -> None:
+        if not (function is None or callable(function)):
+            raise TypeError("progress takes a function or None")
+        vars(options)["progress"] = function
+
+
+class WithProgress(Struct):
     """Options with a field `progress`, called repeatedly with the fraction done (0..1). The call is cancelled if it
     returns True or raises an exception, which then propagates from the call."""
 
-    _progress: Optional[Function] = None
+    progress: ProgressField = ProgressField()
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [name for name in super()._names() if name != "progress_user"]  # type: ignore[misc]
-
-    @property
-    def progress(self) -> Optional[Function]:
-        return self._progress
-
-    @progress.setter
-    def progress(self, function: Optional[Function]) -> None:
-        if not (function is None or callable(function)):
-            raise TypeError("progress takes a function or None")
-        self._progress = function
+        return [name for name in super()._names() if name != "progress_user"]
 
 
 @contextlib.contextmanager

@@ -7,14 +7,25 @@ structures as public classes that share the outer one's memory.
 from __future__ import annotations
 
 import ctypes
+import datetime
 import operator
-from typing import Any, Generic, Iterable, Optional, Type, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Generic, Iterable, Optional, Sequence, Type, TypeVar, Union
 
 import numpy as np
+import numpy.typing as npt
 
 from ._library import initialise
 
+if TYPE_CHECKING:
+    from typing_extensions import dataclass_transform
+else:
+    def dataclass_transform(**_how: bool):
+        return lambda cls: cls
+
 T = TypeVar("T")
+
+default: Any = object()
+"""The library's default, of a field that is a plain number."""
 
 _LIMITS: dict[type, tuple[int, int]] = {ctypes.c_uint32: (0, 2**32 - 1), ctypes.c_int64: (-2**63, 2**63 - 1)}
 
@@ -33,8 +44,13 @@ def _raw(cls: type) -> Any:
     return next(base for base in cls.__mro__ if "_fields_" in vars(base))
 
 
+@dataclass_transform(kw_only_default=True)
 class Struct:
     """Fields are given by name; omitted ones have the library's defaults. Unknown names are errors."""
+
+    def __init_subclass__(cls) -> None:
+        for name in [name for name, value in vars(cls).items() if value is default]:
+            delattr(cls, name)  # the raw structure has the field
 
     def __init__(self, **fields: Any):
         self._set_defaults()
@@ -46,7 +62,9 @@ class Struct:
 
     @classmethod
     def _names(cls: Any) -> list[str]:
-        return [field[0] for field in _raw(cls)._fields_
+        shown = {field.field: name for base in cls.__mro__ for name, field in vars(base).items()
+                 if isinstance(field, _Field)}
+        return [shown.get(field[0], field[0]) for field in _raw(cls)._fields_
                 if field[0] not in ("struct_size", "image_quality_size", "reserved", "reserved2")]
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -84,16 +102,20 @@ class Value(Struct):
 
 
 class _Field:
+    """A field of the raw structure, `field`, which has the same name unless stated."""
+
+    field = ""
+
     def __set_name__(self, owner: type, name: str) -> None:
-        self.name = name
-        self.raw = vars(_raw(owner))[name]
-        self.kind = dict(_raw(owner)._fields_)[name]
+        self.name, self.field = name, self.field or name
+        self.raw = vars(_raw(owner))[self.field]
+        self.kind = dict(_raw(owner)._fields_)[self.field]
 
 
 class Text(_Field):
     """UTF-8 in a char array, as str."""
 
-    def __get__(self, instance: Any, owner: type) -> str:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> str:
         if instance is None:
             return self  # type: ignore[return-value]
         return self.raw.__get__(instance).decode("utf-8", "surrogateescape")
@@ -106,20 +128,57 @@ class Text(_Field):
         ctypes.memmove(place, text.ljust(room, b"\0"), room)  # ctypes would leave the rest of a longer text
 
 
+class Captured(Text):
+    """A date and time as in EXIF, as a datetime without time zone; None if it is unknown."""
+
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> Optional[datetime.datetime]:  # type: ignore[override]
+        if instance is None:
+            return self  # type: ignore[return-value]
+        time, _, fraction = super().__get__(instance).partition(".")
+        try:
+            return datetime.datetime.strptime(f"{time}.{fraction[:6] or 0}", "%Y:%m:%d %H:%M:%S.%f")
+        except ValueError:
+            return None
+
+    def __set__(self, instance: Any, value: Optional[datetime.datetime]) -> None:  # type: ignore[override]
+        super().__set__(instance, "" if value is None else value.strftime("%Y:%m:%d %H:%M:%S.%f"))
+
+
+class UnixTime(_Field):
+    """Seconds since 1970 as a datetime in UTC; None for 0."""
+
+    def __init__(self, field: str):
+        self.field = field
+
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> Optional[datetime.datetime]:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        seconds = self.raw.__get__(instance)
+        return _EPOCH + datetime.timedelta(seconds=seconds) if seconds else None
+
+    def __set__(self, instance: Any, value: Optional[datetime.datetime]) -> None:
+        if value is not None and value.tzinfo is None:
+            raise ValueError(f"{self.name} takes a datetime with a time zone, such as datetime.now(timezone.utc)")
+        self.raw.__set__(instance, 0 if value is None else (value - _EPOCH) // datetime.timedelta(seconds=1))
+
+
+_EPOCH = datetime.datetime(1970, 1, 1, tzinfo=datetime.timezone.utc)
+
+
 class Vector(_Field):
     """A C array of numbers as a NumPy view on the structure's memory."""
 
     def __init__(self, writable: bool = True):
         self.writable = writable
 
-    def __get__(self, instance: Any, owner: type) -> np.ndarray:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> npt.NDArray[Any]:
         if instance is None:
             return self  # type: ignore[return-value]
         view = np.ctypeslib.as_array(self.raw.__get__(instance))
         view.flags.writeable = self.writable
         return view
 
-    def __set__(self, instance: Any, value: Iterable[float]) -> None:
+    def __set__(self, instance: Any, value: Union[Sequence[float], npt.NDArray[Any]]) -> None:
         numbers = np.asarray(value)
         if numbers.shape != (self.kind._length_,):
             raise ValueError(f"{self.name} holds {self.kind._length_} numbers, not an array of shape {numbers.shape}")
@@ -132,7 +191,7 @@ class Enumerated(_Field, Generic[T]):
     def __init__(self, enum: Type[T]):
         self.enum = enum
 
-    def __get__(self, instance: Any, owner: type) -> T:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> T:
         if instance is None:
             return self  # type: ignore[return-value]
         return self.enum(self.raw.__get__(instance))  # type: ignore[call-arg]
@@ -147,7 +206,7 @@ class Nested(_Field, Generic[T]):
     def __init__(self, cls: Type[T]):
         self.cls = cls
 
-    def __get__(self, instance: Any, owner: type) -> T:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> T:
         if instance is None:
             return self  # type: ignore[return-value]
         return self.cls.from_buffer(self.raw.__get__(instance))  # type: ignore[attr-defined]
@@ -159,7 +218,7 @@ class Nested(_Field, Generic[T]):
 class Flag(_Field):
     """0 or 1 as bool."""
 
-    def __get__(self, instance: Any, owner: type) -> bool:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> bool:
         if instance is None:
             return self  # type: ignore[return-value]
         return bool(self.raw.__get__(instance))
@@ -168,7 +227,7 @@ class Flag(_Field):
         self.raw.__set__(instance, int(bool(value)))
 
 
-def one_or_three(value: Any, cls: type, what: str) -> list:
+def one_or_three(value: Any, cls: type, what: str) -> list[Any]:
     """A value for all channels, or three of them."""
     values = [value] if isinstance(value, cls) else list(value)
     if len(values) not in (1, 3) or not all(isinstance(v, cls) for v in values):
@@ -185,7 +244,7 @@ class Curves(_Field, Generic[T]):
     def __init__(self, cls: Type[T], count: str):
         self.cls, self.count = cls, count
 
-    def __get__(self, instance: Any, owner: type) -> tuple[T, ...]:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> tuple[T, ...]:
         if instance is None:
             return self  # type: ignore[return-value]
         array, count = self.raw.__get__(instance), min(getattr(instance, self.count), 3)
@@ -206,7 +265,7 @@ class Numbers(_Field):
     def __init__(self, count: str):
         self.count = count
 
-    def __get__(self, instance: Any, owner: type) -> tuple[float, ...]:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> tuple[float, ...]:
         if instance is None:
             return self  # type: ignore[return-value]
         return tuple(self.raw.__get__(instance)[:getattr(instance, self.count)])
@@ -218,7 +277,7 @@ class Count(_Field):
     def __init__(self, instead: str = "assign one or three curves"):
         self.instead = instead
 
-    def __get__(self, instance: Any, owner: type) -> int:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> int:
         if instance is None:
             return self  # type: ignore[return-value]
         return self.raw.__get__(instance)
@@ -234,7 +293,7 @@ class Referenced(_Field, Generic[T]):
     def __init__(self, cls: Type[T], count: str, optional: bool = False):
         self.cls, self.count, self.optional = cls, count, optional
 
-    def __get__(self, instance: Any, owner: type) -> tuple[T, ...]:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> tuple[T, ...]:
         if instance is None:
             return self  # type: ignore[return-value]
         array = vars(instance).get("_" + self.name) or ()
@@ -256,7 +315,7 @@ class OptionalReference(Referenced[T]):
     def __init__(self, cls: Type[T]):
         super().__init__(cls, "")
 
-    def __get__(self, instance: Any, owner: type) -> Optional[T]:  # type: ignore[override]
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> Optional[T]:  # type: ignore[override]
         found = super().__get__(instance, owner)
         return found if instance is None else found[0] if found else None  # type: ignore[return-value]
 
@@ -274,7 +333,7 @@ class Bytes(_Field):
     def __init__(self, count: str):
         self.count = count
 
-    def __get__(self, instance: Any, owner: type) -> Optional[bytes]:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> Optional[bytes]:
         if instance is None:
             return self  # type: ignore[return-value]
         return vars(instance).get("_" + self.name)

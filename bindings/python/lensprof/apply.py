@@ -14,7 +14,8 @@ import numpy as np
 from . import _abi, _arrays
 from ._abi import Direction, Encoding, Layout, SampleType, Saturated
 from ._library import check, lib
-from ._struct import Bytes, Count, Enumerated, Flag, Nested, OptionalReference, Referenced, Struct, integer
+from ._struct import Bytes, Count, Enumerated, Flag, Nested, OptionalReference, Referenced, Struct, default, integer
+from ._types import Pixels
 from .model import Exposure, GainGrid, Response, Vignetting
 from .profile import Profile
 
@@ -45,35 +46,35 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     None. output_response: one response or three that encode the output instead; None = those of the model.
     """
 
-    direction = Enumerated(Direction)
-    input = Enumerated(Encoding)
-    output = Enumerated(Encoding)
-    frame_width: int
-    frame_height: int
-    source_sample = Enumerated(SampleType)
-    source_layout = Enumerated(Layout)
-    target_sample = Enumerated(SampleType)
-    saturated = Enumerated(Saturated)
+    direction: Enumerated[Direction] = Enumerated(Direction)
+    input: Enumerated[Encoding] = Enumerated(Encoding)
+    output: Enumerated[Encoding] = Enumerated(Encoding)
+    frame_width: int = default
+    frame_height: int = default
+    source_sample: Enumerated[SampleType] = Enumerated(SampleType)
+    source_layout: Enumerated[Layout] = Enumerated(Layout)
+    target_sample: Enumerated[SampleType] = Enumerated(SampleType)
+    saturated: Enumerated[Saturated] = Enumerated(Saturated)
     responses = Count()
     vignettings = Count()
-    response = Referenced(Response, "responses")
-    vignetting = Referenced(Vignetting, "vignettings")
-    source = Nested(Exposure)
-    target = Nested(Exposure)
-    grid = OptionalReference(GainGrid)
-    strength: float
-    gain_cap: float
-    dither = Flag()
-    blob = Bytes("blob_bytes")
+    response: Referenced[Response] = Referenced(Response, "responses")
+    vignetting: Referenced[Vignetting] = Referenced(Vignetting, "vignettings")
+    source: Nested[Exposure] = Nested(Exposure)
+    target: Nested[Exposure] = Nested(Exposure)
+    grid: OptionalReference[GainGrid] = OptionalReference(GainGrid)
+    strength: float = default
+    gain_cap: float = default
+    dither: Flag = Flag()
+    blob: Bytes = Bytes("blob_bytes")
     blob_bytes = Count("assign blob")
-    output_response = Referenced(Response, "output_responses", optional=True)
+    output_response: Referenced[Response] = Referenced(Response, "output_responses", optional=True)
     output_responses = Count("assign output_response")
 
     def set_profile(self, profile: Profile) -> None:
         """Sets response, vignetting and grid from a copy of the profile, replacing previous values."""
         own = Profile._copy_of(byref(profile))
         check(lib.lensprof_apply_options_set_profile(byref(self), byref(own)), "not a profile")
-        shown = _abi.Profile.from_buffer(own)
+        shown: Any = _abi.Profile.from_buffer(own)
         vars(self).update(_response=shown.response[:own.responses], _vignetting=shown.vignetting[:own.vignettings],
                           _grid=[shown.grid] if shown.grid.columns else (), _blob=None)
 
@@ -91,7 +92,7 @@ class Plan:
         self._layout = options.source_layout
         self._target_dtype = _arrays.sample_dtype(options.target_sample)
 
-    def apply(self, source: np.ndarray, out: Optional[np.ndarray] = None, *, x0: int = 0, y0: int = 0) -> np.ndarray:
+    def apply(self, source: Pixels, out: Optional[Pixels] = None, *, x0: int = 0, y0: int = 0) -> Pixels:
         """Applies the plan to a tile whose upper left pixel is (x0, y0) of the frame; returns `out`.
 
         out: an array of the tile's shape and the target's type; `source` itself to work in place; a new one when None.
@@ -105,8 +106,8 @@ class Plan:
               "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
         return out
 
-    def apply_planar(self, source: Sequence[np.ndarray], out: Optional[Sequence[np.ndarray]] = None, *, x0: int = 0,
-                     y0: int = 0) -> Sequence[np.ndarray]:
+    def apply_planar(self, source: Sequence[Pixels], out: Optional[Sequence[Pixels]] = None, *, x0: int = 0,
+                     y0: int = 0) -> Sequence[Pixels]:
         """The same for three planes, red, green and blue, of shape (height, width); the plan's layout is PLANAR.
 
         out: three arrays, each its source itself to work in place; new ones when None.
@@ -152,7 +153,7 @@ class FixedPlan:
         plan.data, plan._layout = bytes(data), Layout(layout)
         return plan
 
-    def apply(self, source: np.ndarray, out: Optional[np.ndarray] = None, *, x0: int = 0, y0: int = 0) -> np.ndarray:
+    def apply(self, source: Pixels, out: Optional[Pixels] = None, *, x0: int = 0, y0: int = 0) -> Pixels:
         """As Plan.apply."""
         view = _arrays.image(source, self._layout, what="source")
         out = np.empty_like(source) if out is None else out
@@ -163,8 +164,8 @@ class FixedPlan:
         return out
 
 
-def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optional[np.ndarray],
-           layout: Optional[Layout], **fields: Any) -> np.ndarray:
+def _apply(direction: Direction, array: Pixels, profile: Profile, out: Optional[Pixels],
+           layout: Optional[Layout], **fields: Any) -> Pixels:
     view = _arrays.image(array, layout)
     target = view.sample if out is None else _arrays.target(out, layout).sample
     options = ApplyOptions(direction=direction, frame_width=view.width, frame_height=view.height,
@@ -174,10 +175,10 @@ def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optio
     return Plan(options).apply(array, out)
 
 
-def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
+def correct(array: Pixels, profile: Profile, *, source: Optional[Exposure] = None,
             target: Optional[Exposure] = None, saturated: Optional[Saturated] = None,
             strength: Optional[float] = None, gain_cap: Optional[float] = None, dither: Optional[bool] = None,
-            layout: Optional[Layout] = None, out: Optional[np.ndarray] = None) -> np.ndarray:
+            layout: Optional[Layout] = None, out: Optional[Pixels] = None) -> Pixels:
     """Removes the falloff (and gain grid) of a profile from a full frame, and changes exposure and white balance from
     source to target.
 
@@ -189,8 +190,8 @@ def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] =
                   strength=strength, gain_cap=gain_cap, dither=dither)
 
 
-def simulate(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
+def simulate(array: Pixels, profile: Profile, *, source: Optional[Exposure] = None,
              target: Optional[Exposure] = None, layout: Optional[Layout] = None,
-             out: Optional[np.ndarray] = None) -> np.ndarray:
+             out: Optional[Pixels] = None) -> Pixels:
     """The inverse of `correct`, up to clipping: what the camera would record."""
     return _apply(Direction.SIMULATE, array, profile, out, layout, source=source, target=target)

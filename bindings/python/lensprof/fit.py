@@ -2,20 +2,41 @@
 from __future__ import annotations
 
 import ctypes
+import datetime
 from ctypes import POINTER, byref, c_double, sizeof
-from typing import Any, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Optional, Sequence, TypedDict
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _abi, _arrays
 from ._abi import CameraKind, FitModel, FitResponse, Free, GammaFrom, Loss, Method, ProfilePrior
 from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
-from ._struct import (Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Value, Vector,
-                      integer)
+from ._struct import Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Value, Vector, default, integer
+from ._types import Array, Records
 from .model import Exposure, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
 from .reason import WithFindings
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+class FitImageFields(TypedDict, total=False):
+    """Fields of a FitImage that may be given to its constructor."""
+
+    exposure: Exposure
+    free: Free
+    ev_of: int
+    red_of: int
+    blue_of: int
+    setting: int
+    camera: int
+    known_ev: float
+    known_ev_sigma: float
+    f_number_ratio: float
+    crop_factor: float
 
 
 class FitImage(Value, _abi.FitImage):
@@ -30,21 +51,21 @@ class FitImage(Value, _abi.FitImage):
     widest one of the lens, 0 = unknown. crop_factor: diagonal of 36 x 24 mm over that of the sensor, 0 = unknown.
     """
 
-    width: int
-    height: int
-    exposure = Nested(Exposure)
-    free = Enumerated(Free)
-    ev_of: int
-    red_of: int
-    blue_of: int
-    setting: int
-    camera: int
-    known_ev: float
-    known_ev_sigma: float
-    f_number_ratio: float
-    crop_factor: float
+    width: int = default
+    height: int = default
+    exposure: Nested[Exposure] = Nested(Exposure)
+    free: Enumerated[Free] = Enumerated(Free)
+    ev_of: int = default
+    red_of: int = default
+    blue_of: int = default
+    setting: int = default
+    camera: int = default
+    known_ev: float = default
+    known_ev_sigma: float = default
+    f_number_ratio: float = default
+    crop_factor: float = default
 
-    def __init__(self, index: int, width: int, height: int, **fields: Any):
+    def __init__(self, index: int, width: int, height: int, **fields: Unpack[FitImageFields]):
         numbers = [integer(n, what) for n, what in ((index, "index"), (width, "width"), (height, "height"))]
         lib.lensprof_fit_image_init_sized(byref(self), sizeof(self), *numbers)
         super().__init__(**fields)
@@ -59,10 +80,10 @@ class PerPair:
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
 
-    def __get__(self, options: Any, owner: Optional[type] = None) -> Any:
-        return self if options is None else options.__dict__.get(self._name)
+    def __get__(self, options: Any, owner: Optional[type] = None) -> Optional[npt.NDArray[Any]]:
+        return self if options is None else vars(options).get(self._name)  # type: ignore[return-value]
 
-    def __set__(self, options: Any, values: Any) -> None:
+    def __set__(self, options: Any, values: Optional[npt.ArrayLike]) -> None:
         given = None if values is None else np.asarray(values)
         if given is not None and issubclass(self._dtype, np.integer) and given.size and not (
                 np.issubdtype(given.dtype, np.integer) and given.min() >= 0 and given.max() <= np.iinfo(self._dtype).max):
@@ -72,11 +93,23 @@ class PerPair:
             raise ValueError(f"{self._name} of shape {array.shape}: give one number for each pair")
         options.__dict__[self._name] = array
         field = getattr(_abi.FitOptions, self._name)
-        kind = dict(_abi.FitOptions._fields_)[self._name]
+        kind: Any = dict(_abi.FitOptions._fields_)[self._name]  # type: ignore[arg-type, unused-ignore]
         field.__set__(options, None if array is None else ctypes.cast(array.ctypes.data, kind))
 
 
-class FitOptions(WithProgress, Struct, _abi.FitOptions):
+class Links:
+    """Links between images, an array of LINK_DTYPE, which the options keep."""
+
+    def __get__(self, options: Any, owner: Optional[type] = None) -> Optional[Records]:
+        return self if options is None else vars(options).get("links")  # type: ignore[return-value]
+
+    def __set__(self, options: Any, links: Optional[Records]) -> None:
+        data, count = (None, 0) if links is None else _arrays.links(links)
+        vars(options)["links"], options.link_count = links, count
+        vars(_abi.FitOptions)["links"].__set__(options, data)
+
+
+class FitOptions(WithProgress, _abi.FitOptions):
     """Options of a fit. Defaults: 3 channels, reference 0, everything free, modes chosen by held-out error.
 
     channels: 1 or 3. reference: the image whose exposure stays as given. free: Free.RESPONSE .. CENTER. modes: EMoR
@@ -98,38 +131,28 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     raises an exception, which then propagates from fit_overlap.
     """
 
-    channels: int
-    reference: int
-    free = Enumerated(Free)
-    modes: int
-    loss = Enumerated(Loss)
-    huber_levels: float
-    prior_weight: float
-    max_iterations: int
-    vignettings: int
-    gamma_from = Enumerated(GammaFrom)
-    camera_kind = Enumerated(CameraKind)
-    threads: int
-    method = Enumerated(Method)
-    refine = Flag()
-    moving_camera = Flag()
-    profile = OptionalReference(Profile)
-    response = OptionalReference(Response)
-    vignetting = Nested(Vignetting)
-    unlinked_images: int
-    _links: Optional[np.ndarray] = None
-    points = PerPair(np.uint32)
-    view_distances = PerPair(np.float64)
-
-    @property
-    def links(self) -> Optional[np.ndarray]:
-        return self._links
-
-    @links.setter
-    def links(self, links: Optional[np.ndarray]) -> None:
-        data, count = (None, 0) if links is None else _arrays.links(links)
-        self._links, self.link_count = links, count
-        _abi.FitOptions.links.__set__(self, data)
+    channels: int = default
+    reference: int = default
+    free: Enumerated[Free] = Enumerated(Free)
+    modes: int = default
+    loss: Enumerated[Loss] = Enumerated(Loss)
+    huber_levels: float = default
+    prior_weight: float = default
+    max_iterations: int = default
+    vignettings: int = default
+    gamma_from: Enumerated[GammaFrom] = Enumerated(GammaFrom)
+    camera_kind: Enumerated[CameraKind] = Enumerated(CameraKind)
+    threads: int = default
+    method: Enumerated[Method] = Enumerated(Method)
+    refine: Flag = Flag()
+    moving_camera: Flag = Flag()
+    profile: OptionalReference[Profile] = OptionalReference(Profile)
+    response: OptionalReference[Response] = OptionalReference(Response)
+    vignetting: Nested[Vignetting] = Nested(Vignetting)
+    unlinked_images: int = default
+    links: Links = Links()
+    points: PerPair = PerPair(np.uint32)
+    view_distances: PerPair = PerPair(np.float64)
 
     @classmethod
     def _names(cls) -> list[str]:
@@ -147,27 +170,27 @@ class FitCamera(Struct, _abi.FitCamera):
     reference: image whose exposure was fixed in its own fit; setting: setting of that image.
     """
 
-    images: int
-    attached: int
-    joined = Flag()
-    shared_pairs: int
-    agreeing_share: float
-    irradiance_difference_ev: float
-    log_gamma: float
-    offset_sigma_ev: float
-    reference: int
-    setting: int
+    images: int = default
+    attached: int = default
+    joined: Flag = Flag()
+    shared_pairs: int = default
+    agreeing_share: float = default
+    irradiance_difference_ev: float = default
+    log_gamma: float = default
+    offset_sigma_ev: float = default
+    reference: int = default
+    setting: int = default
 
 
 class _Fit(Handle):
     """The fit of the library, with what it holds of all images, settings and cameras."""
 
-    def __init__(self, pointer: Any, exposures: np.ndarray):
+    def __init__(self, pointer: Any, exposures: Records):
         super().__init__(pointer, lib.lensprof_fit_destroy)
         self.exposures = exposures
         self.quality = np.zeros(len(exposures), dtype=_arrays.IMAGE_QUALITY_DTYPE)
         for index in range(len(exposures)):
-            quality = initialised(_abi.FitImageQuality)
+            quality: Any = initialised(_abi.FitImageQuality)
             self.ask(lib.lensprof_fit_image_at, index, quality)
             self.quality[index] = np.frombuffer(quality, dtype=_arrays.IMAGE_QUALITY_DTYPE)[0]
         self.reference = self.result(_abi.FIT_REFERENCE)
@@ -219,48 +242,48 @@ class FitResult(WithFindings, Struct, _abi.FitResult):
     balances alone, and by the result.
     """
 
-    images: int
-    setting_pairs: int
-    usable = Flag()
-    response = Nested(Response)
-    vignetting = Curves(Vignetting, "vignettings")
-    vignettings: int
-    camera: int
-    pairs: int
-    components: int
-    iterations: int
-    converged = Flag()
-    gamma_from = Enumerated(GammaFrom)
-    gamma_sigma: float
-    before_rms: float
-    heldout_rms: float
-    heldout_median: float
-    noise_levels: float
-    inlier_share: float
-    frame_share: float
-    image_share: float
-    seconds: float
-    radius_ends = Vector(writable=False)
-    grey_ends = Vector(writable=False)
-    covariance_size: int
-    profile_prior = Enumerated(ProfilePrior)
-    covariance = Covariance()
-    gamma_direction = Vector(writable=False)
-    equalizes = Flag()
-    left_out: int
-    reference: int
-    response_from = Enumerated(FitResponse)
-    irradiance_spread_ev: float
-    model = Enumerated(FitModel)
-    falloff_prior_distance: float
-    center_prior_distance: float
-    error_inflation: float
-    equal_exposures = Flag()
-    setting_count: int
-    camera_count: int
-    colour_variance_before: float
-    colour_variance_exposures_only: float
-    colour_variance: float
+    images: int = default
+    setting_pairs: int = default
+    usable: Flag = Flag()
+    response: Nested[Response] = Nested(Response)
+    vignetting: Curves[Vignetting] = Curves(Vignetting, "vignettings")
+    vignettings: int = default
+    camera: int = default
+    pairs: int = default
+    components: int = default
+    iterations: int = default
+    converged: Flag = Flag()
+    gamma_from: Enumerated[GammaFrom] = Enumerated(GammaFrom)
+    gamma_sigma: float = default
+    before_rms: float = default
+    heldout_rms: float = default
+    heldout_median: float = default
+    noise_levels: float = default
+    inlier_share: float = default
+    frame_share: float = default
+    image_share: float = default
+    seconds: float = default
+    radius_ends: Vector = Vector(writable=False)
+    grey_ends: Vector = Vector(writable=False)
+    covariance_size: int = default
+    profile_prior: Enumerated[ProfilePrior] = Enumerated(ProfilePrior)
+    covariance: Covariance = Covariance()
+    gamma_direction: Vector = Vector(writable=False)
+    equalizes: Flag = Flag()
+    left_out: int = default
+    reference: int = default
+    response_from: Enumerated[FitResponse] = Enumerated(FitResponse)
+    irradiance_spread_ev: float = default
+    model: Enumerated[FitModel] = Enumerated(FitModel)
+    falloff_prior_distance: float = default
+    center_prior_distance: float = default
+    error_inflation: float = default
+    equal_exposures: Flag = Flag()
+    setting_count: int = default
+    camera_count: int = default
+    colour_variance_before: float = default
+    colour_variance_exposures_only: float = default
+    colour_variance: float = default
     _fit: Any = None
 
     @property
@@ -272,30 +295,30 @@ class FitResult(WithFindings, Struct, _abi.FitResult):
         return self._fit.cameras
 
     @property
-    def exposures(self) -> np.ndarray:
+    def exposures(self) -> Records:
         return self._fit.exposures
 
     @property
-    def image_quality(self) -> np.ndarray:
+    def image_quality(self) -> Records:
         return self._fit.quality
 
     def exposure(self, index: int) -> Exposure:
         """Exposure and white balance of image `index`."""
         return Exposure.from_buffer_copy(self.exposures[index])
 
-    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0,
+    def profile(self, key: ProfileKey, source: str = "", created: Optional[datetime.datetime] = None,
                 setting: Optional[int] = None) -> Profile:
-        """A profile of this result, to be stored or applied. source: file of origin. created_unix_s 0 = unknown.
+        """A profile of this result, to be stored or applied. source: file of origin. created: with time zone; None = unknown.
         setting: number of the lens setting; None = that of the reference."""
         profile, error = Profile(key=key), _abi.ErrorText()
         number = _abi.FIT_REFERENCE if setting is None else integer(setting, "setting")
         with self._fit._use() as fit:
             check(lib.lensprof_fit_profile(fit, number, byref(profile), byref(error)),
                   "no profile" if setting is None else f"no profile of setting {setting}", error)
-        profile.provenance.source, profile.provenance.created_unix_s = source, created_unix_s
+        profile.provenance.source, profile.provenance.created = source, created
         return profile
 
-    def transfer_rms(self, pairs: np.ndarray) -> tuple[float, float]:
+    def transfer_rms(self, pairs: Records) -> tuple[float, float]:
         """Root mean square and median absolute value of the transfer residual of pairs under this fit, in levels of
         255."""
         rms, median, error = c_double(), c_double(), _abi.ErrorText()
@@ -304,7 +327,7 @@ class FitResult(WithFindings, Struct, _abi.FitResult):
                   "the pairs do not belong to this fit", error)
         return rms.value, median.value
 
-    def colour_differences(self, pairs: np.ndarray) -> np.ndarray:
+    def colour_differences(self, pairs: Records) -> Array:
         """Half the squared difference of the colours at the ends of each pair, corrected by this fit, in levels of 255
         squared: of colour_variance. NaN for pairs of images left out."""
         differences, error = np.zeros(len(pairs)), _abi.ErrorText()
@@ -326,7 +349,7 @@ def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], optio
     return _Fit(pointer, exposures).reference
 
 
-def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
+def fit_overlap(images: Sequence[FitImage], pairs: Records, options: Optional[FitOptions] = None) -> FitResult:
     """Fits pairs (PAIR_DTYPE) over at least two images. Also returns if the result is poor: see `usable`."""
     options = options or FitOptions()
     for name in ("points", "view_distances"):
@@ -336,7 +359,7 @@ def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional
     return _fit(lib.lensprof_fit_overlap, images, _arrays.pairs(pairs), options)
 
 
-def fit_radiance(images: Sequence[FitImage], observations: np.ndarray,
+def fit_radiance(images: Sequence[FitImage], observations: Records,
                  options: Optional[FitOptions] = None) -> FitResult:
     """Fits tracks of observations (OBSERVATION_DTYPE, in any order) over at least two images, with Method.RADIANCE."""
     return _fit(lib.lensprof_fit_radiance, images, _arrays.observations(observations),

@@ -1,6 +1,7 @@
 """Falloff from pictures of a white card or another even light; see lensprof/flat.h."""
 from __future__ import annotations
 
+import datetime
 from ctypes import POINTER, byref
 from dataclasses import dataclass
 from typing import Any, Optional, Sequence
@@ -11,7 +12,8 @@ from . import _abi, _arrays
 from ._abi import FlatGrid, FlatLight, Free, Layout
 from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
-from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, integer
+from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, default, integer
+from ._types import Pixels, Records
 from .model import GainGrid, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
 from .reason import WithFindings
@@ -27,7 +29,7 @@ class FlatImage:
     its axis, clockwise seen from the back of the camera. layout, reduction, mask, black, white: as in SampleImage.
     """
 
-    array: np.ndarray
+    array: Pixels
     shot: int = 0
     ev: float = 0.0
     rotation_deg: float = 0.0
@@ -35,7 +37,7 @@ class FlatImage:
     height: Optional[int] = None
     layout: Optional[Layout] = None
     reduction: int = 1
-    mask: Optional[np.ndarray] = None
+    mask: Optional[Pixels] = None
     black: float = 2.0 / 255.0
     white: float = 250.0 / 255.0
 
@@ -51,7 +53,7 @@ class FlatImage:
                            black=self.black, white=self.white, ev=self.ev, rotation_deg=self.rotation_deg)
 
 
-class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
+class FlatOptions(WithProgress, _abi.FlatOptions):
     """Options of a flat field fit. Defaults: 3 channels, everything free, linear response, shots that fill the frame.
 
     channels: 1 or 3. free: Free.K1, K2, K3, CENTER. vignettings: falloff curves, 1, 3 or 0 = 3 if they differ. light:
@@ -61,20 +63,20 @@ class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
     parameters. threads: maximum number, 0 = one per core; does not affect the result. progress: as in FitOptions.
     """
 
-    channels: int
-    free = Enumerated(Free)
-    vignettings: int
-    light = Enumerated(FlatLight)
-    own_light = Flag()
-    several = Flag()
-    find_card = Flag()
-    grid = Enumerated(FlatGrid)
+    channels: int = default
+    free: Enumerated[Free] = Enumerated(Free)
+    vignettings: int = default
+    light: Enumerated[FlatLight] = Enumerated(FlatLight)
+    own_light: Flag = Flag()
+    several: Flag = Flag()
+    find_card: Flag = Flag()
+    grid: Enumerated[FlatGrid] = Enumerated(FlatGrid)
     responses = Count()
-    threads: int
-    ev_sigma: float
-    prior_weight: float
-    response = Referenced(Response, "responses")
-    vignetting = Nested(Vignetting)
+    threads: int = default
+    ev_sigma: float = default
+    prior_weight: float = default
+    response: Referenced[Response] = Referenced(Response, "responses")
+    vignetting: Nested[Vignetting] = Nested(Vignetting)
 
 
 class FlatResult(WithFindings, Struct, _abi.FlatResult):
@@ -88,46 +90,48 @@ class FlatResult(WithFindings, Struct, _abi.FlatResult):
     image_quality: what every picture gave, FLAT_QUALITY_DTYPE.
     """
 
-    usable = Flag()
-    vignetting = Curves(Vignetting, "vignettings")
-    vignettings: int
-    light = Enumerated(FlatLight)
-    shots: int
-    cells: int
-    separated = Flag()
-    iterations: int
-    converged = Flag()
-    spots: int
-    radius: float
-    noise: float
-    residual: float
-    texture: float
-    frame_residual: float
-    shot_residual: float
-    inlier_share: float
-    corner_sigma: float
-    grid_residual: float
-    covariance_size: int
-    covariance = Covariance()
-    gain_grid = Nested(GainGrid)
-    images: int
+    usable: Flag = Flag()
+    vignetting: Curves[Vignetting] = Curves(Vignetting, "vignettings")
+    vignettings: int = default
+    light: Enumerated[FlatLight] = Enumerated(FlatLight)
+    shots: int = default
+    cells: int = default
+    separated: Flag = Flag()
+    iterations: int = default
+    converged: Flag = Flag()
+    spots: int = default
+    radius: float = default
+    noise: float = default
+    residual: float = default
+    texture: float = default
+    frame_residual: float = default
+    shot_residual: float = default
+    inlier_share: float = default
+    corner_sigma: float = default
+    grid_residual: float = default
+    covariance_size: int = default
+    covariance: Covariance = Covariance()
+    gain_grid: Nested[GainGrid] = Nested(GainGrid)
+    images: int = default
     _flat: Any = None
 
     @property
-    def spot(self) -> np.ndarray:
-        array = _abi.FlatResult.from_buffer(self).spot
+    def spot(self) -> Records:
+        array = vars(_abi.FlatResult)["spot"].__get__(self)
         return np.frombuffer(array, dtype=_arrays.FLAT_SPOT_DTYPE)[:min(self.spots, _abi.FLAT_SPOTS)]
 
     @property
-    def image_quality(self) -> np.ndarray:
+    def image_quality(self) -> Records:
         return self._flat.quality
 
-    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0) -> Profile:
-        """A profile of this result with the response of its pictures. source: file that it was made from."""
+    def profile(self, key: ProfileKey, source: str = "",
+                created: Optional[datetime.datetime] = None) -> Profile:
+        """A profile of this result with the response of its pictures. source: file that it was
+        made from."""
         profile, error = Profile(key=key), _abi.ErrorText()
         with self._flat._use() as flat:
             check(lib.lensprof_flat_profile(flat, byref(profile), byref(error)), "no profile", error)
-        profile.provenance.source, profile.provenance.created_unix_s = source, created_unix_s
+        profile.provenance.source, profile.provenance.created = source, created
         return profile
 
 
@@ -140,7 +144,7 @@ class _Flat(Handle):
         self.result, error = FlatResult(), _abi.ErrorText()
         check(lib.lensprof_flat_get(pointer, byref(self.result), byref(error)), "no result", error)
         for index in range(image_count):
-            quality = initialised(_abi.FlatImageQuality)
+            quality: Any = initialised(_abi.FlatImageQuality)
             check(lib.lensprof_flat_image_at(pointer, index, byref(quality), byref(error)), f"no image {index}", error)
             self.quality[index] = np.frombuffer(quality, dtype=_arrays.FLAT_QUALITY_DTYPE)[0]
         self.result._flat = self

@@ -1,45 +1,59 @@
-"""Files of other programs, from and to memory; see lensprof/formats.h."""
+"""Files of other programs; see lensprof/formats.h.
+
+Readers take the path of a file or its content as bytes; `write_` functions write a file, `encode_` functions give bytes.
+"""
 from __future__ import annotations
 
 import os
-import re
+import pathlib
 from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, cast, create_string_buffer, pointer
-from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, NamedTuple, Optional, Sequence, TypedDict, TypeVar, Union
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _abi, _arrays
 from ._abi import CurveKind, DngForm, Format, Free, Holds, Layout, MapSense, Pack, Status
 from ._library import Handle, check, initialised, lib
-from ._struct import Enumerated, Flag, Nested, Text, Value, Vector, integer, one_or_three
+from ._paths import PathLike, Source
+from ._struct import Enumerated, Flag, Nested, Text, Value, Vector, default, integer, one_or_three
+from ._types import Records
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting
 from .profile import CameraModel, Profile, ProfileKey
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-def _bytes(text: Union[str, bytes]) -> bytes:
-    return text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
+__all__ = ["CurveKind", "DngForm", "Format", "FormatInfo", "Holds", "MapSense", "Pto", "PtoImage", "ReadProfile",
+           "WriteOptions", "detect", "encode_points", "encode_profiles", "info", "read_lensfun_cameras", "read_map",
+           "read_points", "read_profiles", "write_map", "write_points", "write_profiles"]
+
+Mask = TypeVar("Mask", bound="npt.NDArray[Any]")
+
+def _bytes(text: str) -> bytes:
+    return text.encode("utf-8", "surrogateescape")
 
 
-_FILE_NAME = re.compile(r"[^\n<{]{1,4095}\.[A-Za-z]\w{0,9}")  # a line that ends like a name: no file's content does
-
-
-def _content(data: Union[str, bytes], what: str = "data") -> bytes:
-    """The content of a file; a path is refused."""
-    if isinstance(data, os.PathLike) or isinstance(data, str) and _FILE_NAME.fullmatch(data):
-        raise TypeError(f"{what} takes the content of a file, and not its name; give Path({os.fspath(data)!r}).read_bytes()")
-    if isinstance(data, str):
-        return _bytes(data)
+def _content(source: Source) -> bytes:
+    """The content of a file that is given by its path, or as bytes."""
+    if isinstance(source, (str, os.PathLike)):
+        return pathlib.Path(source).read_bytes()
     try:
-        return bytes(memoryview(data))
+        return bytes(memoryview(source))
     except TypeError:
-        raise TypeError(f"{what} takes the content of a file as bytes or str, and not {type(data).__name__}") from None
+        raise TypeError(f"give the path of a file or its bytes, not {type(source).__name__}") from None
+
+
+def _name(source: Source, name: str = "") -> str:
+    """The name of a file: as given, or that of its path."""
+    return name or (os.path.basename(source) if isinstance(source, (str, os.PathLike)) else "")
 
 
 def _format(format: Format) -> int:
     if isinstance(format, str):
         member = format.upper() if format.upper() in Format.__members__ else "JSON"
-        raise TypeError(f"format takes a lensprof.Format, such as Format.{member}, and not {format!r}")
+        raise TypeError(f"format takes a lensprof.formats.Format, such as Format.{member}, and not {format!r}")
     return int(Format(format))
 
 
@@ -60,29 +74,30 @@ class PtoImage(Value, _abi.PtoImage):
     top, right, bottom (exclusive), px. left_out: the result in the project excludes this image.
     """
 
-    camera = Nested(Camera)
-    exposure = Nested(Exposure)
-    vignetting = Nested(Vignetting)
-    emor = Vector()
-    response_type: int
-    free = Enumerated(Free)
-    response_of: int
-    vignetting_of: int
-    center_of: int
-    ev_of: int
-    red_of: int
-    blue_of: int
-    crop = Vector()
-    crop_circular = Flag()
-    left_out = Flag()
+    camera: Nested[Camera] = Nested(Camera)
+    exposure: Nested[Exposure] = Nested(Exposure)
+    vignetting: Nested[Vignetting] = Nested(Vignetting)
+    emor: Vector = Vector()
+    response_type: int = default
+    free: Enumerated[Free] = Enumerated(Free)
+    response_of: int = default
+    vignetting_of: int = default
+    center_of: int = default
+    ev_of: int = default
+    red_of: int = default
+    blue_of: int = default
+    crop: Vector = Vector()
+    crop_circular: Flag = Flag()
+    left_out: Flag = Flag()
+    of_crop: Flag = Flag()
 
 
 class Pto(Handle):
     """A Hugin project (.pto). A context manager; may also be left to the garbage collector."""
 
-    def __init__(self, text: Union[str, bytes]):
-        """Parses a project, e.g. Path("pano.pto").read_bytes()."""
-        data, handle, error = _content(text, "text"), POINTER(_abi.Pto)(), _abi.ErrorText()
+    def __init__(self, source: Source):
+        """Reads a project: its path, such as "pano.pto", or its bytes."""
+        data, handle, error = _content(source), POINTER(_abi.Pto)(), _abi.ErrorText()
         check(lib.lensprof_pto_read(data, len(data), byref(handle), byref(error)), "the project cannot be read", error)
         super().__init__(handle, lib.lensprof_pto_destroy)
 
@@ -125,7 +140,7 @@ class Pto(Handle):
         with self._use() as pto:
             check(lib.lensprof_pto_set_name(pto, integer(index, "index"), text, byref(error)), repr(name), error)
 
-    def draw_mask(self, index: int, mask: np.ndarray) -> np.ndarray:
+    def draw_mask(self, index: int, mask: Mask) -> Mask:
         """Draws the mask of places where pairs may be taken from an image into a uint8 or bool array (height, width):
         1, otherwise 0. Returns the array.
 
@@ -140,7 +155,7 @@ class Pto(Handle):
                   f"mask of {columns} x {rows}", error)
         return mask
 
-    def set_result(self, response: Response, vignetting: Vignetting, exposures: Union[np.ndarray, Iterable[Exposure]],
+    def set_result(self, response: Response, vignetting: Vignetting, exposures: Union[Records, Iterable[Exposure]],
                    reference: int = 0) -> None:
         """Writes a result into the project: one response, one vignetting, an exposure per image (Exposure, or
         EXPOSURE_DTYPE).
@@ -178,15 +193,22 @@ class Pto(Handle):
                                                (_abi.Response * len(curves))(*curves), len(curves), byref(error)),
                   f"{len(numbers)} cameras, {len(curves)} responses", error)
 
-    def write(self) -> bytes:
+    def __bytes__(self) -> bytes:
         """The project as text. Everything that was read stays unchanged, except what was set."""
         with self._use() as pto:
             return _written(lambda *buffer: lib.lensprof_pto_write(pto, *buffer), "the project cannot be written")
 
+    def write(self, path: PathLike) -> None:
+        """Writes bytes(self), the project, to a file."""
+        pathlib.Path(path).write_bytes(bytes(self))
 
-def points_read(text: Union[str, bytes]) -> np.ndarray:
+    def __repr__(self) -> str:
+        return f"Pto({len(self)} images)"
+
+
+def read_points(source: Source) -> Records:
     """The pairs of a point file (vig_optimize -w, 16 numbers per line): an array of PAIR_DTYPE."""
-    data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
+    data, found, error = _content(source), c_uint32(), _abi.ErrorText()
     check(lib.lensprof_points_read(data, len(data), None, 0, byref(found), byref(error)),
           "points cannot be read", error)
     pairs = np.empty(found.value, dtype=_arrays.PAIR_DTYPE)
@@ -195,25 +217,38 @@ def points_read(text: Union[str, bytes]) -> np.ndarray:
     return pairs
 
 
-def points_write(pairs: np.ndarray, cameras: Sequence[Camera]) -> bytes:
-    """A point file of pairs (PAIR_DTYPE). The cameras give the frame sizes for the radius columns."""
+def write_points(path: PathLike, pairs: Records, cameras: Sequence[Camera]) -> None:
+    """Writes a point file of pairs (PAIR_DTYPE). The cameras give the frame sizes for the radius columns."""
+    pathlib.Path(path).write_bytes(encode_points(pairs, cameras))
+
+
+def encode_points(pairs: Records, cameras: Sequence[Camera]) -> bytes:
+    """The same as bytes."""
     pointer, count = _arrays.pairs(pairs)
     frames = (_abi.Camera * len(cameras))(*cameras)
     return _written(lambda *buffer: lib.lensprof_points_write(pointer, count, frames, len(frames), *buffer),
                     f"{count} pairs over {len(cameras)} cameras")
 
 
-def _imported(read: Callable[..., int], source: str, what: str) -> list[tuple[Profile, bool]]:
+class ReadProfile(NamedTuple):
+    """A profile of a file. usable: False for an invalid falloff, which cannot be stored or applied; provenance.doubt of
+    the profile states the reason, and may have a warning for others."""
+
+    profile: Profile
+    usable: bool
+
+
+def _imported(read: Callable[..., int], source: str, what: str) -> list[ReadProfile]:
     """Calls read(source, visitor, user, error) and gathers the entries."""
     error, name = _abi.ErrorText(), _bytes(source)
     if b"\0" in name:
         raise ValueError(f"{source!r}: a source holds no zero bytes")
-    found: list[tuple[Profile, bool]] = []
+    found: list[ReadProfile] = []
     raised: list[BaseException] = []
 
     def visit(_user: Any, entry: Any) -> int:
         try:
-            found.append((Profile._copy_of(entry.contents.profile), bool(entry.contents.usable)))
+            found.append(ReadProfile(Profile._copy_of(entry.contents.profile), bool(entry.contents.usable)))
             return Status.OK
         except BaseException as exception:  # must not cross C
             raised.append(exception)
@@ -226,7 +261,7 @@ def _imported(read: Callable[..., int], source: str, what: str) -> list[tuple[Pr
     return found
 
 
-def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: tuple, what: str) -> bytes:
+def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: tuple[Any, ...], what: str) -> bytes:
     """Calls write(profiles, count, *settings, data, capacity, count, error)."""
     given = list(profiles)
     if not all(isinstance(profile, Profile) for profile in given):
@@ -236,9 +271,9 @@ def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: 
     return _written(lambda *buffer: write(pointers, len(given), *settings, *buffer), what)
 
 
-def lensfun_read_cameras(text: Union[str, bytes], source: str = "") -> list[CameraModel]:
-    """The cameras of a Lensfun database (.xml), for Store.put_camera()."""
-    data, error, name = _content(text, "text"), _abi.ErrorText(), _bytes(source)
+def read_lensfun_cameras(source: Source, name: str = "") -> list[CameraModel]:
+    """The cameras of a Lensfun database (.xml), for Store.put_camera(). name: of a file that is given as bytes."""
+    data, error, file = _content(source), _abi.ErrorText(), _bytes(_name(source, name))
     found: list[CameraModel] = []
     raised: list[BaseException] = []
 
@@ -250,7 +285,7 @@ def lensfun_read_cameras(text: Union[str, bytes], source: str = "") -> list[Came
             raised.append(exception)
             return Status.ERROR_CANCELLED
 
-    status = lib.lensprof_lensfun_read_cameras(data, len(data), name, _abi.CameraVisitor(visit), None, byref(error))
+    status = lib.lensprof_lensfun_read_cameras(data, len(data), file, _abi.CameraVisitor(visit), None, byref(error))
     if raised:
         raise raised[0]
     check(status, "the database cannot be read", error)
@@ -266,12 +301,12 @@ def _import_options(format: Format, frame: tuple[int, int], key: Optional[Profil
     return options
 
 
-def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: tuple[int, int] = (0, 0),
-             key: Optional[ProfileKey] = None) -> tuple[Profile, bool]:
-    """The falloff of a map (rows, columns) or (rows, columns, 3) as a profile, and whether it is usable.
+def read_map(values: npt.ArrayLike, sense: MapSense = MapSense.ATTENUATION, frame: tuple[int, int] = (0, 0),
+             key: Optional[ProfileKey] = None) -> ReadProfile:
+    """The falloff of a map (rows, columns) or (rows, columns, 3) as a profile.
 
     Values are linear, in any unit; 0 = unknown. frame: width and height of the pictures it applies to, px; by default
-    those of the map. key: as for import_profiles.
+    those of the map. key: as for read_profiles.
     """
     array = np.ascontiguousarray(values, dtype=np.float32)
     if array.ndim not in (2, 3):
@@ -286,8 +321,8 @@ def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: 
     return entry
 
 
-def map_write(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int, int]] = None, channels: int = 1,
-              sense: MapSense = MapSense.ATTENUATION) -> np.ndarray:
+def write_map(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int, int]] = None, channels: int = 1,
+              sense: MapSense = MapSense.ATTENUATION) -> npt.NDArray[np.float32]:
     """Falloff and gain grid as a float32 map of size (columns, rows), by default that of the frame (width, height).
 
     The largest attenuation is 1. With 1 channel: (rows, columns), the mean of the profile's channels; with 3: (rows,
@@ -302,6 +337,20 @@ def map_write(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int
     return values[:, :, 0] if channels == 1 else values
 
 
+class WriteOptions(TypedDict, total=False):
+    """How profiles are written. format: Format.AUTO = by the name. frame, tables: as for read_profiles; rows of curves
+    are tables[1]. layout, form: of opcodes. curve: of curves. covariance: of a blob. color_temperature_k: of alsc."""
+
+    format: Format
+    frame: tuple[int, int]
+    tables: tuple[int, int]
+    layout: Layout
+    form: DngForm
+    curve: CurveKind
+    covariance: bool
+    color_temperature_k: float
+
+
 class FormatInfo(NamedTuple):
     """A format: its name, a description, the content of its files, whether it can be written, and whether it holds
     several."""
@@ -313,57 +362,59 @@ class FormatInfo(NamedTuple):
     is_many: bool
 
 
-def format_info(format: Format) -> FormatInfo:
+def info(format: Format) -> FormatInfo:
     """Description of a format other than AUTO."""
     found = lib.lensprof_format_get_info(_format(format))
     if not found:
-        raise ValueError("AUTO is not a format here; pass another lensprof.Format")
+        raise ValueError("AUTO is not a format here; pass another Format")
     info = found.contents
     return FormatInfo(info.name.decode(), info.about.decode(), Holds(info.holds), bool(info.is_written), bool(info.is_many))
 
 
-def detect_format(data: Union[str, bytes], name: str = "") -> Format:
+def detect(source: Source, name: str = "") -> Format:
     """The format of a file by its content, then by the ending of its name; Format.AUTO if neither decides."""
-    content = _content(data)
-    return Format(lib.lensprof_format_detect(content, len(content), _bytes(name)))
+    content = _content(source)
+    return Format(lib.lensprof_format_detect(content, len(content), _bytes(_name(source, name))))
 
 
-def import_profiles(data: Union[str, bytes], name: str = "", *, format: Format = Format.AUTO,
-                    key: Optional[ProfileKey] = None, frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0),
-                    layout: Layout = Layout.RGB, curve: CurveKind = CurveKind.INVERSE,
-                    color_temperature_k: float = _abi.UNKNOWN, strict: bool = False) -> list[tuple[Profile, bool]]:
-    """The profiles of a file of any format as (profile, usable), about 50 kB each, in file order.
+def read_profiles(source: Source, name: str = "", *, format: Format = Format.AUTO, key: Optional[ProfileKey] = None,
+                  frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0), layout: Layout = Layout.RGB,
+                  curve: CurveKind = CurveKind.INVERSE, color_temperature_k: float = _abi.UNKNOWN,
+                  strict: bool = False) -> list[ReadProfile]:
+    """The profiles of a file of any format, about 50 kB each, in file order.
 
-    data: the content of the file. usable is False for an invalid falloff, which cannot be stored or applied;
-    provenance.doubt states the reason, and may have a warning for others.
-
-    A response or a falloff makes one profile with `key`. name: of the file, for detection and provenance.source. frame:
-    width and height of the pictures, which opcodes, XMP and alsc do not contain. tables: columns and rows, of alsc. The
-    bytes are those of the format, not of a picture around them: opcodes without their DNG, XMP without its JPEG.
-    strict: refuse a response that decreases anywhere, instead of reading the nearest increasing curve.
+    source: the path of the file, or its content as bytes. name: of a file that is given as bytes, for detection and
+    provenance.source. A response or a falloff makes one profile with `key`. frame: width and height of the pictures,
+    which opcodes, XMP and alsc do not contain. tables: columns and rows, of alsc. The bytes are those of the format, not
+    of a picture around them: opcodes without their DNG, XMP without its JPEG. strict: refuse a response that decreases
+    anywhere, instead of reading the nearest increasing curve.
     """
-    content, options = _content(data), _import_options(format, frame, key)
+    content, options = _content(source), _import_options(format, frame, key)
     options.layout, options.curve = int(Layout(layout)), int(CurveKind(curve))
     options.columns, options.rows = (integer(side, "tables") for side in tables)
     options.color_temperature_k = color_temperature_k
     options.strict = int(strict)
 
-    def read(source: bytes, *rest: Any) -> int:
-        options.name = source
+    def read(file: bytes, *rest: Any) -> Any:
+        options.name = file
         return lib.lensprof_import(content, len(content), byref(options), *rest)
 
-    return _imported(read, name, "the file cannot be read")
+    return _imported(read, _name(source, name), "the file cannot be read")
 
 
-def export_profiles(profiles: Iterable[Profile], name: str = "", *, format: Format = Format.AUTO,
+def write_profiles(path: PathLike, profiles: Iterable[Profile], **options: Unpack[WriteOptions]) -> None:
+    """Writes a file in any format that can be written, selected by `format` or the ending of its name: of all profiles if
+    the format holds several, otherwise of one."""
+    pathlib.Path(path).write_bytes(encode_profiles(profiles, os.path.basename(path), **options))
+
+
+def encode_profiles(profiles: Iterable[Profile], name: str = "", *, format: Format = Format.AUTO,
                     frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0), layout: Layout = Layout.RGB,
                     form: DngForm = DngForm.AUTO, curve: CurveKind = CurveKind.INVERSE, covariance: bool = False,
                     color_temperature_k: float = _abi.UNKNOWN) -> bytes:
-    """A file in any format that can be written, selected by `format` or the ending of the name: of all profiles if the
-    format holds several, otherwise of one. frame, tables: as for import_profiles; rows of curves are tables[1]. form:
-    of opcodes. covariance: of a blob."""
+    """The same as bytes; name: of the file, whose ending selects the format."""
     for other in Format:
-        if other and not format and format_info(other).name == name:
+        if other and not format and info(other).name == name:
             raise ValueError(f"{name!r} is a format and not the name of a file; give format=Format.{other.name}")
     options, text = initialised(_abi.ExportOptions), _bytes(name)
     options.format, options.layout, options.curve = _format(format), int(Layout(layout)), int(CurveKind(curve))

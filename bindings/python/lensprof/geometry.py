@@ -1,18 +1,14 @@
 """Camera projections: direction <-> image pixel, as used by Hugin and nona; see lensprof/geometry.h."""
 from __future__ import annotations
 
-from ctypes import byref, c_double
-from typing import Any
-
-import numpy as np
+from ctypes import byref
 
 from . import _abi
 from ._abi import Projection
 from ._library import check, lib
-from ._struct import Enumerated, Value, Vector
-from .model import Numbers, each
-
-_NOWHERE = (np.nan, np.nan)
+from ._struct import Enumerated, Value, Vector, default
+from ._types import Array, Numbers
+from .model import mapped, positions
 
 
 class Camera(Value, _abi.Camera):
@@ -23,18 +19,18 @@ class Camera(Value, _abi.Camera):
     plane_deg: Tpy, Tpp.
     """
 
-    projection = Enumerated(Projection)
-    width: int
-    height: int
-    hfov_deg: float
-    yaw_deg: float
-    pitch_deg: float
-    roll_deg: float
-    radial = Vector()
-    shift_px = Vector()
-    shear_px = Vector()
-    translation = Vector()
-    plane_deg = Vector()
+    projection: Enumerated[Projection] = Enumerated(Projection)
+    width: int = default
+    height: int = default
+    hfov_deg: float = default
+    yaw_deg: float = default
+    pitch_deg: float = default
+    roll_deg: float = default
+    radial: Vector = Vector()
+    shift_px: Vector = Vector()
+    shear_px: Vector = Vector()
+    translation: Vector = Vector()
+    plane_deg: Vector = Vector()
 
     def validate(self) -> None:
         """Raises lensprof.Error unless the camera can be evaluated."""
@@ -42,18 +38,15 @@ class Camera(Value, _abi.Camera):
               f"{self}: cannot be evaluated; give sizes above 0, finite numbers and a field of view that the "
               "projection has")
 
-    def project(self, longitude: Numbers, latitude: Numbers) -> np.ndarray:
+    def project(self, longitude: Numbers, latitude: Numbers) -> Array:
         """Pixels (x, y on the last axis) of directions in radians, latitude positive down.
 
         NaN if the camera does not see the direction. Pixels may lie outside the frame; pixel centres are integers.
         """
-        return self._map(lib.lensprof_camera_project, longitude, latitude)
-
-    def unproject(self, x: Numbers, y: Numbers) -> np.ndarray:
-        """Directions (longitude, latitude on the last axis, radians) of pixels; NaN for pixels without a direction."""
-        return self._map(lib.lensprof_camera_unproject, x, y)
-
-    def _map(self, function: Any, first: Numbers, second: Numbers) -> np.ndarray:
         self.validate()
-        this, found = byref(self), (c_double * 2)()
-        return each(lambda a, b: tuple(found) if function(this, a, b, found) else _NOWHERE, first, second, columns=2)
+        return mapped(lib.lensprof_camera_project_many, self, positions(longitude, latitude))
+
+    def unproject(self, x: Numbers, y: Numbers) -> Array:
+        """Directions (longitude, latitude on the last axis, radians) of pixels; NaN for pixels without a direction."""
+        self.validate()
+        return mapped(lib.lensprof_camera_unproject_many, self, positions(x, y))

@@ -1,36 +1,52 @@
 """The camera model: response, vignetting, exposure. B = f( L * M(r) * e * w ), see lensprof/model.h.
 
-The maths is in the library. Functions here take numbers or arrays and make one call an element: for curves and
-points; for pictures there is lensprof.Plan.
+The maths is in the library. Functions here take numbers or arrays of any shape, and make one call of it for all: a
+number gives a float, arrays an array of their broadcast shape. To correct pictures there is lensprof.Plan.
 """
 from __future__ import annotations
 
 from ctypes import POINTER, byref, c_double
-from typing import Any, Callable, Iterable, Union
+from typing import Any, Callable, Iterable, Optional, overload
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _abi
 from ._abi import CameraKind, ResponseKind, Status
 from ._library import Error, check, lib
-from ._struct import Enumerated, Value, Vector, _Field, integer
+from ._struct import Enumerated, Value, Vector, _Field, default, integer
+from ._types import Array, Numbers, Values
 
-Numbers = Union[float, np.ndarray]
+
+def _pointer(array: Array) -> Any:
+    return array.ctypes.data_as(POINTER(c_double))
 
 
-def each(function: Callable[..., Any], *arguments: Any, columns: int = 0) -> Any:
-    """Calls a function of numbers for every element of the broadcast arguments.
+def _given(result: Array) -> Any:
+    """The result for scalars as a float."""
+    return result if result.ndim else float(result)
 
-    Its results are numbers (columns 0: a float for scalars, else an array), or tuples that become the last axis.
-    """
-    arrays = np.broadcast_arrays(*[np.asarray(a, dtype=np.float64) for a in arguments])
-    shape = arrays[0].shape
-    results = np.empty((arrays[0].size, columns) if columns else arrays[0].size)
-    for i, numbers in enumerate(zip(*[a.ravel().tolist() for a in arrays])):
-        results[i] = function(*numbers)
-    if columns:
-        return results.reshape(shape + (columns,))
-    return results.reshape(shape) if shape else float(results[0])
+
+def positions(x: Numbers, y: Numbers) -> Array:
+    """The broadcast coordinates side by side, as the library takes them: the last axis has x and y."""
+    points = np.empty(np.broadcast(np.asarray(x), np.asarray(y)).shape + (2,))
+    points[..., 0], points[..., 1] = x, y
+    return points
+
+
+def mapped(function: Callable[..., Any], this: Any, points: Array) -> Array:
+    """function(this, points, count, results) of the library for positions: results of the same shape."""
+    results = np.empty_like(points)
+    function(byref(this), _pointer(points), points.size // 2, _pointer(results))
+    return results
+
+
+def _curve(function: Callable[..., None], this: Any, numbers: Numbers, slope: bool = False) -> Any:
+    """function(this, numbers, count, values, slopes) of the library: the values, or the slopes."""
+    given = np.asarray(numbers, dtype=np.float64, order="C")
+    values, slopes = np.empty(given.shape), np.empty(given.shape) if slope else None
+    function(byref(this), _pointer(given), given.size, _pointer(values), None if slopes is None else _pointer(slopes))
+    return _given(values if slopes is None else slopes)
 
 
 def _doubles(values: Iterable[float]) -> Any:
@@ -46,11 +62,11 @@ class Response(Value, _abi.Response):
     coefficients; table[1024], f(j / 1023) for every kind. The arrays are read-only views.
     """
 
-    kind = Enumerated(ResponseKind)
-    modes: int
-    gamma: float
-    emor = Vector(writable=False)
-    table = Vector(writable=False)
+    kind: Enumerated[ResponseKind] = Enumerated(ResponseKind)
+    modes: int = default
+    gamma: float = default
+    emor: Vector = Vector(writable=False)
+    table: Vector = Vector(writable=False)
 
     def __init__(self) -> None:
         super().__init__()
@@ -90,12 +106,12 @@ class Response(Value, _abi.Response):
         return response
 
     @classmethod
-    def typical(cls, kind: CameraKind = CameraKind.ANY) -> tuple[Response, np.ndarray, float]:
+    def typical(cls, kind: CameraKind = CameraKind.ANY) -> tuple[Response, Array, float]:
         """The mean of the cameras of a kind, the 25 x 25 covariance of its EMoR coefficients, and the error of ln
         gamma."""
         response, covariance, sigma = cls(), np.empty((_abi.EMOR_MODES, _abi.EMOR_MODES)), c_double()
         check(lib.lensprof_response_set_typical(byref(response), CameraKind(kind),
-                                                covariance.ctypes.data_as(POINTER(c_double)), byref(sigma)),
+                                                _pointer(covariance), byref(sigma)),
               f"camera kind {kind}")
         return response, covariance, sigma.value
 
@@ -103,36 +119,48 @@ class Response(Value, _abi.Response):
         """Raises lensprof.Error unless this is a response."""
         check(lib.lensprof_response_validate(byref(self)), "not a response: it must rise from 0 to 1")
 
-    def eval(self, x: Numbers) -> Numbers:
+    @overload
+    def eval(self, x: float) -> float: ...
+
+    @overload
+    def eval(self, x: Values) -> Array: ...
+
+    def eval(self, x: Numbers) -> Any:
         """f(x), the grey value of irradiance x; outside 0..1 as at the nearer end."""
-        this = byref(self)
-        return each(lambda v: lib.lensprof_response_eval(this, v, None), x)
+        return _curve(lib.lensprof_response_eval_many, self, x)
 
-    def eval_slope(self, x: Numbers) -> Numbers:
+    @overload
+    def eval_slope(self, x: float) -> float: ...
+
+    @overload
+    def eval_slope(self, x: Values) -> Array: ...
+
+    def eval_slope(self, x: Numbers) -> Any:
         """df/dx; 0 outside 0..1, where a sensor saturates."""
-        this, slope = byref(self), c_double()
+        return _curve(lib.lensprof_response_eval_many, self, x, slope=True)
 
-        def call(v: float) -> float:
-            lib.lensprof_response_eval(this, v, byref(slope))
-            return slope.value
-        return each(call, x)
+    @overload
+    def invert(self, b: float) -> float: ...
 
-    def invert(self, b: Numbers) -> Numbers:
+    @overload
+    def invert(self, b: Values) -> Array: ...
+
+    def invert(self, b: Numbers) -> Any:
         """g(b), the smallest irradiance with grey value b; outside 0..1 as at the nearer end."""
-        this = byref(self)
-        return each(lambda v: lib.lensprof_response_invert(this, v, None), b)
+        return _curve(lib.lensprof_response_invert_many, self, b)
 
-    def invert_slope(self, b: Numbers) -> Numbers:
+    @overload
+    def invert_slope(self, b: float) -> float: ...
+
+    @overload
+    def invert_slope(self, b: Values) -> Array: ...
+
+    def invert_slope(self, b: Numbers) -> Any:
         """dg/db; 0 outside 0..1 and where f is flat."""
-        this, slope = byref(self), c_double()
-
-        def call(v: float) -> float:
-            lib.lensprof_response_invert(this, v, byref(slope))
-            return slope.value
-        return each(call, b)
+        return _curve(lib.lensprof_response_invert_many, self, b, slope=True)
 
 
-def emor_table(mode: int) -> np.ndarray:
+def emor_table(mode: int) -> Array:
     """EMoR's mean curve f0 (mode 0) or mode 1..25: a read-only view of 1024 samples on the grid j / 1023."""
     samples = lib.lensprof_emor_table(integer(mode, "mode"))
     if not samples:
@@ -153,54 +181,67 @@ class Vignetting(Value, _abi.Vignetting):
     k: k1, k2, k3. center: x (right) and y (down) from the middle of the frame. r and center are in half diagonals.
     """
 
-    k = Vector()
-    center = Vector()
+    k: Vector = Vector()
+    center: Vector = Vector()
 
     def validate(self) -> None:
         """Raises lensprof.Error unless finite, |center| <= 1 and M >= 0.001 on the whole frame."""
         check(lib.lensprof_vignetting_validate(byref(self)),
               f"{self}: not a falloff; M must be finite and at least 0.001 on the whole frame, |center| at most 1")
 
-    def eval(self, r2: Numbers) -> Numbers:
+    @overload
+    def eval(self, r2: float) -> float: ...
+
+    @overload
+    def eval(self, r2: Values) -> Array: ...
+
+    def eval(self, r2: Numbers) -> Any:
         """M as a function of r^2."""
-        this = byref(self)
-        return each(lambda v: lib.lensprof_vignetting_eval(this, v, None), r2)
+        return _curve(lib.lensprof_vignetting_eval_many, self, r2)
 
-    def eval_slope(self, r2: Numbers) -> Numbers:
+    @overload
+    def eval_slope(self, r2: float) -> float: ...
+
+    @overload
+    def eval_slope(self, r2: Values) -> Array: ...
+
+    def eval_slope(self, r2: Numbers) -> Any:
         """dM/d(r^2)."""
-        this, slope = byref(self), c_double()
+        return _curve(lib.lensprof_vignetting_eval_many, self, r2, slope=True)
 
-        def call(v: float) -> float:
-            lib.lensprof_vignetting_eval(this, v, byref(slope))
-            return slope.value
-        return each(call, r2)
+    @overload  # type: ignore[misc, unused-ignore]  # a float is one of Numbers
+    def r2(self, width: int, height: int, x: float, y: float) -> float: ...
 
-    def r2(self, width: int, height: int, x: Numbers, y: Numbers) -> Numbers:
+    @overload
+    def r2(self, width: int, height: int, x: Numbers, y: Numbers) -> Array: ...
+
+    def r2(self, width: int, height: int, x: Numbers, y: Numbers) -> Any:
         """r^2 of pixel (x, y) in a frame of width x height px; pixel centres are integers."""
-        this, size = byref(self), (integer(width, "width"), integer(height, "height"))
-        return each(lambda u, v: lib.lensprof_vignetting_r2(this, *size, u, v, None), x, y)
+        return _given(self._r2(width, height, x, y)[0])
 
-    def r2_gradient(self, width: int, height: int, x: Numbers, y: Numbers) -> np.ndarray:
+    def r2_gradient(self, width: int, height: int, x: Numbers, y: Numbers) -> Array:
         """d(r^2)/d(center x, center y): the last axis has these two."""
-        this, size, gradient = byref(self), (integer(width, "width"), integer(height, "height")), (c_double * 2)()
+        return self._r2(width, height, x, y)[1]
 
-        def call(u: float, v: float) -> Any:
-            lib.lensprof_vignetting_r2(this, *size, u, v, gradient)
-            return tuple(gradient)
-        return each(call, x, y, columns=2)
+    def _r2(self, width: int, height: int, x: Numbers, y: Numbers) -> tuple[Array, Array]:
+        points = positions(x, y)
+        r2, gradients = np.empty(points.shape[:-1]), np.empty_like(points)
+        lib.lensprof_vignetting_r2_many(byref(self), integer(width, "width"), integer(height, "height"), _pointer(points),
+                                        r2.size, _pointer(r2), _pointer(gradients))
+        return r2, gradients
 
 
 class Attenuation(_Field):
     """The nodes of a gain grid as a view of shape (channels, rows, columns); assigning sets the grid's size."""
 
-    def __get__(self, instance: Any, owner: type) -> np.ndarray:
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> npt.NDArray[np.float32]:
         if instance is None:
             return self  # type: ignore[return-value]
         shape = (min(instance.channels, 3), min(instance.rows, _abi.GRID_SIDE), min(instance.columns, _abi.GRID_SIDE))
         nodes = np.ctypeslib.as_array(self.raw.__get__(instance))
         return nodes[:shape[0] * shape[1] * shape[2]].reshape(shape)
 
-    def __set__(self, instance: Any, values: Any) -> None:
+    def __set__(self, instance: Any, values: Values) -> None:
         array = np.array(values, dtype=np.float32)  # a copy: it may be a view of this very grid
         array = array[np.newaxis] if array.ndim == 2 else array
         is_grid = array.ndim == 3 and array.shape[0] in (1, 3)
@@ -220,12 +261,12 @@ class GainGrid(Value, _abi.GainGrid):
     lies at the first pixel of the frame, its last at the last. Assigning it sets channels, rows and columns.
     """
 
-    columns: int
-    rows: int
-    channels: int
-    attenuation = Attenuation()
+    columns: int = default
+    rows: int = default
+    channels: int = default
+    attenuation: Attenuation = Attenuation()
 
-    def __init__(self, attenuation: Any = None) -> None:
+    def __init__(self, attenuation: Optional[Values] = None) -> None:
         super().__init__(**({} if attenuation is None else {"attenuation": attenuation}))
 
     def validate(self) -> None:
@@ -234,13 +275,22 @@ class GainGrid(Value, _abi.GainGrid):
               f"gain grid of {self.columns} x {self.rows} nodes, {self.channels} channels: give 2..{_abi.GRID_SIDE} "
               "nodes a side, 1 or 3 channels, attenuations within 0.001..1000")
 
-    def eval(self, width: int, height: int, x: Numbers, y: Numbers, channel: int = 1) -> Numbers:
+    @overload  # type: ignore[misc, unused-ignore]  # a float is one of Numbers
+    def eval(self, width: int, height: int, x: float, y: float, channel: int = ...) -> float: ...
+
+    @overload
+    def eval(self, width: int, height: int, x: Numbers, y: Numbers, channel: int = ...) -> Array: ...
+
+    def eval(self, width: int, height: int, x: Numbers, y: Numbers, channel: int = 1) -> Any:
         """Attenuation at pixel (x, y) of a frame of width x height px, bilinear; 1 where there is no grid."""
         if channel not in (0, 1, 2):
             raise Error(Status.ERROR_ARGUMENT, f"channel {channel}: give 0, 1 or 2")
         self.validate()
-        this, size = byref(self), (integer(width, "width"), integer(height, "height"))
-        return each(lambda u, v: lib.lensprof_gain_grid_eval(this, *size, u, v, channel), x, y)
+        points = positions(x, y)
+        results = np.empty(points.shape[:-1])
+        lib.lensprof_gain_grid_eval_many(byref(self), integer(width, "width"), integer(height, "height"),
+                                         _pointer(points), results.size, channel, _pointer(results))
+        return _given(results)
 
 
 class Exposure(Value, _abi.Exposure):
@@ -249,8 +299,8 @@ class Exposure(Value, _abi.Exposure):
     ev: log2 of the exposure factor, larger = more light recorded. white_balance: factors of red, green (1), blue.
     """
 
-    ev: float
-    white_balance = Vector()
+    ev: float = default
+    white_balance: Vector = Vector()
 
     def validate(self) -> None:
         """Raises lensprof.Error unless |ev| <= 64 and the factors are in 1e-6..1e6."""

@@ -2,15 +2,20 @@
 from __future__ import annotations
 
 from ctypes import byref, c_double, c_size_t, create_string_buffer
-from typing import Any
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _abi
 from ._abi import CameraKind, Pack, Processing
 from ._library import check, lib
-from ._struct import Curves, Enumerated, Nested, Text, Value, integer
+from ._struct import Curves, Enumerated, Flag, Nested, Text, UnixTime, Value, default, integer
+from ._types import Array
 from .model import GainGrid, Response, Vignetting
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure  # type: ignore[import,unused-ignore]
 
 
 class ProfileKey(Value, _abi.ProfileKey):
@@ -21,17 +26,17 @@ class ProfileKey(Value, _abi.ProfileKey):
     picture style of a rendering, as named by the camera.
     """
 
-    camera_maker = Text()
-    camera_model = Text()
-    lens = Text()
-    unit = Text()
-    crop_factor: float
-    focal_mm: float
-    aperture: float
-    distance_m: float
-    color_temperature_k: float
-    processing = Enumerated(Processing)
-    style = Text()
+    camera_maker: Text = Text()
+    camera_model: Text = Text()
+    lens: Text = Text()
+    unit: Text = Text()
+    crop_factor: float = default
+    focal_mm: float = default
+    aperture: float = default
+    distance_m: float = default
+    color_temperature_k: float = default
+    processing: Enumerated[Processing] = Enumerated(Processing)
+    style: Text = Text()
 
     def validate(self) -> None:
         """Raises lensprof.Error unless the numbers are in range and the texts without control characters."""
@@ -48,26 +53,26 @@ class ProfileKey(Value, _abi.ProfileKey):
 class Provenance(Value, _abi.Provenance):
     """Origin of a profile. Part of a Profile, which sets the defaults.
 
-    created_unix_s: seconds since 1970-01-01 UTC, 0 = unknown. images, pairs: numbers used. heldout_rms: levels of 255,
+    created: datetime in UTC, to the second; None = unknown. images, pairs: numbers used. heldout_rms: levels of 255,
     or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why the profile may be wrong, found at import or by the fit.
-    prior_id: the profile of the same database that was the prior of the fit, 0 = none. forced: 1 = stored although the
-    fit was not usable. not_usable: 1 = from a fit that was not usable, which Store.put refuses unless it is forced; it
+    prior_id: the profile of the same database that was the prior of the fit, 0 = none. forced: stored although the
+    fit was not usable. not_usable: from a fit that was not usable, which Store.put refuses unless it is forced; it
     is not stored. gamma_sigma: standard error of ln gamma, the common exponent of response and falloff; 0 = unknown.
     """
 
-    method = Text()
-    software = Text()
-    source = Text()
-    created_unix_s: int
-    images: int
-    pairs: int
-    heldout_rms: float
-    inlier_share: float
-    doubt = Text()
-    prior_id: int
-    forced: int
-    not_usable: int
-    gamma_sigma: float
+    method: Text = Text()
+    software: Text = Text()
+    source: Text = Text()
+    created: UnixTime = UnixTime("created_unix_s")
+    images: int = default
+    pairs: int = default
+    heldout_rms: float = default
+    inlier_share: float = default
+    doubt: Text = Text()
+    prior_id: int = default
+    forced: Flag = Flag()
+    not_usable: Flag = Flag()
+    gamma_sigma: float = default
 
     def _set_defaults(self) -> None:
         self.heldout_rms = self.inlier_share = _abi.UNKNOWN
@@ -81,18 +86,18 @@ class Provenance(Value, _abi.Provenance):
 class CameraModel(Value, _abi.CameraModel):
     """A camera, independent of the lens. maker, model: as in EXIF; other_maker, other_model: common name, empty if it
     is the same; variant: distinguishes cameras with the same name. lens: the built-in lens, as named in profiles.
-    crop_factor: 43.27 mm over the sensor's diagonal, or UNKNOWN. fixed_lens: 1 = it cannot be changed."""
+    crop_factor: 43.27 mm over the sensor's diagonal, or UNKNOWN. fixed_lens: it cannot be changed."""
 
-    maker = Text()
-    model = Text()
-    other_maker = Text()
-    other_model = Text()
-    variant = Text()
-    mount = Text()
-    lens = Text()
-    source = Text()
-    crop_factor: float
-    fixed_lens: int
+    maker: Text = Text()
+    model: Text = Text()
+    other_maker: Text = Text()
+    other_model: Text = Text()
+    variant: Text = Text()
+    mount: Text = Text()
+    lens: Text = Text()
+    source: Text = Text()
+    crop_factor: float = default
+    fixed_lens: Flag = Flag()
 
     def _set_defaults(self) -> None:
         lib.lensprof_camera_model_init(byref(self))
@@ -110,13 +115,13 @@ class Covariance:
     def __set_name__(self, owner: type, name: str) -> None:
         self.raw = next(vars(base)[name] for base in owner.__mro__ if "_fields_" in vars(base))
 
-    def __get__(self, instance: Any, owner: type) -> np.ndarray:
+    def __get__(self, instance: Any, owner: type) -> Array:
         if instance is None:
             return self  # type: ignore[return-value]
         n = min(instance.covariance_size, _abi.COVARIANCE_MAX)
         return np.ctypeslib.as_array(self.raw.__get__(instance))[:n * n].reshape(n, n)
 
-    def __set__(self, instance: Any, matrix: np.ndarray) -> None:
+    def __set__(self, instance: Any, matrix: npt.ArrayLike) -> None:
         matrix = np.asarray(matrix, dtype=np.float64)
         n = matrix.shape[0] if matrix.ndim else 0
         if matrix.shape != (n, n) or n > _abi.COVARIANCE_MAX:
@@ -135,15 +140,15 @@ class Profile(Value, _abi.Profile):
     centre x and y.
     """
 
-    key = Nested(ProfileKey)
-    provenance = Nested(Provenance)
-    responses: int
-    vignettings: int
-    response = Curves(Response, "responses")
-    vignetting = Curves(Vignetting, "vignettings")
-    grid = Nested(GainGrid)
-    covariance_size: int
-    covariance = Covariance()
+    key: Nested[ProfileKey] = Nested(ProfileKey)
+    provenance: Nested[Provenance] = Nested(Provenance)
+    responses: int = default
+    vignettings: int = default
+    response: Curves[Response] = Curves(Response, "responses")
+    vignetting: Curves[Vignetting] = Curves(Vignetting, "vignettings")
+    grid: Nested[GainGrid] = Nested(GainGrid)
+    covariance_size: int = default
+    covariance: Covariance = Covariance()
 
     @classmethod
     def _copy_of(cls, shown: Any) -> Profile:
@@ -158,7 +163,7 @@ class Profile(Value, _abi.Profile):
               f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the "
               "covariance must be finite and symmetric")
 
-    def plot(self) -> Any:
+    def plot(self) -> Figure:
         """Draws response and relative illuminance with matplotlib, and returns the figure."""
         from ._plot import plot_profile
 
@@ -197,10 +202,10 @@ class Profile(Value, _abi.Profile):
         return buffer.raw
 
     @classmethod
-    def unpack(cls, blob: Any) -> Profile:
-        """The profile of a blob (any object with bytes). Raises lensprof.Error with ERROR_CORRUPT if any part of it is
+    def unpack(cls, blob: Union[bytes, bytearray, memoryview, npt.NDArray[np.uint8]]) -> Profile:
+        """The profile of a blob (bytes, or an array). Raises lensprof.Error with ERROR_CORRUPT if any part of it is
         invalid, with ERROR_LAYOUT if a newer lensprof wrote it."""
-        data, profile = memoryview(blob).tobytes(), cls()
+        data, profile = memoryview(blob).tobytes(), cls()  # type: ignore[arg-type, unused-ignore]
         check(lib.lensprof_profile_unpack(data, len(data), byref(profile)),
               f"{len(data)} bytes: not a profile blob, damaged, or of a newer lensprof; write it again with pack()")
         return profile

@@ -7,17 +7,17 @@ from typing import Any, Callable
 from . import _abi
 from ._abi import ItemKind, Reason, Severity
 from ._library import check, lib
-from ._struct import Enumerated, Nested, Numbers, Struct, Text, Value
+from ._struct import Enumerated, Nested, Numbers, Struct, Text, Value, default
 
 
 class Item(Value, _abi.Item):
     """The item that a text refers to by index: `index` of its kind, in bytes text_begin to text_begin + text_bytes of
     its UTF-8. Kind NONE if it refers to no item."""
 
-    kind = Enumerated(ItemKind)
-    index: int
-    text_begin: int
-    text_bytes: int
+    kind: Enumerated[ItemKind] = Enumerated(ItemKind)
+    index: int = default
+    text_begin: int = default
+    text_bytes: int = default
 
 
 class Finding(Struct, _abi.Finding):
@@ -26,15 +26,15 @@ class Finding(Struct, _abi.Finding):
     sentence of these. measured: the number that the rule compares with
     `limit`; both are NaN for a finding without one."""
 
-    code = Enumerated(Reason)
-    severity = Enumerated(Severity)
-    rule_severity = Enumerated(Severity)
-    value_count: int
-    value = Numbers("value_count")
-    measured: float
-    limit: float
-    item = Nested(Item)
-    text = Text()
+    code: Enumerated[Reason] = Enumerated(Reason)
+    severity: Enumerated[Severity] = Enumerated(Severity)
+    rule_severity: Enumerated[Severity] = Enumerated(Severity)
+    value_count: int = default
+    value: Numbers = Numbers("value_count")
+    measured: float = default
+    limit: float = default
+    item: Nested[Item] = Nested(Item)
+    text: Text = Text()
 
 
 class WithFindings:

@@ -4,12 +4,11 @@ from __future__ import annotations
 from ctypes import POINTER, byref
 from typing import Any, Callable, Iterable, Optional
 
-import numpy as np
-
 from . import _abi, _arrays
 from ._library import check, lib
 from ._progress import Function, calling_function
-from ._struct import Flag, Nested, Struct, Vector
+from ._struct import Flag, Nested, Struct, Vector, default
+from ._types import Pixels
 from .model import Response
 from .reason import WithFindings
 
@@ -26,37 +25,37 @@ class RenderingShot(Struct, _abi.RenderingShot):
     from this shot alone. colour: matrix, row by row; falloff, saturation: of the rendering.
     """
 
-    width: int
-    height: int
-    quarter_turns: int
-    shift = Vector(writable=False)
-    scale: float
-    k1: float
-    k2: float
-    correlation: float
-    texture: float
-    channels: int
-    squares: int
-    black: int
-    white: int
-    colourful: int
-    saturated: int
-    rough: int
-    areas: int
-    corrects_falloff = Flag()
-    tones: int
-    radius: float
-    corner: float
-    corner_sigma: float
-    pattern_levels: float
-    pattern_ev: float
-    noise_levels: float
-    white_ev: float
-    gamma: float
-    gamma_sigma: float
-    colour = Vector(writable=False)
-    falloff = Vector(writable=False)
-    saturation: float
+    width: int = default
+    height: int = default
+    quarter_turns: int = default
+    shift: Vector = Vector(writable=False)
+    scale: float = default
+    k1: float = default
+    k2: float = default
+    correlation: float = default
+    texture: float = default
+    channels: int = default
+    squares: int = default
+    black: int = default
+    white: int = default
+    colourful: int = default
+    saturated: int = default
+    rough: int = default
+    areas: int = default
+    corrects_falloff: Flag = Flag()
+    tones: int = default
+    radius: float = default
+    corner: float = default
+    corner_sigma: float = default
+    pattern_levels: float = default
+    pattern_ev: float = default
+    noise_levels: float = default
+    white_ev: float = default
+    gamma: float = default
+    gamma_sigma: float = default
+    colour: Vector = Vector(writable=False)
+    falloff: Vector = Vector(writable=False)
+    saturation: float = default
 
 
 class RenderingResult(WithFindings, Struct, _abi.RenderingResult):
@@ -68,16 +67,16 @@ class RenderingResult(WithFindings, Struct, _abi.RenderingResult):
     white before the sensor saturates. corrects_falloff: in most shots. areas: compared. shots: tuple of RenderingShot.
     """
 
-    usable = Flag()
-    response = Nested(Response)
-    gamma: float
-    gamma_sigma: float
-    lowest: float
-    highest: float
-    tenths: int
-    shows_white = Flag()
-    corrects_falloff = Flag()
-    areas: int
+    usable: Flag = Flag()
+    response: Nested[Response] = Nested(Response)
+    gamma: float = default
+    gamma_sigma: float = default
+    lowest: float = default
+    highest: float = default
+    tenths: int = default
+    shows_white: Flag = Flag()
+    corrects_falloff: Flag = Flag()
+    areas: int = default
     _shots: tuple[RenderingShot, ...] = ()
 
     @property
@@ -89,7 +88,7 @@ class RenderingResult(WithFindings, Struct, _abi.RenderingResult):
         return [name for name in super()._names() if name != "shots"]
 
 
-def fit_rendering(shots: Iterable[tuple[np.ndarray, np.ndarray]], prior: Optional[Response] = None,
+def fit_rendering(shots: Iterable[tuple[Pixels, Pixels]], prior: Optional[Response] = None,
                   progress: Optional[Function] = None) -> RenderingResult:
     """Fits the response of a camera to shots (raw, rendered): a linear frame of uint16, 65535 = saturated, and the
     picture rendered of it, uint8, each (height, width) or (height, width, 3). The arrays are read one shot after the
@@ -105,14 +104,14 @@ def fit_rendering(shots: Iterable[tuple[np.ndarray, np.ndarray]], prior: Optiona
             lib.lensprof_rendering_destroy(pointer)
 
 
-def _fit(pointer: Any, shots: Iterable[tuple[np.ndarray, np.ndarray]], error: Any) -> RenderingResult:
+def _fit(pointer: Any, shots: Iterable[tuple[Pixels, Pixels]], error: Any) -> RenderingResult:
     for number, (raw, rendered) in enumerate(shots):
         views = _arrays.image(raw, what=f"raw frame {number}"), _arrays.image(rendered, what=f"picture {number}")
         check(lib.lensprof_rendering_add(pointer, *map(byref, views), byref(error)), f"shot {number}", error)
     result = RenderingResult()
     check(lib.lensprof_rendering_fit(pointer, byref(result), byref(error)), "the fit failed", error)
     found: list[RenderingShot] = []
-    for number in range(_abi.RenderingResult.shots.__get__(result)):
+    for number in range(vars(_abi.RenderingResult)["shots"].__get__(result)):
         found.append(RenderingShot())
         check(lib.lensprof_rendering_shot_at(pointer, number, byref(found[-1]), byref(error)), f"no shot {number}", error)
     result._shots = tuple(found)

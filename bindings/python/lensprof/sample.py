@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import Any, Callable, Optional, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _abi, _arrays
 from ._abi import Layout, Sampling
 from ._library import check, initialised, lib
 from ._progress import WithProgress, calling
-from ._struct import Enumerated, OptionalReference, Struct, integer
+from ._struct import Enumerated, OptionalReference, Struct, default, integer
+from ._types import Pixels, Records
 from .geometry import Camera
 from .model import Response, Vignetting
 
@@ -27,11 +29,11 @@ class SampleImage:
     patch must be within the limits; otherwise its mean must be.
     """
 
-    array: np.ndarray
+    array: Pixels
     camera: Camera
     layout: Optional[Layout] = None
     reduction: int = 1
-    mask: Optional[np.ndarray] = None
+    mask: Optional[Pixels] = None
     black: float = 2.0 / 255.0
     white: float = 250.0 / 255.0
     every_pixel: bool = False
@@ -45,7 +47,7 @@ class SampleImage:
                            black=self.black, white=self.white)
 
 
-class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
+class SampleOptions(WithProgress, _abi.SampleOptions):
     """Options of sampling. Defaults: balanced, pairs 0 (= 300 per image, at least 2000), seed 1, threads 0 (= one per
     core).
 
@@ -56,31 +58,29 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
     compared by their light, which connects pictures that are many EV apart.
     """
 
-    sampling = Enumerated(Sampling)
-    pairs: int
-    seed: int
-    threads: int
-    response = OptionalReference(Response)
-    vignetting = OptionalReference(Vignetting)
-    _links: Optional[np.ndarray] = None
-    _match_of_pair: Optional[np.ndarray] = None
+    sampling: Enumerated[Sampling] = Enumerated(Sampling)
+    pairs: int = default
+    seed: int = default
+    threads: int = default
+    response: OptionalReference[Response] = OptionalReference(Response)
+    vignetting: OptionalReference[Vignetting] = OptionalReference(Vignetting)
 
     @property
-    def match_of_pair(self) -> Optional[np.ndarray]:
+    def match_of_pair(self) -> Optional[npt.NDArray[np.uint32]]:
         """After sample_matches, the index of the match of each pair; None before."""
-        return self._match_of_pair
+        return vars(self).get("_match_of_pair")
 
     @property
-    def links(self) -> Optional[np.ndarray]:
-        return self._links
+    def links(self) -> Optional[Records]:
+        return vars(self).get("_links")
 
     @classmethod
     def _names(cls) -> list[str]:
         return [name for name in super()._names() if not name.startswith("link") and name != "match_of_pair"]
 
 
-def _sample(function: Any, images: Sequence[SampleImage], options: Optional[SampleOptions], dtype: np.dtype,
-            data: Callable[[np.ndarray], tuple[Any, int]], *more: Any) -> np.ndarray:
+def _sample(function: Any, images: Sequence[SampleImage], options: Optional[SampleOptions], dtype: np.dtype[Any],
+            data: Callable[[Records], tuple[Any, int]], *more: Any) -> Records:
     images, options, error = list(images), options or SampleOptions(), _abi.ErrorText()
     views = (_abi.SampleImage * len(images))(*[image._view(i) for i, image in enumerate(images)])
     room, found = c_uint32(), c_uint32()
@@ -100,7 +100,7 @@ def _sample(function: Any, images: Sequence[SampleImage], options: Optional[Samp
     return out[:found.value]
 
 
-def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
+def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> Records:
     """Finds correspondences between at least two overlapping pictures: an array of PAIR_DTYPE.
 
     There are at most options.pairs, fewer if the overlaps do not hold as many.
@@ -108,7 +108,7 @@ def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOption
     return _sample(lib.lensprof_sample_overlap, images, options, _arrays.PAIR_DTYPE, _arrays.pairs)
 
 
-def sample_tracks(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
+def sample_tracks(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> Records:
     """Finds points seen in several pictures, for fit_radiance: an array of OBSERVATION_DTYPE, by point.
 
     There are at most options.pairs points (0 = 150 per image, at least 2000), each with up to 16 observations.
@@ -116,8 +116,8 @@ def sample_tracks(images: Sequence[SampleImage], options: Optional[SampleOptions
     return _sample(lib.lensprof_sample_tracks, images, options, _arrays.OBSERVATION_DTYPE, _arrays.observations)
 
 
-def sample_matches(images: Sequence[SampleImage], matches: np.ndarray,
-                   options: Optional[SampleOptions] = None) -> np.ndarray:
+def sample_matches(images: Sequence[SampleImage], matches: Records,
+                   options: Optional[SampleOptions] = None) -> Records:
     """Measures correspondences at places that are known to match, an array of MATCH_DTYPE: an array of PAIR_DTYPE.
 
     For pictures from a moving camera; only width and height of the cameras are used. `map` of a match, the rotation and

@@ -10,18 +10,19 @@ from typing import Any, Iterator, List, Optional, Sequence, Union
 from . import _abi
 from ._abi import CameraKind, DistanceRule, Reason, ResponseFrom, Status, StoreMode, StoreNames
 from ._library import Error, Handle, check, lib
-from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, integer
+from ._paths import PathLike
+from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, default, integer
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 
 
 class StoreRow(Value, _abi.StoreRow):
-    """A row of a listing: id, key and provenance of a profile. damaged: 1 = the row has impossible values; its key and
+    """A row of a listing: id, key and provenance of a profile. damaged: the row has impossible values; its key and
     provenance are unknown, and Store.get reports what is wrong."""
 
-    id: int
-    damaged: int
-    key = Nested(ProfileKey)
-    provenance = Nested(Provenance)
+    id: int = default
+    damaged: Flag = Flag()
+    key: Nested[ProfileKey] = Nested(ProfileKey)
+    provenance: Nested[Provenance] = Nested(Provenance)
 
 
 class LookupOptions(Struct, _abi.LookupOptions):
@@ -30,11 +31,11 @@ class LookupOptions(Struct, _abi.LookupOptions):
     uncorrected pictures also for keys with processing CORRECTED. response_alone: return the camera's response if no
     falloff is found."""
 
-    distance_rule = Enumerated(DistanceRule)
-    with_doubt = Flag()
-    any_processing = Flag()
-    force_falloff = Flag()
-    response_alone = Flag()
+    distance_rule: Enumerated[DistanceRule] = Enumerated(DistanceRule)
+    with_doubt: Flag = Flag()
+    any_processing: Flag = Flag()
+    force_falloff: Flag = Flag()
+    response_alone: Flag = Flag()
 
 
 class Lookup(Value, _abi.Lookup):
@@ -48,24 +49,26 @@ class Lookup(Value, _abi.Lookup):
     `reasons`. nearest: if no lens has the name, the lenses with the most similar names.
     """
 
-    exact: int
-    rows: int
-    distance: float
-    sigma: float
-    name_score: float
-    reason = Text()
-    reason_code = Vector(writable=False)
-    falloff_sigma: float
-    distance_sigma: float
-    sensor_sigma: float
-    response_sigma: float
-    response_from = Enumerated(ResponseFrom)
-    camera_kind = Enumerated(CameraKind)
-    falloff_store: int
-    response_store: int
-    response_rows: int
-    response_id = Vector(writable=False)
-    response_weight = Vector(writable=False)
+    exact: Flag = Flag()
+    rows: int = default
+    id: Vector = Vector(writable=False)
+    weight: Vector = Vector(writable=False)
+    distance: float = default
+    sigma: float = default
+    name_score: float = default
+    reason: Text = Text()
+    reason_code: Vector = Vector(writable=False)
+    falloff_sigma: float = default
+    distance_sigma: float = default
+    sensor_sigma: float = default
+    response_sigma: float = default
+    response_from: Enumerated[ResponseFrom] = Enumerated(ResponseFrom)
+    camera_kind: Enumerated[CameraKind] = Enumerated(CameraKind)
+    falloff_store: int = default
+    response_store: int = default
+    response_rows: int = default
+    response_id: Vector = Vector(writable=False)
+    response_weight: Vector = Vector(writable=False)
 
     @property
     def reasons(self) -> tuple[Reason, ...]:
@@ -74,30 +77,31 @@ class Lookup(Value, _abi.Lookup):
 
     @property
     def nearest(self) -> tuple[str, ...]:
-        names = (bytes(name).split(b"\0")[0].decode("utf-8", "surrogateescape") for name in _abi.Lookup.nearest.__get__(self))
+        texts = vars(_abi.Lookup)["nearest"].__get__(self)
+        names = (bytes(text).split(b"\0")[0].decode("utf-8", "surrogateescape") for text in texts)
         return tuple(name for name in names if name)
 
 
 class StoreFault(Value, _abi.StoreFault):
     """A fault found by Store.check: id of the profile, 0 for the file as a whole, and the reason."""
 
-    id: int
-    reason = Text()
+    id: int = default
+    reason: Text = Text()
 
 
 class StoreSummary(Value, _abi.StoreSummary):
     """A lens or a camera, with a summary of its profiles: their number, also by Processing, the number of distinct
     cameras or lenses named with it (others), and (smallest, largest) of focal_mm, aperture and distance_m."""
 
-    camera_maker = Text()
-    camera_model = Text()
-    lens = Text()
-    profiles: int
-    others: int
-    processing = Vector(writable=False)
-    focal_mm = Vector(writable=False)
-    aperture = Vector(writable=False)
-    distance_m = Vector(writable=False)
+    camera_maker: Text = Text()
+    camera_model: Text = Text()
+    lens: Text = Text()
+    profiles: int = default
+    others: int = default
+    processing: Vector = Vector(writable=False)
+    focal_mm: Vector = Vector(writable=False)
+    aperture: Vector = Vector(writable=False)
+    distance_m: Vector = Vector(writable=False)
 
 
 
@@ -112,34 +116,41 @@ class StoreStats(Value, _abi.StoreStats):
     """Contents of a database: counts, (smallest, largest) of focal_mm, aperture and distance_m, bytes, layout; method
     and source, the groups with the most profiles, as dictionaries of their counts."""
 
-    profiles: int
-    cameras: int
-    lenses: int
-    units: int
-    processing = Vector(writable=False)
-    focal_mm = Vector(writable=False)
-    aperture = Vector(writable=False)
-    distance_m = Vector(writable=False)
+    profiles: int = default
+    cameras: int = default
+    lenses: int = default
+    units: int = default
+    methods: int = default
+    sources: int = default
+    with_grid: int = default
+    with_covariance: int = default
+    with_doubt: int = default
+    bytes: int = default
+    layout: int = default
+    processing: Vector = Vector(writable=False)
+    focal_mm: Vector = Vector(writable=False)
+    aperture: Vector = Vector(writable=False)
+    distance_m: Vector = Vector(writable=False)
 
     @property
     def method(self) -> dict[str, int]:
         """Profiles by method."""
-        return self._groups(_abi.StoreStats.method)
+        return self._groups("method")
 
     @property
     def source(self) -> dict[str, int]:
         """Profiles by source."""
-        return self._groups(_abi.StoreStats.source)
+        return self._groups("source")
 
-    def _groups(self, field: Any) -> dict[str, int]:
+    def _groups(self, field: str) -> dict[str, int]:
         return {group.name.decode("utf-8", "surrogateescape"): group.profiles
-                for group in field.__get__(self) if group.profiles}
+                for group in vars(_abi.StoreStats)[field].__get__(self) if group.profiles}
 
 
 class Store(Handle):
     """A profile database; `with Store(path, StoreMode.CREATE) as store:`. Every call is one transaction."""
 
-    def __init__(self, path: Union[str, bytes, os.PathLike], mode: StoreMode = StoreMode.READ):
+    def __init__(self, path: Union[PathLike, bytes], mode: StoreMode = StoreMode.READ):
         pointer, error = POINTER(_abi.Store)(), _abi.ErrorText()
         name = os.fsencode(path)
         if b"\0" in name:
@@ -147,6 +158,10 @@ class Store(Handle):
         check(lib.lensprof_store_open(name, StoreMode(mode), byref(pointer), byref(error)),
               f"{path!r}: cannot be opened", error)
         super().__init__(pointer, lib.lensprof_store_close)
+        self._path = os.fsdecode(path)
+
+    def __repr__(self) -> str:
+        return f"Store({self._path!r})"
 
     def _call(self, function: Any, *arguments: Any) -> None:
         """Calls a function that takes a store first and an error text last."""

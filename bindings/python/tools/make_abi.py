@@ -29,6 +29,17 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 COMMAND = "bindings/python/tools/make_abi.py"
 WIDTH = 120
 
+# ctypes.Structure has any attribute for type checkers, so that they would accept any attribute of a subclass.
+STRUCTURE = '''
+if typing.TYPE_CHECKING:
+    from ctypes import _CData
+
+    class Structure(_CData):
+        """The classes that users see declare their fields."""
+else:
+    from ctypes import Structure
+'''
+
 # C types of the standard headers and what they are in ctypes; the parser gets typedefs for the first ones.
 STANDARD = {"int32_t": "c_int32", "int64_t": "c_int64", "uint8_t": "c_uint8", "uint16_t": "c_uint16",
             "uint32_t": "c_uint32", "uint64_t": "c_uint64", "size_t": "c_size_t", "ptrdiff_t": "c_ssize_t"}
@@ -298,13 +309,13 @@ def python_text(interface: Interface) -> str:
     photo = {name for name in interface.functions if interface.headers[name] == "photo.h"}
     body += "\n# name: (restype, argtypes)" + functions_table("FUNCTIONS", interface, set(interface.functions) - photo)
     body += "\n# The same for liblensprof-photo." + functions_table("PHOTO_FUNCTIONS", interface, photo)
-    used = sorted(set(re.findall(r"\b(?:c_\w+|POINTER|CFUNCTYPE|Structure)\b", body)))
+    used = sorted(set(re.findall(r"\b(?:c_\w+|POINTER|CFUNCTYPE)\b", body)))
     return (f"# Generated from include/lensprof by {COMMAND}: do not edit; `make abi` regenerates it.\n"
             '"""The C interface as tables: structures, enumerations, constants and functions of the public headers.\n\n'
             "Nothing else in the package knows a layout or a number of the C library. Raw structures have the fields\n"
             "of those in C; users see subclasses of them in the modules by topic.\n"
-            '"""\nfrom __future__ import annotations\n\n'
-            + wrapped("from ctypes import (", used, ")") + "from enum import IntEnum, IntFlag\n\n" + body)
+            '"""\nfrom __future__ import annotations\n\nimport typing\n'
+            + (wrapped("from ctypes import (", used, ")") if used else "") + "from enum import IntEnum, IntFlag\n" + STRUCTURE + "\n" + body)
 
 
 def dump_text(interface: Interface) -> str:

@@ -13,7 +13,8 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t first_calibrate_options = sizeof(lensprof_calibrate_options);
+constexpr size_t first_calibrate_options = sizeof(lensprof_calibrate_options),
+                 first_calibration_info = sizeof(lensprof_calibration_info);
 
 // The options of a fit that the caller gives; nothing is stored yet.
 SceneFitOptions options_of(const lensprof_calibrate_options &from) {
@@ -148,6 +149,23 @@ const lensprof_fit *lensprof_calibration_get_fit(const lensprof_calibration *cal
     return calibration && calibration->of_scene ? calibration->of_scene->fit.best.held.get() : nullptr;
 }
 
+lensprof_status lensprof_calibration_get_info(const lensprof_calibration *calibration, lensprof_calibration_info *info,
+                                              lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        require(calibration, "calibration"), require(info, "info");
+        lensprof_calibration_info found;
+        lensprof_calibration_info_init(&found);
+        found.images = static_cast<uint32_t>(calibration->result.images.size());
+        found.equalizes = calibration->corrects();
+        if (calibration->of_scene) {
+            found.profiles = static_cast<uint32_t>(settings_of(*calibration->of_scene).size());
+            found.findings = static_cast<uint32_t>(calibration->of_scene->fit.report.verdict.findings.size());
+            found.usable = calibration->of_scene->fit.best.result.usable;
+        }
+        give(found, info, first_calibration_info, "info");
+    });
+}
+
 lensprof_status lensprof_calibration_exposure_at(const lensprof_calibration *calibration, uint32_t image,
                                                  lensprof_exposure *exposure, double *errors, lensprof_error *error) {
     return photo_call("calibration", error, [&] {
@@ -166,11 +184,6 @@ lensprof_status lensprof_calibration_exposure_at(const lensprof_calibration *cal
         errors[0] = quality.ev_sigma;
         std::copy_n(quality.white_balance_sigma, 3, errors + 1);
     });
-}
-
-uint32_t lensprof_calibration_count_profiles(const lensprof_calibration *calibration) {
-    if (!calibration || !calibration->of_scene) return 0;
-    return static_cast<uint32_t>(std::max<size_t>(calibration->of_scene->fit.report.settings.size(), 1));
 }
 
 lensprof_status lensprof_calibration_profile_at(const lensprof_calibration *calibration, uint32_t index,
@@ -193,7 +206,7 @@ lensprof_status lensprof_calibration_finding_at(const lensprof_calibration *cali
     return photo_call("calibration", error, [&] {
         require(finding, "finding");
         const auto &findings = fitted(calibration).fit.report.verdict.findings;
-        if (index >= findings.size()) throw Failure(LENSPROF_ERROR_NOT_FOUND, "finding: there are no more");
+        require_index(index, findings.size(), "finding");
         const Finding &from = findings[index];
         lensprof_finding found;
         lensprof_finding_init(&found);

@@ -1,4 +1,5 @@
 // Pictures from and to files and memory.
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 
@@ -56,6 +57,28 @@ Picture picture_of(const lensprof_image &pixels, const lensprof_picture *like) {
     return picture;
 }
 
+// A number of EXIF in the range that its tag holds, or empty if it is unknown.
+std::optional<double> stated(double value, double least, double below, const char *name) {
+    if (value == LENSPROF_UNKNOWN) return {};
+    if (value >= least && value < below) return value;
+    throw Failure(LENSPROF_ERROR_ARGUMENT,
+                  std::string("metadata: ") + name + ": is neither in the range of EXIF nor LENSPROF_UNKNOWN");
+}
+
+PictureMetadata metadata_of(const lensprof_picture_metadata &given) {
+    lensprof_picture_metadata all;
+    lensprof_picture_metadata_init(&all);
+    all = taken(&given, all, first_metadata, "metadata");
+    check(lensprof_profile_key_validate(&all.key), "metadata: key");
+    PictureMetadata metadata = unknown_metadata();
+    metadata.key = all.key;
+    metadata.key.aperture = stated(all.f_number, 0.01, 1e3, "f_number").value_or(all.key.aperture);
+    metadata.exposure_time_s = stated(all.exposure_time_s, 1e-9, 1e6, "exposure_time_s");
+    metadata.iso = stated(all.iso, 0.5, 1e8, "iso");
+    metadata.captured.assign(all.captured, std::find(all.captured, std::end(all.captured), '\0'));
+    return metadata;
+}
+
 void write_as(const std::string &path, const lensprof_image &pixels, const lensprof_picture_options *given) {
     lensprof_picture_options defaults;
     lensprof_picture_options_init(&defaults);
@@ -64,6 +87,8 @@ void write_as(const std::string &path, const lensprof_image &pixels, const lensp
     WriteOptions how;
     how.jpeg_quality = static_cast<int>(options.jpeg_quality);
     if (options.like) how.metadata_from = options.like->path;
+    PictureMetadata metadata;
+    if (options.metadata) metadata = metadata_of(*options.metadata), how.metadata = &metadata;
     write_picture(path, picture_of(pixels, options.like), how);
 }
 

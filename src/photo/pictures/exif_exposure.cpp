@@ -1,5 +1,6 @@
 #include "photo/pictures/exif_exposure.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "photo/pictures/exif_tags.hpp"
@@ -94,9 +95,21 @@ void write_exposure(const PictureMetadata &metadata, Exif &exif) {
     set_rational(exif, exif_tags::f_number, metadata.key.aperture);
     set_rational(exif, exif_tags::exposure_time, metadata.exposure_time_s.value_or(LENSPROF_UNKNOWN));
     if (metadata.exposure_time_s) exif.erase(exif_tags::shutter_speed);  // states the old exposure time
-    if (metadata.iso && *metadata.iso >= 0.5)                            // 16 bits; 65535 means a larger value
-        exif.set_number(exif_tags::iso_speed_ratings, tiff_short,
-                        static_cast<uint32_t>(std::lround(std::fmin(*metadata.iso, 65535))));
+    if (metadata.iso && *metadata.iso >= 0.5) {                          // 16 bits; 65535 means a larger value
+        const auto iso = static_cast<uint32_t>(std::lround(*metadata.iso));
+        exif.set_number(exif_tags::iso_speed_ratings, tiff_short, std::min(iso, 65535u));
+        if (iso >= 65535) {
+            exif.set_number(exif_tags::sensitivity_type, tiff_short, 3);  // what ISOSpeed is
+            exif.set_number(exif_tags::iso_speed, tiff_long, iso);
+        }
+    }
+    if (!metadata.captured.empty()) {  // both parts, so that no fraction of another time stays
+        const size_t point = std::min(metadata.captured.find('.'), metadata.captured.size());
+        exif.set_text(exif_tags::captured, metadata.captured.substr(0, point));
+        exif.erase(exif_tags::captured_fraction);
+        if (point < metadata.captured.size())
+            exif.set_text(exif_tags::captured_fraction, metadata.captured.substr(point + 1));
+    }
     if (!metadata.is_manual) return;
     exif.set_number(exif_tags::exposure_program, tiff_short, kManual);
     exif.set_number(exif_tags::exposure_mode, tiff_short, kManual);

@@ -1,0 +1,45 @@
+"""Arrays as picture files of a temporary folder, from which the library reads them like photographs."""
+from __future__ import annotations
+
+import contextlib
+import os
+import pathlib
+import tempfile
+from typing import Any, Iterable, Iterator, Optional
+
+import numpy.typing as npt
+
+from ._types import Pixels
+from .pictures import PictureMetadata, write_picture
+
+_END: Any = object()
+
+
+@contextlib.contextmanager
+def written_frames(frames: Iterable[Pixels], names: Optional[Iterable[str]], times: Optional[Iterable[float]],
+                   metadata: Optional[Iterable[PictureMetadata]]) -> Iterator[tuple[str, dict[str, str]]]:
+    """A folder with the files of frames, and the name of the frame of each, while the block runs; of an iterator, one
+    frame is in memory. What is given for the frames is written as EXIF. The library sorts files by name: they are
+    numbered if the frames have another order."""
+    labels = None if names is None else list(names)
+    is_sorted = labels is None or all(a < b for a, b in zip(labels, labels[1:]))
+    columns: dict[str, Any] = {"names": labels, "times": times, "metadata": metadata}
+    given = {what: iter(values) for what, values in columns.items() if values is not None}
+    with tempfile.TemporaryDirectory() as folder:
+        written: dict[str, str] = {}
+        for number, frame in enumerate(frames):
+            row = {what: next(values, _END) for what, values in given.items()}
+            for what in (what for what, value in row.items() if value is _END):
+                raise ValueError(f"{number} {what} for more frames: give one for each frame")
+            name = row.get("names", f"frame{number:05d}")
+            if not name or pathlib.PurePath(name).name != name or name in written.values():
+                raise ValueError(f"{name!r}: is not the name of a frame; give each its own, without folders")
+            stated = PictureMetadata() if metadata is None else row["metadata"].copy()
+            if times is not None:
+                stated.exposure_time_s = row["times"]
+            file = f"{name}.png" if is_sorted else f"{number:05d} {name}.png"
+            write_picture(os.path.join(folder, file), frame, metadata=stated)
+            written[file] = name
+        for what in (what for what, values in given.items() if next(values, _END) is not _END):
+            raise ValueError(f"more {what} than the {len(written)} frames: give one for each frame")
+        yield folder, written

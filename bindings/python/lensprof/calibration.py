@@ -1,0 +1,171 @@
+"""What was found about the cameras, lenses and exposures of a scene; see lensprof/photo.h."""
+from __future__ import annotations
+
+from ctypes import POINTER, byref, c_double, c_uint32
+from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abi
+from ._abi import Free, GammaFrom, Loss, Method, Status
+from ._library import Error, Handle, check, initialised, lib, photo
+from ._paths import PathLike, optional_path, raw_path, set_databases
+from ._struct import Enumerated, Flag, Struct, default
+from .copies import correct_files
+from .fit import FitResult
+from .model import Exposure
+from .profile import Profile
+from .reason import Finding
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure  # type: ignore[import,unused-ignore]
+    from typing_extensions import Unpack
+
+    from .copies import CorrectOptions
+
+EXPOSURES_DTYPE = np.dtype([("name", object), ("ev", np.float64), ("ev_sigma", np.float64),
+                            ("white_balance", np.float64, 3), ("white_balance_sigma", np.float64, 3)])
+
+
+class CalibrateOptions(TypedDict, total=False):
+    """How a scene is fitted. Defaults: those of `lensprof build`.
+
+    method: Method.TRANSFER or RADIANCE. modes: of the response, MODES_AUTO = by held-out error. loss. falloff_curves: 1,
+    3 or 0 = by held-out error. gamma_from: what determines the common exponent. free: Free.EV ... of every image, 0 =
+    those of the project, or all. pairs: 0 = by the number of images; seed: of the sampling; max_side: pictures are read
+    reduced to at least so many pixels. one_lens: one response and falloff for all. use_stored: the profile stored for
+    camera and lens is the prior. prior_weight: 0 = none. exif_sigma: standard error of exposures in EXIF, EV; 0 = not
+    used, negative = by EXIF. databases: paths of profile databases; none = the user's own and the installed one.
+    """
+
+    method: Method
+    modes: int
+    loss: Loss
+    falloff_curves: int
+    gamma_from: GammaFrom
+    free: Free
+    pairs: int
+    seed: int
+    max_side: int
+    one_lens: bool
+    use_stored: bool
+    prior_weight: float
+    exif_sigma: float
+    databases: Sequence[PathLike]
+
+
+class RawCalibrateOptions(Struct, _abi.CalibrateOptions):
+    """The same as the library takes them."""
+
+    method: Enumerated[Method] = Enumerated(Method)
+    modes: int = default
+    loss: Enumerated[Loss] = Enumerated(Loss)
+    falloff_curves: int = default
+    gamma_from: Enumerated[GammaFrom] = Enumerated(GammaFrom)
+    free: Enumerated[Free] = Enumerated(Free)
+    pairs: int = default
+    seed: int = default
+    max_side: int = default
+    one_lens: Flag = Flag()
+    use_stored: Flag = Flag()
+    prior_weight: float = default
+    exif_sigma: float = default
+
+    def __init__(self, databases: Sequence[PathLike] = (), **fields: Any):
+        super().__init__(**fields)
+        set_databases(self, databases)
+
+
+class Calibration(Handle):
+    """What was found about the cameras, lenses and exposures of a scene. Made by `calibrate`, `Scene.calibrate` or
+    `Calibration.read`.
+
+    exposures: structured array of EXPOSURES_DTYPE: name, ev and white_balance relative to the reference, with standard
+    errors; NaN for images left out. profiles: tuple of Profile, one for each lens setting; findings: tuple of Finding,
+    most severe first. usable: a profile to store; equalizes: the pictures can be corrected. result: the FitResult of the
+    reference's lens setting, None for a result that was read.
+    """
+
+    exposures: npt.NDArray[np.void]
+    profiles: tuple[Profile, ...]
+    findings: tuple[Finding, ...]
+    usable: bool
+    equalizes: bool
+    result: Optional[FitResult]
+
+    def __init__(self, pointer: Any, names: Sequence[str] = ()):
+        library = photo()
+        super().__init__(pointer, library.lensprof_calibration_destroy)
+        info = initialised(_abi.CalibrationInfo)
+        self._ask(library.lensprof_calibration_get_info, byref(info))
+        self.usable, self.equalizes = bool(info.usable), bool(info.equalizes)
+        self.exposures = np.array([self._exposure(i, names[i] if names else str(i)) for i in range(info.images)],
+                                  dtype=EXPOSURES_DTYPE)
+        self.profiles = tuple(self._profiles(info.profiles))
+        self.findings = tuple(self._finding(index) for index in range(info.findings))
+        self.result = None
+        with self._use() as calibration:
+            fit = library.lensprof_calibration_get_fit(calibration)
+        if fit:
+            self.result, error = FitResult(), _abi.ErrorText()
+            check(lib.lensprof_fit_setting_at(fit, _abi.FIT_REFERENCE, byref(self.result), byref(error)), "no result", error)
+
+    @classmethod
+    def read(cls, path: PathLike, images: Optional[PathLike] = None) -> Calibration:
+        """A result that was saved: exposures.json, whose pictures are in the folder `images` if it is given, or a Hugin
+        project. It has exposures and corrects; it has no profiles and findings."""
+        library, error, pointer = photo(), _abi.ErrorText(), POINTER(_abi.Calibration)()
+        check(library.lensprof_calibration_open(raw_path(path), optional_path(images), byref(pointer), byref(error)),
+              "no result", error)
+        return cls(pointer)
+
+    def save(self, path: PathLike) -> None:
+        """Writes the result in the format of the name: .pto, exposures.json, else a profile: profile.json, pcalib.txt and
+        other formats."""
+        self._ask(photo().lensprof_calibration_save, raw_path(path))
+
+    def store(self, database: Optional[PathLike] = None) -> int:
+        """Stores the usable profiles in a database, by default the user's own. Returns their number."""
+        stored = c_uint32()
+        self._ask(photo().lensprof_calibration_store, optional_path(database), byref(stored))
+        return stored.value
+
+    def correct(self, source: PathLike, target: PathLike, **options: Unpack[CorrectOptions]) -> None:
+        """Writes a corrected copy of a picture of the scene; options: those of correct_files."""
+        correct_files([(source, target)], self, **options)
+
+    def plot(self) -> Figure:
+        """Draws response and relative illuminance with matplotlib, and returns the figure."""
+        if not self.profiles:
+            raise ValueError("a result that was read has no profiles to plot")
+        return self.profiles[0].plot()
+
+    def _ask(self, function: Any, *rest: Any) -> None:
+        error = _abi.ErrorText()
+        with self._use() as calibration:
+            check(function(calibration, *rest, byref(error)), "no such part of the calibration", error)
+
+    def _exposure(self, index: int, name: str) -> tuple[Any, ...]:
+        exposure, errors = Exposure(), (c_double * 4)()
+        self._ask(photo().lensprof_calibration_exposure_at, index, byref(exposure), errors)
+        return name, exposure.ev, errors[0], tuple(exposure.white_balance), tuple(errors[1:])
+
+    def _profiles(self, count: int) -> Iterator[Profile]:
+        for index in range(count):
+            profile = Profile()
+            try:
+                self._ask(photo().lensprof_calibration_profile_at, index, byref(profile))
+            except Error as error:
+                if error.status is not Status.ERROR_NOT_FOUND:  # a setting none of whose pictures agrees
+                    raise
+                continue
+            yield profile
+
+    def _finding(self, index: int) -> Finding:
+        finding = Finding()
+        self._ask(photo().lensprof_calibration_finding_at, index, byref(finding))
+        return finding
+
+    def __repr__(self) -> str:
+        return f"Calibration({len(self.exposures)} images, usable={self.usable}, equalizes={self.equalizes})"
