@@ -81,7 +81,8 @@ LAYERS = {
         FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"pugixml.hpp", "nlohmann/*"}, ["core", "falloff"], CPP_OUTSIDE
     ),
     "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core", "falloff"]),
-    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/joined_sets.hpp"]),
+    "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/joined_sets.hpp",
+                        "fit/base/track_pairs.hpp"]),
     "src/cli": Layer(
         WHOLE_API,
         C_LIBRARY | CPP_LIBRARY | POSIX | {"CLI/*", "cairo-svg.h", "cairo.h", "nlohmann/*"},

@@ -72,7 +72,7 @@ class Tables(unittest.TestCase):
                              self.fields[name])
 
     def test_values(self):
-        ours = {prefix + member.name: member.value for prefix, enum in _abi.ENUMS.items() for member in enum}
+        ours = {prefix + member.name: member.value for prefix, enum in _abi.ENUMS.items() for member in enum.__members__.values()}
         ours.update(zip(("LENSPROF_VERSION_MAJOR", "LENSPROF_VERSION_MINOR", "LENSPROF_VERSION_PATCH"),
                         map(int, _abi.VERSION.split("."))))
         ours.update(("LENSPROF_" + name, value) for name, value in vars(_abi).items()

@@ -442,6 +442,9 @@ class Free(IntFlag):
     EV = 0x20
     RED = 0x40
     BLUE = 0x80
+    FALLOFF = 0x0e
+    LENS = 0x1f
+    IMAGE = 0xe0
 
 
 class Item(Structure):

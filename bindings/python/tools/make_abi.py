@@ -6,8 +6,9 @@ usage: make_abi.py [--cc CC]           write lensprof/_abi.py and tests/python/a
 
 Needs pycparser (package python3-pycparser) and a C preprocessor. Users of the package need neither. The names of
 classes come from those in C: lensprof_gain_grid is GainGrid; the exceptions are listed below. Macros of a single bit
-in hexadecimal make an IntFlag: LENSPROF_FREE_K1 0x02u is Free.K1. A declaration that has no form here (union, bit
-field, inline function that is more than a call) is refused, with its place.
+in hexadecimal make an IntFlag: LENSPROF_FREE_K1 0x02u is Free.K1; a macro that joins them with | is a member, too. A
+declaration that has no form here (union, bit field, inline function that is more than a call) is refused, with its
+place.
 """
 from __future__ import annotations
 
@@ -176,9 +177,10 @@ class Interface:
             self.texts[name] = node.value
             return
         value = number(node, self._values)
-        if isinstance(node, c_ast.Constant) and node.value.startswith("0x") and bin(value).count("1") == 1:
-            prefix = "_".join(name.split("_")[:2])
-            self.flags[prefix.lower()][name] = value
+        prefix = "_".join(name.split("_")[:2]).lower()
+        is_flag = isinstance(node, c_ast.Constant) and node.value.startswith("0x") and bin(value).count("1") == 1
+        if is_flag or (prefix in self.flags and isinstance(node, c_ast.BinaryOp) and node.op == "|"):
+            self.flags[prefix][name] = value
         else:
             self.constants[name] = value
 

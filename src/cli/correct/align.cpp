@@ -78,10 +78,6 @@ void declare(Command &command, Options &o) {
     declare_progress(command, o.progress);
 }
 
-constexpr uint32_t image_flags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
-constexpr uint32_t lens_flags =
-    LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
-
 // The project with the orientations. A sequence is aligned from its pictures alone: everything is free, except the
 // falloff, which a stationary camera does not show.
 Scene sequence(const Options &o) {
@@ -96,7 +92,8 @@ Scene sequence(const Options &o) {
     scene.reference = 0;
     for (uint32_t i = 0; i < scene.images.size(); i++) {
         auto &image = scene.images[i];
-        image.free = image_flags | (o.pto.empty() ? static_cast<uint32_t>(LENSPROF_FREE_RESPONSE) : lens_flags);
+        image.free =
+            LENSPROF_FREE_IMAGE | (o.pto.empty() ? static_cast<uint32_t>(LENSPROF_FREE_RESPONSE) : LENSPROF_FREE_LENS);
         image.ev_of = image.red_of = image.blue_of = i;
         lensprof_exposure_init(&image.exposure);
     }

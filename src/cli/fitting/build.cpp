@@ -46,7 +46,7 @@ struct BuildOptions : SceneFitOptions {
 };
 
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
-constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | balance_flags;
+constexpr uint32_t all_flags = LENSPROF_FREE_LENS | LENSPROF_FREE_EV | balance_flags;
 
 void declare_input(Command &command, BuildOptions &o) {
     command.files(
@@ -93,7 +93,7 @@ void declare_build_fit(Command &command, BuildOptions &o) {
                 "number of falloff curves: 1, 3 (one per channel) or auto (default: chosen by held-out error)");
     keys.list("free", o.free_words,
               {{"response", LENSPROF_FREE_RESPONSE},
-               {"falloff", falloff_flags},
+               {"falloff", LENSPROF_FREE_FALLOFF},
                {"center", LENSPROF_FREE_CENTER},
                {"ev", LENSPROF_FREE_EV},
                {"wb", balance_flags},

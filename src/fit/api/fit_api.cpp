@@ -105,7 +105,7 @@ void lensprof_fit_image_init_sized(lensprof_fit_image *image, size_t size, uint3
     if (!lp_sized_begin(image, size, kFirstImage)) return;
     image->width = width;
     image->height = height;
-    image->free = kImageFlags;
+    image->free = LENSPROF_FREE_IMAGE;
     image->ev_of = image->red_of = image->blue_of = index;
     lensprof_exposure_init(&image->exposure);
 }
@@ -113,8 +113,7 @@ void lensprof_fit_image_init_sized(lensprof_fit_image *image, size_t size, uint3
 void lensprof_fit_options_init_sized(lensprof_fit_options *options, size_t size) {
     if (!lp_sized_begin(options, size, kFirstOptions)) return;
     options->channels = 3;
-    options->free =
-        LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+    options->free = LENSPROF_FREE_LENS;
     options->modes = LENSPROF_MODES_AUTO;
     options->huber_levels = 5.0;
     options->prior_weight = 1.0;

@@ -11,9 +11,6 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kSharedFlags =
-    LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
-
 // Checks the profile that is used as the prior.
 lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *error) {
     if (o.method != LENSPROF_METHOD_TRANSFER && o.method != LENSPROF_METHOD_RADIANCE)
@@ -41,7 +38,7 @@ const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
     const Rule rules[] = {
         {o.channels == 1 || o.channels == 3, "channels must be 1 or 3"},
         {o.reference < image_count, "reference must be less than the number of images"},
-        {!(o.free & ~kSharedFlags), "free takes LENSPROF_FREE_RESPONSE, _K1, _K2, _K3 and _CENTER only"},
+        {!(o.free & ~LENSPROF_FREE_LENS), "free takes LENSPROF_FREE_RESPONSE, _K1, _K2, _K3 and _CENTER only"},
         {o.modes <= LENSPROF_EMOR_MODES || o.modes == LENSPROF_MODES_AUTO,
          "modes must be 0..25 or LENSPROF_MODES_AUTO"},
         {o.loss <= LENSPROF_LOSS_SQUARED, "loss must be one of lensprof_loss, 0..2"},
@@ -106,7 +103,7 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
         if (image.crop_factor != 0.0 && !(image.crop_factor >= 0.1 && image.crop_factor <= 100.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "crop_factor must be 0 (unknown) or 0.1..100");
-        if (image.free & ~kImageFlags)
+        if (image.free & ~LENSPROF_FREE_IMAGE)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "only EV, RED and BLUE can be free in an image");
         if (image.setting >= LENSPROF_SETTINGS_MAX)

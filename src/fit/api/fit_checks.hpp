@@ -9,8 +9,6 @@
 
 namespace lensprof {
 
-constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
-
 lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error);
 
 lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, lensprof_error *error);

@@ -22,7 +22,7 @@ struct lensprof_flat {
 
 namespace {
 
-constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+constexpr uint32_t kLensFlags = LENSPROF_FREE_FALLOFF | LENSPROF_FREE_CENTER;
 constexpr double kLargestRotation = 360.0;
 constexpr size_t kFirstFlatOptions = LP_END_OF(lensprof_flat_options, progress_user);
 constexpr size_t kFirstFlatImage = LP_END_OF(lensprof_flat_image, rotation_deg);

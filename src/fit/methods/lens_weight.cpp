@@ -66,7 +66,7 @@ std::vector<WeighedLens> weigh_lenses(const Problem &problem, const Prior &prior
         const auto n = static_cast<size_t>(s);
         WeighedLens lens;
         const double inflated = inflation.lens[n];
-        const bool is_whole = (problem.free & kFalloffFlags) == kFalloffFlags;
+        const bool is_whole = (problem.free & LENSPROF_FREE_FALLOFF) == LENSPROF_FREE_FALLOFF;
         const LensFacts facts = facts_of(problem, s);
         lens.knowledge = {expected_falloff(facts), weight * inflated, weight * inflated};
         if (is_whole)

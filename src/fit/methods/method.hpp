@@ -61,8 +61,8 @@ protected:
 
     // Whether held-out error may decide between one falloff curve and three.
     bool may_choose_vignettings(bool has_heldout) const {
-        constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-        return options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout;
+        return options_.vignettings == 0 && options_.channels == 3 && (options_.free & LENSPROF_FREE_FALLOFF)
+               && has_heldout;
     }
 
     // Chooses one falloff curve per channel if held-out pairs are clearly better for it. set(curves) sets their number;

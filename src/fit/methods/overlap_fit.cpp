@@ -326,7 +326,7 @@ void OverlapFit::hold_falling() {
     bool any_rises = false;
     for (const Falloffs &curves : found_.estimate.vignetting)
         for (const lensprof_vignetting &v : curves) any_rises = any_rises || course_of(v).rise.m > kSmallRise;
-    if (!any_rises || (options_.free & kFalloffFlags) != kFalloffFlags) return;
+    if (!any_rises || (options_.free & LENSPROF_FREE_FALLOFF) != LENSPROF_FREE_FALLOFF) return;
     const State rising = state();
     const HeldoutLoss rising_loss = loss_of(*this);
     for (Estimate *estimate : {&found_.estimate, &found_.best.estimate})

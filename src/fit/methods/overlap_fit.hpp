@@ -106,7 +106,7 @@ private:
     Candidate choose_modes(const Estimate &start);
     Candidate choose(Loss &used);
     bool follows(const Loss &used, Estimate &estimate, Outcome &outcome);
-    bool frees_lens() const { return options_.free & (kFalloffFlags | LENSPROF_FREE_CENTER); }
+    bool frees_lens() const { return options_.free & (LENSPROF_FREE_FALLOFF | LENSPROF_FREE_CENTER); }
     void weigh_lens_knowledge();
     void solve_again();
     State state() const { return {found_, gauge_, lenses_, control_.falls}; }

@@ -13,7 +13,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kLensFlags = kFalloffFlags | LENSPROF_FREE_CENTER;
+constexpr uint32_t kLensFlags = LENSPROF_FREE_FALLOFF | LENSPROF_FREE_CENTER;
 
 // Whether a simpler description is possible, and may explain the verdict. Verdicts about single images are about the
 // data: the group of images changes first (group.hpp). Few grey values show a falloff, but no response
@@ -32,7 +32,7 @@ bool may_be_simpler(const lensprof_fit_options &options, const FitResult &r) {
 
 // Whether M of all falloffs that were free is that of a lens, or of a camera that corrects it.
 bool is_possible(const lensprof_fit_options &options, FitResult &r) {
-    if (!(options.free & kFalloffFlags)) return true;
+    if (!(options.free & LENSPROF_FREE_FALLOFF)) return true;
     bool all = true;
     for_each_verdict(r, [&](const auto &found) {
         for (const lensprof_vignetting &v : found.vignetting) {

@@ -79,7 +79,7 @@ void resolve_unobserved_response(const lensprof_fit_options &options, uint32_t i
     const bool is_even =
         r.irradiance_spread_ev < kSmallestLightSpread && first_code(r.verdict) != LENSPROF_REASON_EXPOSURES_EQUAL;
     if (r.response_from != LENSPROF_FIT_RESPONSE_PICTURES || !(options.prior_weight > 0.0)) return;
-    if (is_narrow ? r.verdict[0].value[0] < kFewestGreys || !(options.free & kFalloffFlags) : !is_even) return;
+    if (is_narrow ? r.verdict[0].value[0] < kFewestGreys || !(options.free & LENSPROF_FREE_FALLOFF) : !is_even) return;
     const double spread_ev = r.irradiance_spread_ev;
     if (options.profile && holds_response(*options.profile, r))
         r.response_from = LENSPROF_FIT_RESPONSE_PROFILE;

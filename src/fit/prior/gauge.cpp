@@ -105,7 +105,7 @@ Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem, const 
     bool is_family = nothing_fixes_gamma(options, problem);
     open_ = is_family && options.prior_weight > 0.0;
     if (is_family && !open_) from_ = LENSPROF_GAMMA_NONE;
-    if (open_ && !is_static(problem) && (options.free & kFalloffFlags) == kFalloffFlags) {
+    if (open_ && !is_static(problem) && (options.free & LENSPROF_FREE_FALLOFF) == LENSPROF_FREE_FALLOFF) {
         const FalloffPrior lens = expected_falloff(facts_of(problem, 0));
         depth_ = -lens.mean[2];
         depth_sigma_ = std::sqrt(lens.precision.inverse()(2, 2)) / depth_;

@@ -114,7 +114,7 @@ double prior_cost(const Prior &prior, const Problem &problem, const std::vector<
     Eigen::VectorXd full = shared_vector(estimate), d = Eigen::VectorXd::Zero(full.size());
     for (int column : columns) d[column] = full[column] - prior.mean[column];
     double cost = 0.5 * d.dot(prior.precision * d);
-    for (size_t s = 0; s < prior.falloff.size() && (problem.free & kFalloffFlags); s++) {
+    for (size_t s = 0; s < prior.falloff.size() && (problem.free & LENSPROF_FREE_FALLOFF); s++) {
         const Eigen::Vector3d off =
             log_falloff(estimate.vignetting[s][green_curve(problem.vignettings)].k, nullptr) - prior.falloff[s].mean;
         cost += 0.5 * off.dot(prior.falloff[s].precision * off);

@@ -35,8 +35,6 @@ constexpr LensColumn lens_column(int column) {
     return {(column - kFalloff) / kSetting, (column - kFalloff) % kSetting};
 }
 
-constexpr uint32_t kFalloffFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-
 constexpr double kLargestLogExposure = 20.0 * kLn2;  // 20 EV relative to the reference
 
 // Two images that share pairs, and these pairs: [first, last) of Problem::pairs.

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "fit/base/track_pairs.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -134,24 +136,10 @@ Tracks tracks_within(const Tracks &tracks, const std::function<bool(uint32_t i, 
 
 std::vector<lensprof_pair> pairs_of(const Tracks &tracks, int channels) {
     std::vector<lensprof_pair> pairs;
-    for (const Range &track : tracks.tracks) {
-        const lensprof_observation *last = nullptr;
-        for (size_t i = track.first; i < track.last; i++) {
-            const lensprof_observation &next = tracks.observations[i];
-            if (!is_measured(next, channels)) continue;
-            if (last) {
-                lensprof_pair pair{};
-                const lensprof_observation *ends[2] = {last, &next};
-                for (int side = 0; side < 2; side++) {
-                    pair.image[side] = ends[side]->image;
-                    std::copy(ends[side]->xy, ends[side]->xy + 2, pair.xy[side]);
-                    std::copy(ends[side]->value, ends[side]->value + 3, pair.value[side]);
-                }
-                pairs.push_back(pair);
-            }
-            last = &next;
-        }
-    }
+    const auto takes = [channels](const lensprof_observation &o) { return is_measured(o, channels); };
+    for (const Range &track : tracks.tracks)
+        add_track_pairs(&tracks.observations[track.first],
+                        &tracks.observations[track.first] + (track.last - track.first), takes, pairs);
     return pairs;
 }
 

@@ -26,7 +26,7 @@ public:
                 throw std::invalid_argument("unknown kind of camera");
             of.options.response = &of.held;
         }
-        if (of.options.free & kFalloffFlags) of.options.vignetting = lensprof_vignetting{};
+        if (of.options.free & LENSPROF_FREE_FALLOFF) of.options.vignetting = lensprof_vignetting{};
         of.options.profile = nullptr;
         of.options.free = 0;
         for (lensprof_fit_image &image : of.images) image.setting = image.camera = 0;

@@ -46,7 +46,7 @@ bool is_covered(const Problem &problem, const FitResult &r, int bin) {
     return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * few_pair_ends(r);
 }
 
-bool frees_falloff(const Problem &problem) { return problem.free & kFalloffFlags; }
+bool frees_falloff(const Problem &problem) { return problem.free & LENSPROF_FREE_FALLOFF; }
 
 bool fits_response(const Estimate &estimate) { return estimate.modes > 0 || estimate.is_refined; }
 
@@ -116,8 +116,8 @@ uint32_t state_of(const Found &found, const FitResult &r) {
     const Problem &problem = found.problem;
     const Estimate &estimate = found.estimate;
     const bool is_equal = is_static(problem), is_still = is_equal && (problem.free & LENSPROF_FREE_RESPONSE),
-               frees_all =
-                   (estimate.modes >= 0 || estimate.is_refined) && (problem.free & kFalloffFlags) == kFalloffFlags;
+               frees_all = (estimate.modes >= 0 || estimate.is_refined)
+                           && (problem.free & LENSPROF_FREE_FALLOFF) == LENSPROF_FREE_FALLOFF;
     uint32_t state = is_equal ? kStatic : kMoving;
     state |= is_still ? kStill : kNotStill;
     state |= frees_all ? kFreesAll : kHolds;

@@ -6,7 +6,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+constexpr uint32_t all_flags = LENSPROF_FREE_LENS | LENSPROF_FREE_IMAGE;
 
 // The free parameters: as requested, else by the v lines of a project; all if these have nothing photometric, as in a
 // project that was only aligned.

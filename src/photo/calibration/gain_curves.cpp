@@ -34,7 +34,7 @@ Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string 
     if (input.options.free & LENSPROF_FREE_RESPONSE)
         check(lensprof_response_set_typical(&input.fixed, input.options.camera_kind, nullptr, nullptr), item);
     input.options.response = &input.fixed;
-    if (input.options.free & falloff_flags) input.options.vignetting = lensprof_vignetting{};
+    if (input.options.free & LENSPROF_FREE_FALLOFF) input.options.vignetting = lensprof_vignetting{};
     input.options.profile = nullptr;
     input.options.free = 0;
     input.points.clear(), input.view_distances.clear();

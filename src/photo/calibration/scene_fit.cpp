@@ -22,14 +22,14 @@ lensprof_fit_options scene_options(const SceneFitOptions &o, const Scene &scene,
     lensprof_fit_options options = fit_options(o.fit);
     const auto &lens = scene.images[scene.reference];
     uint32_t free_in_scene = 0;
-    for (const auto &image : scene.images) free_in_scene |= image.free & lens_flags;
+    for (const auto &image : scene.images) free_in_scene |= image.free & LENSPROF_FREE_LENS;
     options.free &= free_in_scene;
     options.reference = scene.reference;
     options.vignettings = o.falloff_curves;
     options.vignetting = lens.vignetting;
     fixed = scene.models[scene.reference]->response[0];
     options.response = &fixed;
-    if (options.free & falloff_flags)
+    if (options.free & LENSPROF_FREE_FALLOFF)
         if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
             options.vignetting = lensprof_vignetting{};
     return options;
@@ -37,7 +37,7 @@ lensprof_fit_options scene_options(const SceneFitOptions &o, const Scene &scene,
 
 // A profile stores measured properties of a lens: without any to estimate, nothing is stored.
 void check_unknowns(const SceneFitOptions &o, const Scene &scene, const lensprof_fit_options &options) {
-    if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
+    if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | LENSPROF_FREE_FALLOFF)))
         throw Failure(LENSPROF_ERROR_ARGUMENT, scene.path
                                            + ": neither response nor falloff is estimated, so there is nothing to "
                                              "store; give " + option_name("no_store") + ", or " + option_name("free_all"));

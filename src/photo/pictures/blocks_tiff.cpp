@@ -10,15 +10,13 @@
 #include "photo/pictures/photoshop_block.hpp"
 #include "photo/pictures/picture_blocks.hpp"
 #include "photo/pictures/picture_excerpt.hpp"
+#include "photo/pictures/tiff_tags.hpp"
 
 namespace lensprof {
 
 namespace codec {
 
 namespace {
-
-constexpr uint16_t tag_jpeg_offset = 513, tag_strips = 273, tag_strip_counts = 279, tag_tiles = 324,
-                   tag_tile_counts = 325, tag_sub_directories = 330;
 
 TiffReader reader_of_file(std::FILE *file) {
     return {
@@ -74,13 +72,12 @@ bool is_cr2(std::FILE *file) {
 
 // Where the pixels end; the end of the file if it may hold more than its first picture.
 uint64_t pixels_end(TiffReader &reader, const TiffDirectory &first, uint64_t size) {
-    constexpr uint16_t tag_kodak_directory = 33424;
     if (first.next != 0) return size;
     for (const uint16_t tag : {tag_sub_directories, tag_jpeg_offset, tag_kodak_directory, exif_tags::dng_version.tag})
         if (first.find(tag)) return size;
     uint64_t end = tiff_header_bytes;
     for (const auto &[offsets_tag, counts_tag] :
-         {std::pair(tag_strips, tag_strip_counts), {tag_tiles, tag_tile_counts}}) {
+         {std::pair(tag_strip_offsets, tag_strip_bytes), {tag_tile_offsets, tag_tile_bytes}}) {
         const std::vector<uint32_t> offsets = reader.numbers(first, offsets_tag),
                                     counts = reader.numbers(first, counts_tag);
         if (offsets.size() != counts.size()) return size;

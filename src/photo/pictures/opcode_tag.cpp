@@ -11,13 +11,12 @@
 #include "photo/base/failure.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/pictures/tiff_directory.hpp"
+#include "photo/pictures/tiff_tags.hpp"
 
 namespace lensprof {
 
 namespace {
 
-constexpr uint16_t tag_subfile_type = 254, tag_width = 256, tag_height = 257, tag_samples = 277, tag_cfa_repeat = 33421,
-                   tag_cfa_pattern = 33422, tag_active_area = 50829;
 constexpr uint32_t max_opcode_bytes = 64u << 20;
 
 const char *text_of(TiffDefect defect) {

@@ -32,8 +32,8 @@ private:
     std::vector<uint8_t> buffer_;
 };
 
-// Exiv2 holds the files it changes in memory, several times. It gets a small file instead, with everything but the
-// coded pixels, which are then copied from the old file: the result is byte for byte what Exiv2 makes of the whole.
+// Metadata are edited in memory: in a small file with everything but the coded pixels, which are then copied from the
+// old file. The result is byte for byte that of editing the whole.
 class PictureExcerpt {
 public:
     virtual ~PictureExcerpt() = default;
@@ -52,14 +52,11 @@ protected:
     std::vector<uint8_t> bytes_;
 };
 
-// The excerpt of a PNG, JPEG or TIFF with the layout that this program writes; else NULL.
+// The excerpt of a PNG or JPEG with the layout that this program writes; else NULL.
 std::unique_ptr<PictureExcerpt> excerpt_of(const std::string &path);
 
 // The whole file.
 std::unique_ptr<PictureExcerpt> whole_file(const std::string &path);
-
-// The parts of excerpt_of().
-std::unique_ptr<PictureExcerpt> excerpt_of_tiff(const std::string &path);
 
 // `count` bytes from `start` on; false if there are fewer.
 bool read_at(std::FILE *file, uint64_t start, size_t count, std::vector<uint8_t> &bytes);

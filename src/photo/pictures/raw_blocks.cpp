@@ -7,6 +7,7 @@
 #include "photo/base/paths.hpp"
 #include "photo/pictures/codec.hpp"
 #include "photo/pictures/tiff_directory.hpp"
+#include "photo/pictures/tiff_tags.hpp"
 
 namespace lensprof {
 
@@ -14,9 +15,6 @@ namespace codec {
 
 namespace {
 
-constexpr uint16_t tag_width = 256, tag_height = 257, tag_compression = 259, tag_strip_offsets = 273, tag_samples = 277,
-                   tag_rows_per_strip = 278, tag_strip_bytes = 279, tag_tile_width = 322, tag_tile_height = 323,
-                   tag_tile_offsets = 324, tag_tile_bytes = 325;
 constexpr uint32_t compression_jpeg = 7;
 constexpr uint8_t start_of_jpeg = 0xd8, lossless_frame = 0xc3, huffman_table = 0xc4, start_of_jpeg_scan = 0xda;
 constexpr int max_segments = 64;

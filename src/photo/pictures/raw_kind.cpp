@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "photo/pictures/tiff_directory.hpp"
+#include "photo/pictures/tiff_tags.hpp"
 
 namespace lensprof {
 namespace {
 
 using namespace std::string_view_literals;
-
-constexpr uint16_t tag_make = 271, tag_dng_version = 50706;
 
 // Files that are not a TIFF, by their first bytes.
 constexpr struct {

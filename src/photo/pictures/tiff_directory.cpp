@@ -1,4 +1,5 @@
 #include "photo/pictures/tiff_directory.hpp"
+#include "photo/pictures/tiff_tags.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -7,8 +8,6 @@ namespace lensprof {
 
 namespace {
 
-constexpr uint16_t tag_strip_offsets = 273, tag_strip_bytes = 279, tag_tile_offsets = 324, tag_tile_bytes = 325,
-                   tag_sub_ifds = 330;
 constexpr uint32_t max_directories = 256;  // a longer chain is circular
 constexpr size_t entry_bytes = 12;
 
@@ -78,7 +77,7 @@ TiffDirectory TiffReader::directory_at(uint64_t offset) {
 
 std::vector<uint64_t> TiffReader::children(const TiffDirectory &directory) const {
     std::vector<uint64_t> children;
-    const TiffEntry *entry = directory.find(tag_sub_ifds);
+    const TiffEntry *entry = directory.find(tag_sub_directories);
     if (!entry || (entry->type != tiff_long && entry->type != tiff_ifd)) return children;
     if (entry->count > max_directories) throw UnusableTiff(TiffDefect::circle);
     const uint64_t first = place(*entry);

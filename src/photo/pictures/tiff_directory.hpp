@@ -29,7 +29,6 @@ struct UnusableTiff : std::exception {
 };
 
 constexpr uint16_t tiff_byte = 1, tiff_short = 3, tiff_long = 4, tiff_undefined = 7, tiff_ifd = 13;
-constexpr uint16_t tag_photometric = 262;
 constexpr uint32_t photometric_cfa = 32803, photometric_linear_raw = 34892;
 constexpr uint32_t tiff_header_bytes = 8;
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 
+#include "fit/base/track_pairs.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -144,21 +146,10 @@ std::vector<lensprof_observation> sample_tracks(const Scene &scene, std::vector<
 
 std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations) {
     std::vector<lensprof_pair> pairs;
-    const lensprof_observation *last = nullptr;
-    for (const auto &next : observations) {
-        if (*std::max_element(next.value, next.value + 3) > GreyRange{}.white) continue;
-        if (last && last->point == next.point) {
-            lensprof_pair pair{};
-            const lensprof_observation *ends[2] = {last, &next};
-            for (int side = 0; side < 2; side++) {
-                pair.image[side] = ends[side]->image;
-                std::copy(ends[side]->xy, ends[side]->xy + 2, pair.xy[side]);
-                std::copy(ends[side]->value, ends[side]->value + 3, pair.value[side]);
-            }
-            pairs.push_back(pair);
-        }
-        last = &next;
-    }
+    const auto takes = [](const lensprof_observation &o) {
+        return *std::max_element(o.value, o.value + 3) <= GreyRange{}.white;
+    };
+    add_track_pairs(observations.data(), observations.data() + observations.size(), takes, pairs);
     return pairs;
 }
 

@@ -27,14 +27,13 @@ std::shared_ptr<const lensprof_profile> mean_model() {
 }  // namespace
 
 void set_images(const std::vector<NewImage> &images, Scene &scene) {
-    constexpr uint32_t of_image = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
     scene.images.clear(), scene.lenses.clear();
     for (uint32_t i = 0; i < images.size(); i++) {
         lensprof_pto_image image;
         lensprof_pto_image_init(&image);
         image.camera = images[i].camera;
         lensprof_exposure_init(&image.exposure);
-        image.free = lens_flags | (i ? of_image : 0);
+        image.free = LENSPROF_FREE_LENS | (i ? LENSPROF_FREE_IMAGE : 0);
         image.response_of = image.vignetting_of = image.center_of = first_of(images, &NewImage::camera_id, i);
         image.ev_of = image.red_of = image.blue_of = i;
         image.crop[2] = static_cast<int32_t>(image.camera.width);
@@ -112,7 +111,7 @@ std::vector<lensprof_fit_image> fit_images(const Scene &scene) {
         const FalloffFrame frame = falloff_frame_of(from);
         lensprof_fit_image_init(&image, static_cast<uint32_t>(images.size()), frame.width, frame.height);
         image.exposure = exposures[images.size()];
-        image.free = from.free & (LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE);
+        image.free = from.free & LENSPROF_FREE_IMAGE;
         image.ev_of = from.ev_of;
         image.red_of = from.red_of;
         image.blue_of = from.blue_of;

@@ -50,10 +50,6 @@ struct Scene {
     double register_s = 0.0;                                    // time of finding overlaps
 };
 
-// Unknowns of a lens, of LENSPROF_FREE_*.
-constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
-
 // An image of a scene without a project.
 struct NewImage {
     lensprof_camera camera;

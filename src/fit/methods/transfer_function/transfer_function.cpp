@@ -17,7 +17,6 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kFalloff123 = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
 constexpr int kFirstModes = 5;  // of the fits that look for falloff and gauge
 constexpr int kFirstRounds = 6, kCandidateRounds = 2, kAgainRounds = 4, kLastRounds = 20;
 constexpr double kStill = 1e-3;  // largest visible change in a round at convergence
@@ -62,7 +61,7 @@ public:
           pair_count_(pair_count),
           gauge_(options, all_ = problem(split_.all)),
           is_free_((options.free & LENSPROF_FREE_RESPONSE) && options.modes != 0),
-          has_falloff_(options.free & (kFalloff123 | LENSPROF_FREE_CENTER)),
+          has_falloff_(options.free & (LENSPROF_FREE_FALLOFF | LENSPROF_FREE_CENTER)),
           as_paper_(options.loss == LENSPROF_LOSS_SQUARED) {
         train_ = problem(split_.has_heldout() ? split_.train : split_.all);
         if (split_.has_heldout()) heldout_ = problem(split_.heldout);
