@@ -181,6 +181,7 @@ typedef struct lensprof_scene_info {
     uint32_t matches;           /* positions at which two images show the same point */
     uint32_t reference;         /* image whose exposure is 0 EV */
     uint32_t is_reconstruction; /* 1: images of a moving camera, linked by matches alone */
+    uint32_t links;             /* 0 for a Hugin project, whose images overlap where its cameras do */
 } lensprof_scene_info;
 
 /* Zero. */
@@ -206,6 +207,17 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_scene_get_info(const len
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_scene_image_at(const lensprof_scene *scene, uint32_t index,
                                                                        lensprof_camera *camera, const char **name,
                                                                        const char **file, lensprof_error *error);
+
+/* Two images that show the same. Frozen value struct. */
+typedef struct lensprof_scene_link {
+    uint32_t image[2];     /* indices, the smaller one first */
+    uint32_t points;       /* found in both */
+    uint32_t fits_cameras; /* 1: the cameras explain them; 0: the images are compared at matches alone */
+} lensprof_scene_link;
+
+/* Link `index`, by images. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_scene_link_at(const lensprof_scene *scene, uint32_t index,
+                                                                      lensprof_scene_link *link, lensprof_error *error);
 
 /* Match `index`: at the same point of the scene in two images. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_scene_match_at(const lensprof_scene *scene, uint32_t index,

@@ -129,6 +129,17 @@ void test_scene(void **) {
     must_be_ok(lensprof_scene_get_info(scene.get(), &info, &error), error);
     assert_int_equal(info.images, 6);
     assert_int_equal(info.left_out, 0);
+    assert_in_range(info.links, 5, 15);
+    lensprof_scene_link link, last{};
+    for (uint32_t i = 0; i < info.links; i++) {
+        must_be_ok(lensprof_scene_link_at(scene.get(), i, &link, &error), error);
+        assert_true(link.image[0] < link.image[1] && link.image[1] < info.images && link.points >= 10);
+        assert_true(link.fits_cameras == 1);
+        assert_true(i == 0 || std::lexicographical_compare(last.image, last.image + 2, link.image, link.image + 2));
+        last = link;
+    }
+    assert_status(LENSPROF_ERROR_ARGUMENT, "link",
+                  [&](lensprof_error *why) { return lensprof_scene_link_at(scene.get(), info.links, &link, why); });
     lensprof_camera camera;
     const char *name, *file;
     must_be_ok(lensprof_scene_image_at(scene.get(), 4, &camera, &name, &file, &error), error);

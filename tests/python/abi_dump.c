@@ -631,6 +631,11 @@ static void print_structs(void) {
     FIELD(lensprof_scene_info, matches);
     FIELD(lensprof_scene_info, reference);
     FIELD(lensprof_scene_info, is_reconstruction);
+    FIELD(lensprof_scene_info, links);
+    STRUCT(lensprof_scene_link);
+    FIELD(lensprof_scene_link, image);
+    FIELD(lensprof_scene_link, points);
+    FIELD(lensprof_scene_link, fits_cameras);
     STRUCT(lensprof_calibrate_options);
     FIELD(lensprof_calibrate_options, struct_size);
     FIELD(lensprof_calibrate_options, method);

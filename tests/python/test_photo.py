@@ -110,6 +110,8 @@ class TestCalibration(WithScene):
         scene = lp.Scene.open([self.files[0], self.files[1], self.files[2]])
         self.assertEqual([image.camera.width for image in scene.images], [800] * 3)
         self.assertEqual((scene.left_out, len(scene.matches), scene.is_reconstruction), ({}, 0, False))
+        self.assertGreaterEqual(len(scene.links), len(scene.images) - 1)
+        self.assertTrue((scene.links["image"][:, 0] < scene.links["image"][:, 1]).all() and scene.links["fits_cameras"].all())
         scene.save(self.folder / "found.pto")
         self.assertEqual(len(lp.Scene.open(self.folder / "found.pto").images), 3)
 

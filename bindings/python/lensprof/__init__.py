@@ -12,7 +12,7 @@ from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_
                    Saturated, Severity, Status, StoreMode, StoreNames)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, LINK_DTYPE,
-                      MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE)
+                      MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE, SCENE_LINK_DTYPE)
 from ._events import Notice, Progress
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
@@ -41,7 +41,7 @@ __all__ = [
     "LookupOptions", "Loss", "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack",
     "Picture", "PictureMetadata", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Progress",
     "Projection", "Provenance", "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response",
-    "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling",
+    "ResponseFrom", "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling",
     "Saturated", "Scene", "SceneImage", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames",
     "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "calibrate", "calibrate_folder", "correct",
     "correct_file", "correct_files", "emor_table", "encode_picture", "fit_flat", "fit_overlap", "fit_radiance",

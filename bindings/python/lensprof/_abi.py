@@ -1330,6 +1330,15 @@ class SceneInfo(Structure):
         ("matches", c_uint32),
         ("reference", c_uint32),
         ("is_reconstruction", c_uint32),
+        ("links", c_uint32),
+    ]
+
+
+class SceneLink(Structure):
+    _fields_ = [
+        ("image", c_uint32 * 2),
+        ("points", c_uint32),
+        ("fits_cameras", c_uint32),
     ]
 
 
@@ -1510,6 +1519,7 @@ STRUCTS = {
     "lensprof_picture_options": PictureOptions,
     "lensprof_scene_options": SceneOptions,
     "lensprof_scene_info": SceneInfo,
+    "lensprof_scene_link": SceneLink,
     "lensprof_calibrate_options": CalibrateOptions,
     "lensprof_calibration_info": CalibrationInfo,
     "lensprof_copy": Copy,
@@ -1790,6 +1800,7 @@ PHOTO_FUNCTIONS = {
     "lensprof_scene_get_info": (c_int, [POINTER(Scene), POINTER(SceneInfo), POINTER(ErrorText)]),
     "lensprof_scene_image_at": (c_int, [POINTER(Scene), c_uint32, POINTER(Camera), POINTER(c_char_p), POINTER(c_char_p),
                                         POINTER(ErrorText)]),
+    "lensprof_scene_link_at": (c_int, [POINTER(Scene), c_uint32, POINTER(SceneLink), POINTER(ErrorText)]),
     "lensprof_scene_match_at": (c_int, [POINTER(Scene), c_uint32, POINTER(Match), POINTER(ErrorText)]),
     "lensprof_scene_left_out_at": (c_int, [POINTER(Scene), c_uint32, POINTER(c_char_p), POINTER(c_char_p),
                                            POINTER(ErrorText)]),

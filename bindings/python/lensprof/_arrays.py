@@ -37,6 +37,7 @@ IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
 grey_high, pairs, inliers, component, known_ev_left_out, joined."""
 
 MATCH_DTYPE = _dtype(_abi.Match)
+SCENE_LINK_DTYPE = _dtype(_abi.SceneLink)
 """Layout of two places that show the same: image[2], xy[2][2] (px of the full frame), map[2][2] (d xy[1] / d xy[0])."""
 
 LINK_DTYPE = _dtype(_abi.Link)

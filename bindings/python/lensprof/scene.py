@@ -54,7 +54,7 @@ class Scene(Handle):
         self.images = tuple(self._image(index) for index in range(info.images))
         self.left_out = dict(self._left_out(index) for index in range(info.left_out))
         self.reference, self.is_reconstruction = info.reference, bool(info.is_reconstruction)
-        self._matches = info.matches
+        self._matches, self._links = info.matches, info.links
 
     @classmethod
     def open(cls, paths: Union[PathLike, Iterable[PathLike]], images: Optional[PathLike] = None,
@@ -75,12 +75,13 @@ class Scene(Handle):
     @property
     def matches(self) -> npt.NDArray[np.void]:
         """Positions of the same point in two images, of MATCH_DTYPE; empty for pictures of a rotating camera."""
-        array = np.zeros(self._matches, dtype=_arrays.MATCH_DTYPE)
-        match: Any = _abi.Match()
-        for index in range(len(array)):
-            self._ask(photo().lensprof_scene_match_at, index, byref(match))
-            array[index] = np.frombuffer(match, dtype=_arrays.MATCH_DTYPE)[0]
-        return array
+        return self._items(photo().lensprof_scene_match_at, self._matches, _abi.Match(), _arrays.MATCH_DTYPE)
+
+    @property
+    def links(self) -> npt.NDArray[np.void]:
+        """Images that show the same, of SCENE_LINK_DTYPE; empty for a Hugin project, whose images overlap where its cameras
+        do."""
+        return self._items(photo().lensprof_scene_link_at, self._links, _abi.SceneLink(), _arrays.SCENE_LINK_DTYPE)
 
     def save(self, path: PathLike) -> None:
         """Writes it as a Hugin project."""
@@ -93,6 +94,13 @@ class Scene(Handle):
             status = photo().lensprof_calibrate(scene, byref(given), events, byref(pointer), byref(error))
         check(status, "the fit failed", error)
         return Calibration(pointer, [image.name for image in self.images])
+
+    def _items(self, function: Any, count: int, item: Any, dtype: np.dtype[Any]) -> npt.NDArray[np.void]:
+        array = np.zeros(count, dtype=dtype)
+        for index in range(count):
+            self._ask(function, index, byref(item))
+            array[index] = np.frombuffer(item, dtype=dtype)[0]
+        return array
 
     def _ask(self, function: Any, *rest: Any) -> None:
         error = _abi.ErrorText()

@@ -49,6 +49,7 @@ lensprof_status lensprof_scene_get_info(const lensprof_scene *scene, lensprof_sc
         found.images = static_cast<uint32_t>(of.images.size());
         found.left_out = static_cast<uint32_t>(of.left_out.size());
         found.matches = static_cast<uint32_t>(of.matches.size());
+        found.links = static_cast<uint32_t>(of.links.size());
         found.reference = of.reference;
         found.is_reconstruction = of.is_reconstruction;
         give(found, info, first_scene_info, "info");
@@ -62,6 +63,15 @@ lensprof_status lensprof_scene_image_at(const lensprof_scene *scene, uint32_t in
         if (camera) *camera = scene->scene.images[index].camera;
         if (name) *name = scene->scene.names[index].c_str();
         if (file) *file = scene->scene.files[index].c_str();
+    });
+}
+
+lensprof_status lensprof_scene_link_at(const lensprof_scene *scene, uint32_t index, lensprof_scene_link *link,
+                                       lensprof_error *error) {
+    return photo_call("scene", error, [&] {
+        require(scene, "scene"), require(link, "link");
+        require_index(index, scene->scene.links.size(), "link");
+        *link = scene->scene.links[index];
     });
 }
 

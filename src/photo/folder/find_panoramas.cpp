@@ -42,8 +42,8 @@ Group group_of(const FoundScene &found, const std::vector<const InputPicture *> 
     group.facts = {{"camera", found.kind == SceneKind::still   ? camera_stationary
                               : found.kind == SceneKind::plane ? "moved over a plane"
                                                                : "rotated about one point"},
-                   {"links", found.links},
-                   {"links_unfit", found.unfit},
+                   {"links", found.links.size()},
+                   {"links_unfit", found.unfit()},
                    {"by_matches", found.by_matches},
                    {"cameras_fit", found.cameras_fit()},
                    {"residual", found.residual}};

@@ -71,10 +71,11 @@ FoundScene scene_of(std::vector<uint32_t> numbers, const std::vector<PictureOpti
         std::all_of(links.begin(), links.end(), [](const PictureLink &link) { return link.is_still; });
     scene.kind = is_still ? SceneKind::still : found.kind;
     scene.cameras = std::move(found.cameras);
-    scene.links = static_cast<uint32_t>(links.size());
     std::vector<double> residuals;
     const auto fits_link = [&](size_t n) { return found.link_residuals[n] <= unfit; };
-    for (size_t n = 0; n < links.size(); n++) scene.unfit += !fits_link(n);
+    for (size_t n = 0; n < links.size(); n++)
+        scene.links.push_back(
+            {{links[n].picture[0], links[n].picture[1]}, static_cast<uint32_t>(links[n].matches.size()), fits_link(n)});
     const size_t max_per_link =
         std::clamp(max_total_matches / std::max<size_t>(1, links.size()), min_matches_kept, max_matches);
     // Scenes are only nearly planar: what stands out is shifted, and matches have the actual positions.

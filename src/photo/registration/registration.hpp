@@ -1,13 +1,13 @@
 // Registration of pictures without a project: finds overlaps and cameras.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <lensprof/geometry.h>
-#include <lensprof/sample.h>
+#include <lensprof/photo.h>
 
 #include "photo/base/events.hpp"
 #include "photo/pictures/metadata.hpp"
@@ -35,15 +35,18 @@ struct FoundScene {
     std::vector<uint32_t> lenses;      // equal for pictures of one camera and size, with one lens at one focal length
     std::vector<uint32_t> camera_ids;  // equal for pictures of one camera, processing and size (upright or not)
     std::vector<ControlPoint> points;  // a few per link that the cameras explain
-    std::vector<lensprof_match> matches;  // of the links that the cameras do not explain, or of all links
-    bool by_matches = false;              // pictures are compared at these matches, not through the cameras
-    uint32_t links = 0, unfit = 0;        // overlapping pairs of pictures, and the number that the cameras do not
-                                          // explain
-    double residual = 0.0;                // median over the links that fit, as a share of the longer side
+    std::vector<lensprof_match> matches;     // of the links that the cameras do not explain, or of all links
+    bool by_matches = false;                 // pictures are compared at these matches, not through the cameras
+    std::vector<lensprof_scene_link> links;  // overlapping pairs of pictures, sorted
+    double residual = 0.0;                   // median over the links that fit, as a share of the longer side
 
     uint32_t connected_group = 0;  // equal for groups that are connected only by pictures of no group
 
-    bool cameras_fit() const { return 2 * unfit <= links; }
+    size_t unfit() const {  // number of links that the cameras do not explain
+        return static_cast<size_t>(
+            std::count_if(links.begin(), links.end(), [](const auto &link) { return !link.fits_cameras; }));
+    }
+    bool cameras_fit() const { return 2 * unfit() <= links.size(); }
 };
 
 // A picture that repeats another one.

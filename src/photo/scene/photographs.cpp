@@ -79,18 +79,18 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
                   LeftOut &left_out, Events &events) {
     const FoundScene &scene = found.scenes[0];
     const std::string unfit =
-        scene.unfit
-            ? format(" that fit; %u more do not fit the cameras and are compared only at matched points", scene.unfit)
-            : "";
-    events.note(label,
-                format("%zu pictures overlap (%s%s; alignment residual %.2f %% of the longer side; %s); estimating "
-                       "response, falloff, exposures and white balances%s",
-                       scene.pictures.size(), counted(scene.links - scene.unfit, "link").c_str(), unfit.c_str(),
-                       100.0 * scene.residual,
-                       scene.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
-                                                        "points"
-                                                      : "a rotating camera",
-                       advice("free_parameters").c_str()));
+        scene.unfit() ? format(" that fit; %zu more do not fit the cameras and are compared only at matched points",
+                               scene.unfit())
+                      : "";
+    events.note(
+        label, format("%zu pictures overlap (%s%s; alignment residual %.2f %% of the longer side; %s); estimating "
+                      "response, falloff, exposures and white balances%s",
+                      scene.pictures.size(), counted(scene.links.size() - scene.unfit(), "link").c_str(), unfit.c_str(),
+                      100.0 * scene.residual,
+                      scene.kind == SceneKind::plane ? "a camera that moved over a plane, compared only at matched "
+                                                       "points"
+                                                     : "a rotating camera",
+                      advice("free_parameters").c_str()));
     const size_t cameras = std::set<uint32_t>(scene.camera_ids.begin(), scene.camera_ids.end()).size();
     if (cameras > 1)
         events.note(label, format("the pictures are from %zu cameras, sizes or processings; each gets its own response",
@@ -202,6 +202,7 @@ void set_found(const FoundScene &found, Scene &scene) {
         images.push_back({found.cameras[n], found.camera_ids[n], found.lenses[n]});
     set_images(images, scene);
     scene.control_points = found.points;
+    scene.links = found.links;
     scene.matches = found.matches, scene.by_matches = found.by_matches;
 }
 

@@ -65,6 +65,16 @@ void add_pairs_of_colours(const Reconstruction &r, const std::vector<Observation
                       LENSPROF_REASON_FEW_PAIRS);
 }
 
+// The linked images of the chosen pairs, which no cameras explain.
+std::vector<lensprof_scene_link> links_of(const Reconstruction &r, const std::vector<ObservationPair> &chosen) {
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> points;
+    for (const ObservationPair &pair : chosen)
+        points[std::minmax(r.observations[pair.first].image, r.observations[pair.second].image)]++;
+    std::vector<lensprof_scene_link> links;
+    for (const auto &[images, count] : points) links.push_back({{images.first, images.second}, count, 0});
+    return links;
+}
+
 uint32_t pairs_of_image(const ReconstructionOptions &options, size_t images) {
     if (options.pairs) return static_cast<uint32_t>((options.pairs + images - 1) / images);
     return std::clamp(static_cast<uint32_t>(kMaxPairs / images), kMinPairsOfImage, kMaxPairsOfImage);
@@ -192,6 +202,7 @@ Scene scene_of_reconstruction(const std::string &path, const ReconstructionOptio
         scene.files.push_back(files.empty() ? r.images[i].name : files[i]);
     }
     set_images(images_of(r), scene);
+    scene.links = links_of(r, chosen);
     scene.register_s = lap(clock);
     return scene;
 }

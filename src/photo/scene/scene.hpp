@@ -37,8 +37,9 @@ struct Scene {
     std::vector<uint32_t> lenses;
     std::vector<ControlPoint> control_points;
 
-    std::vector<lensprof_match> matches;  // of links that the cameras do not explain, or of all links (`by_matches`)
-    std::vector<uint32_t> match_points;   // of a reconstruction: the scene point per match,
+    std::vector<lensprof_scene_link> links;  // empty for a project
+    std::vector<lensprof_match> matches;     // of links that the cameras do not explain, or of all links (`by_matches`)
+    std::vector<uint32_t> match_points;      // of a reconstruction: the scene point per match,
     std::map<std::pair<uint32_t, uint32_t>, double> view_distances;  // and how far apart views are, relative to the
                                                                      // usual distance
     bool by_matches = false, is_reconstruction = false;
