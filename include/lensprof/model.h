@@ -178,6 +178,10 @@ LENSPROF_API void lensprof_exposure_init(lensprof_exposure *exposure);
 /* LENSPROF_OK if |ev| <= 64 and the factors are in [1e-6, 1e6]. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure);
 
+/* Geometric mean of exposures and white balances (Goldman & Chen 2005, equation 15), without those whose ev is NaN. All
+ * members are NaN if no others are left. */
+LENSPROF_API void lensprof_exposure_mean(const lensprof_exposure *exposures, size_t count, lensprof_exposure *mean);
+
 #ifdef __cplusplus
 }
 #endif

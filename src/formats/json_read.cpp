@@ -78,22 +78,6 @@ uint32_t count_of_curves(const JsonValue &array) {
     return static_cast<uint32_t>(count);
 }
 
-void read_vignetting(const JsonValue &object, lensprof_profile &profile) {
-    const JsonValue curves = object.required("k"), center = object["center"];
-    profile.vignettings = count_of_curves(curves);
-    lensprof_vignetting *v = profile.vignetting;
-    for (JsonValue k = curves.first(); k; k = k.next(), v++) {
-        const std::vector<double> terms = k.numbers(3, 3);
-        std::copy(terms.begin(), terms.end(), v->k);
-        if (center) {
-            const std::vector<double> xy = center.numbers(2, 2);
-            std::copy(xy.begin(), xy.end(), v->center);
-        }
-        check(lensprof_vignetting_validate(v), k, "not a valid falloff");
-    }
-    if (v != profile.vignetting + profile.vignettings) curves.fail("holds null; correct it");
-}
-
 void read_grid(const JsonValue &object, lensprof_gain_grid &grid) {
     grid.columns = static_cast<uint32_t>(object.required("columns").integer(2, LENSPROF_GRID_SIDE));
     grid.rows = static_cast<uint32_t>(object.required("rows").integer(2, LENSPROF_GRID_SIDE));
@@ -108,36 +92,6 @@ void read_grid(const JsonValue &object, lensprof_gain_grid &grid) {
     }
     if (node != end) channels.fail("holds null; correct it");
     check(lensprof_gain_grid_validate(&grid), object, "not a valid gain grid");
-}
-
-// A curve of the kind that `object` names, with the samples that there are.
-void read_curve(const JsonValue &object, const JsonValue &samples, lensprof_response &response) {
-    const uint32_t kind = read_word(object.required("kind"), kJsonResponseKinds);
-    if (kind == LENSPROF_RESPONSE_TABLE) {
-        if (!samples) object.fail("has no \"values\"; add them");
-        const std::vector<double> values = samples.numbers(2, kMaxSamples);
-        return check(lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size())),
-                     samples, "not a response that rises from 0 to 1");
-    }
-    if (kind == LENSPROF_RESPONSE_GAMMA) {
-        const JsonValue gamma = object.required("gamma");
-        check(lensprof_response_set_gamma(&response, gamma.number()), gamma, "not an exponent of 0.1 to 10");
-    } else if (kind == LENSPROF_RESPONSE_EMOR) {
-        const JsonValue emor = object.required("emor");
-        const std::vector<double> terms = emor.numbers(0, LENSPROF_EMOR_MODES);
-        lensprof_response_set_linear(&response);
-        check(lensprof_response_set_emor(&response, terms.data(), static_cast<uint32_t>(terms.size())), emor,
-              "not a response that rises");
-    } else {
-        lensprof_response_set_linear(&response);
-    }
-    if (!samples) return;
-    const std::vector<double> values = samples.numbers(LENSPROF_RESPONSE_SAMPLES, LENSPROF_RESPONSE_SAMPLES);
-    for (size_t j = 0; j < values.size(); j++)
-        if (!(std::fabs(values[j] - response.table[j]) <= kSameCurve))
-            samples.fail("does not match the curve of its kind; leave \"values\" out, or set the kind to \"table\"");
-    std::copy(values.begin(), values.end(), response.table);
-    check(lensprof_response_validate(&response), samples, "not a response that rises from 0 to 1");
 }
 
 void read_responses(const JsonValue &object, lensprof_profile &profile) {
@@ -218,7 +172,7 @@ void read_profile(const JsonValue &object, const char *source, lensprof_profile 
     lensprof_profile_init(&profile);
     check_schema(object);
     read_key(object.required("key"), profile.key);
-    read_vignetting(object.required("vignetting"), profile);
+    profile.vignettings = read_vignetting(object.required("vignetting"), profile.vignetting);
     if (const JsonValue grid = object["gain_grid"]) read_grid(grid, profile.grid);
     if (const JsonValue response = object["response"]) read_responses(response, profile);
     if (const JsonValue covariance = object["covariance"]) read_covariance(covariance, profile);
@@ -252,6 +206,53 @@ lensprof_status walk(const JsonText &text, const char *source, lensprof_profile 
 }
 
 }  // namespace
+
+uint32_t read_vignetting(const JsonValue &object, lensprof_vignetting (&vignetting)[3]) {
+    const JsonValue curves = object.required("k"), center = object["center"];
+    const uint32_t count = count_of_curves(curves);
+    lensprof_vignetting *v = vignetting;
+    for (JsonValue k = curves.first(); k; k = k.next(), v++) {
+        const std::vector<double> terms = k.numbers(3, 3);
+        std::copy(terms.begin(), terms.end(), v->k);
+        if (center) {
+            const std::vector<double> xy = center.numbers(2, 2);
+            std::copy(xy.begin(), xy.end(), v->center);
+        }
+        check(lensprof_vignetting_validate(v), k, "not a valid falloff");
+    }
+    if (v != vignetting + count) curves.fail("holds null; correct it");
+    return count;
+}
+
+void read_curve(const JsonValue &object, const JsonValue &samples, lensprof_response &response) {
+    const uint32_t kind = read_word(object.required("kind"), kJsonResponseKinds);
+    if (kind == LENSPROF_RESPONSE_TABLE) {
+        if (!samples) object.fail("has no \"values\"; add them");
+        const std::vector<double> values = samples.numbers(2, kMaxSamples);
+        return check(lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size())),
+                     samples, "not a response that rises from 0 to 1");
+    }
+    if (kind == LENSPROF_RESPONSE_GAMMA) {
+        const JsonValue gamma = object.required("gamma");
+        check(lensprof_response_set_gamma(&response, gamma.number()), gamma, "not an exponent of 0.1 to 10");
+    } else if (kind == LENSPROF_RESPONSE_EMOR) {
+        const JsonValue emor = object.required("emor");
+        const std::vector<double> terms = emor.numbers(0, LENSPROF_EMOR_MODES);
+        lensprof_response_set_linear(&response);
+        check(lensprof_response_set_emor(&response, terms.data(), static_cast<uint32_t>(terms.size())), emor,
+              "not a response that rises");
+    } else {
+        lensprof_response_set_linear(&response);
+    }
+    if (!samples) return;
+    const std::vector<double> values = samples.numbers(LENSPROF_RESPONSE_SAMPLES, LENSPROF_RESPONSE_SAMPLES);
+    for (size_t j = 0; j < values.size(); j++)
+        if (!(std::fabs(values[j] - response.table[j]) <= kSameCurve))
+            samples.fail("does not match the curve of its kind; leave \"values\" out, or set the kind to \"table\"");
+    std::copy(values.begin(), values.end(), response.table);
+    check(lensprof_response_validate(&response), samples, "not a response that rises from 0 to 1");
+}
+
 }  // namespace lensprof
 
 using namespace lensprof;

@@ -9,19 +9,6 @@
 namespace lensprof {
 namespace {
 
-void write_text(JsonWriter &json, const char *name, const char *value) {
-    json.name(name);
-    json.text(value);
-}
-
-void write_known(JsonWriter &json, const char *name, double value) {
-    json.name(name);
-    if (value == LENSPROF_UNKNOWN)
-        json.word("null");
-    else
-        json.number(value);
-}
-
 void write_key(JsonWriter &json, const lensprof_profile_key &key) {
     json.name("key");
     json.open('{');
@@ -39,18 +26,6 @@ void write_key(JsonWriter &json, const lensprof_profile_key &key) {
     write_known(json, "color_temperature_k", key.color_temperature_k);
     write_text(json, "processing", kJsonProcessings[key.processing]);
     write_text(json, "style", key.style);
-    json.close('}');
-}
-
-void write_vignetting(JsonWriter &json, const lensprof_profile &profile) {
-    json.name("vignetting");
-    json.open('{');
-    json.name("k");
-    json.open('[');
-    for (uint32_t c = 0; c < profile.vignettings; c++) json.numbers(profile.vignetting[c].k, 3);
-    json.close(']');
-    json.name("center");
-    json.numbers(profile.vignetting[0].center, 2);
     json.close('}');
 }
 
@@ -76,32 +51,6 @@ void write_grid(JsonWriter &json, const lensprof_gain_grid &grid) {
     }
     json.close(']');
     json.close('}');
-}
-
-// kind, and the numbers that make the curve where it is not a table.
-void write_kind(JsonWriter &json, const lensprof_response &response) {
-    write_text(json, "kind", kJsonResponseKinds[response.kind]);
-    if (response.kind == LENSPROF_RESPONSE_EMOR) {
-        json.name("emor");
-        json.numbers(response.emor, response.modes);
-    }
-    if (response.kind == LENSPROF_RESPONSE_GAMMA) {
-        json.name("gamma");
-        json.number(response.gamma);
-    }
-}
-
-// Whether a curve's kind and numbers give its samples to the last bit, which those of a blob are rounded from.
-bool is_implied(const lensprof_response &given) {
-    lensprof_response made;
-    lensprof_status status = LENSPROF_OK;
-    switch (given.kind) {
-    case LENSPROF_RESPONSE_LINEAR: lensprof_response_set_linear(&made); break;
-    case LENSPROF_RESPONSE_GAMMA: status = lensprof_response_set_gamma(&made, given.gamma); break;
-    case LENSPROF_RESPONSE_EMOR: status = lensprof_response_set_emor(&made, given.emor, given.modes); break;
-    default: return false;
-    }
-    return status == LENSPROF_OK && std::equal(given.table, given.table + LENSPROF_RESPONSE_SAMPLES, made.table);
 }
 
 // Samples of all curves, or, where they are implied, of none, which makes a profile 0.7 instead of 20 kB.
@@ -197,13 +146,59 @@ std::string profiles_text(const lensprof_profile *const *profiles, uint32_t coun
 
 }  // namespace
 
+void write_text(JsonWriter &json, const char *name, const char *value) {
+    json.name(name);
+    json.text(value);
+}
+
+void write_known(JsonWriter &json, const char *name, double value) {
+    json.name(name);
+    json.known(value);
+}
+
+void write_kind(JsonWriter &json, const lensprof_response &response) {
+    write_text(json, "kind", kJsonResponseKinds[response.kind]);
+    if (response.kind == LENSPROF_RESPONSE_EMOR) {
+        json.name("emor");
+        json.numbers(response.emor, response.modes);
+    }
+    if (response.kind == LENSPROF_RESPONSE_GAMMA) {
+        json.name("gamma");
+        json.number(response.gamma);
+    }
+}
+
+bool is_implied(const lensprof_response &given) {
+    lensprof_response made;
+    lensprof_status status = LENSPROF_OK;
+    switch (given.kind) {
+    case LENSPROF_RESPONSE_LINEAR: lensprof_response_set_linear(&made); break;
+    case LENSPROF_RESPONSE_GAMMA: status = lensprof_response_set_gamma(&made, given.gamma); break;
+    case LENSPROF_RESPONSE_EMOR: status = lensprof_response_set_emor(&made, given.emor, given.modes); break;
+    default: return false;
+    }
+    return status == LENSPROF_OK && std::equal(given.table, given.table + LENSPROF_RESPONSE_SAMPLES, made.table);
+}
+
+void write_vignetting(JsonWriter &json, const lensprof_vignetting *vignetting, uint32_t count) {
+    json.name("vignetting");
+    json.open('{');
+    json.name("k");
+    json.open('[');
+    for (uint32_t c = 0; c < count; c++) json.numbers(vignetting[c].k, 3);
+    json.close(']');
+    json.name("center");
+    json.numbers(vignetting[0].center, 2);
+    json.close('}');
+}
+
 void write_profile(JsonWriter &json, const lensprof_profile &profile) {
     json.open('{');
     write_schema(json);
     json.name("id");
     json.word("null");
     write_key(json, profile.key);
-    write_vignetting(json, profile);
+    write_vignetting(json, profile.vignetting, profile.vignettings);
     write_grid(json, profile.grid);
     write_response(json, profile);
     write_covariance(json, profile);

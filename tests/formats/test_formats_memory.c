@@ -5,6 +5,8 @@
 #include "failing_new.h"
 #include "formats/each_format.h"
 
+#include <lensprof/exposures.h>
+
 static const char points[] = "0 1 10.5 20 30 40.25 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0\n";
 
 typedef struct world {
@@ -115,6 +117,38 @@ static lensprof_status write_json(world *w) {
     strcpy(text, "untouched");
     size_t needed = 0;
     lensprof_status status = lp_json_write(profiles, 2, text, sizeof text, &needed, NULL);
+    assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
+    return status;
+}
+
+static lensprof_status read_exposures(world *w) {
+    (void)w;
+    const char text[] =
+        "{\"schema\":1,\"file\":\"lensprof exposures\",\"reference\":\"a name that is too long for a small string\","
+        "\"cameras\":[{\"response\":{\"kind\":\"emor\",\"emor\":[0.1]}}],"
+        "\"lenses\":[{\"camera\":0,\"vignetting\":{\"k\":[[-0.3,0,0]]}}],"
+        "\"images\":[{\"name\":\"a name that is too long for a small string\",\"width\":6,\"height\":4,\"lens\":0,"
+        "\"ev\":0,\"white_balance\":[1,1,1]}]}";
+    lensprof_exposures *untouched = (lensprof_exposures *)&untouched, *exposures = untouched;
+    lensprof_status status = lensprof_exposures_read(text, sizeof text - 1, &exposures, NULL);
+    assert_true((exposures == untouched) == (status != LENSPROF_OK));
+    if (status == LENSPROF_OK) lensprof_exposures_destroy(exposures);
+    return status;
+}
+
+static lensprof_status write_exposures(world *w) {
+    (void)w;
+    lensprof_exposures_info info;
+    static lensprof_exposures_camera camera;
+    lensprof_exposures_lens lens;
+    lensprof_exposures_image image;
+    lensprof_exposures_info_init(&info), lensprof_exposures_camera_init(&camera);
+    lensprof_exposures_lens_init(&lens), lensprof_exposures_image_init(&image);
+    info.camera_count = info.lens_count = info.image_count = 1;
+    image.name = "a name that is too long for a small string", image.width = image.height = 6;
+    static char text[20000];
+    strcpy(text, "untouched");
+    lensprof_status status = lensprof_exposures_write(&info, &camera, &lens, &image, text, sizeof text, NULL, NULL);
     assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
     return status;
 }
@@ -294,6 +328,8 @@ static void test_out_of_memory(void **state) {
     fail_each(w, read_json, 5);
     fail_each(w, read_wrong_json, 5);
     fail_each(w, write_json, 5);
+    fail_each(w, read_exposures, 10);
+    fail_each(w, write_exposures, 10);
     fail_each(w, read_pcalib, 2);
     fail_each(w, read_curves, 5);
     fail_each(w, write_tables, 10);

@@ -55,7 +55,7 @@ CPP_OUTSIDE = {
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h", "reason.h"}
 FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h", "rendering.h"}
-FORMATS_API = FIT_API | {"hugin.h", "formats.h"}
+FORMATS_API = FIT_API | {"exposures.h", "hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
 PHOTO_API = FIT_API | STORE_API | {"photo.h"}
 WHOLE_API = FORMATS_API | PHOTO_API | {"lensprof.h"}
@@ -123,6 +123,7 @@ PUBLIC = {
     "fit.h": FIT_API,
     "flat.h": FIT_API,
     "rendering.h": CORE_API,
+    "exposures.h": CORE_API,
     "hugin.h": FIT_API,
     "formats.h": FORMATS_API,
     "store.h": STORE_API,

@@ -1,5 +1,6 @@
-"""Hugin projects and point files, Lensfun databases."""
+"""Hugin projects and point files, Lensfun databases, measured exposures."""
 import gc
+import json
 import math
 import pathlib
 import tempfile
@@ -212,6 +213,50 @@ class Points(unittest.TestCase):
         with refused(self, lp.Status.ERROR_SYNTAX) as caught:
             formats.read_points(b"0 1 1 1 2 2 .1 .1 .1 .2 .2 .2 0 0 0 0\n0 1\n")
         self.assertIn("line 2", caught.exception.text)
+
+
+class MeasuredExposures(unittest.TestCase):
+    """exposures.json."""
+
+    def content(self):
+        images = [formats.ExposuresImage("a.jpg", (640, 480), 0, lp.Exposure(ev=1 / 3, white_balance=(4, 1, 1)),
+                                         file="../\u00e9/a.jpg", ev_sigma=0.01, white_balance_sigma=(0.1, 0, None)),
+                  formats.ExposuresImage("b.jpg", (640, 480), 1, lp.Exposure()),
+                  formats.ExposuresImage("c.jpg", (480, 640), 1, None)]
+        lenses = [formats.ExposuresLens(0, (lp.Vignetting(k=(-0.3, 0, 0)),), "50 mm"),
+                  formats.ExposuresLens(1, tuple(lp.Vignetting(k=(0.1 * c - 0.3, 0, 0)) for c in range(3)))]
+        cameras = [formats.ExposuresCamera(lp.Response.from_gamma(2.2), "Acme"), formats.ExposuresCamera(lp.Response())]
+        return formats.Exposures(cameras, lenses, images, reference=1, software="me")
+
+    def test_round_trip(self):
+        given = self.content()
+        self.assertEqual(formats.read_exposures(formats.encode_exposures(given)), given)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "exposures.json")
+            formats.write_exposures(path, given)
+            self.assertEqual(formats.read_exposures(path), given)
+            file = json.loads(path.read_text("utf-8"))
+        self.assertEqual((file["reference"], file["software"]), ("b.jpg", "me"))
+        self.assertEqual(len(file["cameras"][0]["light_of_level"]), 256)
+        self.assertEqual([image["ev"] for image in file["images"]], [1 / 3, 0.0, None])
+        self.assertEqual(file["images"][0]["white_balance_sigma"], [0.1, 0.0, None])
+        self.assertAlmostEqual(file["mean"]["ev"], 1 / 6)
+        self.assertIn(f'"lensprof {lp.version()}"', formats.encode_exposures(given._replace(software=None)).decode())
+
+    def test_refused(self):
+        given = self.content()
+        with refused(self, lp.Status.ERROR_SYNTAX) as caught:
+            formats.read_exposures(formats.encode_exposures(given).replace(b'"width": 640', b'"width": 0', 1))
+        self.assertIn("images[0].width is 0", caught.exception.text)
+        with refused(self, lp.Status.ERROR_ARGUMENT) as caught:
+            formats.encode_exposures(given._replace(images=[given.images[1], given.images[0]._replace(lens=2)]))
+        self.assertIn("image 1: lens is not the index", caught.exception.text)
+        four = given.lenses[0]._replace(vignetting=(lp.Vignetting(),) * 4)
+        with refused(self, lp.Status.ERROR_ARGUMENT) as caught:
+            formats.encode_exposures(given._replace(lenses=[four, four]))
+        self.assertIn("lens 0: vignettings is neither 1 nor 3", caught.exception.text)
+        with self.assertRaisesRegex(ValueError, "zero bytes"):
+            formats.encode_exposures(given._replace(software="a\0b"))
 
 
 def exported(profiles, format, **more):

@@ -219,6 +219,12 @@ class Exposures(unittest.TestCase):
         with refused(self, lp.Status.ERROR_EXPOSURE):
             lp.Exposure(ev=65).validate()
 
+    def test_mean(self):
+        mean = lp.Exposure.mean([lp.Exposure(ev=1, white_balance=(4, 1, 1)), lp.Exposure(ev=math.nan), lp.Exposure(ev=4)])
+        self.assertEqual(mean.ev, 2.5)
+        np.testing.assert_allclose(mean.white_balance, (2, 1, 1), rtol=1e-15)
+        self.assertTrue(math.isnan(lp.Exposure.mean([]).ev))
+
 
 class Structs(unittest.TestCase):
     def test_unknown_names(self):

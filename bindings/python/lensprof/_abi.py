@@ -624,6 +624,56 @@ class Plan(Structure):
     """Opaque."""
 
 
+class Exposures(Structure):
+    """Opaque."""
+
+
+class ExposuresInfo(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("camera_count", c_uint32),
+        ("lens_count", c_uint32),
+        ("image_count", c_uint32),
+        ("reference", c_uint32),
+        ("reserved", c_uint32),
+        ("software", c_char_p),
+    ]
+
+
+class ExposuresCamera(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("name", c_char_p),
+        ("response", Response),
+    ]
+
+
+class ExposuresLens(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("camera", c_uint32),
+        ("name", c_char_p),
+        ("vignettings", c_uint32),
+        ("reserved", c_uint32),
+        ("vignetting", Vignetting * 3),
+    ]
+
+
+class ExposuresImage(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("lens", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("name", c_char_p),
+        ("file", c_char_p),
+        ("exposure", Exposure),
+        ("ev_sigma", c_double),
+        ("white_balance_sigma", c_double * 3),
+    ]
+
+
 class Finding(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1479,6 +1529,10 @@ STRUCTS = {
     "lensprof_image": Image,
     "lensprof_target": Target,
     "lensprof_apply_options": ApplyOptions,
+    "lensprof_exposures_info": ExposuresInfo,
+    "lensprof_exposures_camera": ExposuresCamera,
+    "lensprof_exposures_lens": ExposuresLens,
+    "lensprof_exposures_image": ExposuresImage,
     "lensprof_finding": Finding,
     "lensprof_camera": Camera,
     "lensprof_pair": Pair,
@@ -1530,6 +1584,7 @@ STRUCTS = {
 
 OPAQUE = {
     "lensprof_plan": Plan,
+    "lensprof_exposures": Exposures,
     "lensprof_fit": Fit,
     "lensprof_fixed_plan": FixedPlan,
     "lensprof_flat": Flat,
@@ -1558,6 +1613,10 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     CameraModel: ("lensprof_camera_model_init", []),
     Profile: ("lensprof_profile_init_sized", [Profile]),
     ApplyOptions: ("lensprof_apply_options_init_sized", [ApplyOptions]),
+    ExposuresInfo: ("lensprof_init_sized", [ExposuresInfo]),
+    ExposuresCamera: ("lensprof_exposures_camera_init_sized", [ExposuresCamera]),
+    ExposuresLens: ("lensprof_exposures_lens_init_sized", [ExposuresLens]),
+    ExposuresImage: ("lensprof_exposures_image_init_sized", [ExposuresImage]),
     Finding: ("lensprof_init_sized", [Finding]),
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
@@ -1626,6 +1685,7 @@ FUNCTIONS = {
                                             c_uint32, POINTER(c_double)]),
     "lensprof_exposure_init": (None, [POINTER(Exposure)]),
     "lensprof_exposure_validate": (c_int, [POINTER(Exposure)]),
+    "lensprof_exposure_mean": (None, [POINTER(Exposure), c_size_t, POINTER(Exposure)]),
     # profile.h
     "lensprof_profile_key_init": (None, [POINTER(ProfileKey)]),
     "lensprof_profile_key_validate": (c_int, [POINTER(ProfileKey)]),
@@ -1651,6 +1711,21 @@ FUNCTIONS = {
                                    POINTER(ErrorText)]),
     "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
     "lensprof_apply_planar": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
+    # exposures.h
+    "lensprof_exposures_camera_init_sized": (None, [POINTER(ExposuresCamera), c_size_t]),
+    "lensprof_exposures_lens_init_sized": (None, [POINTER(ExposuresLens), c_size_t]),
+    "lensprof_exposures_image_init_sized": (None, [POINTER(ExposuresImage), c_size_t]),
+    "lensprof_exposures_read": (c_int, [c_void_p, c_size_t, POINTER(POINTER(Exposures)), POINTER(ErrorText)]),
+    "lensprof_exposures_destroy": (None, [POINTER(Exposures)]),
+    "lensprof_exposures_get_info": (c_int, [POINTER(Exposures), POINTER(ExposuresInfo), POINTER(ErrorText)]),
+    "lensprof_exposures_get_camera": (c_int, [POINTER(Exposures), c_uint32, POINTER(ExposuresCamera),
+                                              POINTER(ErrorText)]),
+    "lensprof_exposures_get_lens": (c_int, [POINTER(Exposures), c_uint32, POINTER(ExposuresLens), POINTER(ErrorText)]),
+    "lensprof_exposures_get_image": (c_int, [POINTER(Exposures), c_uint32, POINTER(ExposuresImage),
+                                             POINTER(ErrorText)]),
+    "lensprof_exposures_write": (c_int, [POINTER(ExposuresInfo), POINTER(ExposuresCamera), POINTER(ExposuresLens),
+                                         POINTER(ExposuresImage), c_void_p, c_size_t, POINTER(c_size_t),
+                                         POINTER(ErrorText)]),
     # reason.h
     "lensprof_reason_name": (c_char_p, [c_uint32]),
     "lensprof_reason_text": (c_char_p, [c_uint32]),

@@ -4,6 +4,7 @@ Readers take the path of a file or its content as bytes; `write_` functions writ
 """
 from __future__ import annotations
 
+import math
 import os
 import pathlib
 from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, cast, create_string_buffer, pointer
@@ -25,9 +26,11 @@ from .profile import CameraModel, Profile, ProfileKey
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-__all__ = ["CurveKind", "DngForm", "Format", "FormatInfo", "Holds", "MapSense", "Pto", "PtoImage", "ReadProfile",
-           "WriteOptions", "detect", "encode_points", "encode_profiles", "info", "read_lensfun_cameras", "read_map",
-           "read_points", "read_profiles", "write_map", "write_points", "write_profiles"]
+__all__ = ["CurveKind", "DngForm", "Exposures", "ExposuresCamera", "ExposuresImage", "ExposuresLens", "Format",
+           "FormatInfo", "Holds", "MapSense", "Pto", "PtoImage", "ReadProfile", "WriteOptions", "detect",
+           "encode_exposures", "encode_points", "encode_profiles", "info", "read_exposures", "read_lensfun_cameras",
+           "read_map", "read_points", "read_profiles", "write_exposures", "write_map", "write_points",
+           "write_profiles"]
 
 Mask = TypeVar("Mask", bound="npt.NDArray[Any]")
 
@@ -228,6 +231,129 @@ def encode_points(pairs: Records, cameras: Sequence[Camera]) -> bytes:
     frames = (_abi.Camera * len(cameras))(*cameras)
     return _written(lambda *buffer: lib.lensprof_points_write(pointer, count, frames, len(frames), *buffer),
                     f"{count} pairs over {len(cameras)} cameras")
+
+
+class ExposuresCamera(NamedTuple):
+    """A camera of exposures.json. name: such as "Canon EOS 6D"."""
+
+    response: Response
+    name: Optional[str] = None
+
+
+class ExposuresLens(NamedTuple):
+    """A lens setting of exposures.json. camera: index. vignetting: one falloff, or those of red, green and blue. name:
+    such as "50 mm, f/2.8"."""
+
+    camera: int
+    vignetting: tuple[Vignetting, ...]
+    name: Optional[str] = None
+
+
+class ExposuresImage(NamedTuple):
+    """An image of exposures.json. size: width and height, px. lens: index. exposure: relative to the reference; None: no
+    result. file: path of the picture, relative to the folder of the file. ev_sigma (EV), white_balance_sigma: standard
+    errors; None: unknown."""
+
+    name: str
+    size: tuple[int, int]
+    lens: int
+    exposure: Optional[Exposure]
+    file: Optional[str] = None
+    ev_sigma: Optional[float] = None
+    white_balance_sigma: tuple[Optional[float], ...] = (None, None, None)
+
+
+class Exposures(NamedTuple):
+    """The content of exposures.json. reference: index of the image whose exposure is 0 EV. software: program that wrote
+    it; None to write: this version of lensprof."""
+
+    cameras: list[ExposuresCamera]
+    lenses: list[ExposuresLens]
+    images: list[ExposuresImage]
+    reference: int = 0
+    software: Optional[str] = None
+
+
+def _text_or_none(text: Optional[bytes]) -> Optional[str]:
+    return None if text is None else text.decode()
+
+
+def _bytes_or_none(text: Optional[str]) -> Optional[bytes]:
+    if text is not None and "\0" in text:
+        raise ValueError(f"{text!r}: a name holds no zero bytes")
+    return None if text is None else _bytes(text)
+
+
+def _known_or_none(value: float) -> Optional[float]:
+    return None if value == _abi.UNKNOWN else value
+
+
+def _known(value: Optional[float]) -> float:
+    return _abi.UNKNOWN if value is None else value
+
+
+def _exposures_image(raw: Any) -> ExposuresImage:
+    exposure = None if math.isnan(raw.exposure.ev) else Exposure.from_buffer_copy(raw.exposure)
+    return ExposuresImage(raw.name.decode(), (raw.width, raw.height), raw.lens, exposure, _text_or_none(raw.file),
+                          _known_or_none(raw.ev_sigma), tuple(map(_known_or_none, raw.white_balance_sigma)))
+
+
+def read_exposures(source: Source) -> Exposures:
+    """The content of exposures.json, as Calibration.save writes it: its path or its bytes."""
+    data, handle, error = _content(source), POINTER(_abi.Exposures)(), _abi.ErrorText()
+    check(lib.lensprof_exposures_read(data, len(data), byref(handle), byref(error)), "exposures cannot be read", error)
+
+    def got(get: Callable[..., int], kind: Any, *index: int) -> Any:
+        raw = initialised(kind)
+        check(get(handle, *index, byref(raw), byref(error)), "exposures", error)
+        return raw
+
+    try:
+        info = got(lib.lensprof_exposures_get_info, _abi.ExposuresInfo)
+        cameras = (got(lib.lensprof_exposures_get_camera, _abi.ExposuresCamera, i) for i in range(info.camera_count))
+        lenses = (got(lib.lensprof_exposures_get_lens, _abi.ExposuresLens, i) for i in range(info.lens_count))
+        images = (got(lib.lensprof_exposures_get_image, _abi.ExposuresImage, i) for i in range(info.image_count))
+        return Exposures(
+            [ExposuresCamera(Response.from_buffer_copy(raw.response), _text_or_none(raw.name)) for raw in cameras],
+            [ExposuresLens(raw.camera, tuple(Vignetting.from_buffer_copy(curve)
+                                             for curve in raw.vignetting[:raw.vignettings]), _text_or_none(raw.name))
+             for raw in lenses],
+            [_exposures_image(raw) for raw in images], info.reference, _text_or_none(info.software))
+    finally:
+        lib.lensprof_exposures_destroy(handle)
+
+
+def _raw_exposures_image(image: ExposuresImage) -> Any:
+    width, height = (integer(side, "size") for side in image.size)
+    return initialised(_abi.ExposuresImage, name=_bytes_or_none(image.name), file=_bytes_or_none(image.file), width=width,
+                       height=height, lens=integer(image.lens, "lens"),
+                       exposure=Exposure(ev=math.nan) if image.exposure is None else image.exposure,
+                       ev_sigma=_known(image.ev_sigma),
+                       white_balance_sigma=(c_double * 3)(*map(_known, image.white_balance_sigma)))
+
+
+def _raw_exposures_lens(lens: ExposuresLens) -> Any:
+    return initialised(_abi.ExposuresLens, name=_bytes_or_none(lens.name), camera=integer(lens.camera, "camera"),
+                       vignettings=len(lens.vignetting), vignetting=(_abi.Vignetting * 3)(*lens.vignetting[:3]))
+
+
+def write_exposures(path: PathLike, exposures: Exposures) -> None:
+    """Writes exposures.json, which `lensprof apply --model` and Calibration.read take."""
+    pathlib.Path(path).write_bytes(encode_exposures(exposures))
+
+
+def encode_exposures(exposures: Exposures) -> bytes:
+    """The same as bytes."""
+    cameras = [initialised(_abi.ExposuresCamera, name=_bytes_or_none(camera.name), response=camera.response)
+               for camera in exposures.cameras]
+    lenses = [_raw_exposures_lens(lens) for lens in exposures.lenses]
+    images = [_raw_exposures_image(image) for image in exposures.images]
+    info = initialised(_abi.ExposuresInfo, camera_count=len(cameras), lens_count=len(lenses), image_count=len(images),
+                       reference=integer(exposures.reference, "reference"), software=_bytes_or_none(exposures.software))
+    arrays = ((_abi.ExposuresCamera * len(cameras))(*cameras), (_abi.ExposuresLens * len(lenses))(*lenses),
+              (_abi.ExposuresImage * len(images))(*images))
+    return _written(lambda *buffer: lib.lensprof_exposures_write(byref(info), *arrays, *buffer),
+                    f"{len(images)} exposures")
 
 
 class ReadProfile(NamedTuple):

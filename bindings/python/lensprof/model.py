@@ -306,6 +306,13 @@ class Exposure(Value, _abi.Exposure):
         """Raises lensprof.Error unless |ev| <= 64 and the factors are in 1e-6..1e6."""
         check(lib.lensprof_exposure_validate(byref(self)), f"{self}: give |ev| <= 64 and factors in 1e-6..1e6")
 
+    @classmethod
+    def mean(cls, exposures: Iterable[Exposure]) -> Exposure:
+        """Geometric mean of exposures and white balances, without those whose ev is NaN; NaN if no others are left."""
+        given, mean = list(exposures), cls()
+        lib.lensprof_exposure_mean((_abi.Exposure * len(given))(*given), len(given), byref(mean))
+        return mean
+
     def factor(self, channel: int) -> float:
         """2^ev times the white balance of channel 0, 1 or 2."""
         if channel not in (0, 1, 2):

@@ -28,6 +28,7 @@
 #include "photo/calibration/scene_fit.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/reconstruction/reconstruction_file.hpp"
+#include "photo/scene/exposure_reader.hpp"
 #include "photo/scene/hugin_project.hpp"
 #include "photo/scene/photographs.hpp"
 #include "photo/scene/point_file.hpp"

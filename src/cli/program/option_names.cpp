@@ -47,7 +47,7 @@ std::string advice_for(const std::string &situation) {
         {"apply_project", "lensprof apply --pto"},
         {"build_project", "; use `lensprof build` for a project"},
         {"exif_used", " (--fit exif-sigma=0 ignores EXIF)"},
-        {"exposure_file_wanted", "; give the file that `lensprof build --write exposures=FILE` wrote"},
+        {"exposure_file_wanted", ", or give the file that `lensprof build --write exposures=FILE` wrote"},
         {"exposure_of_options", "; it is that of --ev or --times"},
         {"exposures_given", "; give it to `apply --model`"},
         {"force", " (use --force to store it anyway)"},

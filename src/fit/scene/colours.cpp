@@ -15,24 +15,12 @@ namespace {
 constexpr double kCountedShare = 0.9;              // of the pairs: the others may show different objects
 constexpr double kWhite = 255.0, kDarkest = 1e-6;  // irradiance
 
-lensprof_exposure mean_exposure(const lensprof_exposure *exposures, uint32_t count) {
-    lensprof_exposure mean{};
-    double logs[3] = {}, known = 0.0;
-    for (uint32_t i = 0; i < count; i++) {
-        if (std::isnan(exposures[i].ev)) continue;
-        mean.ev += exposures[i].ev, known++;
-        for (int c = 0; c < 3; c++) logs[c] += std::log(exposures[i].white_balance[c]);
-    }
-    mean.ev /= known;
-    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c] / known);
-    return mean;
-}
-
 // Corrects grey values to the mean exposure, as seen by the camera of the reference.
 class Corrector {
 public:
-    explicit Corrector(const ColourCorrection &by)
-        : by_(by), mean_(mean_exposure(by.exposures, static_cast<uint32_t>(by.responses.size()))) {}
+    explicit Corrector(const ColourCorrection &by) : by_(by) {
+        lensprof_exposure_mean(by.exposures, by.responses.size(), &mean_);
+    }
 
     bool is_known(uint32_t image) const { return !std::isnan(by_.exposures[image].ev); }
 
@@ -60,7 +48,7 @@ public:
 
 private:
     const ColourCorrection &by_;
-    const lensprof_exposure mean_;
+    lensprof_exposure mean_;
 };
 
 }  // namespace

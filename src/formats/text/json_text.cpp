@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include <lensprof/profile.h>
+
 #include <nlohmann/json.hpp>
 
 namespace lensprof {
@@ -232,36 +234,50 @@ void JsonValue::fail(const std::string &message, lensprof_status status) const {
 }
 
 void JsonWriter::separate() {
-    if (!first_) all_ += ',';
+    if (!first_ && !named_) all_ += ',';
     if (broken_) all_ += '\n';
-    first_ = broken_ = false;
+    if (level_ && !named_) begin_line();
+    first_ = named_ = broken_ = false;
+}
+
+void JsonWriter::begin_line() {
+    if (style_ == kIndented) all_.append("\n").append(level_, ' ');
 }
 
 void JsonWriter::open(char bracket) {
     separate();
     all_ += bracket;
     first_ = true;
+    level_++;
 }
 
 void JsonWriter::close(char bracket) {
+    level_--;
+    if (!first_) begin_line();
     all_ += bracket;
     first_ = false;
 }
 
 void JsonWriter::name(const char *name) {
     separate();
-    all_.append("\"").append(name).append("\":");
-    first_ = true;
+    all_.append("\"").append(name).append(style_ == kIndented ? "\": " : "\":");
+    named_ = true;
 }
 
 void JsonWriter::number(double value) {
     if (!std::isfinite(value)) return word("null");
+    if (style_ == kIndented) return word(nlohmann::json(value).dump().c_str());
     char buffer[32];
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
     const std::string_view digits(buffer, static_cast<size_t>(end - buffer));
     separate();
     all_ += digits;
     if (digits.find_first_of(".e") == std::string_view::npos) all_ += ".0";
+}
+
+void JsonWriter::known(double value) {
+    if (value == LENSPROF_UNKNOWN) return word("null");
+    number(value);
 }
 
 void JsonWriter::integer(int64_t value) {

@@ -94,13 +94,20 @@ private:
     std::string texts_;  // each after its length, 4 bytes
 };
 
-// Appends JSON to a text, on one line but for what begins another; the caller opens and closes what it opens in turn.
+// Appends JSON to a text; the caller opens and closes what it opens in turn.
 class JsonWriter {
 public:
+    enum Style {
+        kOneLine,  // but for what begins another
+        kIndented  // as nlohmann-json writes with an indent of 1, to the byte
+    };
+    explicit JsonWriter(Style style = kOneLine) : style_(style) {}
+
     void open(char bracket);   // '{' or '['
     void close(char bracket);  // '}' or ']'
     void name(const char *name);
     void number(double value);  // with a point or an exponent; null unless finite
+    void known(double value);   // null for LENSPROF_UNKNOWN, too
     void integer(int64_t value);
     void text(const char *value);  // bytes that are not UTF-8 as U+FFFD
     void word(const char *value);  // true, false, null
@@ -111,9 +118,12 @@ public:
 
 private:
     void separate();
+    void begin_line();
 
     std::string all_;
-    bool first_ = true, broken_ = false;
+    Style style_;
+    size_t level_ = 0;
+    bool first_ = true, named_ = false, broken_ = false;
 };
 
 }  // namespace lensprof

@@ -18,7 +18,10 @@ std::string in_quotes(std::string_view word) {
 }
 
 FormatFailure failure_at(lensprof_item_kind kind, uint32_t index, const std::string &text, lensprof_status status) {
-    const std::string named = (kind == LENSPROF_ITEM_PROFILE ? "profile " : "frame ") + std::to_string(index);
+    const std::string named = (kind == LENSPROF_ITEM_PROFILE ? "profile "
+                               : kind == LENSPROF_ITEM_IMAGE ? "image "
+                                                             : "frame ")
+                              + std::to_string(index);
     const lensprof_item item{static_cast<uint32_t>(kind), index, 0, static_cast<uint32_t>(named.size())};
     return {status, named + ": " + text, item};
 }

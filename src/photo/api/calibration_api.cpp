@@ -8,6 +8,7 @@
 #include "photo/calibration/outcome.hpp"
 #include "photo/correct/scene_model.hpp"
 #include "photo/report/falloff.hpp"
+#include "photo/scene/exposure_reader.hpp"
 #include "photo/scene/hugin_project.hpp"
 
 namespace lensprof {

@@ -1,87 +1,80 @@
 #include "photo/calibration/exposure_file.hpp"
 
 #include <cmath>
+#include <deque>
 #include <filesystem>
 
-#include <nlohmann/json.hpp>
-
 #include "photo/base/paths.hpp"
-#include "photo/scene/exposures.hpp"
 
 namespace lensprof {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The response in its own form, and the irradiance of every 8 bit grey level.
-Json camera_json(const lensprof_response &response, const std::string &name) {
-    Json curve = response_json(&response, 1), light = Json::array();
-    if (response.kind != LENSPROF_RESPONSE_TABLE) curve.erase("values");
-    for (int level = 0; level < 256; level++)
-        light.push_back(lensprof_response_invert(&response, level / 255.0, nullptr));
-    return {{"name", name}, {"response", curve}, {"light_of_level", light}};
+struct Exposures {
+    std::vector<lensprof_exposures_camera> cameras;
+    std::vector<lensprof_exposures_lens> lenses;
+    std::vector<lensprof_exposures_image> images;
+    std::deque<std::string> texts;  // to which the names point
+
+    const char *keep(std::string text) { return texts.emplace_back(std::move(text)).c_str(); }
+};
+
+void add_camera(const SceneFit &state, uint32_t first, const std::string &name, Exposures &all) {
+    lensprof_exposures_camera camera;
+    lensprof_exposures_camera_init(&camera);
+    camera.name = all.keep(name);
+    camera.response = state.best.response_of(first);
+    all.cameras.push_back(camera);
 }
 
-Json cameras_json(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata) {
-    Json list = Json::array();
-    for (const uint32_t first : state.settings.first_of_camera)
-        list.push_back(
-            camera_json(state.best.response_of(first), describe_camera(metadata[first].key, scene.names[first])));
-    return list;
+void add_lens(const SceneFit &state, uint32_t first, const std::string &name, Exposures &all) {
+    lensprof_exposures_lens lens;
+    lensprof_exposures_lens_init(&lens);
+    lens.name = all.keep(name);
+    lens.camera = state.settings.camera_of_image[first];
+    lens.vignettings = state.best.falloff_curves_of(first);
+    std::copy_n(state.best.falloff_of(first).data(), lens.vignettings, lens.vignetting);
+    all.lenses.push_back(lens);
 }
 
-Json lenses_json(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata) {
-    Json list = Json::array();
-    for (const uint32_t first : falloff_groups(state.settings).first)
-        list.push_back({{"name", describe_setting(metadata[first].key, scene.names[first])},
-                        {"camera", state.settings.camera_of_image[first]},
-                        {"vignetting",
-                         vignetting_json(state.best.falloff_of(first).data(), state.best.falloff_curves_of(first))}});
-    return list;
-}
-
-Json image_json(const SceneFit &state, const Scene &scene, uint32_t i, const fs::path &folder) {
-    const lensprof_exposure &exposure = state.best.exposures[i];
-    const lensprof_camera &frame = scene.images[i].camera;
-    Json json = {{"name", scene.names[i]}};
+void add_image(const SceneFit &state, const Scene &scene, uint32_t i, const fs::path &folder, Exposures &all) {
+    lensprof_exposures_image image;
+    lensprof_exposures_image_init(&image);
+    image.name = scene.names[i].c_str();
     if (path_exists(scene.files[i]))
-        json["file"] = fs::path(absolute_path(scene.files[i])).lexically_proximate(folder).string();
-    json["width"] = frame.width, json["height"] = frame.height;
-    json["lens"] = state.settings.of_image[i];
-    if (std::isnan(exposure.ev)) {
-        json["ev"] = Json();
-        return json;
-    }
-    json["ev"] = exposure.ev;
-    json["white_balance"] = exposure.white_balance;
+        image.file = all.keep(fs::path(absolute_path(scene.files[i])).lexically_proximate(folder).string());
+    image.width = scene.images[i].camera.width, image.height = scene.images[i].camera.height;
+    image.lens = state.settings.of_image[i];
+    image.exposure = state.best.exposures[i];
     if (i < state.report.quality.size()) {
-        json["ev_sigma"] = number_or_null(state.report.quality[i].ev_sigma);
-        json["white_balance_sigma"] = state.report.quality[i].white_balance_sigma;
+        image.ev_sigma = state.report.quality[i].ev_sigma;
+        std::copy_n(state.report.quality[i].white_balance_sigma, 3, image.white_balance_sigma);
     }
-    return json;
+    all.images.push_back(image);
 }
 
 }  // namespace
 
-Json exposures_json(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata,
-                    const std::string &path) {
-    const fs::path folder = fs::path(absolute_path(path)).parent_path();
-    Json images = Json::array();
-    for (uint32_t i = 0; i < scene.names.size(); i++) images.push_back(image_json(state, scene, i, folder));
-    const lensprof_exposure mean = mean_exposure(state.best.exposures);
-    return {{"schema", exposures_schema},
-            {"file", "lensprof exposures"},
-            {"software", std::string("lensprof ") + lensprof_version()},
-            {"reference", scene.names[state.best.reference]},
-            {"mean", {{"ev", mean.ev}, {"white_balance", mean.white_balance}}},
-            {"cameras", cameras_json(state, scene, metadata)},
-            {"lenses", lenses_json(state, scene, metadata)},
-            {"images", images}};
-}
-
 std::string exposures_text(const SceneFit &state, const Scene &scene, const std::vector<PictureMetadata> &metadata,
                            const std::string &path) {
-    return exposures_json(state, scene, metadata, path).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const fs::path folder = fs::path(absolute_path(path)).parent_path();
+    Exposures all;
+    for (const uint32_t first : state.settings.first_of_camera)
+        add_camera(state, first, describe_camera(metadata[first].key, scene.names[first]), all);
+    for (const uint32_t first : falloff_groups(state.settings).first)
+        add_lens(state, first, describe_setting(metadata[first].key, scene.names[first]), all);
+    for (uint32_t i = 0; i < scene.names.size(); i++) add_image(state, scene, i, folder, all);
+    lensprof_exposures_info info;
+    lensprof_exposures_info_init(&info);
+    info.camera_count = static_cast<uint32_t>(all.cameras.size());
+    info.lens_count = static_cast<uint32_t>(all.lenses.size());
+    info.image_count = static_cast<uint32_t>(all.images.size());
+    info.reference = state.best.reference;
+    return written(path, [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
+        return lensprof_exposures_write(&info, all.cameras.data(), all.lenses.data(), all.images.data(), data, capacity,
+                                        count, error);
+    });
 }
 
 }  // namespace lensprof

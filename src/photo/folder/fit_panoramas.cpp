@@ -106,7 +106,8 @@ void fit_and_store(const FolderOptions &o, Panorama &panorama, Scene &scene, Eve
     panorama.summary["result"] = result_of(state.report);
     panorama.exposures = Json();
     if (state.best.corrects())
-        panorama.exposures = exposures_json(state, calibration.scene, calibration.metadata, panorama.project);
+        panorama.exposures =
+            Json::parse(exposures_text(state, calibration.scene, calibration.metadata, panorama.project));
     if (o.describe)
         panorama.page = valid_json(
             o.describe(calibration, panorama.summary["warnings"].get<std::vector<std::string>>(), of_folder));
@@ -196,7 +197,7 @@ bool Panorama::is_edited() const { return written != digest_of_text(read_text(pr
 Scene Panorama::corrected_scene() const {
     Scene scene = read_hugin_project(project);
     if (exposures.is_null() || is_edited()) return scene;
-    const Scene known = exposures_of(exposures, project, "");
+    const Scene known = exposures_of(exposures.dump(), project, "");
     const ImagesByFile images(known);
     for (uint32_t i = 0; i < scene.images.size(); i++) {
         const auto image = images.find(scene.files[i]);

@@ -1,22 +1,18 @@
-// Reads the file of measured exposures, exposures.json (docs/reconstructions.md), as a project.
+// Reads the file of measured exposures, exposures.json (lensprof/exposures.h), as a scene.
 #pragma once
 
 #include <string>
-
-#include <nlohmann/json_fwd.hpp>
 
 #include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
-constexpr int exposures_schema = 1;
-
 // Whether a file is a file of exposures, judged by its first lines.
 bool is_exposure_file(const std::string &path);
 
-// Reads the file as a project in which each image has a model. Pictures are the files it names, or, if `images` is not
+// Reads the file as a scene in which each image has a model. Pictures are the files it names, or, if `images` is not
 // empty, the image names in that folder. Failure (unreadable) for a damaged or foreign file.
 Scene read_exposures(const std::string &path, const std::string &images);
-Scene exposures_of(const nlohmann::ordered_json &all, const std::string &path, const std::string &images);
+Scene exposures_of(const std::string &text, const std::string &path, const std::string &images);
 
 }  // namespace lensprof

@@ -1,19 +1,10 @@
 #include "photo/scene/exposures.hpp"
 
-#include <cmath>
-
 namespace lensprof {
 
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
-    lensprof_exposure mean{};
-    double logs[3] = {0, 0, 0}, count = 0.0;
-    for (const auto &e : exposures) {
-        if (std::isnan(e.ev)) continue;
-        mean.ev += e.ev, count++;
-        for (int c = 0; c < 3; c++) logs[c] += std::log(e.white_balance[c]);
-    }
-    mean.ev /= count;
-    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c] / count);
+    lensprof_exposure mean;
+    lensprof_exposure_mean(exposures.data(), exposures.size(), &mean);
     return mean;
 }
 
