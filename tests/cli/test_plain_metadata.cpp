@@ -8,6 +8,7 @@
 #include "photo/pictures/exif_tags.hpp"
 #include "photo/pictures/exif_value.hpp"
 #include "photo/pictures/note_place.hpp"
+#include "photo/pictures/photoshop_block.hpp"
 
 using namespace picture_files;
 
@@ -550,15 +551,25 @@ void test_damaged_copies(void **) {
     }
 }
 
+// A last resource of odd length may lack its padding; IPTC written after it must be found again.
+void test_unpadded_resources(void **) {
+    const Bytes iptc = Bytes{0x1c, 2, 120, 0, 1, 'x'};
+    const Bytes resources = bytes_of("8BIM") + Bytes{4, 12, 0, 0, 0, 0, 0, 3, 'o', 'd', 'd'};
+    const Bytes all = codec::with_iptc(resources, iptc);
+    assert_true(codec::iptc_of(all) == iptc);
+    assert_true(codec::with_iptc(all, {}) == resources + Bytes(1));
+}
+
 }  // namespace
 
 #define TEST(name) cmocka_unit_test_setup(name, empty_folder)
 
 int main() {
     const CMUnitTest tests[] = {
-        TEST(test_every_layout),   TEST(test_unusual_values), TEST(test_hostile_structures),
-        TEST(test_damaged_blocks), TEST(test_marked_copies),  TEST(test_moved_notes),
-        TEST(test_exiftool),       TEST(test_packets),        TEST(test_damaged_copies),
+        TEST(test_every_layout),       TEST(test_unusual_values), TEST(test_hostile_structures),
+        TEST(test_damaged_blocks),     TEST(test_marked_copies),  TEST(test_moved_notes),
+        TEST(test_exiftool),           TEST(test_packets),        TEST(test_damaged_copies),
+        TEST(test_unpadded_resources),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -43,9 +43,11 @@ std::vector<uint8_t> with_iptc(const std::vector<uint8_t> &resources, const std:
     std::vector<uint8_t> all;
     Resource resource;
     for (size_t at = 0; read_resource(resources, at, resource); at = resource.end)
-        if (resource.id != iptc_resource)
+        if (resource.id != iptc_resource) {
             all.insert(all.end(), &resources[resource.start],
                        &resources[resource.start] + (resource.end - resource.start));
+            if (all.size() % 2) all.push_back(0);  // the last one may lack its padding
+        }
     if (iptc.empty()) return all;
     all.insert(all.end(), {'8', 'B', 'I', 'M', 4, 4, 0, 0});
     for (int shift = 24; shift >= 0; shift -= 8) all.push_back(static_cast<uint8_t>(iptc.size() >> shift));
