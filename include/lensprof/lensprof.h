@@ -24,5 +24,6 @@
 #include "rendering.h"
 #include "sample.h"
 #include "store.h"
+#include "trial.h"
 
 #endif

@@ -54,7 +54,7 @@ CPP_OUTSIDE = {
 }
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h", "reason.h"}
-FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h", "rendering.h"}
+FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h", "rendering.h", "trial.h"}
 FORMATS_API = FIT_API | {"exposures.h", "hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
 PHOTO_API = FIT_API | STORE_API | {"photo.h"}
@@ -82,11 +82,11 @@ LAYERS = {
     ),
     "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core", "falloff"]),
     "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/joined_sets.hpp",
-                        "fit/base/track_pairs.hpp"]),
+                        "fit/base/mixed_bits.hpp", "fit/base/track_pairs.hpp"]),
     "src/cli": Layer(
         WHOLE_API,
         C_LIBRARY | CPP_LIBRARY | POSIX | {"CLI/*", "cairo-svg.h", "cairo.h", "nlohmann/*"},
-        ["photo", "threads", "fit/base/joined_sets.hpp"],
+        ["photo", "threads", "fit/base/joined_sets.hpp", "fit/base/mixed_bits.hpp"],
     ),
     "examples": Layer(WHOLE_API, C_LIBRARY),
     "bindings": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"Python.h"}),
@@ -95,7 +95,7 @@ LAYERS = {
 # The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
 ROOMS = {
     "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "scene",
-                "sampling", "flat", "rendering", "api"],
+                "sampling", "flat", "rendering", "trial", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
     "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "correct", "folder", "api"],
@@ -124,6 +124,7 @@ PUBLIC = {
     "flat.h": FIT_API,
     "rendering.h": CORE_API,
     "exposures.h": CORE_API,
+    "trial.h": FIT_API,
     "hugin.h": FIT_API,
     "formats.h": FORMATS_API,
     "store.h": STORE_API,

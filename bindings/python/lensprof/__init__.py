@@ -9,7 +9,7 @@ from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_
                    RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, Direction, DistanceRule, Encoding,
                    FitModel, FitResponse, FlatGrid, FlatLight, Free, GammaFrom, ItemKind, Layout, LinkState, Loss, Method,
                    Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind, SampleType, Sampling,
-                   Saturated, Severity, Status, StoreMode, StoreNames)
+                   Saturated, Severity, Status, StoreMode, StoreNames, TrialResponse)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, LINK_DTYPE,
                       MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE, SCENE_LINK_DTYPE)
@@ -30,6 +30,7 @@ from .rendering import RenderingResult, RenderingShot, fit_rendering
 from .sample import SampleImage, SampleOptions, sample_matches, sample_overlap, sample_tracks
 from .scene import Scene, SceneImage, calibrate
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats, StoreSummary, lookup_in
+from .trial import TrialCandidate, TrialResult, try_profiles
 
 __all__ = [
     "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "CalibrateOptions", "Calibration", "Camera",
@@ -43,9 +44,9 @@ __all__ = [
     "Projection", "Provenance", "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response",
     "ResponseFrom", "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling",
     "Saturated", "Scene", "SceneImage", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames",
-    "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "calibrate", "calibrate_folder", "correct",
-    "correct_file", "correct_files", "emor_table", "encode_picture", "fit_flat", "fit_overlap", "fit_radiance",
+    "StoreRow", "StoreStats", "StoreSummary", "TrialCandidate", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting",
+    "calibrate", "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_flat", "fit_overlap", "fit_radiance",
     "fit_rendering", "formats", "half_diagonal", "layout_channels", "layout_samples", "lookup_in", "read_picture",
     "reason_name", "reason_text", "sample_matches", "sample_overlap", "sample_tracks", "sample_type_bytes", "simulate",
-    "status_name", "version", "write_picture",
+    "status_name", "try_profiles", "version", "write_picture",
 ]

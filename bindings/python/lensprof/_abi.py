@@ -41,6 +41,7 @@ LOOKUP_REASONS = 8
 LOOKUP_RESPONSES = 8
 LOOKUP_NEAREST = 3
 STATS_GROUPS = 8
+TRIAL_PAIRS = 30
 DOUBT_RESPONSE = "response not shown by the pictures: typical of the kind"
 
 
@@ -423,6 +424,14 @@ class StoreNames(IntEnum):
     """lensprof_store_names; see lensprof/store.h."""
     LENSES = 0
     CAMERAS = 1
+
+
+class TrialResponse(IntEnum):
+    """lensprof_trial_response; see lensprof/trial.h."""
+    OWN = 0
+    OTHER = 1
+    KIND = 2
+    LINEAR = 3
 
 
 class CopyExposure(IntEnum):
@@ -1293,6 +1302,46 @@ class StoreSummary(Structure):
     ]
 
 
+class TrialOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("channels", c_uint32),
+        ("camera_kind", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class TrialCandidate(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("has_falloff", c_uint32),
+        ("response_from", c_uint32),
+        ("response_profile", c_uint32),
+        ("as_good_as_best", c_uint32),
+        ("better_than_none", c_uint32),
+        ("heldout_rms", c_double),
+        ("heldout_median", c_double),
+        ("above_best", c_double),
+        ("above_best_sigma", c_double),
+        ("below_none", c_double),
+        ("below_none_sigma", c_double),
+    ]
+
+
+class TrialResult(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("usable", c_uint32),
+        ("best", c_uint32),
+        ("decided", c_uint32),
+        ("images", c_uint32),
+        ("fitted", c_uint32),
+        ("measured", c_uint32),
+        ("unexplained", c_uint32),
+        ("before_rms", c_double),
+    ]
+
+
 class Notice(Structure):
     _fields_ = [
         ("severity", c_uint32),
@@ -1511,6 +1560,7 @@ ENUMS = {
     "LENSPROF_DISTANCE_": DistanceRule,
     "LENSPROF_RESPONSE_FROM_": ResponseFrom,
     "LENSPROF_NAMES_": StoreNames,
+    "LENSPROF_TRIAL_RESPONSE_": TrialResponse,
     "LENSPROF_COPY_EXPOSURE_": CopyExposure,
     "LENSPROF_FREE_": Free,
 }
@@ -1566,6 +1616,9 @@ STRUCTS = {
     "lensprof_store_group": StoreGroup,
     "lensprof_store_stats": StoreStats,
     "lensprof_store_summary": StoreSummary,
+    "lensprof_trial_options": TrialOptions,
+    "lensprof_trial_candidate": TrialCandidate,
+    "lensprof_trial_result": TrialResult,
     "lensprof_notice": Notice,
     "lensprof_events": Events,
     "lensprof_picture_info": PictureInfo,
@@ -1636,6 +1689,9 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     LookupOptions: ("lensprof_init_sized", [LookupOptions]),
     Lookup: ("lensprof_init_sized", [Lookup]),
     StoreStats: ("lensprof_init_sized", [StoreStats]),
+    TrialOptions: ("lensprof_trial_options_init_sized", [TrialOptions]),
+    TrialCandidate: ("lensprof_init_sized", [TrialCandidate]),
+    TrialResult: ("lensprof_init_sized", [TrialResult]),
     Events: ("lensprof_init_sized", [Events]),
     PictureInfo: ("lensprof_init_sized", [PictureInfo]),
     PictureMetadata: ("lensprof_picture_metadata_init_sized", [PictureMetadata]),
@@ -1853,6 +1909,11 @@ FUNCTIONS = {
     "lensprof_store_list_names": (c_int, [POINTER(Store), c_uint32, c_char_p, POINTER(StoreSummary), c_uint32,
                                           POINTER(c_uint32), POINTER(ErrorText)]),
     "lensprof_correct": (c_int, [POINTER(Profile), POINTER(Exposure), POINTER(Target), POINTER(ErrorText)]),
+    # trial.h
+    "lensprof_trial_options_init_sized": (None, [POINTER(TrialOptions), c_size_t]),
+    "lensprof_trial_run": (c_int, [POINTER(TrialOptions), POINTER(FitImage), c_uint32, POINTER(Pair), c_uint32,
+                                   POINTER(POINTER(Profile)), c_uint32, POINTER(TrialCandidate), POINTER(TrialResult),
+                                   POINTER(ErrorText)]),
 }
 
 # The same for liblensprof-photo.

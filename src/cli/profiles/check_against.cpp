@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/profiles/profile_trial.hpp"
 #include "cli/profiles/trial_report.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
@@ -18,8 +17,6 @@
 
 namespace lensprof {
 namespace {
-
-constexpr size_t kMinMeasuredPairs = 30;  // pairs
 
 bool is_number(const std::string &word) {
     return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
@@ -99,62 +96,6 @@ std::vector<lensprof_pair> pairs_of_one_setting(const Scene &scene, const std::v
     return pairs;
 }
 
-TrialErrors try_candidate(const TrialPairs &pairs, const Candidate &candidate, const lensprof_profile *falloff) {
-    return try_model(pairs, {falloff, candidate.responses.data(), static_cast<uint32_t>(candidate.responses.size())});
-}
-
-// For rendered pictures only the falloff of a raw profile applies.
-bool has_response(const lensprof_profile &profile) {
-    return profile.key.processing != LENSPROF_PROCESSING_RAW || profile.response[0].kind != LENSPROF_RESPONSE_LINEAR;
-}
-
-// The response of the pictures: that of sensor data is linear.
-void use_profile_response(const lensprof_profile &profile, uint32_t camera_kind, Candidate &candidate) {
-    candidate.response_from = ResponseOf::own;
-    candidate.responses.assign(profile.response, profile.response + profile.responses);
-    if (camera_kind != LENSPROF_CAMERA_LINEAR) return;
-    candidate.response_from = ResponseOf::sensor;
-    candidate.responses.resize(1);
-    lensprof_response_set_linear(&candidate.responses[0]);
-}
-
-// For a candidate without a response of its own: the best one, of the kind of camera or of a profile.
-void use_best_response(const TrialPairs &pairs, const std::vector<Candidate> &profiles, uint32_t camera_kind,
-                       const lensprof_profile *falloff, Candidate &candidate) {
-    candidate.response_from = camera_kind == LENSPROF_CAMERA_LINEAR ? ResponseOf::sensor : ResponseOf::kind;
-    candidate.responses.resize(1);
-    lensprof_error error{};
-    check(lensprof_response_set_typical(&candidate.responses[0], camera_kind, nullptr, nullptr), "response", &error);
-    candidate.errors = try_candidate(pairs, candidate, falloff);
-    const auto rms_of = [](const TrialErrors &errors) {  // of what is not an outlier
-        return figures_of(errors, explained_pairs({errors})).rms;
-    };
-    for (const Candidate &other : profiles) {
-        if (other.response_from != ResponseOf::own) continue;
-        TrialErrors errors = try_candidate(pairs, other, falloff);
-        if (rms_of(errors) >= rms_of(candidate.errors)) continue;
-        candidate.errors = std::move(errors);
-        candidate.response_from = ResponseOf::other, candidate.response_id = other.id;
-    }
-}
-
-std::vector<Candidate> try_profiles(const TrialPairs &pairs, const std::vector<StoredProfile> &profiles,
-                                    uint32_t camera_kind) {
-    std::vector<Candidate> candidates(profiles.size());
-    for (size_t i = 0; i < profiles.size(); i++) {
-        const lensprof_profile &profile = *profiles[i].profile;
-        candidates[i].id = profiles[i].id, candidates[i].label = describe_key(profile.key);
-        candidates[i].has_falloff = has_falloff(profile);
-        if (!has_response(profile) && camera_kind != LENSPROF_CAMERA_LINEAR) continue;
-        use_profile_response(profile, camera_kind, candidates[i]);
-        candidates[i].errors = try_candidate(pairs, candidates[i], &profile);
-    }
-    for (size_t i = 0; i < profiles.size(); i++)
-        if (candidates[i].responses.empty())
-            use_best_response(pairs, candidates, camera_kind, profiles[i].profile.get(), candidates[i]);
-    return candidates;
-}
-
 void warn_of_earlier_correction(const Scene &scene, const std::vector<PictureMetadata> &metadata, Streams &streams) {
     for (size_t i = 0; i < metadata.size(); i++)
         if (!metadata[i].corrected_by.empty()) {
@@ -164,31 +105,32 @@ void warn_of_earlier_correction(const Scene &scene, const std::vector<PictureMet
         }
 }
 
-// The measured report; figures are filled in.
-TrialReport measure(const Scene &scene, const std::vector<StoredProfile> &profiles, Progress &progress,
-                    Streams &streams) {
+// Runs the trial on the pictures.
+void measure(const Scene &scene, const std::vector<StoredProfile> &profiles, Progress &progress, Streams &streams,
+             TrialReport &report) {
     const std::vector<PictureMetadata> metadata = picture_metadata({}, scene);
     const SceneFitOptions options;
     if (!scene.is_reconstruction) check_pictures(scene, options.pixels.max_side);
     DrawnPairs sampled = first_pairs(options, scene, progress);
     progress.clear();
     uint32_t first = 0;
-    sampled.pairs = pairs_of_one_setting(scene, metadata, std::move(sampled.pairs), first, streams);
+    const std::vector<lensprof_pair> pairs =
+        pairs_of_one_setting(scene, metadata, std::move(sampled.pairs), first, streams);
     warn_of_earlier_correction(scene, metadata, streams);
-    const uint32_t kind = camera_kind_of({}, metadata[first].key, metadata[first]).kind;
-    TrialReport report;
-    report.pairs = split_for_trial(fit_images(scene), sampled.pairs, sampled.channels);
-    if (report.pairs.heldout.size() < kMinMeasuredPairs)
-        throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                      scene.path
-                          + format(": its overlaps contain %zu usable pairs, but at least %zu are needed; give "
-                                   "pictures that overlap by a third",
-                                   report.pairs.heldout.size(), kMinMeasuredPairs),
-                      LENSPROF_REASON_FEW_PAIRS);
-    report.profiles = try_profiles(report.pairs, profiles, kind);
-    use_best_response(report.pairs, report.profiles, kind, nullptr, report.none);
-    compare(report);
-    return report;
+    lensprof_trial_options trial;
+    lensprof_trial_options_init(&trial);
+    trial.channels = sampled.channels;
+    trial.camera_kind = camera_kind_of({}, metadata[first].key, metadata[first]).kind;
+    std::vector<const lensprof_profile *> given;
+    for (const StoredProfile &stored : profiles) given.push_back(stored.profile.get());
+    const std::vector<lensprof_fit_image> images = fit_images(scene);
+    lensprof_error error{};
+    const lensprof_status status = lensprof_trial_run(
+        &trial, images.data(), static_cast<uint32_t>(images.size()), pairs.data(), static_cast<uint32_t>(pairs.size()),
+        given.data(), static_cast<uint32_t>(given.size()), report.candidates.data(), &report.result, &error);
+    if (status == LENSPROF_ERROR_NO_SAMPLES)
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, scene.path + ": " + error.text, LENSPROF_REASON_FEW_PAIRS);
+    check(status, scene.path, &error);
 }
 
 }  // namespace
@@ -216,13 +158,13 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     if (scene.images.size() < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, scene.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
-    TrialReport report = measure(scene, profiles, progress, streams);
-    report.file = store_path(db), report.path = scene.path;
+    TrialReport report(store_path(db), scene.path, profiles);
+    measure(scene, profiles, progress, streams, report);
     if (json)
         print_json(trial_json(report), streams.out);
     else
         print_trial(report, streams.out);
-    if (report.is_any_better()) return static_cast<int>(ExitCode::done);
+    if (report.result.usable) return static_cast<int>(ExitCode::done);
     print_message(streams, scene.path
                       + ": no profile is better than leaving the falloff uncorrected; give profiles of this lens and "
                         "setting, or make one with `lensprof build`");

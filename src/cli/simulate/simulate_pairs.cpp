@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "cli/simulate/simulate.hpp"
+#include "fit/base/mixed_bits.hpp"
 #include "photo/base/events.hpp"
-#include "photo/base/mixed_bits.hpp"
 
 namespace lensprof {
 

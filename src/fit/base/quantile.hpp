@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace lensprof {
@@ -19,6 +20,15 @@ Value quantile(std::vector<Value> &values, double share) {
 template <class Value>
 Value median(std::vector<Value> &values) {
     return quantile(values, 0.5);
+}
+
+// The median, the upper one of two middle values; 0 without values.
+template <class Value>
+Value upper_median(std::vector<Value> values) {
+    if (values.empty()) return Value{};
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 // The 99 % quantile of chi-squared, by Wilson and Hilferty (1931).

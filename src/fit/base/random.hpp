@@ -1,7 +1,7 @@
 // Random numbers from a given seed.
 #pragma once
 
-#include <cstdint>
+#include "fit/base/mixed_bits.hpp"
 
 namespace lensprof {
 
@@ -9,12 +9,7 @@ namespace lensprof {
 struct Random {
     uint64_t state;
 
-    double next() {
-        uint64_t x = state += 0x9e3779b97f4a7c15ull;
-        x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-        x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-        return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
-    }
+    double next() { return static_cast<double>(mixed_bits(state += splitmix_step) >> 11) * 0x1p-53; }
 };
 
 }  // namespace lensprof

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fit/base/constants.hpp"
 #include "fit/base/joined_sets.hpp"
+#include "fit/base/quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -43,10 +45,9 @@ uint32_t end_of(const Problem &problem, const Tree &tree) {
 
 double scatter_of(std::vector<double> distances, size_t parameters) {
     if (distances.size() < kMinDistances || distances.size() <= parameters) return 1.0;
-    auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
     const double count = static_cast<double>(distances.size());
-    const double scatter = kMadToSigma * *middle * std::sqrt(count / (count - static_cast<double>(parameters)));
+    const double scatter =
+        kMadToSigma * upper_median(std::move(distances)) * std::sqrt(count / (count - static_cast<double>(parameters)));
     return std::sqrt(1.0 + std::max(0.0, scatter * scatter - kChanceScatter * kChanceScatter));
 }
 

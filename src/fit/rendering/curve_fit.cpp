@@ -6,6 +6,9 @@
 
 #include <Eigen/Dense>
 
+#include "fit/base/constants.hpp"
+#include "fit/base/quantile.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -51,14 +54,6 @@ struct Row {
         slope[static_cast<size_t>(count++)] = value;
     }
 };
-
-// The upper one of two middle values; 0 without values.
-double upper_median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 int chroma_bin(const Area &area) { return std::min(static_cast<int>(area.chroma * kChromaBins), kChromaBins - 1); }
 
@@ -338,7 +333,7 @@ void Solver::estimate_noise(CurveFit &fit) const {
     }
     double least = kMinNoise;
     for (size_t i = 0; i < left.size(); i++) {
-        if (left[i].size() >= 30) least = std::max(least, 1.4826 * upper_median(left[i]));
+        if (left[i].size() >= 30) least = std::max(least, kMadToSigma * upper_median(left[i]));
         fit.noise[i] = least;
     }
 }

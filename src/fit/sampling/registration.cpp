@@ -45,6 +45,7 @@
 
 #include <lensprof/model.h>
 
+#include "fit/base/quantile.hpp"
 #include "fit/sampling/block_search.hpp"
 
 namespace lensprof {
@@ -397,10 +398,7 @@ double Matcher::median_shift(const Correction &a, const Correction &b) const {
             && place_of(first, second, b, Way::forward, p.x, p.y, to))
             shifts.push_back(std::hypot(to[0] - from[0], to[1] - from[1]));
     }
-    if (shifts.empty()) return 0.0;
-    auto middle = shifts.begin() + static_cast<ptrdiff_t>(shifts.size() / 2);
-    std::nth_element(shifts.begin(), middle, shifts.end());
-    return *middle;
+    return upper_median(std::move(shifts));
 }
 
 // Whether most blocks match better with the correction than without: things that moved prefer it, too, but the scene

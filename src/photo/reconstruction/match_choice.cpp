@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "fit/base/joined_sets.hpp"
-#include "photo/base/mixed_bits.hpp"
+#include "fit/base/mixed_bits.hpp"
 #include "photo/reconstruction/link_order.hpp"
 
 namespace lensprof {

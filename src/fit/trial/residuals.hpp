@@ -2,11 +2,11 @@
 // the pairs, with response and falloff of the profile fixed, and the residual is measured on the other half.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
-#include <lensprof/lensprof.h>
+#include <lensprof/fit.h>
 
 namespace lensprof {
 
@@ -19,8 +19,8 @@ struct TrialPairs {
 
 // Splits pairs by their indices, reproducibly. Held-out pairs whose images are not connected by pairs of the other half
 // are dropped.
-TrialPairs split_for_trial(std::vector<lensprof_fit_image> images, const std::vector<lensprof_pair> &pairs,
-                           uint32_t channels);
+TrialPairs split_pairs(std::vector<lensprof_fit_image> images, const std::vector<lensprof_pair> &pairs,
+                       uint32_t channels);
 
 // A candidate.
 struct TrialModel {
@@ -40,7 +40,7 @@ TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model);
 TrialErrors uncorrected_errors(const TrialPairs &pairs);
 
 // Whether each held-out pair counts: one of the models explains it. The others show two different objects.
-std::vector<bool> explained_pairs(const std::vector<TrialErrors> &candidates);
+std::vector<bool> explained_pairs(const std::vector<const TrialErrors *> &candidates);
 
 struct TrialFigures {
     double rms = 0.0, median = 0.0;

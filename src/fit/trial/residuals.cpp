@@ -1,4 +1,4 @@
-#include "cli/profiles/profile_trial.hpp"
+#include "fit/trial/residuals.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,11 @@
 #include <map>
 #include <utility>
 
-#include "cli/profiles/exposures_only.hpp"
+#include "fit/base/constants.hpp"
 #include "fit/base/joined_sets.hpp"
-#include "photo/base/mixed_bits.hpp"
+#include "fit/base/mixed_bits.hpp"
+#include "fit/base/quantile.hpp"
+#include "fit/trial/exposures.hpp"
 
 namespace lensprof {
 namespace {
@@ -34,8 +36,8 @@ public:
                                                          pair.xy[side][0], pair.xy[side][1], nullptr)
                               : 1.0;
     }
-    LightDifference difference(const lensprof_pair &pair, uint32_t channel) const {
-        LightDifference d{{pair.image[0], pair.image[1]}, 0.0, 0.0};
+    IrradianceDifference difference(const lensprof_pair &pair, uint32_t channel) const {
+        IrradianceDifference d{{pair.image[0], pair.image[1]}, 0.0, 0.0};
         double variance = 0.0;
         for (int side = 0; side < 2; side++) {
             double slope = 0.0;
@@ -69,16 +71,10 @@ void add_pair(const std::vector<double> &levels, TrialErrors &errors) {
     errors.squares.push_back(sum / static_cast<double>(levels.size()));
 }
 
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 }  // namespace
 
-TrialPairs split_for_trial(std::vector<lensprof_fit_image> images, const std::vector<lensprof_pair> &pairs,
-                           uint32_t channels) {
+TrialPairs split_pairs(std::vector<lensprof_fit_image> images, const std::vector<lensprof_pair> &pairs,
+                       uint32_t channels) {
     TrialPairs split;
     split.channels = channels;
     JoinedSets groups(images.size());
@@ -100,7 +96,7 @@ TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model) {
     const Evaluator evaluator(pairs, model);
     std::array<std::vector<double>, 3> exposures;
     for (uint32_t c = 0; c < pairs.channels; c++) {
-        std::vector<LightDifference> differences;
+        std::vector<IrradianceDifference> differences;
         for (const lensprof_pair &pair : pairs.train) differences.push_back(evaluator.difference(pair, c));
         exposures[c] = log_exposures(differences, static_cast<uint32_t>(pairs.images.size()));
     }
@@ -125,17 +121,17 @@ TrialErrors uncorrected_errors(const TrialPairs &pairs) {
     return errors;
 }
 
-std::vector<bool> explained_pairs(const std::vector<TrialErrors> &candidates) {
-    const size_t pairs = candidates.front().squares.size();
+std::vector<bool> explained_pairs(const std::vector<const TrialErrors *> &candidates) {
+    const size_t pairs = candidates.front()->squares.size();
     if (!pairs) return {};
     double min_median = HUGE_VAL;
-    for (const TrialErrors &errors : candidates)
-        min_median = std::min(min_median, std::sqrt(median_of(errors.squares)));
-    const double limit = std::max(kMinExplained, kExplainedSigmas * kMedianToSigma * min_median);
+    for (const TrialErrors *errors : candidates)
+        min_median = std::min(min_median, std::sqrt(upper_median(errors->squares)));
+    const double limit = std::max(kMinExplained, kExplainedSigmas * kMadToSigma * min_median);
     std::vector<bool> is_explained(pairs);
     for (size_t p = 0; p < pairs; p++)
         is_explained[p] = std::any_of(candidates.begin(), candidates.end(),
-                                      [&](const TrialErrors &errors) { return errors.squares[p] <= limit * limit; });
+                                      [&](const TrialErrors *errors) { return errors->squares[p] <= limit * limit; });
     return is_explained;
 }
 
@@ -148,7 +144,7 @@ TrialFigures figures_of(const TrialErrors &errors, const std::vector<bool> &is_e
         sum += errors.squares[p], count++;
         for (size_t n = 0; n < values_per_pair; n++) absolutes.push_back(errors.absolutes[p * values_per_pair + n]);
     }
-    return {std::sqrt(sum / count), median_of(absolutes)};
+    return {std::sqrt(sum / count), upper_median(absolutes)};
 }
 
 TrialDifference difference_of(const TrialErrors &a, const TrialErrors &b, const TrialPairs &pairs,

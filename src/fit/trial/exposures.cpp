@@ -1,8 +1,12 @@
-#include "cli/profiles/exposures_only.hpp"
+#include "fit/trial/exposures.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
+
+#include "fit/base/constants.hpp"
+#include "fit/base/quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -19,7 +23,7 @@ class Links {
 public:
     explicit Links(uint32_t images) : right_(images), diagonal_(images) {}
 
-    void add(const LightDifference &d, double weight) {
+    void add(const IrradianceDifference &d, double weight) {
         double &link_weight = weights_[{d.image[0], d.image[1]}];
         link_weight += weight;
         for (int side = 0; side < 2; side++) {
@@ -72,22 +76,21 @@ private:
 };
 
 // The residual of each difference, levels; 0 without information.
-std::vector<double> residual_levels(const std::vector<LightDifference> &differences, const std::vector<double> &x) {
+std::vector<double> residual_levels(const std::vector<IrradianceDifference> &differences,
+                                    const std::vector<double> &x) {
     std::vector<double> residuals;
-    for (const LightDifference &d : differences)
+    for (const IrradianceDifference &d : differences)
         residuals.push_back(d.sigma > 0.0 ? std::fabs(d.log_ratio - x[d.image[0]] + x[d.image[1]]) / d.sigma : 0.0);
     return residuals;
 }
 
-double scale_of(std::vector<double> residuals) {
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    return std::max(kMinScale, kMedianToSigma * *middle);
+double scale_of(const std::vector<double> &residuals) {
+    return std::max(kMinScale, kMadToSigma * upper_median(residuals));
 }
 
 }  // namespace
 
-std::vector<double> log_exposures(const std::vector<LightDifference> &differences, uint32_t images) {
+std::vector<double> log_exposures(const std::vector<IrradianceDifference> &differences, uint32_t images) {
     std::vector<double> x(images);
     if (differences.empty()) return x;
     std::vector<double> residuals(differences.size(), 0.0);  // initially all count equally
