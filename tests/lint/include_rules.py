@@ -54,7 +54,7 @@ CPP_OUTSIDE = {
 }
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h", "reason.h"}
-FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h", "rendering.h", "trial.h"}
+FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "rendering.h", "trial.h"}
 FORMATS_API = FIT_API | {"exposures.h", "hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
 PHOTO_API = FIT_API | STORE_API | {"photo.h"}
@@ -120,6 +120,7 @@ PUBLIC = {
     "profile.h": CORE_API,
     "reason.h": CORE_API,
     "sample.h": FIT_API,
+    "exposure_settings.h": CORE_API,
     "fit.h": FIT_API,
     "flat.h": FIT_API,
     "rendering.h": CORE_API,

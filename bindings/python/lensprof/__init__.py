@@ -5,19 +5,22 @@ raises lensprof.Error with a `status`; arguments that cannot be passed to it (an
 stride) raise TypeError or ValueError. Files of other programs are in lensprof.formats.
 """
 from . import formats
-from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
-                   RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, Direction, DistanceRule, Encoding,
-                   FitModel, FitResponse, FlatGrid, FlatLight, Free, GammaFrom, ItemKind, Layout, LinkState, Loss, Method,
-                   Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind, SampleType, Sampling,
-                   Saturated, Severity, Status, StoreMode, StoreNames, TrialResponse)
+from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE,
+                   MODES_AUTO, RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CopyExposure, Direction,
+                   DistanceRule, Encoding, ExposureState, FitModel, FitResponse, FlatGrid, FlatLight, Free, GammaFrom,
+                   ItemKind, Layout, LinkState, Loss, Method, Pack, Processing, ProfilePrior, Projection, Reason,
+                   ResponseFrom, ResponseKind, SampleType, Sampling, Saturated, Severity, Status, StoreMode, StoreNames,
+                   TrialResponse)
 from ._abi import VERSION as __version__  # noqa: F401
-from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, LINK_DTYPE,
-                      MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE, SCENE_LINK_DTYPE)
+from ._arrays import (EXPOSURE_DTYPE, EXPOSURE_SETTINGS_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE,
+                      KNOWN_EXPOSURE_DTYPE, LINK_DTYPE, MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE,
+                      SCENE_LINK_DTYPE)
 from ._events import Notice, Progress
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
 from .calibration import EXPOSURES_DTYPE, CalibrateOptions, Calibration
 from .copies import CorrectOptions, correct_file, correct_files
+from .exposure import known_exposures, settings_ev
 from .fit import FitCamera, FitImage, FitOptions, FitResult, fit_overlap, fit_radiance
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .folder import calibrate_folder
@@ -35,18 +38,20 @@ from .trial import TrialCandidate, TrialResult, try_profiles
 __all__ = [
     "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "CalibrateOptions", "Calibration", "Camera",
     "CameraKind", "CameraModel", "CopyExposure", "CorrectOptions", "Direction", "DistanceRule", "EMOR_MODES",
-    "EXPOSURES_DTYPE", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE",
-    "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "Finding", "FitCamera", "FitImage", "FitModel", "FitOptions", "FitResponse",
-    "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Free", "GRID_SIDE",
-    "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE", "Layout", "LinkState", "Lookup",
-    "LookupOptions", "Loss", "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack",
-    "Picture", "PictureMetadata", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Progress",
-    "Projection", "Provenance", "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response",
-    "ResponseFrom", "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling",
-    "Saturated", "Scene", "SceneImage", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames",
-    "StoreRow", "StoreStats", "StoreSummary", "TrialCandidate", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting",
-    "calibrate", "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_flat", "fit_overlap", "fit_radiance",
-    "fit_rendering", "formats", "half_diagonal", "layout_channels", "layout_samples", "lookup_in", "read_picture",
-    "reason_name", "reason_text", "sample_matches", "sample_overlap", "sample_tracks", "sample_type_bytes", "simulate",
-    "status_name", "try_profiles", "version", "write_picture",
+    "EXPOSURES_DTYPE", "EXPOSURE_DTYPE", "EXPOSURE_SETTINGS_DTYPE", "Encoding", "Error", "Exposure", "ExposureState",
+    "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "Finding", "FitCamera", "FitImage",
+    "FitModel", "FitOptions", "FitResponse", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
+    "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Item",
+    "ItemKind", "KNOWN_EXPOSURE_DTYPE", "LINK_DTYPE", "Layout", "LinkState", "Lookup", "LookupOptions", "Loss",
+    "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Picture",
+    "PictureMetadata", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Progress", "Projection",
+    "Provenance", "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom",
+    "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Scene",
+    "SceneImage", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames", "StoreRow", "StoreStats",
+    "StoreSummary", "TrialCandidate", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting", "calibrate",
+    "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_flat",
+    "fit_overlap", "fit_radiance", "fit_rendering", "formats", "half_diagonal", "known_exposures", "layout_channels",
+    "layout_samples", "lookup_in", "read_picture", "reason_name", "reason_text", "sample_matches", "sample_overlap",
+    "sample_tracks", "sample_type_bytes", "settings_ev", "simulate", "status_name", "try_profiles", "version",
+    "write_picture",
 ]

@@ -162,6 +162,16 @@ class Saturated(IntEnum):
     AS_VALUE = 1
 
 
+class ExposureState(IntEnum):
+    """lensprof_exposure_state; see lensprof/exposure_settings.h."""
+    KNOWN = 0
+    NO_TIME = 1
+    NO_ISO = 2
+    NO_APERTURE = 3
+    APART = 4
+    IMPLAUSIBLE = 5
+
+
 class Reason(IntEnum):
     """lensprof_reason; see lensprof/reason.h."""
     NONE = 0
@@ -631,6 +641,27 @@ class ApplyOptions(Structure):
 
 class Plan(Structure):
     """Opaque."""
+
+
+class ExposureSettings(Structure):
+    _fields_ = [
+        ("time_s", c_double),
+        ("f_number", c_double),
+        ("iso", c_double),
+        ("camera", c_uint32),
+        ("lens", c_uint32),
+        ("is_manual", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class KnownExposure(Structure):
+    _fields_ = [
+        ("ev", c_double),
+        ("sigma", c_double),
+        ("state", c_uint32),
+        ("reserved", c_uint32),
+    ]
 
 
 class Exposures(Structure):
@@ -1538,6 +1569,7 @@ ENUMS = {
     "LENSPROF_DIRECTION_": Direction,
     "LENSPROF_ENCODING_": Encoding,
     "LENSPROF_SATURATED_": Saturated,
+    "LENSPROF_EXPOSURE_": ExposureState,
     "LENSPROF_REASON_": Reason,
     "LENSPROF_SEVERITY_": Severity,
     "LENSPROF_PROJECTION_": Projection,
@@ -1579,6 +1611,8 @@ STRUCTS = {
     "lensprof_image": Image,
     "lensprof_target": Target,
     "lensprof_apply_options": ApplyOptions,
+    "lensprof_exposure_settings": ExposureSettings,
+    "lensprof_known_exposure": KnownExposure,
     "lensprof_exposures_info": ExposuresInfo,
     "lensprof_exposures_camera": ExposuresCamera,
     "lensprof_exposures_lens": ExposuresLens,
@@ -1767,6 +1801,10 @@ FUNCTIONS = {
                                    POINTER(ErrorText)]),
     "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
     "lensprof_apply_planar": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Target), c_uint32, c_uint32]),
+    # exposure_settings.h
+    "lensprof_settings_ev": (c_double, [c_double, c_double, c_double]),
+    "lensprof_known_exposures": (c_int, [POINTER(ExposureSettings), c_uint32, POINTER(KnownExposure),
+                                         POINTER(ErrorText)]),
     # exposures.h
     "lensprof_exposures_camera_init_sized": (None, [POINTER(ExposuresCamera), c_size_t]),
     "lensprof_exposures_lens_init_sized": (None, [POINTER(ExposuresLens), c_size_t]),

@@ -32,6 +32,12 @@ OBSERVATION_DTYPE = _dtype(_abi.Observation)
 EXPOSURE_DTYPE = _dtype(_abi.Exposure)
 """Layout of an exposure: ev, white_balance[3]."""
 
+EXPOSURE_SETTINGS_DTYPE = _dtype(_abi.ExposureSettings)
+"""Layout of the settings of a picture: time_s, f_number, iso (UNKNOWN = not stated), camera, lens, is_manual."""
+
+KNOWN_EXPOSURE_DTYPE = _dtype(_abi.KnownExposure)
+"""Layout of an exposure by settings: ev, sigma (EV; 0 = unknown), state (ExposureState)."""
+
 IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
 """Layout of an image's quality: ev_sigma, white_balance_sigma[3], median_residual, known_ev_residual, radius, grey_low,
 grey_high, pairs, inliers, component, known_ev_left_out, joined."""

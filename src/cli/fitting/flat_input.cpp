@@ -55,18 +55,19 @@ bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i
 std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_t> &shots,
                                  const std::vector<PictureMetadata> &metadata, Streams &streams) {
     std::vector<double> ev(shots.size(), 0.0);
-    const ExifExposures stated = exif_exposures(metadata, std::vector<uint32_t>(shots.size(), 0));
+    const std::vector<lensprof_known_exposure> stated =
+        exif_exposures(metadata, std::vector<uint32_t>(shots.size(), 0));
     bool are_needed = false;
     if (!o.ev.empty()) require_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty()) ev = o.ev;
     for (size_t i = 0; i < ev.size(); i++) {
         if (o.ev.empty() && needs_ev(o, shots, i)) {
-            if (std::isnan(stated.ev[i]))
+            if (std::isnan(stated[i].ev))
                 throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i]
                                                    + ": EXIF does not state its exposure (time, aperture, ISO); give "
                                                      "the exposures of all pictures with --ev, for example 0,0,0 if "
                                                      "they are equal");
-            ev[i] = stated.ev[i];
+            ev[i] = stated[i].ev;
             are_needed = true;
         }
         if (!(std::fabs(ev[i]) <= max_abs_ev))

@@ -1,13 +1,11 @@
 #include "photo/calibration/known_exposures.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <map>
-#include <set>
 #include <tuple>
 
 #include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
 
 namespace lensprof {
 namespace {
@@ -21,118 +19,56 @@ std::string exposure_text(const PictureMetadata &stated) {
     return text;
 }
 
-constexpr double kRoundedSigma = 0.1, kRepeatedSigma = 0.03;  // EV
-constexpr double kMaxAbsEv = 40.0;           // EV relative to 1 s, f/1, ISO 100: no picture has such an exposure
-constexpr double kRelativeTolerance = 1e-3;  // relative tolerance of times, apertures and ISO
-
-bool is_possible(double ev) { return std::fabs(ev) < kMaxAbsEv; }
-
-bool is_same(std::optional<double> a, std::optional<double> b) { return std::fabs(*a / *b - 1.0) < kRelativeTolerance; }
-
-// Whether two pictures have the same camera, lens, time, aperture and ISO, set manually.
-bool is_one_manual_exposure(const PictureMetadata &a, const PictureMetadata &b) {
-    return a.exif_ev && b.exif_ev && is_possible(*a.exif_ev) && a.is_manual && b.is_manual
-           && is_same(a.exposure_time_s, b.exposure_time_s) && is_same(a.f_number, b.f_number) && is_same(a.iso, b.iso)
-           && !std::strcmp(a.key.camera_model, b.key.camera_model) && !std::strcmp(a.key.lens, b.key.lens)
-           && !std::strcmp(a.key.unit, b.key.unit);
-}
-
-// The first picture of the largest group (at least two) at one manual exposure; the number of pictures if there is
-// none.
-size_t largest_group(const std::vector<PictureMetadata> &metadata) {
-    size_t first = metadata.size();
-    std::ptrdiff_t max_count = 1;
-    std::vector<bool> seen(metadata.size());
-    for (size_t i = 0; i < metadata.size(); i++) {
-        if (seen[i]) continue;
-        std::ptrdiff_t count = 0;
-        for (size_t k = i; k < metadata.size(); k++) {
-            if (!is_one_manual_exposure(metadata[i], metadata[k])) continue;
-            seen[k] = true, count++;
-        }
-        if (count > max_count) max_count = count, first = i;
-    }
-    return first;
-}
-
-// A lens of a camera. Without a name, lenses are distinguished by their focal length.
-using Lens = std::tuple<uint32_t, std::string, double>;
-
-Lens lens_of(const lensprof_profile_key &key, uint32_t camera) {
-    return {camera, key.lens, *key.lens ? 0.0 : key.focal_mm};
-}
-
-// Pictures with comparable exposures: of one camera and, if the aperture cancels, of one lens.
-using Comparable = std::tuple<uint32_t, bool, Lens>;
-
-std::map<Comparable, std::vector<size_t>> comparable_pictures(const std::vector<PictureMetadata> &metadata,
-                                                              const std::vector<uint32_t> &camera_of,
-                                                              ExifExposures &exposures) {
-    std::set<uint32_t> states_iso;
-    std::set<Lens> states_aperture;
-    for (size_t i = 0; i < metadata.size(); i++) {
-        if (metadata[i].iso) states_iso.insert(camera_of[i]);
-        if (metadata[i].f_number) states_aperture.insert(lens_of(metadata[i].key, camera_of[i]));
-    }
-    std::map<Comparable, std::vector<size_t>> groups;
-    for (size_t i = 0; i < metadata.size(); i++) {
-        const PictureMetadata &m = metadata[i];
-        const Lens lens = lens_of(m.key, camera_of[i]);
-        const bool cancels_aperture = !states_aperture.count(lens);
-        if (!m.exposure_time_s || (!m.iso && states_iso.count(camera_of[i])) || (!m.f_number && !cancels_aperture))
-            continue;
-        exposures.ev[i] = exposure_ev(*m.exposure_time_s, m.iso.value_or(100.0), m.f_number.value_or(1.0));
-        groups[{camera_of[i], cancels_aperture, cancels_aperture ? lens : Lens{}}].push_back(i);
-    }
-    return groups;
-}
-
-}  // namespace
-
-ExifExposures exif_exposures(const std::vector<PictureMetadata> &metadata, const std::vector<uint32_t> &camera_of) {
-    ExifExposures exposures;
-    exposures.ev.assign(metadata.size(), NAN);
-    exposures.is_apart.assign(metadata.size(), false);
-    const auto groups = comparable_pictures(metadata, camera_of, exposures);
-    std::map<uint32_t, const std::vector<size_t> *> largest;  // per camera
-    for (const auto &[key, pictures] : groups) {
-        const std::vector<size_t> *&best = largest[std::get<0>(key)];
-        if (!best || pictures.size() > best->size()) best = &pictures;
-    }
-    for (const auto &[key, pictures] : groups) {
-        const bool is_used = largest[std::get<0>(key)] == &pictures;
-        for (const size_t i : pictures) {
-            if (!is_used) exposures.ev[i] = NAN, exposures.is_apart[i] = true;
-            exposures.cancels_iso |= is_used && !metadata[i].iso;
-            exposures.cancels_aperture |= is_used && !metadata[i].f_number;
-        }
-    }
-    return exposures;
-}
-
 // Whether EXIF states anything about exposures; the aperture alone describes the lens.
-static bool states_exposures(const std::vector<PictureMetadata> &metadata) {
+bool states_exposures(const std::vector<PictureMetadata> &metadata) {
     return std::any_of(metadata.begin(), metadata.end(),
                        [](const PictureMetadata &m) { return m.exposure_time_s || m.iso; });
 }
 
-// The field without which EXIF does not give the exposure of a picture.
-static const char *missing_field(const PictureMetadata &m, bool cancels_iso) {
-    return !m.exposure_time_s ? "exposure time" : !m.iso && !cancels_iso ? "ISO" : "aperture";
+// The field without which EXIF does not give the exposure of a picture; NULL for another state.
+const char *missing_field(uint32_t state) {
+    switch (state) {
+    case LENSPROF_EXPOSURE_NO_TIME: return "exposure time";
+    case LENSPROF_EXPOSURE_NO_ISO: return "ISO";
+    case LENSPROF_EXPOSURE_NO_APERTURE: return "aperture";
+    default: return nullptr;
+    }
 }
 
-ExifUse exif_use(const ExifExposures &exposures, const std::vector<PictureMetadata> &metadata,
+}  // namespace
+
+std::vector<lensprof_known_exposure> exif_exposures(const std::vector<PictureMetadata> &metadata,
+                                                    const std::vector<uint32_t> &camera_of) {
+    using Lens = std::tuple<std::string, std::string, std::string, double>;
+    std::map<Lens, uint32_t> lenses;
+    std::vector<lensprof_exposure_settings> settings;
+    for (size_t i = 0; i < metadata.size(); i++) {
+        const PictureMetadata &m = metadata[i];
+        const Lens lens = {m.key.camera_model, m.key.unit, m.key.lens, *m.key.lens ? 0.0 : m.key.focal_mm};
+        const uint32_t number = lenses.try_emplace(lens, static_cast<uint32_t>(lenses.size())).first->second;
+        settings.push_back({m.exposure_time_s.value_or(LENSPROF_UNKNOWN), m.f_number.value_or(LENSPROF_UNKNOWN),
+                            m.iso.value_or(LENSPROF_UNKNOWN), camera_of[i], number, m.is_manual, 0});
+    }
+    std::vector<lensprof_known_exposure> known(settings.size());
+    lensprof_error error{};
+    check(lensprof_known_exposures(settings.data(), static_cast<uint32_t>(settings.size()), known.data(), &error),
+          "EXIF", &error);
+    return known;
+}
+
+ExifUse exif_use(const std::vector<lensprof_known_exposure> &exposures, const std::vector<PictureMetadata> &metadata,
                  const std::vector<std::string> &names) {
     ExifUse use;
     std::map<std::string, std::vector<uint32_t>> missing;  // by field
     std::vector<uint32_t> apart;
-    use.images = names.size();
     for (uint32_t i = 0; i < names.size(); i++) {
-        if (!std::isnan(exposures.ev[i])) continue;
-        use.images--;
-        (exposures.is_apart[i] ? apart : missing[missing_field(metadata[i], exposures.cancels_iso)]).push_back(i);
+        const uint32_t state = exposures[i].state;
+        if (const char *field = missing_field(state)) missing[field].push_back(i);
+        if (state == LENSPROF_EXPOSURE_APART) apart.push_back(i);
+        if (state != LENSPROF_EXPOSURE_KNOWN) continue;
+        use.images++;
+        use.cancels_iso |= !metadata[i].iso, use.cancels_aperture |= !metadata[i].f_number;
     }
-    use.cancels_iso = exposures.cancels_iso, use.cancels_aperture = exposures.cancels_aperture;
     if (!states_exposures(metadata) || !(use.images < names.size() || use.cancels_iso || use.cancels_aperture))
         return use;
     use.note = "EXIF gives the exposures of " + std::to_string(use.images) + " of " + counted(names.size(), "picture");
@@ -152,19 +88,14 @@ ExifUse add_known_exposures(const FitOptions &o, const Scene &scene, const std::
     if (o.exif_sigma == 0.0) return {};
     std::vector<uint32_t> camera_of;
     for (const lensprof_fit_image &image : images) camera_of.push_back(image.camera);
-    ExifExposures exposures = exif_exposures(metadata, camera_of);
-    const size_t group_image = largest_group(metadata);
+    const std::vector<lensprof_known_exposure> exposures = exif_exposures(metadata, camera_of);
     for (size_t i = 0; i < images.size(); i++) {
-        if (std::isnan(exposures.ev[i])) continue;
-        if (!is_possible(exposures.ev[i])) {
-            exposures.ev[i] = NAN;
+        const lensprof_known_exposure &known = exposures[i];
+        if (known.state == LENSPROF_EXPOSURE_IMPLAUSIBLE)
             events.warn(scene.files[i], "time, aperture and ISO in its EXIF are not plausible and not used");
-            continue;
-        }
-        const bool is_repeated =
-            group_image < metadata.size() && is_one_manual_exposure(metadata[group_image], metadata[i]);
-        images[i].known_ev = exposures.ev[i];
-        images[i].known_ev_sigma = std::max(o.exif_sigma.value_or(is_repeated ? kRepeatedSigma : kRoundedSigma), 1e-3);
+        if (known.state != LENSPROF_EXPOSURE_KNOWN) continue;
+        images[i].known_ev = known.ev;
+        images[i].known_ev_sigma = std::max(o.exif_sigma.value_or(known.sigma), 1e-3);
     }
     const ExifUse use = exif_use(exposures, metadata, scene.names);
     if (!use.note.empty()) events.note(scene.path, use.note + advice("exif_used"));

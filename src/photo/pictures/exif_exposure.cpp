@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <lensprof/exposure_settings.h>
+
 #include "photo/pictures/exif_tags.hpp"
 #include "photo/pictures/exif_value.hpp"
 
@@ -76,10 +78,6 @@ std::string read_captured(const Exif &exif) {
 
 }  // namespace
 
-double exposure_ev(double time_s, double iso, double f_number) {
-    return std::log2(time_s * iso / 100 / (f_number * f_number));
-}
-
 void read_exposure(const Exif &exif, std::optional<double> maker_iso, PictureMetadata &metadata) {
     metadata.f_number = read_f_number(exif);
     metadata.open_f_number = read_open_f_number(exif);
@@ -88,7 +86,7 @@ void read_exposure(const Exif &exif, std::optional<double> maker_iso, PictureMet
     metadata.captured = read_captured(exif);
     metadata.is_manual = read_is_manual(exif);
     if (metadata.exposure_time_s && metadata.iso && metadata.f_number)
-        metadata.exif_ev = exposure_ev(*metadata.exposure_time_s, *metadata.iso, *metadata.f_number);
+        metadata.exif_ev = lensprof_settings_ev(*metadata.exposure_time_s, *metadata.f_number, *metadata.iso);
 }
 
 void write_exposure(const PictureMetadata &metadata, Exif &exif) {

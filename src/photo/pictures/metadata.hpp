@@ -58,7 +58,8 @@ struct PictureMetadata {
     std::optional<double> f_number;       // aperture of the key
     std::optional<double> open_f_number;  // widest of the lens at its focal length
 
-    // exposure_ev() of the three: larger means a brighter rendering of the same scene. Set only if all are known.
+    // lensprof_settings_ev of the three: larger means a brighter rendering of the same scene. Set only if all are
+    // known.
     std::optional<double> exif_ev;
 
     std::string captured;  // EXIF's DateTimeOriginal with its fraction of a second; empty if either is missing
@@ -68,9 +69,6 @@ struct PictureMetadata {
     bool is_manual = false;  // time, aperture and ISO were set manually according to EXIF's ExposureProgram or
                              // ExposureMode
 };
-
-// log2(time_s * iso / 100 / f_number^2), EV.
-double exposure_ev(double time_s, double iso, double f_number);
 
 // Sets all fields to unknown.
 PictureMetadata unknown_metadata();
