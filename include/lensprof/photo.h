@@ -373,8 +373,9 @@ static inline void lensprof_correct_options_init(lensprof_correct_options *optio
  * databases have for the camera, lens and setting that EXIF states. Pictures are decoded in strips and in parallel;
  * copies appear in the order of the list. Metadata are kept, and copies are marked. The first picture that cannot be
  * corrected ends the call with its error: nothing is written if that is known before the work. *written, unless NULL,
- * receives the number of copies. `options` and `events` may be NULL. NOT_FOUND for a picture that is not part of the
- * result, or has no profile; NOT_USABLE for a result that does not equalize the pictures. */
+ * receives the number of copies, also with the error of such a picture. `options` and `events` may be NULL. NOT_FOUND
+ * for a picture that is not part of the result, or has no profile; NOT_USABLE for a result that does not equalize the
+ * pictures. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_correct_files(const lensprof_calibration *calibration,
                                                                       const lensprof_copy *copies, uint32_t count,
                                                                       const lensprof_correct_options *options,

@@ -129,6 +129,12 @@ void test_scene(void **) {
     must_be_ok(lensprof_scene_get_info(scene.get(), &info, &error), error);
     assert_int_equal(info.images, 6);
     assert_int_equal(info.left_out, 0);
+    const Bytes picture = load(photos() + "/img000.png");
+    std::filesystem::create_symlink(photos() + "/img000.png", work("link.pto"));
+    for (const std::string &path : {photos() + "/img000.png", work("link.pto")})
+        assert_status(LENSPROF_ERROR_ARGUMENT, "would be overwritten",
+                      [&](lensprof_error *why) { return lensprof_scene_save(scene.get(), path.c_str(), why); });
+    assert_true(load(photos() + "/img000.png") == picture);
     assert_in_range(info.links, 5, 15);
     lensprof_scene_link link, last{};
     for (uint32_t i = 0; i < info.links; i++) {

@@ -2,9 +2,11 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 import warnings
 from datetime import datetime
@@ -114,6 +116,59 @@ class TestCalibration(WithScene):
         self.assertTrue((scene.links["image"][:, 0] < scene.links["image"][:, 1]).all() and scene.links["fits_cameras"].all())
         scene.save(self.folder / "found.pto")
         self.assertEqual(len(lp.Scene.open(self.folder / "found.pto").images), 3)
+
+    def test_a_function_of_progress_may_use_the_scene(self):
+        scene = lp.Scene.open(self.files)
+        seen = []
+
+        def use(_step, _done):
+            if not seen:
+                seen.append(len(scene.links))
+                with self.assertRaises(ValueError):
+                    scene.close()
+
+        scene.calibrate(progress=use)
+        self.assertGreater(seen[0], 0)
+        scene.close()
+
+    def test_two_folders_at_the_same_time(self):
+        copies = [self.folder / name for name in ("one", "two")]
+        for copy in copies:
+            shutil.copytree(self.photos, copy)
+        outputs = [self.folder / f"{copy.name}-out" for copy in copies]
+        threads = [threading.Thread(target=lp.calibrate_folder, args=([copy], output), kwargs={"store": False})
+                   for copy, output in zip(copies, outputs)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for copy, output in zip(copies, outputs):
+            files = json.loads((output / ".lensprof-calibrate.json").read_text().split("\n")[0])["files"]
+            self.assertTrue(files and all(entry["stamp"] for entry in files.values()))
+            sorted(copy.iterdir())[0].unlink()
+            lp.calibrate_folder([copy], output, store=False)  # nothing counts as edited
+
+    def test_names_that_are_no_text(self):
+        odd = self.folder / os.fsdecode(b"odd\xff")
+        odd.mkdir()
+        for file in self.files:
+            shutil.copy(file, odd / os.fsdecode(b"\xfe" + os.fsencode(file.name)))
+        output = self.folder / "odd-out"
+        self.assertEqual(len(lp.calibrate_folder([odd], output, store=False)["pictures"]), len(self.files))
+        before = {file: file.stat().st_mtime_ns for file in output.iterdir()}
+        lp.calibrate_folder([odd], output, store=False)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in output.iterdir()}, before)
+
+    def test_records_that_nobody_wrote(self):
+        output = self.folder / "deep-out"
+        output.mkdir()
+        deep = "[" * 200000 + "]" * 200000
+        (output / ".lensprof-calibrate.json").write_text(
+            '{"schema":4,"files":{},"begun":{},"digest":"","notes":' + deep + "}\n")
+        self.assertEqual(len(lp.calibrate_folder([self.photos], output, store=False)["pictures"]), len(self.files))
+        with self.assertRaises(lp.Error):
+            (self.folder / "exposures-deep.json").write_text('{"file":"lensprof exposures","reference":' + deep + "}")
+            lp.Calibration.read(self.folder / "exposures-deep.json")
 
     def test_saved_and_corrected(self):
         calibration = lp.calibrate(self.photos)

@@ -19,10 +19,11 @@ _END: Any = object()
 def written_frames(frames: Iterable[Pixels], names: Optional[Iterable[str]], times: Optional[Iterable[float]],
                    metadata: Optional[Iterable[PictureMetadata]]) -> Iterator[tuple[str, dict[str, str]]]:
     """A folder with the files of frames, and the name of the frame of each, while the block runs; of an iterator, one
-    frame is in memory. What is given for the frames is written as EXIF. The library sorts files by name: they are
-    numbered if the frames have another order."""
+    frame is in memory. What is given for the frames is written as EXIF. The library sorts files by name and
+    skips hidden ones: they are numbered if the frames have another order or such names."""
     labels = None if names is None else list(names)
-    is_sorted = labels is None or all(a < b for a, b in zip(labels, labels[1:]))
+    files = [os.fsencode(f"{label}.png") for label in labels or ()]
+    is_sorted = all(a < b for a, b in zip(files, files[1:])) and not any(file.startswith(b".") for file in files)
     columns: dict[str, Any] = {"names": labels, "times": times, "metadata": metadata}
     given = {what: iter(values) for what, values in columns.items() if values is not None}
     with tempfile.TemporaryDirectory() as folder:
@@ -32,10 +33,16 @@ def written_frames(frames: Iterable[Pixels], names: Optional[Iterable[str]], tim
             for what in (what for what, value in row.items() if value is _END):
                 raise ValueError(f"{number} {what} for more frames: give one for each frame")
             name = row.get("names", f"frame{number:05d}")
+            if not isinstance(name, str):
+                raise TypeError(f"names has {name!r}; give texts")
             if not name or pathlib.PurePath(name).name != name or name in written.values():
                 raise ValueError(f"{name!r}: is not the name of a frame; give each its own, without folders")
+            if not isinstance(row.get("metadata", PictureMetadata()), PictureMetadata):
+                raise TypeError(f"metadata has {row['metadata']!r}; give a PictureMetadata for each frame")
             stated = PictureMetadata() if metadata is None else row["metadata"].copy()
             if times is not None:
+                if not 0 < row["times"] < float("inf"):
+                    raise ValueError(f"times has {row['times']!r}; give exposure times in s")
                 stated.exposure_time_s = row["times"]
             file = f"{name}.png" if is_sorted else f"{number:05d} {name}.png"
             write_picture(os.path.join(folder, file), frame, metadata=stated)

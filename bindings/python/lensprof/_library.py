@@ -179,3 +179,38 @@ class Handle:
 
     def __exit__(self, *exception: object) -> None:
         self.close()
+
+
+class SharedHandle(Handle):
+    """A handle that several threads use at the same time, for instance a function that receives the progress of a call.
+    What changes it, and `close`, raise ValueError while it is in use."""
+
+    def __init__(self, pointer: Any, release: Callable[..., None]):
+        super().__init__(pointer, release)
+        self._users = 0
+
+    @contextlib.contextmanager
+    def _use(self) -> Iterator[Any]:
+        with self._use_alone(True) as pointer:
+            self._users += 1
+        try:
+            yield pointer
+        finally:
+            with self._lock:
+                self._users -= 1
+
+    @contextlib.contextmanager
+    def _use_alone(self, is_shared: bool = False) -> Iterator[Any]:
+        with self._lock:
+            if not self._release.alive:
+                raise ValueError(f"this {type(self).__name__} is closed; open it again")
+            if self._users and not is_shared:
+                raise ValueError(f"this {type(self).__name__} is in use by another call; wait until that has returned")
+            yield self._pointer
+
+    def close(self) -> None:
+        """Releases the memory and files of this object."""
+        with self._lock:
+            if self._users:
+                raise ValueError(f"this {type(self).__name__} is in use by another call; wait until that has returned")
+            self._release()

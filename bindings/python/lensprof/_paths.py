@@ -12,11 +12,14 @@ Source = Union[PathLike, bytes, bytearray, memoryview]
 
 
 def raw_path(path: PathLike) -> bytes:
-    return os.fsencode(path)
+    raw = os.fsencode(path)
+    if b"\0" in raw:
+        raise ValueError(f"{path!r}: has a zero character; no file has such a name")
+    return raw
 
 
 def optional_path(path: Optional[PathLike]) -> Optional[bytes]:
-    return None if path is None else os.fsencode(path)
+    return None if path is None else raw_path(path)
 
 
 def text(value: Optional[bytes]) -> str:

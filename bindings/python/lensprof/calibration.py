@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _abi
 from ._abi import Free, GammaFrom, Loss, Method, Status
-from ._library import Error, Handle, check, initialised, lib, photo
+from ._library import Error, SharedHandle, check, initialised, lib, photo
 from ._paths import PathLike, optional_path, raw_path, set_databases
 from ._struct import Enumerated, Flag, Struct, default
 from .copies import correct_files
@@ -77,7 +77,7 @@ class RawCalibrateOptions(Struct, _abi.CalibrateOptions):
         set_databases(self, databases)
 
 
-class Calibration(Handle):
+class Calibration(SharedHandle):
     """What was found about the cameras, lenses and exposures of a scene. Made by `calibrate`, `Scene.calibrate` or
     `Calibration.read`.
 
@@ -123,12 +123,12 @@ class Calibration(Handle):
     def save(self, path: PathLike) -> None:
         """Writes the result in the format of the name: .pto, exposures.json, else a profile: profile.json, pcalib.txt and
         other formats."""
-        self._ask(photo().lensprof_calibration_save, raw_path(path))
+        self._change(photo().lensprof_calibration_save, raw_path(path))
 
     def store(self, database: Optional[PathLike] = None) -> int:
         """Stores the usable profiles in a database, by default the user's own. Returns their number."""
         stored = c_uint32()
-        self._ask(photo().lensprof_calibration_store, optional_path(database), byref(stored))
+        self._change(photo().lensprof_calibration_store, optional_path(database), byref(stored))
         return stored.value
 
     def correct(self, source: PathLike, target: PathLike, **options: Unpack[CorrectOptions]) -> None:
@@ -144,6 +144,11 @@ class Calibration(Handle):
     def _ask(self, function: Any, *rest: Any) -> None:
         error = _abi.ErrorText()
         with self._use() as calibration:
+            check(function(calibration, *rest, byref(error)), "no such part of the calibration", error)
+
+    def _change(self, function: Any, *rest: Any) -> None:
+        error = _abi.ErrorText()
+        with self._use_alone() as calibration:
             check(function(calibration, *rest, byref(error)), "no such part of the calibration", error)
 
     def _exposure(self, index: int, name: str) -> tuple[Any, ...]:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _abi, _arrays
 from ._events import Progress, calling_events
 from ._frames import written_frames
-from ._library import Handle, check, initialised, photo
+from ._library import SharedHandle, check, initialised, photo
 from ._paths import PathLike, optional_path, raw_path, raw_paths, text
 from .calibration import Calibration, RawCalibrateOptions
 from .geometry import Camera
@@ -34,7 +34,7 @@ class SceneImage:
     camera: Camera
 
 
-class Scene(Handle):
+class Scene(SharedHandle):
     """Images with their cameras or matches: what is calibrated. Made by `Scene.open`.
 
     images: tuple of SceneImage. left_out: dict of the pictures that are not part of it, with the reason. reference: the
@@ -69,8 +69,8 @@ class Scene(Handle):
         error, pointer = _abi.ErrorText(), POINTER(_abi.Scene)()
         with calling_events(progress) as events:
             status = photo().lensprof_scene_open(*raw_paths(paths), byref(options), events, byref(pointer), byref(error))
-        check(status, "no scene", error)
-        return cls(pointer)
+            check(status, "no scene", error)
+            return cls(pointer)
 
     @property
     def matches(self) -> npt.NDArray[np.void]:
@@ -92,8 +92,8 @@ class Scene(Handle):
         given, error, pointer = RawCalibrateOptions(**options), _abi.ErrorText(), POINTER(_abi.Calibration)()
         with self._use() as scene, calling_events(progress) as events:
             status = photo().lensprof_calibrate(scene, byref(given), events, byref(pointer), byref(error))
-        check(status, "the fit failed", error)
-        return Calibration(pointer, [image.name for image in self.images])
+            check(status, "the fit failed", error)
+            return Calibration(pointer, [image.name for image in self.images])
 
     def _items(self, function: Any, count: int, item: Any, dtype: np.dtype[Any]) -> npt.NDArray[np.void]:
         array = np.zeros(count, dtype=dtype)
@@ -135,6 +135,8 @@ def calibrate(pictures: Union[PathLike, Iterable[PathLike], Iterable[npt.NDArray
     if isinstance(pictures, (str, os.PathLike)):
         pictures = [pictures]
     first, given = _with_first(pictures)
+    if first is None:
+        raise ValueError("no pictures; give at least two that overlap")
     if isinstance(first, np.ndarray):
         with written_frames(given, names, times, metadata) as (folder, name_of):
             calibration = _calibrate([folder], images, progress, options)

@@ -38,7 +38,9 @@ SceneFitOptions options_of(const lensprof_calibrate_options &from) {
     if (from.method > LENSPROF_METHOD_RADIANCE) throw Failure(LENSPROF_ERROR_ARGUMENT, "method: is unknown");
     if (from.falloff_curves != 0 && from.falloff_curves != 1 && from.falloff_curves != 3)
         throw Failure(LENSPROF_ERROR_ARGUMENT, "falloff_curves: is neither 0, 1 nor 3");
-    if (std::isnan(from.exif_sigma)) throw Failure(LENSPROF_ERROR_ARGUMENT, "exif_sigma: is not a number");
+    if (!std::isfinite(from.exif_sigma)) throw Failure(LENSPROF_ERROR_ARGUMENT, "exif_sigma: is not finite");
+    if (from.free & ~(LENSPROF_FREE_LENS | LENSPROF_FREE_IMAGE))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "free: has unknown parameters");
     if (from.max_side && from.max_side < 64) throw Failure(LENSPROF_ERROR_ARGUMENT, "max_side: is below 64");
     return o;
 }
@@ -227,9 +229,11 @@ lensprof_status lensprof_calibration_store(lensprof_calibration *calibration, co
         BuildReport report = of.fit.report;
         StoreOptions store = of.options.store;
         store.no_store = false, store.db = database ? database : "";
-        if (report.settings.empty()) require_known(of.key, of.scene.path);
+        const auto is_unnamed = [](const SettingReport &s) { return !*s.key.camera_model && !*s.key.lens; };
+        if (std::all_of(report.settings.begin(), report.settings.end(), is_unnamed))
+            require_known(of.key, of.scene.path);
         for (SettingReport &setting : report.settings)
-            if (!*setting.key.camera_model && !*setting.key.lens) setting.no_key = "EXIF names neither camera nor lens";
+            if (is_unnamed(setting)) setting.no_key = "EXIF names neither camera nor lens";
         store_result(report, of.key, store, storing_of(of));
         uint32_t count = report.settings.empty() && report.profile_id;
         for (const SettingReport &setting : report.settings) count += setting.profile_id != 0;
@@ -242,6 +246,7 @@ lensprof_status lensprof_calibration_save(lensprof_calibration *calibration, con
     return photo_call("calibration", error, [&] {
         require(calibration, "calibration"), require(path, "path");
         check_not_reserved(path, "result", calibration->result.files);
+        check_not_reserved(path, "result", calibration->result.sources);
         const std::string text = file_text(*calibration, path);
         write_file(path, text.data(), text.size());
     });

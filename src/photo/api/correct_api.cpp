@@ -53,7 +53,6 @@ lensprof_status lensprof_correct_files(const lensprof_calibration *calibration, 
     CallerEvents caller;
     return photo_call("copies", caller, error, [&] {
         caller.set(events);
-        if (written) *written = 0;
         if (count) require(copies, "copies");
         lensprof_correct_options defaults;
         lensprof_correct_options_init(&defaults);
@@ -68,6 +67,10 @@ lensprof_status lensprof_correct_files(const lensprof_calibration *calibration, 
         if (calibration && !calibration->corrects())
             throw Failure(LENSPROF_ERROR_NOT_USABLE, calibration->result.path + ": corrects nothing: "
                                                          + calibration->of_scene->fit.report.verdict.headline());
+        if (!count) {
+            if (written) *written = 0;
+            return;
+        }
         std::vector<Correction> jobs =
             calibration ? copies_of_scene(calibration->result, names, o.exposure) : copies_by_profile(names, o);
         std::vector<std::string> inputs;

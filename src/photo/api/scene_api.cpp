@@ -96,6 +96,8 @@ lensprof_status lensprof_scene_left_out_at(const lensprof_scene *scene, uint32_t
 lensprof_status lensprof_scene_save(const lensprof_scene *scene, const char *path, lensprof_error *error) {
     return photo_call("scene", error, [&] {
         require(scene, "scene"), require(path, "path");
+        check_not_reserved(path, "project", scene->scene.files);
+        check_not_reserved(path, "project", scene->scene.sources);
         write_hugin_project(scene->scene, path);
     });
 }

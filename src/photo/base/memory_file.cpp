@@ -41,14 +41,18 @@ MemoryFile::MemoryFile(const void *data, size_t size) {
         const ssize_t written = write(file_, from + done, size - done);
         if (written < 0 && errno == EINTR) continue;
         if (written <= 0) {
-            this->~MemoryFile();
+            const int error_number = errno;
+            remove();
+            errno = error_number;
             fail("bytes of a picture");
         }
         done += static_cast<size_t>(written);
     }
 }
 
-MemoryFile::~MemoryFile() {
+MemoryFile::~MemoryFile() { remove(); }
+
+void MemoryFile::remove() {
     if (file_ >= 0) close(file_);
     if (is_named_) unlink(path_.c_str());
 }

@@ -17,6 +17,8 @@ public:
     const std::string &path() const { return path_; }
 
 private:
+    void remove();
+
     int file_ = -1;
     bool is_named_ = false;
     std::string path_;

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <system_error>
 
 #include <fcntl.h>
@@ -66,7 +67,9 @@ int sync_path(const std::string &path, int flags) {
     return error_number;
 }
 
-CommitWatch::Note commit_callback;  // set before other threads write files
+// Those of all calls that write folders at this time.
+std::mutex watching;
+std::list<CommitWatch::Note> watches;
 
 }  // namespace
 
@@ -100,9 +103,15 @@ void remove_stale_temporaries(const std::string &folder) {
     for (const fs::path &file : left_over) fs::remove(file, ignored);
 }
 
-CommitWatch::CommitWatch(Note note) { commit_callback = std::move(note); }
+CommitWatch::CommitWatch(Note note) {
+    const std::lock_guard<std::mutex> lock(watching);
+    place_ = watches.insert(watches.end(), std::move(note));
+}
 
-CommitWatch::~CommitWatch() { commit_callback = nullptr; }
+CommitWatch::~CommitWatch() {
+    const std::lock_guard<std::mutex> lock(watching);
+    watches.erase(place_);
+}
 
 int open_unnamed(const std::string &neighbour) {
 #ifdef O_TMPFILE
@@ -178,7 +187,10 @@ void OutputFile::sync() {
 void OutputFile::commit() {
     if (!synced_) sync();
     if (mode_ && !(mode_ & S_IWUSR) && chmod(temporary_.c_str(), mode_) != 0) errno = 0;
-    if (commit_callback) commit_callback(path_, temporary_);
+    {
+        const std::lock_guard<std::mutex> lock(watching);
+        for (const CommitWatch::Note &note : watches) note(path_, temporary_);
+    }
     if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
     temporary_.clear();
     // The data are durable and in place; not all file systems make the new name survive a power cut.

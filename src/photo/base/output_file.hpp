@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,8 +48,8 @@ private:
 // Removes temporary files of killed processes from a folder and its subfolders.
 void remove_stale_temporaries(const std::string &folder);
 
-// While this object lives, every commit() calls `note` before the file is renamed, with the path as given and the
-// temporary file, on the committing thread. The most recent object counts.
+// While this object lives, every commit() of this process calls `note` before the file is renamed, with the path as
+// given and the temporary file, on the committing thread, one at a time.
 class CommitWatch {
 public:
     using Note = std::function<void(const std::string &path, const std::string &temporary)>;
@@ -56,6 +57,9 @@ public:
     ~CommitWatch();
     CommitWatch(const CommitWatch &) = delete;
     CommitWatch &operator=(const CommitWatch &) = delete;
+
+private:
+    std::list<Note>::iterator place_;
 };
 
 // Files that are kept complete under temporary names until everything else has succeeded.

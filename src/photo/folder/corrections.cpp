@@ -40,8 +40,7 @@ using Reasons = std::map<std::string, std::string>;  // by file
 
 // Uses the project and finds its images by file, because somebody may have edited it.
 void plan_by_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
-    const std::string text = read_text(panorama.project, max_text_bytes)
-                             + panorama.exposures.dump(-1, ' ', true, Json::error_handler_t::replace);
+    const std::string text = read_text(panorama.project, max_text_bytes) + panorama.exposures;
     const Scene scene = panorama.corrected_scene();
     const SceneCorrection correction(scene, LENSPROF_COPY_EXPOSURE_MEAN,
                                      std::filesystem::path(panorama.project).filename().string());
@@ -128,7 +127,7 @@ CorrectedPictures plan_corrections(const FolderOptions &o, const Inputs &inputs,
     return pictures;
 }
 
-// Enough for what is drawn of them: views of a page, cells of a sheet and parts of a mosaic. At most 0.5 GB.
+// Enough for what is drawn of them: views of a page, cells of a sheet and parts of a mosaic. At most 0.7 GB.
 static uint32_t small_side(size_t pictures) { return pictures <= 24 ? 960 : 500; }
 static constexpr uint32_t most_small_copies = 450;
 
@@ -144,7 +143,7 @@ void write_corrections(const FolderOptions &o, CorrectedPictures &pictures, Ledg
     ledger.save();
     CorrectionKind kind;
     kind.threads = o.threads;
-    const CopySink sink{small_side(jobs.size()), [&](uint32_t i, Picture before, Picture after) {
+    const CopySink sink{small_side(pictures.list.size()), [&](uint32_t i, Picture before, Picture after) {
                             if (i < most_small_copies) of_job[i]->small = {std::move(before), std::move(after)};
                         }};
     const Corrected corrected = write_corrected(jobs, kind, &sink, events);

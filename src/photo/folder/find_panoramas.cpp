@@ -134,6 +134,10 @@ bool is_readable(const std::string &file) {
     return failure_of([&] { read_picture(file, options); }).empty();
 }
 
+bool has_size_of(const InputPicture &picture, const lensprof_camera &camera) {
+    return picture.metadata.size.width == camera.width && picture.metadata.size.height == camera.height;
+}
+
 // Takes the ledger's data on these pictures; false if they are missing, or if a picture that was unreadable can now be
 // read.
 bool recall(const Json &notes, const std::string &key, const std::vector<const InputPicture *> &all, Groups &groups) {
@@ -150,6 +154,8 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
             group.pictures.push_back(picture->second);
         }
         if (!read_noted(known.value("found", Json()), known["files"].size(), group.found)) return false;
+        for (size_t n = 0; n < group.pictures.size(); n++)
+            if (!has_size_of(*group.pictures[n], group.found.cameras[n])) return false;
         group.facts = known["facts"];
         groups.list.push_back(std::move(group));
     }

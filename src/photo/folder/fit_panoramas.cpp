@@ -104,10 +104,9 @@ void fit_and_store(const FolderOptions &o, Panorama &panorama, Scene &scene, Eve
     panorama.summary["database"] = is_stored ? Json(store_path(options.store.db)) : Json();
     panorama.summary["warnings"] = warnings_of(events.kept, outcome);
     panorama.summary["result"] = result_of(state.report);
-    panorama.exposures = Json();
+    panorama.exposures.clear();
     if (state.best.corrects())
-        panorama.exposures =
-            Json::parse(exposures_text(state, calibration.scene, calibration.metadata, panorama.project));
+        panorama.exposures = exposures_text(state, calibration.scene, calibration.metadata, panorama.project);
     if (o.describe)
         panorama.page = valid_json(
             o.describe(calibration, panorama.summary["warnings"].get<std::vector<std::string>>(), of_folder));
@@ -141,9 +140,10 @@ void fit_one(const FolderOptions &o, Panorama &panorama, Ledger &ledger, Events 
                                                           {"source", ascii_path(panorama.source)},
                                                           {"summary", panorama.summary},
                                                           {"page", panorama.page},
-                                                          {"exposures", panorama.exposures},
+                                                          {"exposures", ascii_path(panorama.exposures)},
                                                           {"project", ascii_path(text)}};
     ledger.save();
+    panorama.summary["project"] = panorama.project;  // its bytes, as recall() has them
 }
 
 // Whether the profile that an earlier run stored is still there.
@@ -177,7 +177,7 @@ bool recall(const FolderOptions &o, Panorama &panorama, Ledger &ledger) {
     if (is_fitted && o.describe && known.value("page", Json()).is_null()) return false;  // of a caller without a report
     panorama.summary = known["summary"];
     panorama.page = known.value("page", Json());
-    panorama.exposures = known.value("exposures", Json());
+    panorama.exposures = path_of_ascii(known.value("exposures", std::string()));
     panorama.summary["project"] = panorama.project;  // the folder may be spelled differently
     const std::string text = path_of_ascii(known["project"].get<std::string>());
     panorama.written = digest_of_text(text);
@@ -196,8 +196,8 @@ bool Panorama::is_edited() const { return written != digest_of_text(read_text(pr
 
 Scene Panorama::corrected_scene() const {
     Scene scene = read_hugin_project(project);
-    if (exposures.is_null() || is_edited()) return scene;
-    const Scene known = exposures_of(exposures.dump(), project, "");
+    if (exposures.empty() || is_edited()) return scene;
+    const Scene known = exposures_of(exposures, project, "");
     const ImagesByFile images(known);
     for (uint32_t i = 0; i < scene.images.size(); i++) {
         const auto image = images.find(scene.files[i]);

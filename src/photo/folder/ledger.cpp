@@ -64,7 +64,9 @@ std::string digest_of_notes(const Json &notes) { return digest_of_text(lensprof_
 
 // The first line of a ledger, an object; null if it is not a ledger.
 Json object_of(const std::string &text) {
-    const Json json = Json::parse(text.substr(0, text.find('\n')), nullptr, false);
+    constexpr int max_depth = 64;  // what is copied and written recurses
+    const auto is_shallow = [](int depth, Json::parse_event_t, Json &) { return depth < max_depth; };
+    const Json json = Json::parse(text.substr(0, text.find('\n')), is_shallow, false);
     const bool is_own = json.is_object() && json.contains("schema") && json["schema"] == schema;
     return is_own ? json : Json();
 }
@@ -160,7 +162,10 @@ void Ledger::begin(const std::string &file, const std::string &key) {
                                                        + "; move it away, or use " + option_name("overwrite"));
     std::error_code ignored;
     if (fs::is_symlink(file, ignored)) fs::remove(file, ignored);
-    begun_[name_of(file)] = {key, ""};
+    {
+        const std::lock_guard<std::mutex> lock(writing_);
+        begun_[name_of(file)] = {key, ""};
+    }
     if (!watch_)
         watch_ = std::make_unique<CommitWatch>(
             [this](const std::string &path, const std::string &temporary) { note_commit(path, temporary); });
@@ -177,18 +182,23 @@ void Ledger::note_commit(const std::string &file, const std::string &temporary) 
 }
 
 bool Ledger::is_written(const std::string &file) const {
+    const std::lock_guard<std::mutex> lock(writing_);
     const auto begun = begun_.find(name_of(file));
     return begun != begun_.end() && !begun->second.stamp.empty() && path_exists(file);
 }
 
 void Ledger::finish(const std::string &file) {
+    const std::lock_guard<std::mutex> lock(writing_);
     const auto begun = begun_.find(name_of(file));
     if (begun == begun_.end()) return;
     files_[begun->first] = begun->second;
     begun_.erase(begun);
 }
 
-void Ledger::abandon(const std::string &file) { begun_.erase(name_of(file)); }
+void Ledger::abandon(const std::string &file) {
+    const std::lock_guard<std::mutex> lock(writing_);
+    begun_.erase(name_of(file));
+}
 
 void Ledger::remove(const std::string &file) {
     std::error_code ignored;
@@ -197,14 +207,22 @@ void Ledger::remove(const std::string &file) {
 }
 
 void Ledger::save() {
-    Json files = Json::object(), begun = Json::object();
-    for (const auto &[file, entry] : files_) files[file] = {{"of", entry.key}, {"stamp", entry.stamp}};
-    for (const auto &[file, entry] : begun_) begun[file] = entry.key;
-    const Json json = {
-        {"schema", schema}, {"files", files}, {"begun", begun}, {"digest", digest_of_notes(notes)}, {"notes", notes}};
-    const std::string text = json.dump() + "\n";
-    if (text == saved_) return;
+    std::string text;
+    {
+        const std::lock_guard<std::mutex> lock(writing_);  // not while the file is written, which is noted, too
+        Json files = Json::object(), begun = Json::object();
+        for (const auto &[file, entry] : files_) files[file] = {{"of", entry.key}, {"stamp", entry.stamp}};
+        for (const auto &[file, entry] : begun_) begun[file] = entry.key;
+        const Json json = {{"schema", schema},
+                           {"files", files},
+                           {"begun", begun},
+                           {"digest", digest_of_notes(notes)},
+                           {"notes", notes}};
+        text = json.dump() + "\n";
+        if (text == saved_) return;
+    }
     write_file(path_, text.data(), text.size());
+    const std::lock_guard<std::mutex> lock(writing_);
     saved_ = text;
 }
 

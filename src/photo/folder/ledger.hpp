@@ -94,7 +94,7 @@ private:
     const bool overwrite_;
     std::string saved_;
     std::map<std::string, Entry> files_, begun_;
-    std::mutex writing_;
+    mutable std::mutex writing_;  // of begun_ and saved_
     std::unique_ptr<CommitWatch> watch_;
 };
 

@@ -33,7 +33,10 @@ std::vector<CorrectedCopy> tiles_of(const Panorama &panorama, const CorrectedPic
 
 // Shows the current project, which may have been edited since the fit.
 void draw(const Panorama &panorama, const CorrectedPictures &pictures, Ledger &ledger, Events &events) {
-    const std::string text = read_text(panorama.project, max_text_bytes), key = digest_of_text("preview\n" + text);
+    std::string text = "preview\n" + read_text(panorama.project, max_text_bytes);
+    for (const CorrectedPicture &picture : pictures.list)
+        if (picture.panorama == panorama.name) text += "\n" + picture.key;
+    const std::string key = digest_of_text(text);
     if (ledger.is_current(panorama.preview, key)) return;
     ledger.begin(panorama.preview, key);
     ledger.save();

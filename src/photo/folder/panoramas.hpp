@@ -32,13 +32,13 @@ struct Panorama {
     std::string name;              // such as "img000", after its first picture when it was found
     std::string project, preview;  // files in the output folder
     std::vector<const InputPicture *> pictures;
-    FoundScene found;     // cameras and matches
-    std::string source;   // the source stored in the provenance
-    std::string key;      // hash of its pictures and the options
-    Json summary;         // docs/json.md; `result` is null if the fit failed
-    Json page;            // what FolderOptions.describe made of it; null if the fit failed
-    std::string written;  // digest of the project file as written
-    Json exposures;       // exposures, responses and falloffs (exposures.json), with which it is corrected
+    FoundScene found;       // cameras and matches
+    std::string source;     // the source stored in the provenance
+    std::string key;        // hash of its pictures and the options
+    Json summary;           // docs/json.md; `result` is null if the fit failed
+    Json page;              // what FolderOptions.describe made of it; null if the fit failed
+    std::string written;    // digest of the project file as written
+    std::string exposures;  // text of exposures.json, with which it is corrected; empty: none
     bool equalizes() const;
 
     // Whether somebody has edited the project file since the fit.

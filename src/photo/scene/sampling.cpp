@@ -72,7 +72,7 @@ ImagePair images_of(const Item &item) {
     return std::minmax(item.image[0], item.image[1]);
 }
 
-// The pairs and links of one way of sampling; empty if it finds nothing, with the reason in `nothing`.
+// The pairs and links of one way of sampling; empty if it finds nothing, with the reason in `no_samples`.
 template <class Sample>
 std::vector<lensprof_pair> sample_or_empty(const Sample &sample_pairs, std::vector<lensprof_link> &links,
                                            std::optional<Failure> &no_samples) {

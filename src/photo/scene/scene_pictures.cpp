@@ -22,7 +22,7 @@ void check_size(const Scene &scene, uint32_t i, const Picture &header) {
             + format(" states %u x %u; use the pictures that the project was made with", camera.width, camera.height));
 }
 
-// The available memory: project_max_bytes, or less if the machine or its process limit (ulimit -v) has less.
+// The available memory: scene_max_bytes, or less if the machine or its process limit (ulimit -v) has less.
 uint64_t available_memory() {
     uint64_t bound = scene_max_bytes;
     const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
