@@ -21,6 +21,10 @@ static const lensprof_pair one_pair = {{0, 1}, {{10, 10}, {20, 20}}, {{0.1, 0.1,
 static const lensprof_match one_match = {{0, 1}, {{40, 30}, {40, 30}}, {{0}}};
 static const lensprof_camera cameras[2] = {{.width = WIDTH, .height = HEIGHT}, {.width = WIDTH, .height = HEIGHT}};
 static lensprof_export_options as_json;
+static lensprof_exposures_info exposures;
+static lensprof_exposures_camera one_camera;
+static lensprof_exposures_lens one_lens;
+static lensprof_exposures_image one_image;
 
 /* name(buffer, capacity, count, error) for the table, for bytes and for elements. */
 #define BYTES(name, call) \
@@ -36,6 +40,8 @@ static lensprof_export_options as_json;
 
 BYTES(pto_get_name, lensprof_pto_get_name(pto, 0, b, capacity, count, error))
 BYTES(pto_write, lensprof_pto_write(pto, b, capacity, count, error))
+BYTES(exposures_write,
+      lensprof_exposures_write(&exposures, &one_camera, &one_lens, &one_image, b, capacity, count, error))
 BYTES(points_write, lensprof_points_write(&one_pair, 1, cameras, 2, b, capacity, count, error))
 BYTES(lensfun_write, lp_lensfun_write(profiles, 1, b, capacity, count, error))
 BYTES(json_write, lp_json_write(profiles, 1, b, capacity, count, error))
@@ -74,6 +80,7 @@ static const struct {
 } table[] = {
     ROW(pto_get_name, 1, TEXT),
     ROW(pto_write, 1, TEXT),
+    ROW(exposures_write, 1, TEXT),
     ROW(points_write, 1, TEXT),
     ROW(lensfun_write, 1, TEXT),
     ROW(json_write, 1, TEXT),
@@ -108,6 +115,10 @@ static int setup(void **state) {
     prepare();
     lensprof_export_options_init(&as_json);
     as_json.format = LENSPROF_FORMAT_JSON;
+    lensprof_exposures_info_init(&exposures), lensprof_exposures_camera_init(&one_camera);
+    lensprof_exposures_lens_init(&one_lens), lensprof_exposures_image_init(&one_image);
+    exposures.camera_count = exposures.lens_count = exposures.image_count = 1;
+    one_image.width = WIDTH, one_image.height = HEIGHT, one_image.name = "a.jpg";
     here.sample.pairs = 50;
     here.sample.threads = 1;
     here.profile.key.crop_factor = 1.5, here.profile.key.focal_mm = 50.0, here.profile.key.aperture = 2.8;
