@@ -180,7 +180,7 @@ typedef struct lensprof_scene_info {
     uint32_t left_out;          /* pictures given that are not part of it; see lensprof_scene_left_out_at */
     uint32_t matches;           /* positions at which two images show the same point */
     uint32_t reference;         /* image whose exposure is 0 EV */
-    uint32_t is_reconstruction; /* 1: images of a moving camera, linked by matches alone */
+    uint32_t is_reconstruction; /* 1: read from a reconstruction: linked by matches, not by its cameras */
     uint32_t links;             /* 0 for a Hugin project, whose images overlap where its cameras do */
 } lensprof_scene_info;
 
@@ -212,7 +212,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_scene_image_at(const len
 typedef struct lensprof_scene_link {
     uint32_t image[2];     /* indices, the smaller one first */
     uint32_t points;       /* found in both */
-    uint32_t fits_cameras; /* 1: the cameras explain them; 0: the images are compared at matches alone */
+    uint32_t fits_cameras; /* 1: the cameras explain them, 0: they do not, or none are known */
 } lensprof_scene_link;
 
 /* Link `index`, by images. */
@@ -288,10 +288,10 @@ LENSPROF_API const lensprof_fit *lensprof_calibration_get_fit(const lensprof_cal
 
 typedef struct lensprof_calibration_info {
     uint32_t struct_size;
-    uint32_t images;    /* of lensprof_calibration_exposure_at */
+    uint32_t images;    /* of lensprof_calibration_image_at and _exposure_at */
     uint32_t profiles;  /* lens settings, of lensprof_calibration_profile_at; 0 for an opened result */
     uint32_t findings;  /* of lensprof_calibration_finding_at; 0 for an opened result */
-    uint32_t usable;    /* 1: a fit whose profile may be stored */
+    uint32_t usable;    /* 1: a fit whose profile may be stored; 0 for an opened result */
     uint32_t equalizes; /* 1: corrects the pictures, as every opened result does */
 } lensprof_calibration_info;
 
@@ -303,6 +303,11 @@ static inline void lensprof_calibration_info_init(lensprof_calibration_info *inf
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibration_get_info(const lensprof_calibration *calibration,
                                                                              lensprof_calibration_info *info,
                                                                              lensprof_error *error);
+
+/* Name and file of an image; either may be NULL. The texts belong to the calibration. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_calibration_image_at(const lensprof_calibration *calibration,
+                                                                             uint32_t index, const char **name,
+                                                                             const char **file, lensprof_error *error);
 
 /* Exposure of an image relative to the reference, and its standard errors: EV, and of red, green and blue, relative.
  * `errors` has room for 4 values or is NULL; they are NaN if unknown. An image that was left out has an ev of NaN. */

@@ -115,6 +115,10 @@ void test_as_build(void **) {
         must_be_ok(lensprof_calibration_finding_at(calibration.get(), i, &finding, &error), error);
         assert_string_equal(finding.text, built["findings"][i]["text"].get<std::string>().c_str());
     }
+    const char *name, *file;
+    must_be_ok(lensprof_calibration_image_at(calibration.get(), 1, &name, &file, &error), error);
+    assert_string_equal(name, "img001.png");
+    assert_true(std::filesystem::equivalent(file, photos() + "/img001.png"));
     lensprof_finding none;
     lensprof_finding_init(&none);
     assert_int_equal(lensprof_calibration_finding_at(calibration.get(), findings, &none, &error),

@@ -117,6 +117,34 @@ class TestCalibration(WithScene):
         scene.save(self.folder / "found.pto")
         self.assertEqual(len(lp.Scene.open(self.folder / "found.pto").images), 3)
 
+    def test_the_fit_of_the_result(self):
+        calibration = lp.calibrate(self.photos)
+        result = calibration.result
+        np.testing.assert_array_equal(result.exposures["ev"], calibration.exposures["ev"])
+        self.assertEqual(result.exposure(1).ev, calibration.exposure(1).ev)
+        self.assertEqual(len(result.image_quality), len(calibration.exposures))
+        self.assertEqual(list(result.profile(lp.ProfileKey(lens="A")).vignetting[0].k),
+                         list(calibration.profiles[0].vignetting[0].k))
+        calibration.save(self.folder / "exposures_named.json")
+        self.addCleanup(lambda: self.assertRaises(ValueError, result.profile, lp.ProfileKey()))
+        self.addCleanup(calibration.close)
+        read = lp.Calibration.read(self.folder / "exposures_named.json")
+        self.assertEqual(list(read.exposures["name"]), list(calibration.exposures["name"]))
+
+    def test_arrays_that_no_file_holds(self):
+        frames = [lp.read_picture(file).pixels for file in self.files]
+        for dtype in (np.float16, np.float32):
+            with self.assertRaises(TypeError):
+                lp.calibrate([frame.astype(dtype) for frame in frames])
+        with self.assertRaises(lp.Error):
+            lp.write_picture(self.folder / "half.tif", frames[0].astype(np.float16))
+        calibration = lp.calibrate(frames)
+        for call in (lambda: calibration.save(self.folder / "a.pto"), lambda: calibration.correct("a", "b")):
+            with self.assertRaises(ValueError):
+                call()
+        with self.assertRaises((AttributeError, TypeError)):
+            lp.calibrate(self.photos, one_lense=True)
+
     def test_a_function_of_progress_may_use_the_scene(self):
         scene = lp.Scene.open(self.files)
         seen = []

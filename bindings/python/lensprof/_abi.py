@@ -1986,6 +1986,8 @@ PHOTO_FUNCTIONS = {
     "lensprof_calibration_destroy": (None, [POINTER(Calibration)]),
     "lensprof_calibration_get_fit": (POINTER(Fit), [POINTER(Calibration)]),
     "lensprof_calibration_get_info": (c_int, [POINTER(Calibration), POINTER(CalibrationInfo), POINTER(ErrorText)]),
+    "lensprof_calibration_image_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(c_char_p), POINTER(c_char_p),
+                                              POINTER(ErrorText)]),
     "lensprof_calibration_exposure_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Exposure), POINTER(c_double),
                                                  POINTER(ErrorText)]),
     "lensprof_calibration_profile_at": (c_int, [POINTER(Calibration), c_uint32, POINTER(Profile), POINTER(ErrorText)]),

@@ -7,7 +7,7 @@ import pathlib
 import tempfile
 from typing import Any, Iterable, Iterator, Optional
 
-import numpy.typing as npt
+import numpy as np
 
 from ._types import Pixels
 from .pictures import PictureMetadata, write_picture
@@ -32,6 +32,8 @@ def written_frames(frames: Iterable[Pixels], names: Optional[Iterable[str]], tim
             row = {what: next(values, _END) for what, values in given.items()}
             for what in (what for what, value in row.items() if value is _END):
                 raise ValueError(f"{number} {what} for more frames: give one for each frame")
+            if not isinstance(frame, np.ndarray) or frame.dtype not in (np.uint8, np.uint16):
+                raise TypeError(f"frame {number} has samples of {getattr(frame, 'dtype', type(frame))}; give uint8 or uint16")
             name = row.get("names", f"frame{number:05d}")
             if not isinstance(name, str):
                 raise TypeError(f"names has {name!r}; give texts")

@@ -1,7 +1,8 @@
 """What was found about the cameras, lenses and exposures of a scene; see lensprof/photo.h."""
 from __future__ import annotations
 
-from ctypes import POINTER, byref, c_double, c_uint32
+import os
+from ctypes import POINTER, byref, c_char_p, c_double, c_uint32
 from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence, TypedDict
 
 import numpy as np
@@ -9,11 +10,12 @@ import numpy.typing as npt
 
 from . import _abi
 from ._abi import Free, GammaFrom, Loss, Method, Status
-from ._library import Error, SharedHandle, check, initialised, lib, photo
-from ._paths import PathLike, optional_path, raw_path, set_databases
+from ._arrays import EXPOSURE_DTYPE
+from ._library import Error, SharedHandle, check, initialised, photo
+from ._paths import PathLike, optional_path, raw_path, set_databases, text
 from ._struct import Enumerated, Flag, Struct, default
 from .copies import correct_files
-from .fit import FitResult
+from .fit import FitOf, FitResult
 from .model import Exposure
 from .profile import Profile
 from .reason import Finding
@@ -94,22 +96,23 @@ class Calibration(SharedHandle):
     equalizes: bool
     result: Optional[FitResult]
 
-    def __init__(self, pointer: Any, names: Sequence[str] = ()):
+    def __init__(self, pointer: Any):
         library = photo()
         super().__init__(pointer, library.lensprof_calibration_destroy)
         info = initialised(_abi.CalibrationInfo)
         self._ask(library.lensprof_calibration_get_info, byref(info))
         self.usable, self.equalizes = bool(info.usable), bool(info.equalizes)
-        self.exposures = np.array([self._exposure(i, names[i] if names else str(i)) for i in range(info.images)],
-                                  dtype=EXPOSURES_DTYPE)
+        self.exposures = np.array([self._exposure(i) for i in range(info.images)], dtype=EXPOSURES_DTYPE)
         self.profiles = tuple(self._profiles(info.profiles))
         self.findings = tuple(self._finding(index) for index in range(info.findings))
         self.result = None
+        self._is_of_arrays = False
         with self._use() as calibration:
             fit = library.lensprof_calibration_get_fit(calibration)
         if fit:
-            self.result, error = FitResult(), _abi.ErrorText()
-            check(lib.lensprof_fit_setting_at(fit, _abi.FIT_REFERENCE, byref(self.result), byref(error)), "no result", error)
+            plain = np.zeros(info.images, dtype=EXPOSURE_DTYPE)
+            plain["ev"], plain["white_balance"] = self.exposures["ev"], self.exposures["white_balance"]
+            self.result = FitOf(fit, plain, self).reference
 
     @classmethod
     def read(cls, path: PathLike, images: Optional[PathLike] = None) -> Calibration:
@@ -123,6 +126,8 @@ class Calibration(SharedHandle):
     def save(self, path: PathLike) -> None:
         """Writes the result in the format of the name: .pto, exposures.json, else a profile: profile.json, pcalib.txt and
         other formats."""
+        if self._is_of_arrays and os.fspath(path).endswith(".pto"):
+            raise ValueError("a project refers to files, but the pictures are arrays; save exposures.json or a profile")
         self._change(photo().lensprof_calibration_save, raw_path(path))
 
     def store(self, database: Optional[PathLike] = None) -> int:
@@ -133,7 +138,14 @@ class Calibration(SharedHandle):
 
     def correct(self, source: PathLike, target: PathLike, **options: Unpack[CorrectOptions]) -> None:
         """Writes a corrected copy of a picture of the scene; options: those of correct_files."""
+        if self._is_of_arrays:
+            raise ValueError("the pictures are arrays; use lensprof.correct with a profile and calibration.exposure(index)")
         correct_files([(source, target)], self, **options)
+
+    def exposure(self, index: int) -> Exposure:
+        """Exposure and white balance of image `index`, as lensprof.correct takes them."""
+        row = self.exposures[index]
+        return Exposure(ev=row["ev"], white_balance=tuple(row["white_balance"]))
 
     def plot(self) -> Figure:
         """Draws response and relative illuminance with matplotlib, and returns the figure."""
@@ -151,10 +163,11 @@ class Calibration(SharedHandle):
         with self._use_alone() as calibration:
             check(function(calibration, *rest, byref(error)), "no such part of the calibration", error)
 
-    def _exposure(self, index: int, name: str) -> tuple[Any, ...]:
-        exposure, errors = Exposure(), (c_double * 4)()
+    def _exposure(self, index: int) -> tuple[Any, ...]:
+        name, exposure, errors = c_char_p(), Exposure(), (c_double * 4)()
+        self._ask(photo().lensprof_calibration_image_at, index, byref(name), None)
         self._ask(photo().lensprof_calibration_exposure_at, index, byref(exposure), errors)
-        return name, exposure.ev, errors[0], tuple(exposure.white_balance), tuple(errors[1:])
+        return text(name.value), exposure.ev, errors[0], tuple(exposure.white_balance), tuple(errors[1:])
 
     def _profiles(self, count: int) -> Iterator[Profile]:
         for index in range(count):

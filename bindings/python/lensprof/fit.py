@@ -1,10 +1,11 @@
 """Recovers response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import datetime
 from ctypes import POINTER, byref, c_double, sizeof
-from typing import TYPE_CHECKING, Any, Optional, Sequence, TypedDict
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Sequence, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -182,11 +183,20 @@ class FitCamera(Struct, _abi.FitCamera):
     setting: int = default
 
 
-class _Fit(Handle):
-    """The fit of the library, with what it holds of all images, settings and cameras."""
+def _keep(_fit: Any) -> None:
+    """Releases nothing."""
 
-    def __init__(self, pointer: Any, exposures: Records):
-        super().__init__(pointer, lib.lensprof_fit_destroy)
+
+class FitOf(Handle):
+    """The fit of the library, with what it holds of all images, settings and cameras. `owner`: a calibration that it is
+    part of, and that releases it."""
+
+    def __init__(self, pointer: Any, exposures: Records, owner: Any = None):
+        release: Callable[..., None] = _keep
+        if owner is None:
+            release = lib.lensprof_fit_destroy
+        super().__init__(pointer, release)
+        self._owner = owner
         self.exposures = exposures
         self.quality = np.zeros(len(exposures), dtype=_arrays.IMAGE_QUALITY_DTYPE)
         for index in range(len(exposures)):
@@ -199,6 +209,13 @@ class _Fit(Handle):
         for number, camera in enumerate(cameras):
             self.ask(lib.lensprof_fit_camera_at, number, camera)
         self.cameras = tuple(cameras)
+
+    @contextlib.contextmanager
+    def _use(self) -> Iterator[Any]:
+        with contextlib.ExitStack() as stack:
+            if self._owner is not None:
+                stack.enter_context(self._owner._use())  # refuses a calibration that is closed
+            yield stack.enter_context(super()._use())
 
     def ask(self, function: Any, number: int, part: Any) -> None:
         error = _abi.ErrorText()
@@ -346,7 +363,7 @@ def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], optio
         status = function(byref(call), array, len(images), *data, None, 0, _arrays.address(exposures, _abi.Exposure),
                           byref(pointer), byref(error))
     check(status, "the fit failed", error)
-    return _Fit(pointer, exposures).reference
+    return FitOf(pointer, exposures).reference
 
 
 def fit_overlap(images: Sequence[FitImage], pairs: Records, options: Optional[FitOptions] = None) -> FitResult:

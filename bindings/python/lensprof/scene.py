@@ -93,7 +93,7 @@ class Scene(SharedHandle):
         with self._use() as scene, calling_events(progress) as events:
             status = photo().lensprof_calibrate(scene, byref(given), events, byref(pointer), byref(error))
             check(status, "the fit failed", error)
-            return Calibration(pointer, [image.name for image in self.images])
+            return Calibration(pointer)
 
     def _items(self, function: Any, count: int, item: Any, dtype: np.dtype[Any]) -> npt.NDArray[np.void]:
         array = np.zeros(count, dtype=dtype)
@@ -140,6 +140,7 @@ def calibrate(pictures: Union[PathLike, Iterable[PathLike], Iterable[npt.NDArray
     if isinstance(first, np.ndarray):
         with written_frames(given, names, times, metadata) as (folder, name_of):
             calibration = _calibrate([folder], images, progress, options)
+        calibration._is_of_arrays = True
         calibration.exposures["name"] = [name_of[file] for file in calibration.exposures["name"]]
         return calibration
     if not (names is None and times is None and metadata is None):
@@ -156,5 +157,6 @@ def _with_first(items: Iterable[Any]) -> tuple[Any, Iterator[Any]]:
 
 def _calibrate(files: Iterable[PathLike], images: Optional[PathLike], progress: Progress,
                options: CalibrateOptions) -> Calibration:
+    RawCalibrateOptions(**options)  # refuses unknown ones before the overlaps are found
     scene = Scene.open(files, images=images, one_lens=options.get("one_lens", False), progress=progress)
     return scene.calibrate(progress, **options)

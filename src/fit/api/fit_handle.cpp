@@ -97,7 +97,7 @@ uint32_t sum_of(uint32_t a, uint32_t b) { return a + std::min(b, UINT32_MAX - a)
 
 void put_fit(const lensprof_fit &fit, uint32_t setting, lensprof_profile &target) {
     const lensprof_fit_result &result = fit.results[setting];
-    put_result(result, method_name(fit.method), result.images, target);
+    put_result(result, name_of_method(fit.method), result.images, target);
     target.responses = 1;
     target.response[0] = result.response;
     lensprof_gain_grid_init(&target.grid);

@@ -99,7 +99,7 @@ lensprof_status fit_each_camera(FitCall &call, const CamerasData &data, lensprof
         "fit: no pair connects two images of the same camera; give more images of it, or treat all as one camera");
 }
 
-const char *method_name(uint32_t method) {
+const char *name_of_method(uint32_t method) {
     switch (method) {
     case LENSPROF_METHOD_TRANSFER: return "transfer";
     case LENSPROF_METHOD_RADIANCE: return "radiance";

@@ -17,6 +17,6 @@ lensprof_status fit_pairs(FitCall &call, const lensprof_pair *pairs, uint32_t co
 lensprof_status fit_each_camera(FitCall &call, const CamerasData &data, lensprof_exposure *exposures,
                                 lensprof_error *error);
 
-const char *method_name(uint32_t method);
+const char *name_of_method(uint32_t method);
 
 }  // namespace lensprof

@@ -169,6 +169,15 @@ lensprof_status lensprof_calibration_get_info(const lensprof_calibration *calibr
     });
 }
 
+lensprof_status lensprof_calibration_image_at(const lensprof_calibration *calibration, uint32_t index,
+                                              const char **name, const char **file, lensprof_error *error) {
+    return photo_call("calibration", error, [&] {
+        require(calibration, "calibration"), require_index(index, calibration->result.images.size(), "image");
+        if (name) *name = calibration->result.names[index].c_str();
+        if (file) *file = calibration->result.files[index].c_str();
+    });
+}
+
 lensprof_status lensprof_calibration_exposure_at(const lensprof_calibration *calibration, uint32_t image,
                                                  lensprof_exposure *exposure, double *errors, lensprof_error *error) {
     return photo_call("calibration", error, [&] {

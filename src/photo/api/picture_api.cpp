@@ -84,6 +84,8 @@ void write_as(const std::string &path, const lensprof_image &pixels, const lensp
     lensprof_picture_options_init(&defaults);
     const lensprof_picture_options options = taken(given, defaults, first_options, "options");
     if (options.jpeg_quality > 100) throw Failure(LENSPROF_ERROR_ARGUMENT, "jpeg_quality: is above 100");
+    if (pixels.sample == LENSPROF_SAMPLE_F16)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "pixels: no format holds half floats; give 8 or 16 bit, or float");
     WriteOptions how;
     how.jpeg_quality = static_cast<int>(options.jpeg_quality);
     if (options.like) how.metadata_from = options.like->path;
