@@ -20,6 +20,16 @@ static inline uint32_t lp_sized_bytes(const void *given) {
     return bytes;
 }
 
+/* Element `i` of a program's array of structs, whose stride is the struct_size of the first one. */
+static inline const void *lp_sized_at(const void *array, size_t i) {
+    return (const char *)array + i * lp_sized_bytes(array);
+}
+
+/* Whether this element has the struct_size of the first one, as all must have. */
+static inline int lp_sized_is_alike(const void *array, size_t i) {
+    return lp_sized_bytes(lp_sized_at(array, i)) == lp_sized_bytes(array);
+}
+
 /* Begins an _init_sized function: sets `size` bytes to zero, and struct_size. Returns whether the members of the
  * first version are present; a later member is present if `size` reaches its LP_END_OF. */
 static inline int lp_sized_begin(void *given, size_t size, size_t first) {

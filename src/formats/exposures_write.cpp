@@ -16,21 +16,17 @@ constexpr size_t kMaxBytes = size_t{64} << 20;  // that are read
     throw FormatFailure{status, kind + (" " + std::to_string(index)) + ": " + text};
 }
 
-// The elements of a program's array in structs of this library. The struct_size of the first one is the stride.
+// The elements of a program's array in structs of this library.
 template <class Item>
 std::vector<Item> items_of(const Item *given, uint32_t count, void (*init)(Item *), size_t first, const char *name) {
     if (!given || !count)
         throw FormatFailure{LENSPROF_ERROR_ARGUMENT, std::string("no ") + name + "; give at least one"};
     std::vector<Item> items(count);
-    const size_t stride = lp_sized_bytes(given);
-    const char *element = reinterpret_cast<const char *>(given);
-    for (Item &item : items) {
-        init(&item);
-        const char *wrong = lp_sized_bytes(element) != stride
-                                ? "struct_size differs from that of the first; initialise all"
-                                : lp_sized_take(&item, element, first);
+    for (uint32_t i = 0; i < count; i++) {
+        init(&items[i]);
+        const char *wrong = lp_sized_is_alike(given, i) ? lp_sized_take(&items[i], lp_sized_at(given, i), first)
+                                                        : "struct_size differs from that of the first; initialise all";
         if (wrong) throw FormatFailure{LENSPROF_ERROR_STRUCT_SIZE, std::string(name) + ": " + wrong};
-        element += stride;
     }
     return items;
 }

@@ -82,7 +82,7 @@ LAYERS = {
     ),
     "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core", "falloff"]),
     "src/photo": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | POSIX | {"nlohmann/*"}, ["threads", "falloff/rise.hpp", "fit/base/joined_sets.hpp",
-                        "fit/base/mixed_bits.hpp", "fit/base/track_pairs.hpp"]),
+                        "fit/base/mixed_bits.hpp", "fit/base/quantile.hpp", "fit/base/track_pairs.hpp"]),
     "src/cli": Layer(
         WHOLE_API,
         C_LIBRARY | CPP_LIBRARY | POSIX | {"CLI/*", "cairo-svg.h", "cairo.h", "nlohmann/*"},

@@ -45,11 +45,9 @@ lensprof_status check_profiles(const std::vector<const lensprof_profile *> &prof
 lensprof_status check_targets(const lensprof_trial_candidate *candidates, size_t count,
                               const lensprof_trial_result *result, lensprof_error *error) {
     const char *wrong = lp_sized_wrong(result, kFirstTrialResult, sizeof *result);
-    const size_t step = lp_sized_bytes(candidates);
     for (size_t i = 0; i < count && !wrong; i++) {
-        const char *element = reinterpret_cast<const char *>(candidates) + i * step;
-        wrong = lp_sized_wrong(element, kFirstCandidate, sizeof *candidates);
-        if (!wrong && lp_sized_bytes(element) != step) wrong = "the candidates differ in struct_size";
+        wrong = lp_sized_wrong(lp_sized_at(candidates, i), kFirstCandidate, sizeof *candidates);
+        if (!wrong && !lp_sized_is_alike(candidates, i)) wrong = "the candidates differ in struct_size";
     }
     return wrong ? fail(LENSPROF_ERROR_STRUCT_SIZE, error, "trial: %s", wrong) : LENSPROF_OK;
 }
@@ -86,9 +84,8 @@ lensprof_status lensprof_trial_run(const lensprof_trial_options *options, const 
         Trial trial;
         status = try_profiles(input, trial, error);
         if (status != LENSPROF_OK) return status;
-        const size_t step = lp_sized_bytes(candidates);
         for (size_t i = 0; i < trial.candidates.size(); i++)
-            lp_sized_copy(reinterpret_cast<char *>(candidates) + i * step, &trial.candidates[i]);
+            lp_sized_copy(const_cast<void *>(lp_sized_at(candidates, i)), &trial.candidates[i]);
         lp_sized_copy(result, &trial.result);
         return LENSPROF_OK;
     });

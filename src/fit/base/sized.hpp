@@ -14,17 +14,14 @@ namespace lensprof {
 template <class T, class Init>
 lensprof_status take_all(const T *given, uint32_t count, size_t first, lensprof_item_kind kind, Init init,
                          std::vector<T> &converted, lensprof_error *error) {
-    const auto *bytes = reinterpret_cast<const char *>(given);
-    const size_t step = count ? lp_sized_bytes(given) : 0;
     for (uint32_t i = 0; i < count; i++) {
-        const char *element = bytes + i * step;
-        if (lp_sized_bytes(element) != step)
+        if (!lp_sized_is_alike(given, i))
             return fail_at(kind, i, LENSPROF_ERROR_STRUCT_SIZE, error,
                            "struct_size differs from that of %s 0; call the struct's _init function first",
                            item_word(kind));
         T next;
         init(next, i);
-        if (const char *wrong = lp_sized_take(&next, element, first))
+        if (const char *wrong = lp_sized_take(&next, lp_sized_at(given, i), first))
             return fail_at(kind, i, LENSPROF_ERROR_STRUCT_SIZE, error, "%s", wrong);
         converted.push_back(next);
     }

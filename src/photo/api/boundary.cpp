@@ -1,6 +1,7 @@
 #include "photo/api/boundary.hpp"
 
 #include "photo/api/sized.hpp"
+#include "photo/base/output_file.hpp"
 #include "photo/base/utf8.hpp"
 
 namespace lensprof {
@@ -62,6 +63,10 @@ void require_index(uint32_t index, size_t count, const char *what) {
     if (index >= count)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       std::string(what) + " " + std::to_string(index) + ": there are only " + std::to_string(count));
+}
+
+void refuse_own_file(const std::string &path, const char *what, const Scene &scene) {
+    for (const auto *own : {&scene.files, &scene.sources}) check_not_reserved(path, what, *own);
 }
 
 }  // namespace lensprof

@@ -6,11 +6,13 @@
 #include <mutex>
 #include <new>
 #include <string>
+#include <vector>
 
 #include <lensprof/photo.h>
 
 #include "photo/base/events.hpp"
 #include "photo/base/failure.hpp"
+#include "photo/scene/scene.hpp"
 
 namespace lensprof {
 
@@ -65,5 +67,19 @@ void give_bytes(const void *bytes, size_t size, void *buffer, size_t capacity, s
 // Failure (ARGUMENT) for NULL.
 void require(const void *pointer, const char *what);
 void require_index(uint32_t index, size_t count, const char *what);
+
+// The paths of databases in options. Failure (ARGUMENT) for NULL.
+template <class Options>
+std::vector<std::string> databases_of(const Options &options) {
+    std::vector<std::string> databases;
+    for (uint32_t i = 0; i < options.database_count; i++) {
+        require(options.databases, "databases"), require(options.databases[i], "database");
+        databases.emplace_back(options.databases[i]);
+    }
+    return databases;
+}
+
+// Failure (ARGUMENT) for a path of one of the scene's own files, of which `what` would be written.
+void refuse_own_file(const std::string &path, const char *what, const Scene &scene);
 
 }  // namespace lensprof

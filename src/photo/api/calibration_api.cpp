@@ -21,10 +21,7 @@ constexpr size_t first_calibrate_options = sizeof(lensprof_calibrate_options),
 SceneFitOptions options_of(const lensprof_calibrate_options &from) {
     SceneFitOptions o;
     o.store.no_store = true;
-    for (uint32_t i = 0; i < from.database_count; i++) {
-        require(from.databases, "databases"), require(from.databases[i], "database");
-        o.store.dbs.emplace_back(from.databases[i]);
-    }
+    o.store.dbs = databases_of(from);
     if (!o.store.dbs.empty()) o.store.db = o.store.dbs.front();
     o.fit.method = from.method, o.fit.modes = from.modes, o.fit.loss = from.loss;
     o.fit.gamma_from = from.gamma_from;
@@ -131,6 +128,7 @@ lensprof_status lensprof_calibrate(const lensprof_scene *scene, const lensprof_c
         handle->of_scene.emplace(scene->scene, options, handle->events);
         report_findings(handle->of_scene->fit.report.verdict, scene->scene.path, handle->events);
         handle->result = with_result(*handle->of_scene);
+        handle->exposures = handle->of_scene->fit.best.exposures;
         handle->events.set(nullptr);
         *calibration = handle.release();
     });
@@ -142,6 +140,7 @@ lensprof_status lensprof_calibration_open(const char *path, const char *images, 
         require(path, "path"), require(calibration, "calibration");
         auto handle = std::make_unique<lensprof_calibration>();
         handle->result = is_exposure_file(path) ? read_exposures(path, images ? images : "") : read_hugin_project(path);
+        handle->exposures = relative_to_joined(handle->result);
         *calibration = handle.release();
     });
 }
@@ -184,10 +183,7 @@ lensprof_status lensprof_calibration_exposure_at(const lensprof_calibration *cal
         require(calibration, "calibration"), require(exposure, "exposure");
         const Scene &result = calibration->result;
         require_index(image, result.images.size(), "image");
-        if (calibration->of_scene)
-            *exposure = calibration->of_scene->fit.best.exposures[image];
-        else
-            *exposure = relative_to_joined(result)[image];
+        *exposure = calibration->exposures[image];
         if (result.images[image].left_out) exposure->ev = NAN;
         if (!errors) return;
         std::fill(errors, errors + 4, NAN);
@@ -254,8 +250,7 @@ lensprof_status lensprof_calibration_store(lensprof_calibration *calibration, co
 lensprof_status lensprof_calibration_save(lensprof_calibration *calibration, const char *path, lensprof_error *error) {
     return photo_call("calibration", error, [&] {
         require(calibration, "calibration"), require(path, "path");
-        check_not_reserved(path, "result", calibration->result.files);
-        check_not_reserved(path, "result", calibration->result.sources);
+        refuse_own_file(path, "result", calibration->result);
         const std::string text = file_text(*calibration, path);
         write_file(path, text.data(), text.size());
     });

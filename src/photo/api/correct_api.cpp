@@ -16,10 +16,7 @@ constexpr size_t first_correct_options = sizeof(lensprof_correct_options);
 std::vector<Correction> copies_by_profile(const std::vector<CopyNames> &names, const lensprof_correct_options &o) {
     ModelOptions options;
     options.from_db = true, options.force_falloff = o.force_falloff != 0;
-    for (uint32_t i = 0; i < o.database_count; i++) {
-        require(o.databases, "databases"), require(o.databases[i], "database");
-        options.dbs.emplace_back(o.databases[i]);
-    }
+    options.dbs = databases_of(o);
     const PictureModels models(options, true);
     std::vector<Correction> jobs;
     for (const CopyNames &copy : names) {

@@ -14,10 +14,7 @@ FolderOptions folder_options(const lensprof_folder_options &from) {
     FolderOptions o;
     o.one_lens = from.one_lens != 0, o.overwrite = from.overwrite != 0, o.threads = from.threads;
     o.store.no_store = from.no_store != 0;
-    for (uint32_t i = 0; i < from.database_count; i++) {
-        require(from.databases, "databases"), require(from.databases[i], "database");
-        o.store.dbs.emplace_back(from.databases[i]);
-    }
+    o.store.dbs = databases_of(from);
     if (!o.store.dbs.empty()) o.store.db = o.store.dbs.front();
     return o;
 }

@@ -27,6 +27,7 @@ struct lensprof_calibration {
     lensprof::CallerEvents events;                  // of the call that runs
     std::optional<lensprof::Calibration> of_scene;  // empty: an opened result
     lensprof::Scene result;                         // the scene with its exposures and models
+    std::vector<lensprof_exposure> exposures;       // of its images, relative to the reference
 
     bool corrects() const { return !of_scene || of_scene->fit.best.corrects(); }
 };

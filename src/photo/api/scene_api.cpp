@@ -96,8 +96,7 @@ lensprof_status lensprof_scene_left_out_at(const lensprof_scene *scene, uint32_t
 lensprof_status lensprof_scene_save(const lensprof_scene *scene, const char *path, lensprof_error *error) {
     return photo_call("scene", error, [&] {
         require(scene, "scene"), require(path, "path");
-        check_not_reserved(path, "project", scene->scene.files);
-        check_not_reserved(path, "project", scene->scene.sources);
+        refuse_own_file(path, "project", scene->scene);
         write_hugin_project(scene->scene, path);
     });
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "photo/base/median.hpp"
+#include "fit/base/quantile.hpp"
 #include "photo/correct/scene_model.hpp"
 #include "photo/pictures/metadata.hpp"
 #include "photo/scene/exposures.hpp"
@@ -37,8 +37,8 @@ void seed_exif(std::vector<Correction> &jobs, const Scene &scene, const std::vec
         if (const auto stated = stated_ev(scene.files[i])) offsets.push_back(*stated - exposures[i].ev);
     }
     const double usual = exif_ev_of(usual_time_s, usual_aperture, usual_iso);
-    const double offset =
-        offsets.empty() ? usual - mean_exposure(joined_exposures(scene, exposures)).ev : median(std::move(offsets));
+    const double offset = offsets.empty() ? usual - mean_exposure(joined_exposures(scene, exposures)).ev
+                                          : upper_median(std::move(offsets));
     for (Correction &job : jobs) {
         const PictureMetadata metadata = read_metadata(job.source);
         auto seeded = std::make_shared<PictureMetadata>(unknown_metadata());

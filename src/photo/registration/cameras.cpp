@@ -8,8 +8,8 @@
 #include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 
+#include "fit/base/quantile.hpp"
 #include "photo/base/events.hpp"
-#include "photo/base/median.hpp"
 #include "photo/registration/camera_rotation.hpp"
 #include "threads/item_loop.hpp"
 
@@ -151,7 +151,7 @@ void CameraFit::find_angles_of_view() {
     hfov_.assign(lenses_, usual_hfov_deg), hfov_sigma_.assign(lenses_, unknown_hfov);
     for (uint32_t lens = 0; lens < lenses_; lens++)
         if (!known[lens].empty())
-            hfov_[lens] = std::min(median(known[lens]), widest_deg), hfov_sigma_[lens] = known_hfov;
+            hfov_[lens] = std::min(upper_median(known[lens]), widest_deg), hfov_sigma_[lens] = known_hfov;
     const bool all_known = std::none_of(known.begin(), known.end(), [](const auto &k) { return k.empty(); });
     constexpr double guess_scale = 0.01;
     constexpr size_t max_links = 300, match_step = 4;  // an even selection suffices
@@ -402,7 +402,7 @@ std::vector<double> CameraFit::residuals() const {
         Eigen::Vector2d r;
         for (const Match &m : matches_[n])
             off.push_back(residual(cameras_[p[0]], cameras_[p[1]], m, r) ? r.norm() / px(n, 1.0) : 1.0);
-        result.push_back(median(off));
+        result.push_back(upper_median(off));
     }
     return result;
 }
@@ -448,14 +448,14 @@ FoundCameras CameraFit::run() {
     fit(false);
     const std::vector<lensprof_camera> rotated = cameras_;
     const std::vector<double> off = residuals();
-    if (median(off) > fitting_residual) {
+    if (upper_median(off) > fitting_residual) {
         const double by_turns = fit(true);
         const std::vector<lensprof_camera> moved = cameras_;
         start(hfov_);
         start_before_plane();
         if (by_turns < fit(true)) cameras_ = moved;
         const std::vector<double> current = residuals();
-        if (median(current) < 0.6 * median(off)) return {SceneKind::plane, cameras_, current};
+        if (upper_median(current) < 0.6 * upper_median(off)) return {SceneKind::plane, cameras_, current};
         cameras_ = rotated;
     }
     level();

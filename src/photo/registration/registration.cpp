@@ -9,8 +9,8 @@
 #include <set>
 #include <tuple>
 
+#include "fit/base/quantile.hpp"
 #include "photo/base/failure.hpp"
-#include "photo/base/median.hpp"
 #include "photo/base/parallel.hpp"
 #include "photo/pictures/metadata.hpp"
 #include "photo/pictures/raw_kind.hpp"
@@ -85,7 +85,7 @@ FoundScene scene_of(std::vector<uint32_t> numbers, const std::vector<PictureOpti
         if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], scene.points);
         if (!fits || scene.by_matches) add_matches(links[n], max_per_link, scene.matches);
     }
-    scene.residual = median(residuals);
+    scene.residual = upper_median(residuals);
     return scene;
 }
 

@@ -79,9 +79,9 @@ std::string image_line(const Scene &scene, uint32_t i) {
 }
 
 // Without photometric values; its `v` lines free those of all images, relative to the first.
-std::string new_project_text(const Scene &scene, const std::string &comment) {
+std::string new_project_text(const Scene &scene) {
     std::string text =
-        "# " + comment + "\np f2 w3000 h1500 v360  E0 R0 n\"TIFF_m c:LZW\"\nm g1 i0 f0 m2 p0.00784314\n\n";
+        "# written by lensprof\np f2 w3000 h1500 v360  E0 R0 n\"TIFF_m c:LZW\"\nm g1 i0 f0 m2 p0.00784314\n\n";
     std::string asked;
     for (uint32_t i = 0; i < scene.images.size(); i++) {
         text += image_line(scene, i);
@@ -134,7 +134,7 @@ Scene read_hugin_project(const std::string &path) {
 Pto hugin_project(const Scene &scene, const std::string &path) {
     Pto project = scene.document;
     if (project && is_beside(path, scene.path)) return project;
-    if (!project) project = parse_pto(new_project_text(scene, "written by lensprof"), scene.path);
+    if (!project) project = parse_pto(new_project_text(scene), scene.path);
     const auto folder = std::filesystem::path(absolute_path(path)).parent_path();
     for (uint32_t i = 0; i < scene.files.size(); i++)
         set_name(project, i, std::filesystem::path(absolute_path(scene.files[i])).lexically_proximate(folder).string());
