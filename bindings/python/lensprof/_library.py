@@ -191,7 +191,7 @@ class SharedHandle(Handle):
 
     @contextlib.contextmanager
     def _use(self) -> Iterator[Any]:
-        with self._use_alone(True) as pointer:
+        with super()._use() as pointer:
             self._users += 1
         try:
             yield pointer
@@ -200,17 +200,17 @@ class SharedHandle(Handle):
                 self._users -= 1
 
     @contextlib.contextmanager
-    def _use_alone(self, is_shared: bool = False) -> Iterator[Any]:
-        with self._lock:
-            if not self._release.alive:
-                raise ValueError(f"this {type(self).__name__} is closed; open it again")
-            if self._users and not is_shared:
-                raise ValueError(f"this {type(self).__name__} is in use by another call; wait until that has returned")
-            yield self._pointer
+    def _use_alone(self) -> Iterator[Any]:
+        with super()._use() as pointer:
+            self._refuse_users()
+            yield pointer
 
     def close(self) -> None:
         """Releases the memory and files of this object."""
         with self._lock:
-            if self._users:
-                raise ValueError(f"this {type(self).__name__} is in use by another call; wait until that has returned")
+            self._refuse_users()
             self._release()
+
+    def _refuse_users(self) -> None:
+        if self._users:
+            raise ValueError(f"this {type(self).__name__} is in use by another call; wait until that has returned")

@@ -18,6 +18,17 @@ def raw_path(path: PathLike) -> bytes:
     return raw
 
 
+def raw_text(value: str, what: str = "a name") -> bytes:
+    """A text for C, which ends at a zero byte."""
+    if "\0" in value:
+        raise ValueError(f"{value!r}: {what} holds no zero bytes")
+    return value.encode("utf-8", "surrogateescape")
+
+
+def optional_text(value: Optional[str]) -> Optional[bytes]:
+    return None if value is None else raw_text(value)
+
+
 def optional_path(path: Optional[PathLike]) -> Optional[bytes]:
     return None if path is None else raw_path(path)
 

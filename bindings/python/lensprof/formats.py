@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 import os
 import pathlib
-from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, cast, create_string_buffer, pointer
+from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, create_string_buffer, pointer
 from typing import TYPE_CHECKING, Any, Callable, Iterable, NamedTuple, Optional, Sequence, TypedDict, TypeVar, Union
 
 import numpy as np
@@ -16,12 +16,12 @@ import numpy.typing as npt
 from . import _abi, _arrays
 from ._abi import CurveKind, DngForm, Format, Free, Holds, Layout, MapSense, Pack, Status
 from ._library import Handle, check, initialised, lib
-from ._paths import PathLike, Source
+from ._paths import PathLike, Source, optional_text, raw_text
 from ._struct import Enumerated, Flag, Nested, Text, Value, Vector, default, integer, one_or_three
 from ._types import Records
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting
-from .profile import CameraModel, Profile, ProfileKey
+from .profile import CameraModel, Profile, ProfileKey, profile_pointers
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -33,6 +33,8 @@ __all__ = ["CurveKind", "DngForm", "Exposures", "ExposuresCamera", "ExposuresIma
            "write_profiles"]
 
 Mask = TypeVar("Mask", bound="npt.NDArray[Any]")
+T = TypeVar("T")
+
 
 def _bytes(text: str) -> bytes:
     return text.encode("utf-8", "surrogateescape")
@@ -137,9 +139,7 @@ class Pto(Handle):
 
     def set_name(self, index: int, name: str) -> None:
         """Changes the file name of an image, for a project that is written to another folder."""
-        text, error = _bytes(name), _abi.ErrorText()
-        if b"\0" in text:
-            raise ValueError(f"{name!r}: a file name holds no zero bytes")
+        text, error = raw_text(name, "a file name"), _abi.ErrorText()
         with self._use() as pto:
             check(lib.lensprof_pto_set_name(pto, integer(index, "index"), text, byref(error)), repr(name), error)
 
@@ -278,12 +278,6 @@ def _text_or_none(text: Optional[bytes]) -> Optional[str]:
     return None if text is None else text.decode()
 
 
-def _bytes_or_none(text: Optional[str]) -> Optional[bytes]:
-    if text is not None and "\0" in text:
-        raise ValueError(f"{text!r}: a name holds no zero bytes")
-    return None if text is None else _bytes(text)
-
-
 def _known_or_none(value: float) -> Optional[float]:
     return None if value == _abi.UNKNOWN else value
 
@@ -325,7 +319,7 @@ def read_exposures(source: Source) -> Exposures:
 
 def _raw_exposures_image(image: ExposuresImage) -> Any:
     width, height = (integer(side, "size") for side in image.size)
-    return initialised(_abi.ExposuresImage, name=_bytes_or_none(image.name), file=_bytes_or_none(image.file), width=width,
+    return initialised(_abi.ExposuresImage, name=optional_text(image.name), file=optional_text(image.file), width=width,
                        height=height, lens=integer(image.lens, "lens"),
                        exposure=Exposure(ev=math.nan) if image.exposure is None else image.exposure,
                        ev_sigma=_known(image.ev_sigma),
@@ -333,7 +327,7 @@ def _raw_exposures_image(image: ExposuresImage) -> Any:
 
 
 def _raw_exposures_lens(lens: ExposuresLens) -> Any:
-    return initialised(_abi.ExposuresLens, name=_bytes_or_none(lens.name), camera=integer(lens.camera, "camera"),
+    return initialised(_abi.ExposuresLens, name=optional_text(lens.name), camera=integer(lens.camera, "camera"),
                        vignettings=len(lens.vignetting), vignetting=(_abi.Vignetting * 3)(*lens.vignetting[:3]))
 
 
@@ -344,12 +338,12 @@ def write_exposures(path: PathLike, exposures: Exposures) -> None:
 
 def encode_exposures(exposures: Exposures) -> bytes:
     """The same as bytes."""
-    cameras = [initialised(_abi.ExposuresCamera, name=_bytes_or_none(camera.name), response=camera.response)
+    cameras = [initialised(_abi.ExposuresCamera, name=optional_text(camera.name), response=camera.response)
                for camera in exposures.cameras]
     lenses = [_raw_exposures_lens(lens) for lens in exposures.lenses]
     images = [_raw_exposures_image(image) for image in exposures.images]
     info = initialised(_abi.ExposuresInfo, camera_count=len(cameras), lens_count=len(lenses), image_count=len(images),
-                       reference=integer(exposures.reference, "reference"), software=_bytes_or_none(exposures.software))
+                       reference=integer(exposures.reference, "reference"), software=optional_text(exposures.software))
     arrays = ((_abi.ExposuresCamera * len(cameras))(*cameras), (_abi.ExposuresLens * len(lenses))(*lenses),
               (_abi.ExposuresImage * len(images))(*images))
     return _written(lambda *buffer: lib.lensprof_exposures_write(byref(info), *arrays, *buffer),
@@ -364,58 +358,49 @@ class ReadProfile(NamedTuple):
     usable: bool
 
 
-def _imported(read: Callable[..., int], source: str, what: str) -> list[ReadProfile]:
-    """Calls read(source, visitor, user, error) and gathers the entries."""
-    error, name = _abi.ErrorText(), _bytes(source)
-    if b"\0" in name:
-        raise ValueError(f"{source!r}: a source holds no zero bytes")
-    found: list[ReadProfile] = []
+def _visited(kind: Any, made: Callable[[Any], T], read: Callable[..., int], what: str) -> list[T]:
+    """Calls read(visitor, user, error); returns what is made of each struct that the visitor receives."""
+    error = _abi.ErrorText()
+    found: list[T] = []
     raised: list[BaseException] = []
 
-    def visit(_user: Any, entry: Any) -> int:
+    def visit(_user: Any, struct: Any) -> int:
         try:
-            found.append(ReadProfile(Profile._copy_of(entry.contents.profile), bool(entry.contents.usable)))
+            found.append(made(struct.contents))
             return Status.OK
         except BaseException as exception:  # must not cross C
             raised.append(exception)
             return Status.ERROR_CANCELLED
 
-    status = read(name, _abi.ImportVisitor(visit), None, byref(error))
+    status = read(kind(visit), None, byref(error))
     if raised:
         raise raised[0]
     check(status, what, error)
     return found
 
 
+def _imported(read: Callable[..., int], source: str, what: str) -> list[ReadProfile]:
+    """Calls read(source, visitor, user, error) and gathers the entries."""
+    name = raw_text(source, "a source")
+
+    def made(entry: Any) -> ReadProfile:
+        return ReadProfile(Profile._copy_of(entry.profile), bool(entry.usable))
+
+    return _visited(_abi.ImportVisitor, made, lambda *rest: read(name, *rest), what)
+
+
 def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: tuple[Any, ...], what: str) -> bytes:
     """Calls write(profiles, count, *settings, data, capacity, count, error)."""
-    given = list(profiles)
-    if not all(isinstance(profile, Profile) for profile in given):
-        raise TypeError("profiles takes an iterable of Profile")
-    kind = POINTER(_abi.Profile)
-    pointers = (kind * len(given))(*(cast(byref(profile), kind) for profile in given))
-    return _written(lambda *buffer: write(pointers, len(given), *settings, *buffer), what)
+    given = profile_pointers(profiles)
+    return _written(lambda *buffer: write(*given, *settings, *buffer), what)
 
 
 def read_lensfun_cameras(source: Source, name: str = "") -> list[CameraModel]:
     """The cameras of a Lensfun database (.xml), for Store.put_camera(). name: of a file that is given as bytes."""
-    data, error, file = _content(source), _abi.ErrorText(), _bytes(_name(source, name))
-    found: list[CameraModel] = []
-    raised: list[BaseException] = []
-
-    def visit(_user: Any, camera: Any) -> int:
-        try:
-            found.append(CameraModel.from_buffer_copy(camera.contents))
-            return Status.OK
-        except BaseException as exception:  # must not cross C
-            raised.append(exception)
-            return Status.ERROR_CANCELLED
-
-    status = lib.lensprof_lensfun_read_cameras(data, len(data), file, _abi.CameraVisitor(visit), None, byref(error))
-    if raised:
-        raise raised[0]
-    check(status, "the database cannot be read", error)
-    return found
+    data, file = _content(source), _bytes(_name(source, name))
+    return _visited(_abi.CameraVisitor, CameraModel.from_buffer_copy,
+                    lambda *rest: lib.lensprof_lensfun_read_cameras(data, len(data), file, *rest),
+                    "the database cannot be read")
 
 
 def _import_options(format: Format, frame: tuple[int, int], key: Optional[ProfileKey]) -> Any:

@@ -1,8 +1,8 @@
 """Calibration of one camera, lens and setting; see lensprof/profile.h."""
 from __future__ import annotations
 
-from ctypes import byref, c_double, c_size_t, create_string_buffer
-from typing import TYPE_CHECKING, Any, Union
+from ctypes import POINTER, byref, c_double, c_size_t, cast, create_string_buffer
+from typing import TYPE_CHECKING, Any, Iterable, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -209,3 +209,12 @@ class Profile(Value, _abi.Profile):
         check(lib.lensprof_profile_unpack(data, len(data), byref(profile)),
               f"{len(data)} bytes: not a profile blob, damaged, or of a newer lensprof; write it again with pack()")
         return profile
+
+
+def profile_pointers(profiles: Iterable[Profile]) -> tuple[Any, int]:
+    """The array of pointers to profiles, as the library takes them, and their number."""
+    given = list(profiles)
+    if not all(isinstance(profile, Profile) for profile in given):
+        raise TypeError("profiles takes an iterable of Profile")
+    kind = POINTER(_abi.Profile)
+    return (kind * len(given))(*(cast(byref(profile), kind) for profile in given)), len(given)

@@ -89,7 +89,10 @@ class Scene(SharedHandle):
 
     def calibrate(self, progress: Progress = None, **options: Unpack[CalibrateOptions]) -> Calibration:
         """Samples the pictures and fits. Also returns if the result is poor: see `usable`."""
-        given, error, pointer = RawCalibrateOptions(**options), _abi.ErrorText(), POINTER(_abi.Calibration)()
+        return self._calibrate(RawCalibrateOptions(**options), progress)
+
+    def _calibrate(self, given: RawCalibrateOptions, progress: Progress) -> Calibration:
+        error, pointer = _abi.ErrorText(), POINTER(_abi.Calibration)()
         with self._use() as scene, calling_events(progress) as events:
             status = photo().lensprof_calibrate(scene, byref(given), events, byref(pointer), byref(error))
             check(status, "the fit failed", error)
@@ -157,6 +160,6 @@ def _with_first(items: Iterable[Any]) -> tuple[Any, Iterator[Any]]:
 
 def _calibrate(files: Iterable[PathLike], images: Optional[PathLike], progress: Progress,
                options: CalibrateOptions) -> Calibration:
-    RawCalibrateOptions(**options)  # refuses unknown ones before the overlaps are found
+    given = RawCalibrateOptions(**options)  # refuses unknown ones before the overlaps are found
     scene = Scene.open(files, images=images, one_lens=options.get("one_lens", False), progress=progress)
-    return scene.calibrate(progress, **options)
+    return scene._calibrate(given, progress)

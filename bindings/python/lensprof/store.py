@@ -10,7 +10,7 @@ from typing import Any, Iterator, List, Optional, Sequence, Union
 from . import _abi
 from ._abi import CameraKind, DistanceRule, Reason, ResponseFrom, Status, StoreMode, StoreNames
 from ._library import Error, Handle, check, lib
-from ._paths import PathLike
+from ._paths import PathLike, optional_text
 from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, default, integer
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 
@@ -102,14 +102,6 @@ class StoreSummary(Value, _abi.StoreSummary):
     focal_mm: Vector = Vector(writable=False)
     aperture: Vector = Vector(writable=False)
     distance_m: Vector = Vector(writable=False)
-
-
-
-def _bytes_of(text: Optional[str]) -> Optional[bytes]:
-    """A text for C, which ends at a zero byte."""
-    if text is not None and "\0" in text:
-        raise ValueError(f"{text!r}: a name holds no zero bytes")
-    return None if text is None else text.encode("utf-8", "surrogateescape")
 
 
 class StoreStats(Value, _abi.StoreStats):
@@ -269,11 +261,11 @@ class Store(Handle):
 
     def lenses(self, part: Optional[str] = None) -> List[StoreSummary]:
         """The lenses of the stored profiles by name; with `part` those with that name, or with all its words."""
-        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_names, int(StoreNames.LENSES), _bytes_of(part))
+        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_names, int(StoreNames.LENSES), optional_text(part))
 
     def cameras(self, part: Optional[str] = None) -> List[StoreSummary]:
         """The cameras of the stored profiles, as for lenses()."""
-        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_names, int(StoreNames.CAMERAS), _bytes_of(part))
+        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_names, int(StoreNames.CAMERAS), optional_text(part))
 
     def put_camera(self, camera: CameraModel) -> None:
         """Stores a camera, replacing the one with the same maker, model and variant."""
@@ -283,7 +275,7 @@ class Store(Handle):
         """Finds a camera by its EXIF name or common name; maker may be empty. Data in which several cameras of one name
         differ is unknown. Raises lensprof.Error (NOT_FOUND)."""
         camera = CameraModel()
-        self._call(lib.lensprof_store_find_camera, _bytes_of(maker), _bytes_of(model), byref(camera))
+        self._call(lib.lensprof_store_find_camera, optional_text(maker), optional_text(model), byref(camera))
         return camera
 
     def camera_models(self) -> List[CameraModel]:

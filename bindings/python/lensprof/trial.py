@@ -1,7 +1,7 @@
 """Which of several profiles fits given pictures; see lensprof/trial.h."""
 from __future__ import annotations
 
-from ctypes import POINTER, byref, cast
+from ctypes import byref
 from typing import Iterable, Sequence
 
 from . import _abi, _arrays
@@ -10,7 +10,7 @@ from ._library import check, initialised, lib
 from ._struct import Enumerated, Flag, Struct, default, integer
 from ._types import Records
 from .fit import FitImage
-from .profile import Profile
+from .profile import Profile, profile_pointers
 
 
 class TrialCandidate(Struct, _abi.TrialCandidate):
@@ -68,18 +68,15 @@ def try_profiles(images: Sequence[FitImage], pairs: Records, profiles: Iterable[
                  camera_kind: CameraKind = CameraKind.ANY) -> TrialResult:
     """Compares profiles on pairs (PAIR_DTYPE) of images of one camera at one lens setting, as `lensprof profile check
     --against`. camera_kind: LINEAR = the pictures are sensor data. Also returns if no profile fits: see `usable`."""
-    given = list(profiles)
-    if not all(isinstance(profile, Profile) for profile in given):
-        raise TypeError("profiles takes an iterable of Profile")
-    kind, error, result = POINTER(_abi.Profile), _abi.ErrorText(), TrialResult()
+    given, count = profile_pointers(profiles)
+    error, result = _abi.ErrorText(), TrialResult()
     options = initialised(_abi.TrialOptions, channels=integer(channels, "channels"),
                           camera_kind=CameraKind(camera_kind))
-    found = [TrialCandidate() for _ in range(len(given) + 1)]
+    found = [TrialCandidate() for _ in range(count + 1)]
     array = (_abi.TrialCandidate * len(found))(*found)
     check(lib.lensprof_trial_run(
         byref(options), (_abi.FitImage * len(images))(*images), len(images), *_arrays.pairs(pairs),
-        (kind * len(given))(*(cast(byref(profile), kind) for profile in given)), len(given), array, byref(result),
-        byref(error)), "the trial failed", error)
+        given, count, array, byref(result), byref(error)), "the trial failed", error)
     measured = [TrialCandidate.from_buffer_copy(candidate) for candidate in array]
     result._candidates, result._none = tuple(measured[:-1]), measured[-1]
     return result
