@@ -237,28 +237,36 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_scene_save(const lenspro
 /* What was found about the cameras, lenses and exposures of a scene. */
 typedef struct lensprof_calibration lensprof_calibration;
 
+#define LENSPROF_CAMERA_AUTO 0xFFFFFFFFu /* the kind of camera that the pictures' EXIF states */
+
 typedef struct lensprof_calibrate_options {
     uint32_t struct_size;
-    uint32_t method;              /* lensprof_method: TRANSFER or RADIANCE */
-    uint32_t modes;               /* of the response; LENSPROF_MODES_AUTO: by held-out error */
-    uint32_t loss;                /* lensprof_loss */
-    uint32_t falloff_curves;      /* 1, 3 (one per channel); 0: by held-out error */
-    uint32_t gamma_from;          /* lensprof_gamma_from: what determines the common exponent */
-    uint32_t free;                /* LENSPROF_FREE_... of every image; 0: those of the project, or all */
-    uint32_t pairs;               /* number of pairs; 0: by the number of images */
-    uint32_t seed;                /* of the sampling */
-    uint32_t max_side;            /* pictures are read reduced to at least this many px; 0: full size */
-    uint32_t one_lens;            /* 1: one response and one falloff for all images, whatever EXIF states */
-    uint32_t use_stored;          /* 1: the profile stored for the camera and lens in `databases` is the prior */
-    double prior_weight;          /* 0: no prior */
-    double exif_sigma;            /* standard error of exposures in EXIF, EV; 0: not used; negative: by EXIF */
-    const char *const *databases; /* profile databases for priors and sensor sizes */
-    uint32_t database_count;      /* 0: the user's own and the installed one */
-    uint32_t reserved;            /* 0 */
+    uint32_t method;                 /* lensprof_method: TRANSFER or RADIANCE */
+    uint32_t modes;                  /* of the response; LENSPROF_MODES_AUTO: by held-out error */
+    uint32_t loss;                   /* lensprof_loss */
+    uint32_t falloff_curves;         /* 1, 3 (one per channel); 0: by held-out error */
+    uint32_t gamma_from;             /* lensprof_gamma_from: what determines the common exponent */
+    uint32_t free;                   /* LENSPROF_FREE_... of every image; 0: those of the project, or all */
+    uint32_t pairs;                  /* number of pairs; 0: by the number of images */
+    uint32_t seed;                   /* of the sampling */
+    uint32_t max_side;               /* pictures are read reduced to at least this many px; 0: full size */
+    uint32_t one_lens;               /* 1: one response and one falloff for all images, whatever EXIF states */
+    uint32_t use_stored;             /* 1: the profile stored for the camera and lens in `databases` is the prior */
+    double prior_weight;             /* 0: no prior */
+    double exif_sigma;               /* standard error of exposures in EXIF, EV; 0: not used; negative: by EXIF */
+    const char *const *databases;    /* profile databases for priors and sensor sizes */
+    uint32_t database_count;         /* 0: the user's own and the installed one */
+    uint32_t reserved;               /* 0 */
+    uint32_t camera_kind;            /* lensprof_camera_kind that the prior describes, or LENSPROF_CAMERA_AUTO */
+    uint32_t sampling;               /* lensprof_sampling: BALANCED or PAPER */
+    double huber_levels;             /* of the loss HUBER: sigma in levels of 255 */
+    const char *reference;           /* name or number of the image whose exposure is 0 EV; NULL: chosen */
+    const lensprof_profile_key *key; /* of the profile: replaces what EXIF states where it is known; NULL: EXIF. Its
+                                        processing is known unless it is JPEG */
 } lensprof_calibrate_options;
 
-/* Defaults: TRANSFER, automatic modes, ROBUST, by held-out error, AUTO, 0, 0 pairs, seed 1, 800 px, 0, 1, 1, -1, none:
- * those of `lensprof build`. */
+/* Defaults: TRANSFER, automatic modes, ROBUST, by held-out error, AUTO, 0, 0 pairs, seed 1, 800 px, 0, 1, 1, -1, none,
+ * AUTO, BALANCED, 5 levels, NULL, NULL: those of `lensprof build`. */
 LENSPROF_API void lensprof_calibrate_options_init_sized(lensprof_calibrate_options *options, size_t size);
 static inline void lensprof_calibrate_options_init(lensprof_calibrate_options *options) {
     lensprof_calibrate_options_init_sized(options, sizeof *options);
@@ -366,9 +374,12 @@ typedef struct lensprof_correct_options {
     const char *const *databases; /* without a calibration: profile databases, searched in order */
     uint32_t database_count;      /* 0: the user's own and the installed one */
     uint32_t reserved;            /* 0 */
+    double gain_cap;              /* largest gain of the falloff correction, 1 or more; 0: unlimited */
+    uint32_t simulate;            /* 1: add the falloff instead of correcting it */
+    uint32_t dither;              /* 1: ordered dither instead of rounding in 8 bit pictures, against banding */
 } lensprof_correct_options;
 
-/* Defaults: MEAN, 0, 0, 0, 0, 1, none. */
+/* Defaults: MEAN, 0, 0, 0, 0, 1, none, 0, 0, 0. */
 LENSPROF_API void lensprof_correct_options_init_sized(lensprof_correct_options *options, size_t size);
 static inline void lensprof_correct_options_init(lensprof_correct_options *options) {
     lensprof_correct_options_init_sized(options, sizeof *options);

@@ -125,6 +125,46 @@ void test_as_build(void **) {
                      LENSPROF_ERROR_ARGUMENT);
 }
 
+// The options that the command has, too, and a key that replaces EXIF.
+void test_options_as_build(void **) {
+    const Json built = json_of({"build", photos(), "--no-store", "--json", "--camera", "Other", "--key", "style=Vivid",
+                                "--fit", "reference=img003.png,camera-kind=phone,loss=huber,huber=4,sampling=paper"});
+    const auto scene = open_scene(photos());
+    lensprof_profile_key key;
+    lensprof_profile_key_init(&key);
+    std::strcpy(key.camera_model, "Other"), std::strcpy(key.style, "Vivid");
+    lensprof_calibrate_options options;
+    lensprof_calibrate_options_init(&options);
+    options.reference = "img003.png", options.camera_kind = LENSPROF_CAMERA_PHONE, options.key = &key;
+    options.loss = LENSPROF_LOSS_HUBER, options.huber_levels = 4.0, options.sampling = LENSPROF_SAMPLING_PAPER;
+    lensprof_calibration *made = nullptr;
+    lensprof_error error{};
+    must_be_ok(lensprof_calibrate(scene.get(), &options, nullptr, &made, &error), error);
+    const Held<lensprof_calibration> calibration(made);
+    for (uint32_t i = 0; i < 6; i++) {
+        lensprof_exposure exposure;
+        must_be_ok(lensprof_calibration_exposure_at(made, i, &exposure, nullptr, &error), error);
+        assert_true(exposure.ev == built["images"][i]["ev"].get<double>());
+        assert_true(i != 3 || exposure.ev == 0.0);
+    }
+    lensprof_profile profile;
+    lensprof_profile_init(&profile);
+    must_be_ok(lensprof_calibration_profile_at(made, 0, &profile, &error), error);
+    assert_string_equal(profile.key.camera_model, "Other");
+    assert_string_equal(profile.key.style, "Vivid");
+    assert_string_equal(profile.key.lens, "Simulated Lens");
+    const auto refused = [&](const char *part) {
+        lensprof_calibration *none = nullptr;
+        assert_status(LENSPROF_ERROR_ARGUMENT, part,
+                      [&](auto *why) { return lensprof_calibrate(scene.get(), &options, nullptr, &none, why); });
+    };
+    options.reference = "none.png", refused("none.png"), options.reference = nullptr;
+    options.huber_levels = -1.0, refused("huber_levels"), options.huber_levels = 5.0;
+    options.camera_kind = 77, refused("camera_kind"), options.camera_kind = LENSPROF_CAMERA_AUTO;
+    options.sampling = LENSPROF_SAMPLING_BRACKET, refused("sampling"), options.sampling = LENSPROF_SAMPLING_BALANCED;
+    key.aperture = -4.0, refused("key");
+}
+
 void test_scene(void **) {
     const auto scene = open_scene(photos());
     lensprof_scene_info info;
@@ -193,6 +233,32 @@ void test_saved(void **) {
     assert_int_equal(info.images, whole.images);
     assert_true(info.equalizes && whole.equalizes && whole.usable && !info.usable);
     assert_int_equal(info.profiles + info.findings, 0);
+}
+
+// The copies of `apply`, with the options that it has.
+void test_options_as_apply(void **) {
+    const auto calibration = calibrated(open_scene(photos()).get());
+    lensprof_error error{};
+    must_be_ok(lensprof_calibration_save(calibration.get(), work("exposures.json").c_str(), &error), error);
+    const std::string source = photos("img002.png"), target = work("copy.png");
+    const lensprof_copy copy = {source.c_str(), target.c_str()};
+    lensprof_correct_options options;
+    lensprof_correct_options_init(&options);
+    options.gain_cap = 1.05, options.strength = 0.9, options.dither = 1;
+    const auto written = [&](const std::string &set) {
+        options.overwrite = 1;
+        must_be_ok(lensprof_correct_files(calibration.get(), &copy, 1, &options, nullptr, nullptr, &error), error);
+        must_exit(done, {"apply", "--model", work("exposures.json"), "-o", work("applied"), "--overwrite", "--encoding",
+                         "dither=yes", "--set", set});
+        assert_true(read_picture(target).pixels == read_picture(work("applied/img002.png")).pixels);
+    };
+    written("gain-cap=1.05,strength=.9");
+    options.simulate = 1, options.gain_cap = 0.0, options.strength = 1.0;
+    written("simulate=yes");
+    options.simulate = 0, options.gain_cap = 0.5;
+    assert_status(LENSPROF_ERROR_ARGUMENT, "gain_cap", [&](auto *why) {
+        return lensprof_correct_files(calibration.get(), &copy, 1, &options, nullptr, nullptr, why);
+    });
 }
 
 void test_profiles(void **) {
@@ -440,9 +506,19 @@ void test_cancelled(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        CLI_TEST(test_as_build),  CLI_TEST(test_scene),        CLI_TEST(test_saved),      CLI_TEST(test_profiles),
-        CLI_TEST(test_pictures),  CLI_TEST(test_bad_pictures), CLI_TEST(test_bad_scenes), CLI_TEST(test_bad_copies),
-        CLI_TEST(test_cancelled), CLI_TEST(test_folder),       CLI_TEST(test_metadata),
+        CLI_TEST(test_as_build),
+        CLI_TEST(test_options_as_build),
+        CLI_TEST(test_options_as_apply),
+        CLI_TEST(test_scene),
+        CLI_TEST(test_saved),
+        CLI_TEST(test_profiles),
+        CLI_TEST(test_pictures),
+        CLI_TEST(test_bad_pictures),
+        CLI_TEST(test_bad_scenes),
+        CLI_TEST(test_bad_copies),
+        CLI_TEST(test_cancelled),
+        CLI_TEST(test_folder),
+        CLI_TEST(test_metadata),
     };
     return cmocka_run_group_tests(tests, make_photos, remove_folder);
 }

@@ -725,6 +725,11 @@ static void print_structs(void) {
     FIELD(lensprof_calibrate_options, databases);
     FIELD(lensprof_calibrate_options, database_count);
     FIELD(lensprof_calibrate_options, reserved);
+    FIELD(lensprof_calibrate_options, camera_kind);
+    FIELD(lensprof_calibrate_options, sampling);
+    FIELD(lensprof_calibrate_options, huber_levels);
+    FIELD(lensprof_calibrate_options, reference);
+    FIELD(lensprof_calibrate_options, key);
     STRUCT(lensprof_calibration_info);
     FIELD(lensprof_calibration_info, struct_size);
     FIELD(lensprof_calibration_info, images);
@@ -746,6 +751,9 @@ static void print_structs(void) {
     FIELD(lensprof_correct_options, databases);
     FIELD(lensprof_correct_options, database_count);
     FIELD(lensprof_correct_options, reserved);
+    FIELD(lensprof_correct_options, gain_cap);
+    FIELD(lensprof_correct_options, simulate);
+    FIELD(lensprof_correct_options, dither);
     STRUCT(lensprof_folder_options);
     FIELD(lensprof_folder_options, struct_size);
     FIELD(lensprof_folder_options, one_lens);
@@ -790,6 +798,7 @@ static void print_values(void) {
     VALUE(LENSPROF_LOOKUP_NEAREST);
     VALUE(LENSPROF_STATS_GROUPS);
     VALUE(LENSPROF_TRIAL_PAIRS);
+    VALUE(LENSPROF_CAMERA_AUTO);
     VALUE(LENSPROF_OK);
     VALUE(LENSPROF_ERROR_ARGUMENT);
     VALUE(LENSPROF_ERROR_STRUCT_SIZE);

@@ -92,6 +92,8 @@ class TestPictures(WithScene):
             self.assertIs(caught.exception.status, status)
         with self.assertRaises(lp.Error):
             lp.write_picture(self.folder / "a.xyz", np.zeros((2, 2), np.uint8))
+        with self.assertRaisesRegex(lp.Error, r"^\.jpg: "):
+            lp.encode_picture(".jpg", np.zeros((2, 2), np.float32))
         self.assertFalse((self.folder / "a.xyz").exists())
         with self.assertRaises(TypeError):
             lp.write_picture(self.folder / "a.png", np.zeros((2, 2), np.int64))
@@ -107,6 +109,22 @@ class TestCalibration(WithScene):
         self.assertEqual(list(calibration.exposures["ev_sigma"]), [image["ev_sigma"] for image in built["images"]])
         self.assertEqual(list(calibration.profiles[0].vignetting[0].k), built["vignetting"]["k"][0])
         self.assertEqual([finding.text for finding in calibration.findings], [f["text"] for f in built["findings"]])
+
+    def test_options_as_build(self):
+        built = json.loads(run("build", self.photos, "--no-store", "--json", "--key", "style=Vivid",
+                               "--fit", "reference=3,camera-kind=phone,sampling=paper"))
+        calibration = lp.calibrate(self.photos, reference=3, camera_kind=lp.CameraKind.PHONE, sampling=lp.Sampling.PAPER,
+                                   key=lp.ProfileKey(style="Vivid"))
+        self.assertEqual(list(calibration.exposures["ev"]), [image["ev"] for image in built["images"]])
+        self.assertEqual(calibration.exposures["ev"][3], 0)
+        self.assertEqual(calibration.profiles[0].key.style, "Vivid")
+        calibration.save(self.folder / "RESULT.PTO")
+        with self.assertRaisesRegex(lp.Error, "none.png"):
+            lp.calibrate(self.photos, reference="none.png")
+        for wrong in ({"huber_levels": -1}, {"key": lp.ProfileKey(aperture=-2)}):
+            with self.assertRaises(lp.Error) as caught:
+                lp.calibrate(self.photos, **wrong)
+            self.assertIs(caught.exception.status, lp.Status.ERROR_ARGUMENT)
 
     def test_scene(self):
         scene = lp.Scene.open([self.files[0], self.files[1], self.files[2]])
@@ -209,6 +227,10 @@ class TestCalibration(WithScene):
         one, two = (lp.read_picture(self.folder / name).pixels for name in ("one.png", "two.png"))
         np.testing.assert_array_equal(one, two)
         self.assertGreater(np.abs(one.astype(int) - lp.read_picture(self.files[1]).pixels).mean(), 1)
+        lp.correct_file(self.files[1], calibration, self.folder / "mild.png", gain_cap=1.001, dither=True)
+        lp.correct_file(self.files[1], calibration, self.folder / "darker.png", simulate=True)
+        mild, darker = (lp.read_picture(self.folder / name).pixels for name in ("mild.png", "darker.png"))
+        self.assertTrue(darker[:20, :20].mean() < mild[:20, :20].mean() < one[:20, :20].mean())
         count = lp.correct_files([(file, self.folder / f"all-{file.name}") for file in self.files], calibration)
         self.assertEqual(count, len(self.files))
         with self.assertRaises(lp.Error) as caught:

@@ -42,6 +42,7 @@ LOOKUP_RESPONSES = 8
 LOOKUP_NEAREST = 3
 STATS_GROUPS = 8
 TRIAL_PAIRS = 30
+CAMERA_AUTO = 4294967295
 DOUBT_RESPONSE = "response not shown by the pictures: typical of the kind"
 
 
@@ -1495,6 +1496,11 @@ class CalibrateOptions(Structure):
         ("databases", POINTER(c_char_p)),
         ("database_count", c_uint32),
         ("reserved", c_uint32),
+        ("camera_kind", c_uint32),
+        ("sampling", c_uint32),
+        ("huber_levels", c_double),
+        ("reference", c_char_p),
+        ("key", POINTER(ProfileKey)),
     ]
 
 
@@ -1528,6 +1534,9 @@ class CorrectOptions(Structure):
         ("databases", POINTER(c_char_p)),
         ("database_count", c_uint32),
         ("reserved", c_uint32),
+        ("gain_cap", c_double),
+        ("simulate", c_uint32),
+        ("dither", c_uint32),
     ]
 
 

@@ -2,22 +2,22 @@
 from __future__ import annotations
 
 import os
-from ctypes import POINTER, byref, c_char_p, c_double, c_uint32
-from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence, TypedDict
+from ctypes import POINTER, byref, c_char_p, c_double, c_uint32, cast
+from typing import TYPE_CHECKING, Any, Iterator, Optional, Sequence, TypedDict, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._abi import Free, GammaFrom, Loss, Method, Status
+from ._abi import CameraKind, Free, GammaFrom, Loss, Method, Sampling, Status
 from ._arrays import EXPOSURE_DTYPE
 from ._library import Error, SharedHandle, check, initialised, photo
-from ._paths import PathLike, optional_path, raw_path, set_databases, text
+from ._paths import PathLike, optional_path, raw_path, raw_text, set_databases, text
 from ._struct import Enumerated, Flag, Struct, default
 from .copies import correct_files
 from .fit import FitOf, FitResult
 from .model import Exposure
-from .profile import Profile
+from .profile import Profile, ProfileKey
 from .reason import Finding
 
 if TYPE_CHECKING:
@@ -39,6 +39,9 @@ class CalibrateOptions(TypedDict, total=False):
     reduced to at least so many pixels. one_lens: one response and falloff for all. use_stored: the profile stored for
     camera and lens is the prior. prior_weight: 0 = none. exif_sigma: standard error of exposures in EXIF, EV; 0 = not
     used, negative = by EXIF. databases: paths of profile databases; none = the user's own and the installed one.
+    camera_kind: that the prior describes, None = by EXIF. huber_levels: sigma of Loss.HUBER, levels of 255. sampling:
+    Sampling.BALANCED or PAPER. reference: name or number of the image whose exposure is 0 EV. key: ProfileKey of the
+    profile, which replaces what EXIF states where it is known.
     """
 
     method: Method
@@ -55,6 +58,11 @@ class CalibrateOptions(TypedDict, total=False):
     prior_weight: float
     exif_sigma: float
     databases: Sequence[PathLike]
+    camera_kind: Optional[CameraKind]
+    huber_levels: float
+    sampling: Sampling
+    reference: Union[str, int, None]
+    key: Optional[ProfileKey]
 
 
 class RawCalibrateOptions(Struct, _abi.CalibrateOptions):
@@ -73,10 +81,19 @@ class RawCalibrateOptions(Struct, _abi.CalibrateOptions):
     use_stored: Flag = Flag()
     prior_weight: float = default
     exif_sigma: float = default
+    huber_levels: float = default
+    sampling: Enumerated[Sampling] = Enumerated(Sampling)
 
-    def __init__(self, databases: Sequence[PathLike] = (), **fields: Any):
+    def __init__(self, databases: Sequence[PathLike] = (), camera_kind: Optional[CameraKind] = None,
+                 reference: Union[str, int, None] = None, key: Optional[ProfileKey] = None, **fields: Any):
         super().__init__(**fields)
         set_databases(self, databases)
+        raw: Any = _abi.CalibrateOptions
+        raw.reference.__set__(self, None if reference is None else raw_text(str(reference)))
+        if camera_kind is not None:
+            raw.camera_kind.__set__(self, CameraKind(camera_kind))
+        if key is not None:
+            raw.key.__set__(self, cast(byref(key), POINTER(_abi.ProfileKey)))
 
 
 class Calibration(SharedHandle):

@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 class CorrectOptions(TypedDict, total=False):
     """How copies are corrected. exposure: CopyExposure.MEAN, KEEP or REFERENCE. linear: irradiance as float. overwrite:
     replace existing files even if they were made from other pictures. threads: 0 = all cores. force_falloff: correct
-    also pictures whose falloff was corrected before. strength: of the falloff correction. databases: without a
-    calibration, profile databases; none = the user's own and the installed one. progress: see Progress."""
+    also pictures whose falloff was corrected before. strength: of the falloff correction; gain_cap: its largest gain,
+    0 = unlimited. simulate: add the falloff instead. dither: ordered dither instead of rounding in 8 bit pictures.
+    databases: without a calibration, profile databases; none = the user's own and the installed one. progress: see
+    Progress."""
 
     exposure: CopyExposure
     linear: bool
@@ -30,6 +32,9 @@ class CorrectOptions(TypedDict, total=False):
     threads: int
     force_falloff: bool
     strength: float
+    gain_cap: float
+    simulate: bool
+    dither: bool
     databases: Sequence[PathLike]
     progress: Progress
 
@@ -41,6 +46,9 @@ class _RawOptions(Struct, _abi.CorrectOptions):
     threads: int = default
     force_falloff: Flag = Flag()
     strength: float = default
+    gain_cap: float = default
+    simulate: Flag = Flag()
+    dither: Flag = Flag()
 
     def __init__(self, databases: Sequence[PathLike] = (), **fields: Any):
         super().__init__(**fields)

@@ -73,9 +73,9 @@ std::vector<std::string> add_views(const Panoramas &panoramas, const CorrectedPi
     const uint32_t side = view_side(view_count);
     std::vector<Json> copies(view_count);
     for_each_parallel(static_cast<uint32_t>(view_count), "report", progress, [&](uint32_t n) {
-        const CorrectedPicture &picture = pictures.list[n * picture_count / view_count];
-        const InputPicture &input = *picture.picture;
-        const SmallCopies small = small_copies(picture, input.metadata.orientation, side);
+        const size_t index = n * picture_count / view_count;
+        const InputPicture &input = *pictures.list[index].picture;
+        const SmallCopies small = small_copies(pictures, index, input.metadata.orientation, side);
         if (small.before.width && small.after.width) copies[n] = view_json(input.name, small.before, small.after);
     });
     std::vector<std::string> unreadable;

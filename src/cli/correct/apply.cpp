@@ -138,11 +138,11 @@ uint16_t orientation_of(const std::string &file) {
     }
 }
 
-ContactSheet::Cell sheet_cell(const Correction &job, const Picture &before, const Picture &after, uint32_t side) {
+ContactSheet::Cell sheet_cell(const Correction &job, const SmallCopies &small, uint32_t side) {
     const std::string name = std::filesystem::path(job.source).filename().string();
-    if (!before.width) return {Picture(), Picture(), name, "not corrected"};
+    if (!small.before.width) return {Picture(), Picture(), name, "not corrected"};
     const uint16_t orientation = orientation_of(job.source);
-    return {upright_copy(before, orientation, side), upright_copy(after, orientation, side), name,
+    return {upright_copy(small.before, orientation, side), upright_copy(small.after, orientation, side), name,
             correction_note(job)};
 }
 
@@ -171,8 +171,8 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
     Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());
     print_notes(work.jobs, streams);
-    const CopySink sink{sheet.side(), [&](uint32_t i, const Picture &before, const Picture &after) {
-                            sheet.put(i, sheet_cell(work.jobs[i], before, after, sheet.side()));
+    const CopySink sink{sheet.side(), [&](uint32_t i, const SmallCopies &small) {
+                            sheet.put(i, sheet_cell(work.jobs[i], small, sheet.side()));
                         }};
     Corrected written = o.merge ? merge(o, source, work, progress)
                                 : write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sink, progress);

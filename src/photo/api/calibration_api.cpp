@@ -4,6 +4,7 @@
 
 #include "photo/api/handles.hpp"
 #include "photo/api/sized.hpp"
+#include "photo/base/paths.hpp"
 #include "photo/calibration/exposure_file.hpp"
 #include "photo/calibration/outcome.hpp"
 #include "photo/correct/scene_model.hpp"
@@ -17,28 +18,51 @@ namespace {
 constexpr size_t first_calibrate_options = sizeof(lensprof_calibrate_options),
                  first_calibration_info = sizeof(lensprof_calibration_info);
 
+// What is known of a key.
+StoreOptions store_of(const lensprof_profile_key &key) {
+    StoreOptions o;
+    o.maker = key.camera_maker, o.camera = key.camera_model, o.lens = key.lens, o.unit = key.unit, o.style = key.style;
+    o.crop_factor = key.crop_factor, o.focal = key.focal_mm, o.aperture = key.aperture, o.distance = key.distance_m;
+    if (key.processing != LENSPROF_PROCESSING_JPEG) o.processing = key.processing;  // JPEG: also if unknown
+    return o;
+}
+
+void check_options(const lensprof_calibrate_options &given) {
+    const auto refuse = [](bool is_wrong, const char *what) {
+        if (is_wrong) throw Failure(LENSPROF_ERROR_ARGUMENT, what);
+    };
+    refuse(given.method > LENSPROF_METHOD_RADIANCE, "method: is unknown");
+    refuse(given.falloff_curves != 0 && given.falloff_curves != 1 && given.falloff_curves != 3,
+           "falloff_curves: is neither 0, 1 nor 3");
+    refuse(!std::isfinite(given.exif_sigma), "exif_sigma: is not finite");
+    refuse(given.free & ~(LENSPROF_FREE_LENS | LENSPROF_FREE_IMAGE), "free: has unknown parameters");
+    refuse(given.max_side && given.max_side < 64, "max_side: is below 64");
+    refuse(given.camera_kind > LENSPROF_CAMERA_LINEAR && given.camera_kind != LENSPROF_CAMERA_AUTO,
+           "camera_kind: is unknown");
+    refuse(given.sampling > LENSPROF_SAMPLING_PAPER, "sampling: is neither BALANCED nor PAPER");
+    refuse(given.key && lensprof_profile_key_validate(given.key) != LENSPROF_OK, "key: has values out of range");
+}
+
 // The options of a fit that the caller gives; nothing is stored yet.
 SceneFitOptions options_of(const lensprof_calibrate_options &from) {
+    check_options(from);
     SceneFitOptions o;
+    if (from.key) o.store = store_of(*from.key);
     o.store.no_store = true;
     o.store.dbs = databases_of(from);
     if (!o.store.dbs.empty()) o.store.db = o.store.dbs.front();
     o.fit.method = from.method, o.fit.modes = from.modes, o.fit.loss = from.loss;
     o.fit.gamma_from = from.gamma_from;
-    o.fit.prior_weight = from.prior_weight;
+    o.fit.prior_weight = from.prior_weight, o.fit.huber = from.huber_levels;
+    if (from.camera_kind != LENSPROF_CAMERA_AUTO) o.fit.camera_kind = from.camera_kind;
     if (!(from.exif_sigma < 0.0)) o.fit.exif_sigma = from.exif_sigma;
     o.fit.stored = from.use_stored != 0;
     o.falloff_curves = from.falloff_curves;
     o.free = from.free;
     o.pixels = {from.seed, from.pairs, from.max_side};
+    o.sampling = from.sampling;
+    if (from.reference) o.reference = from.reference;
     o.one_lens = from.one_lens != 0;
-    if (from.method > LENSPROF_METHOD_RADIANCE) throw Failure(LENSPROF_ERROR_ARGUMENT, "method: is unknown");
-    if (from.falloff_curves != 0 && from.falloff_curves != 1 && from.falloff_curves != 3)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, "falloff_curves: is neither 0, 1 nor 3");
-    if (!std::isfinite(from.exif_sigma)) throw Failure(LENSPROF_ERROR_ARGUMENT, "exif_sigma: is not finite");
-    if (from.free & ~(LENSPROF_FREE_LENS | LENSPROF_FREE_IMAGE))
-        throw Failure(LENSPROF_ERROR_ARGUMENT, "free: has unknown parameters");
-    if (from.max_side && from.max_side < 64) throw Failure(LENSPROF_ERROR_ARGUMENT, "max_side: is below 64");
     return o;
 }
 
@@ -71,11 +95,11 @@ void require_known(const lensprof_profile_key &key, const std::string &file) {
 
 std::string file_text(const lensprof_calibration &handle, const std::string &path) {
     const Calibration &calibration = fitted(&handle);
-    const std::filesystem::path name = std::filesystem::path(path).filename();
+    const std::string kind = lowercase_extension(path);
     if (!handle.corrects())
         throw Failure(LENSPROF_ERROR_NOT_USABLE, path + ": not written: " + calibration.fit.report.verdict.headline());
-    if (name.extension() == ".pto") return result_text(calibration.fit, calibration.scene, path);
-    if (name.extension() == ".json" && name.string().rfind("exposures", 0) == 0)
+    if (kind == "pto") return result_text(calibration.fit, calibration.scene, path);
+    if (kind == "json" && std::filesystem::path(path).filename().string().rfind("exposures", 0) == 0)
         return exposures_text(calibration.fit, calibration.scene, calibration.metadata, path);
     lensprof_export_options options;
     lensprof_export_options_init(&options);
@@ -112,6 +136,7 @@ void lensprof_calibrate_options_init_sized(lensprof_calibrate_options *options, 
     options->seed = 1, options->max_side = SamplingOptions{}.max_side;
     options->use_stored = 1;
     options->prior_weight = 1.0, options->exif_sigma = -1.0;
+    options->camera_kind = LENSPROF_CAMERA_AUTO, options->huber_levels = FitOptions{}.huber;
 }
 
 lensprof_status lensprof_calibrate(const lensprof_scene *scene, const lensprof_calibrate_options *given,

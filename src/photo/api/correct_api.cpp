@@ -15,7 +15,7 @@ constexpr size_t first_correct_options = sizeof(lensprof_correct_options);
 // By the profiles of databases: the falloff alone.
 std::vector<Correction> copies_by_profile(const std::vector<CopyNames> &names, const lensprof_correct_options &o) {
     ModelOptions options;
-    options.from_db = true, options.force_falloff = o.force_falloff != 0;
+    options.from_db = true, options.force_falloff = o.force_falloff != 0, options.puts_in = o.simulate != 0;
     options.dbs = databases_of(o);
     const PictureModels models(options, true);
     std::vector<Correction> jobs;
@@ -31,6 +31,7 @@ CorrectionKind kind_of(const lensprof_correct_options &o) {
     CorrectionKind kind;
     kind.linear = o.linear != 0, kind.overwrite = o.overwrite != 0;
     kind.threads = o.threads, kind.strength = o.strength;
+    kind.gain_cap = o.gain_cap, kind.dither = o.dither != 0, kind.simulate = o.simulate != 0;
     return kind;
 }
 

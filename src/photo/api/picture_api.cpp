@@ -216,7 +216,12 @@ lensprof_status lensprof_picture_encode(const char *name, const lensprof_image *
         const TemporaryFolder folder;
         const std::string path =
             folder.path() + "/picture" + std::filesystem::path(std::string("x") + name).extension().string();
-        write_as(path, *pixels, options);
+        try {
+            write_as(path, *pixels, options);
+        } catch (const Failure &failure) {  // with the name that the caller gave
+            const std::string text = failure.what();
+            throw Failure(failure.status, text.rfind(path, 0) == 0 ? name + text.substr(path.size()) : text);
+        }
         const std::string bytes = read_text(path, UINT64_MAX);
         give_bytes(bytes.data(), bytes.size(), buffer, capacity, count);
     });

@@ -1,6 +1,7 @@
 #include "photo/base/paths.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include <sys/stat.h>
@@ -65,6 +66,14 @@ std::string file_identity(const std::string &path) {
     struct stat status = {};
     if (stat(path.c_str(), &status) != 0) return absolute_path(path);
     return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+}
+
+std::string lowercase_extension(const std::string &path) {
+    const size_t slash = path.rfind('/'), dot = path.rfind('.');
+    if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return {};
+    std::string extension = path.substr(dot + 1);
+    for (char &c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
 }
 
 std::string short_name(const std::string &name) {

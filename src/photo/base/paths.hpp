@@ -31,6 +31,9 @@ bool is_same_file(const std::string &a, const std::string &b);
 // A key that is equal for such paths and different for others, for searching many.
 std::string file_identity(const std::string &path);
 
+// What follows the last dot of a file's name, in lower case: "jpg"; "" without a dot.
+std::string lowercase_extension(const std::string &path);
+
 // For messages: a name, or, if it is longer than a line, its start and length.
 std::string short_name(const std::string &name);
 

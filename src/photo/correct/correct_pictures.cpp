@@ -49,43 +49,46 @@ public:
     // `thumbnail_side`: the longer side of the thumbnails, in pixels; 0 = none.
     PictureCorrection(const Correction &job, const CorrectionKind &kind, uint32_t thumbnail_side);
 
-    // Corrects the whole picture and reports the pixels of every strip to `done`; encodes on a separate thread if
-    // `split`.
+    // Corrects and writes the whole picture and reports the pixels of every strip to `done`; encodes on a separate
+    // thread if `split`.
     Finished run(bool split, Throughput &done);
 
-    Thumbnail before, after;
+    // Corrects the whole picture for its thumbnails alone.
+    void run_unwritten();
+
+    SmallCopies small() const { return {before_.upright(1), after_.upright(1)}; }
 
 private:
-    bool make(Strip &strip);            // reads and corrects the next rows; false at the end
-    uint64_t take(const Strip &strip);  // writes the rows; returns their number of pixels
+    bool make(Strip &strip);  // reads and corrects the next rows; false at the end
 
     const Correction &job_;
+    const CorrectionKind &kind_;
     PictureReader reader_;
     const lensprof_apply_options options_;
     const Plan plan_;
     const CropPlans crops_;
     const Picture result_;  // no pixels
-    std::unique_ptr<PictureWriter> writer_;
     ClippedPixels clipped_before_, clipped_after_;
     const bool thumbnails_;
+    Thumbnail before_, after_;
     uint32_t strip_rows_, next_row_ = 0;
 };
 
 PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind &kind, uint32_t thumbnail_side)
     : job_(job),
+      kind_(kind),
       reader_(job.source),
       options_(options_of(reader_.header(), job, kind)),
       plan_(options_, job.source),
       crops_(reader_.header(), job, kind),
       result_(header_of_result(reader_.header(), options_.target_sample)),
-      writer_(std::make_unique<PictureWriter>(job.target, result_, write_options(job, kind))),
       thumbnails_(thumbnail_side > 0),
       strip_rows_(kind.strip_rows) {
     const Picture &source = reader_.header();
     if (strip_rows_ == 0)
         strip_rows_ = static_cast<uint32_t>(std::max<size_t>(strip_bytes / std::max<size_t>(source.row_bytes, 1), 1));
     if (!thumbnails_) return;
-    before = after = Thumbnail(source.width, source.height, thumbnail_side);
+    before_ = after_ = Thumbnail(source.width, source.height, thumbnail_side);
 }
 
 bool PictureCorrection::make(Strip &strip) {
@@ -107,29 +110,34 @@ bool PictureCorrection::make(Strip &strip) {
                          result_.sample,     result_.layout};
     reader_.read(read);
     check_finite(from, next_row_, 1, job_.source);
-    if (thumbnails_) before.add(from);
+    if (thumbnails_) before_.add(from);
     clipped_before_.add(from, next_row_);
     if (job_.crops.empty())
         check(lensprof_apply(plan_.get(), &from, &strip.written, 0, next_row_), job_.source);
     else
         crops_.apply(plan_, from, strip.written, next_row_);
-    if (thumbnails_) after.add(image_of(strip.written));
+    if (thumbnails_) after_.add(image_of(strip.written));
     clipped_after_.add(image_of(strip.written), next_row_);
     next_row_ += rows;
     return true;
 }
 
-uint64_t PictureCorrection::take(const Strip &strip) {
-    stop_if_cancelled();
-    writer_->write(image_of(strip.written));
-    return uint64_t(strip.written.width) * strip.written.height;
+Finished PictureCorrection::run(bool split, Throughput &done) {
+    auto writer = std::make_unique<PictureWriter>(job_.target, result_, write_options(job_, kind_));
+    make_and_take<Strip>(
+        split, [&](Strip &strip) { return make(strip); },
+        [&](const Strip &strip) {
+            stop_if_cancelled();
+            writer->write(image_of(strip.written));
+            done.add_pixels(uint64_t(strip.written.width) * strip.written.height);
+        });
+    const bool with_metadata = writer->finish();
+    return {std::move(writer), nullptr, std::nullopt, with_metadata, clipped_after_.share() - clipped_before_.share()};
 }
 
-Finished PictureCorrection::run(bool split, Throughput &done) {
-    make_and_take<Strip>(
-        split, [&](Strip &strip) { return make(strip); }, [&](const Strip &strip) { done.add_pixels(take(strip)); });
-    bool with_metadata = writer_->finish();
-    return {std::move(writer_), nullptr, std::nullopt, with_metadata, clipped_after_.share() - clipped_before_.share()};
+void PictureCorrection::run_unwritten() {
+    for (Strip strip; make(strip);) {
+    }
 }
 
 // Adds the falloff as an opcode; everything else of the DNG stays unchanged.
@@ -141,6 +149,12 @@ Finished copy_dng(const Correction &job) {
 }
 
 }  // namespace
+
+SmallCopies small_copies_of(const Correction &job, const CorrectionKind &kind, uint32_t side) {
+    PictureCorrection picture(job, kind, side);
+    picture.run_unwritten();
+    return picture.small();
+}
 
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, const CopySink *sink,
                           Events &events) {
@@ -158,7 +172,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         }
         PictureCorrection picture(jobs[i], kind, sink ? sink->side : 0);
         finished[i] = picture.run(threads / 2 >= count, throughput);
-        if (sink) sink->put(i, picture.before.upright(1), picture.after.upright(1));
+        if (sink) sink->put(i, picture.small());
     };
     auto work = [&](uint32_t i) {
         try {
@@ -166,7 +180,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         } catch (const Failure &failure) {
             if (!is_of_input(failure)) throw;
             finished[i] = {nullptr, nullptr, failure, false, 0.0};
-            if (sink) sink->put(i, Picture(), Picture());
+            if (sink) sink->put(i, SmallCopies());
         }
     };
     Corrected corrected;

@@ -88,13 +88,17 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
 // mark is refused too, unless `replaces_unmarked` and it is in another folder than its source.
 void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind, bool replaces_unmarked);
 
+// A picture before and after correction, reduced: 8 bit RGB without gaps, rotated as stored.
+struct SmallCopies {
+    Picture before, after;
+};
+
 // Receives small copies of the pictures, made while they are corrected.
 struct CopySink {
     uint32_t side;  // the longer one, px, or less for smaller pictures
 
-    // 8 bit RGB without gaps, rotated as stored; empty if the picture was not corrected. Threads: several call it, for
-    // different jobs.
-    std::function<void(uint32_t job, Picture before, Picture after)> put;
+    // Empty if the picture was not corrected. Threads: several call it, for different jobs.
+    std::function<void(uint32_t job, SmallCopies small)> put;
 };
 
 // Corrects and writes all pictures; `sink` (NULL = none) receives them before and after. Several pictures are
@@ -105,5 +109,9 @@ struct CopySink {
 // and missing folders are created.
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, const CopySink *sink,
                           Events &events);
+
+// The small copies that write_corrected gives to a sink of this side, without writing the picture. Not for a DNG.
+// Failure.
+SmallCopies small_copies_of(const Correction &job, const CorrectionKind &kind, uint32_t side);
 
 }  // namespace lensprof

@@ -131,6 +131,11 @@ CorrectedPictures plan_corrections(const FolderOptions &o, const Inputs &inputs,
 static uint32_t small_side(size_t pictures) { return pictures <= 24 ? 960 : 500; }
 static constexpr uint32_t most_small_copies = 450;
 
+SmallCopies small_copies_of(const CorrectedPicture &picture, size_t pictures) {
+    if (picture.small.before.width) return picture.small;
+    return small_copies_of(picture.job, CorrectionKind(), small_side(pictures));
+}
+
 void write_corrections(const FolderOptions &o, CorrectedPictures &pictures, Ledger &ledger, Events &events) {
     std::vector<Correction> jobs;
     std::vector<CorrectedPicture *> of_job;
@@ -143,8 +148,8 @@ void write_corrections(const FolderOptions &o, CorrectedPictures &pictures, Ledg
     ledger.save();
     CorrectionKind kind;
     kind.threads = o.threads;
-    const CopySink sink{small_side(pictures.list.size()), [&](uint32_t i, Picture before, Picture after) {
-                            if (i < most_small_copies) of_job[i]->small = {std::move(before), std::move(after)};
+    const CopySink sink{small_side(pictures.list.size()), [&](uint32_t i, SmallCopies small) {
+                            if (i < most_small_copies) of_job[i]->small = std::move(small);
                         }};
     const Corrected corrected = write_corrected(jobs, kind, &sink, events);
     std::map<std::string, std::string> damaged;

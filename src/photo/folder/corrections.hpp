@@ -10,11 +10,6 @@
 
 namespace lensprof {
 
-// 8 bit RGB, rotated as stored.
-struct SmallCopies {
-    Picture before, after;
-};
-
 // A picture corrected by this run or an earlier one.
 struct CorrectedPicture {
     const InputPicture *picture;
@@ -34,6 +29,10 @@ struct CorrectedPictures {
 // How each picture is corrected: with the project of its panorama, as `apply --pto` does, else with a looked-up
 // profile, as `apply` does.
 CorrectedPictures plan_corrections(const FolderOptions &o, const Inputs &inputs, const Panoramas &panoramas);
+
+// Small copies of a picture, the same whether this run corrected it or an earlier one. `pictures`: their number.
+// Failure.
+SmallCopies small_copies_of(const CorrectedPicture &picture, size_t pictures);
 
 // Writes the copies missing from the ledger. A picture that cannot be corrected is left out. Throws ForeignFile, before
 // the first copy is written, if a copy was modified by somebody and its correction has changed.

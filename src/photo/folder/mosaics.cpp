@@ -17,15 +17,15 @@ constexpr uint16_t as_stored = 1;  // EXIF orientation
 std::vector<CorrectedCopy> tiles_of(const Panorama &panorama, const CorrectedPictures &pictures, Events &events) {
     const Scene scene = panorama.corrected_scene();
     const ImagesByFile images(scene);
-    std::vector<std::pair<const CorrectedPicture *, uint32_t>> corrected;  // and its image
-    for (const CorrectedPicture &picture : pictures.list) {
-        if (picture.panorama != panorama.name) continue;
-        if (const auto image = images.find(picture.picture->file)) corrected.emplace_back(&picture, *image);
+    std::vector<std::pair<size_t, uint32_t>> corrected;  // picture and its image
+    for (size_t i = 0; i < pictures.list.size(); i++) {
+        if (pictures.list[i].panorama != panorama.name) continue;
+        if (const auto image = images.find(pictures.list[i].picture->file)) corrected.emplace_back(i, *image);
     }
     std::vector<CorrectedCopy> tiles(corrected.size());
     for_each_parallel(static_cast<uint32_t>(tiles.size()), "mosaic", events, [&](uint32_t n) {
         const auto [picture, image] = corrected[n];
-        SmallCopies small = small_copies(*picture, as_stored, tile_side);
+        SmallCopies small = small_copies(pictures, picture, as_stored, tile_side);
         tiles[n] = {std::move(small.before), std::move(small.after), scene.images[image].camera, image};
     });
     const auto is_missing = [](const CorrectedCopy &tile) { return !tile.before.width || !tile.after.width; };

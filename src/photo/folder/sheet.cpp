@@ -19,11 +19,13 @@ std::string note_of(const CorrectedPicture &picture) {
     return picture.ev ? format("%+.2f EV, panorama ", *picture.ev) + picture.panorama : correction_note(picture.job);
 }
 
-void write_sheet(const std::string &path, const CorrectedPicture *first, size_t count, Events &events) {
+void write_sheet(const std::string &path, const CorrectedPictures &pictures, size_t begin, size_t count,
+                 Events &events) {
+    const CorrectedPicture *first = &pictures.list[begin];
     ContactSheet sheet(count);
     for_each_parallel(static_cast<uint32_t>(count), "contact sheet", events, [&](uint32_t i) {
         const InputPicture &picture = *first[i].picture;
-        SmallCopies copies = small_copies(first[i], picture.metadata.orientation, sheet.side());
+        SmallCopies copies = small_copies(pictures, begin + i, picture.metadata.orientation, sheet.side());
         sheet.put(i, {std::move(copies.before), std::move(copies.after), picture.name, note_of(first[i])});
     });
     sheet.write(path);
@@ -31,13 +33,12 @@ void write_sheet(const std::string &path, const CorrectedPicture *first, size_t 
 
 }  // namespace
 
-SmallCopies small_copies(const CorrectedPicture &picture, uint16_t orientation, uint32_t side) {
-    const SmallCopies &kept = picture.small;
-    if (kept.before.width)
-        return {upright_copy(kept.before, orientation, side), upright_copy(kept.after, orientation, side)};
+SmallCopies small_copies(const CorrectedPictures &pictures, size_t index, uint16_t orientation, uint32_t side) {
     SmallCopies copies;
-    failure_of([&] { copies.before = upright_copy(picture.picture->file, orientation, side); });
-    failure_of([&] { copies.after = upright_copy(picture.picture->target, orientation, side); });
+    failure_of([&] {
+        const SmallCopies stored = small_copies_of(pictures.list[index], pictures.list.size());
+        copies = {upright_copy(stored.before, orientation, side), upright_copy(stored.after, orientation, side)};
+    });
     return copies;
 }
 
@@ -61,7 +62,7 @@ void write_sheets(const FolderOptions &o, const CorrectedPictures &pictures, Led
         if (ledger.is_current(names[page], key)) continue;
         ledger.begin(names[page], key);
         ledger.save();
-        write_sheet(names[page], &pictures.list[first], count, events);
+        write_sheet(names[page], pictures, first, count, events);
         ledger.finish(names[page]);
         ledger.save();
     }

@@ -5,9 +5,9 @@
 
 namespace lensprof {
 
-// The picture and its corrected copy, rotated as an EXIF orientation states; read if this run did not keep them. One is
-// empty if its file cannot be read, because it may have been edited since.
-SmallCopies small_copies(const CorrectedPicture &picture, uint16_t orientation, uint32_t side);
+// Picture `index` before and after correction, rotated as an EXIF orientation states; corrected again if this run did
+// not keep them. Empty if its file cannot be read any more.
+SmallCopies small_copies(const CorrectedPictures &pictures, size_t index, uint16_t orientation, uint32_t side);
 
 // calibrate_sheet.jpg and, if one page is not enough, calibrate_sheet2.jpg and so on.
 std::vector<std::string> sheet_names(const FolderOptions &o, size_t pictures);

@@ -1,12 +1,12 @@
 #include "photo/pictures/coded_kind.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
 
 #include "photo/base/file_kind.hpp"
+#include "photo/base/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -35,11 +35,10 @@ std::optional<CodedKind> coded_kind_of_name(const std::string &path) {
     static constexpr struct {
         const char *end;
         CodedKind kind;
-    } ends[] = {{".heic", {FileFormat::heif, "HEIC"}}, {".heif", {FileFormat::heif, "HEIF"}},
-                {".hif", {FileFormat::heif, "HEIF"}},  {".avif", {FileFormat::heif, "AVIF"}},
-                {".webp", {FileFormat::webp, "WebP"}}, {".jxl", {FileFormat::jxl, "JPEG XL"}}};
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char &c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    } ends[] = {{"heic", {FileFormat::heif, "HEIC"}}, {"heif", {FileFormat::heif, "HEIF"}},
+                {"hif", {FileFormat::heif, "HEIF"}},  {"avif", {FileFormat::heif, "AVIF"}},
+                {"webp", {FileFormat::webp, "WebP"}}, {"jxl", {FileFormat::jxl, "JPEG XL"}}};
+    const std::string extension = lowercase_extension(path);
     for (const auto &entry : ends)
         if (extension == entry.end) return entry.kind;
     return std::nullopt;

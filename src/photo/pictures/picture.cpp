@@ -1,7 +1,6 @@
 #include "photo/pictures/picture.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -10,6 +9,7 @@
 
 #include "photo/base/failure.hpp"
 #include "photo/base/output_file.hpp"
+#include "photo/base/paths.hpp"
 #include "photo/pictures/codec.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/other_parts.hpp"
@@ -158,11 +158,7 @@ PictureSize read_size(const std::string &path) {
 }
 
 static std::optional<FileFormat> known_format(const std::string &path) {
-    const size_t slash = path.rfind('/');
-    const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
-    const size_t dot = name.rfind('.');
-    std::string extension = dot == std::string::npos ? std::string() : name.substr(dot + 1);
-    for (char &c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lowercase_extension(path);
     if (extension == "png") return FileFormat::png;
     if (extension == "tif" || extension == "tiff") return FileFormat::tiff;
     if (extension == "jpg" || extension == "jpeg" || extension == "mpo") return FileFormat::jpeg;

@@ -1,13 +1,13 @@
 #include "photo/pictures/raw_kind.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <vector>
 
+#include "photo/base/paths.hpp"
 #include "photo/pictures/tiff_directory.hpp"
 #include "photo/pictures/tiff_tags.hpp"
 
@@ -53,15 +53,8 @@ constexpr struct {
               {"MAMIYA"sv, "Mamiya MEF"},      {"LEAF"sv, "Leaf MOS"},       {"EASTMAN"sv, "Kodak DCR"},
               {"PHASE ONE"sv, "Phase One IIQ"}};
 
-std::string extension_of(const std::string &path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    if (!extension.empty()) extension.erase(0, 1);
-    for (char &c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
-
 const char *kind_of_name(const std::string &path) {
-    const std::string extension = extension_of(path);
+    const std::string extension = lowercase_extension(path);
     for (const auto &name : raw_extensions)
         if (extension == name.extension) return name.kind;
     return nullptr;
@@ -102,7 +95,7 @@ std::optional<std::string> kind_of_tiff(TiffReader &reader, const std::string &p
 }  // namespace
 
 bool is_raw_name(const std::string &path) { return kind_of_name(path) != nullptr; }
-bool is_dng_name(const std::string &path) { return extension_of(path) == "dng"; }
+bool is_dng_name(const std::string &path) { return lowercase_extension(path) == "dng"; }
 
 std::optional<std::string> raw_kind(const std::string &path) {
     std::error_code error;

@@ -103,11 +103,4 @@ Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side)
     return thumbnail.upright(orientation);
 }
 
-Picture upright_copy(const std::string &file, uint16_t orientation, uint32_t side) {
-    ReadOptions read;
-    read.max_side = side;
-    Picture picture = read_picture(file, read);
-    return upright_copy(picture, orientation, side);
-}
-
 }  // namespace lensprof

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "photo/pictures/picture.hpp"
@@ -31,8 +30,7 @@ private:
     std::vector<uint8_t> rgb_;
 };
 
-// A small copy of a picture in memory, or of a file.
+// A small copy of a picture.
 Picture upright_copy(const Picture &stored, uint16_t orientation, uint32_t side);
-Picture upright_copy(const std::string &file, uint16_t orientation, uint32_t side);
 
 }  // namespace lensprof
