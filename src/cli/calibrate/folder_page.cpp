@@ -26,7 +26,7 @@ Json verdict_json(const Inputs &inputs, const Panoramas &panoramas, const Correc
         details.push_back(counted(static_cast<size_t>(doubtful), "panorama")
                           + " with a warning or without a usable result: see below.");
     for (const std::string &name : unreadable)
-        details.push_back(name + ": the corrected copy cannot be read; remove it and run calibrate again");
+        details.push_back(name + ": cannot be read any more; run calibrate again");
     const size_t corrected = pictures.list.size(), left_out = summary["left_out"].size();
     const std::string all =
         corrected == 1 ? "The picture is corrected." : format("All %zu pictures are corrected.", corrected);
