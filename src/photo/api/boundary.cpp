@@ -7,7 +7,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t first_events = sizeof(lensprof_events);
+constexpr size_t first_events = LENSPROF_FIRST(lensprof_events, notice);
 
 // Without the folders of a file that begins the text.
 std::string without_folders(const std::string &text) {

@@ -15,8 +15,8 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t first_calibrate_options = sizeof(lensprof_calibrate_options),
-                 first_calibration_info = sizeof(lensprof_calibration_info);
+constexpr size_t first_calibrate_options = LENSPROF_FIRST(lensprof_calibrate_options, key),
+                 first_calibration_info = LENSPROF_FIRST(lensprof_calibration_info, equalizes);
 
 // What is known of a key.
 StoreOptions store_of(const lensprof_profile_key &key) {
@@ -248,7 +248,7 @@ lensprof_status lensprof_calibration_finding_at(const lensprof_calibration *cali
         found.value_count = static_cast<uint32_t>(std::min(from.values.size(), std::size(found.value)));
         std::copy_n(from.values.begin(), found.value_count, found.value);
         set_text(found.text, sizeof found.text, from.text);
-        give(found, finding, sizeof found, "finding");
+        give(found, finding, LENSPROF_FIRST(lensprof_finding, text), "finding");
     });
 }
 

@@ -10,7 +10,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t first_correct_options = sizeof(lensprof_correct_options);
+constexpr size_t first_correct_options = LENSPROF_FIRST(lensprof_correct_options, dither);
 
 // By the profiles of databases: the falloff alone.
 std::vector<Correction> copies_by_profile(const std::vector<CopyNames> &names, const lensprof_correct_options &o) {

@@ -7,8 +7,8 @@ using namespace lensprof;
 
 namespace {
 
-constexpr size_t first_folder_options = sizeof(lensprof_folder_options),
-                 first_folder_result = sizeof(lensprof_folder_result);
+constexpr size_t first_folder_options = LENSPROF_FIRST(lensprof_folder_options, databases),
+                 first_folder_result = LENSPROF_FIRST(lensprof_folder_result, reserved);
 
 FolderOptions folder_options(const lensprof_folder_options &from) {
     FolderOptions o;

@@ -10,8 +10,9 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t first_info = sizeof(lensprof_picture_info), first_metadata = sizeof(lensprof_picture_metadata),
-                 first_options = sizeof(lensprof_picture_options);
+constexpr size_t first_info = LENSPROF_FIRST(lensprof_picture_info, icc_bytes),
+                 first_metadata = LENSPROF_FIRST(lensprof_picture_metadata, captured),
+                 first_options = LENSPROF_FIRST(lensprof_picture_options, metadata);
 
 // The path of bytes in memory names nothing for the caller.
 template <class Call>

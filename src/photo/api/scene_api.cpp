@@ -10,7 +10,8 @@ using namespace lensprof;
 
 namespace {
 
-constexpr size_t first_scene_options = sizeof(lensprof_scene_options), first_scene_info = sizeof(lensprof_scene_info);
+constexpr size_t first_scene_options = LENSPROF_FIRST(lensprof_scene_options, image_list),
+                 first_scene_info = LENSPROF_FIRST(lensprof_scene_info, links);
 
 }  // namespace
 

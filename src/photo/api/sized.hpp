@@ -2,12 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
 #include "photo/base/failure.hpp"
 
 namespace lensprof {
+
+// Bytes of a struct's first version, of which `member` was the last.
+#define LENSPROF_FIRST(type, member) (offsetof(type, member) + sizeof(type::member))
 
 // `smallest`: bytes of the struct's first version.
 template <class Struct>
