@@ -198,8 +198,14 @@ typedef struct lensprof_export_options {
     uint32_t dng_form;      /* opcodes: lensprof_dng_form */
     uint32_t curve;         /* curves: lensprof_curve */
     uint32_t pack;          /* blob: lensprof_pack flags */
-    double color_temperature_k; /* alsc; LENSPROF_UNKNOWN: the key's */
-    const char *name;           /* of the file, for AUTO; or NULL */
+    double color_temperature_k;          /* alsc; LENSPROF_UNKNOWN: the key's */
+    const char *name;                    /* of the file, for AUTO; or NULL */
+    const lensprof_camera_model *camera; /* lensfun: of the pictures, gives maker, mount and crop factor; or NULL */
+    const void *into;                    /* lensfun: into_size bytes of a database that the entries are added to; NULL:
+                                            a new one. All else of it stays as it is, byte for byte */
+    size_t into_size;
+    double *cost_ev; /* lensfun: one per profile, or NULL. Receives the largest |log2(profile / written)|, EV, of its
+                      * channels in the four corners of the frame, both relative to the middle of the frame */
 } lensprof_export_options;
 
 /* AUTO, layout RGB, opcode form chosen by its error, inverse curves. */

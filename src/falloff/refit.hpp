@@ -28,6 +28,12 @@ struct RadialRefit {
 };
 RadialRefit refit_radial(const std::function<double(double r2)> &attenuation, double reach = 1.0);
 
+// s (1 + k1 r^2 + ... + kn r^2n), n = `count` of 1..3, to attenuations at any points of a frame: its k, the others 0.
+struct FrameSample {
+    double r2, attenuation;
+};
+std::array<double, 3> refit_samples(const std::vector<FrameSample> &samples, int count);
+
 // Coefficients of r^2, r^4, r^6 for r in half diagonals, from those for r in `unit` half diagonals:
 // (rho / unit)^2n a_n = rho^2n a_n unit^-2n. Units: Hugin and Lensfun's pa 1; Lensfun's and Adobe's acm
 // focal_mm / half_diagonal_mm(crop_factor).

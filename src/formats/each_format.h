@@ -26,19 +26,19 @@ extern "C" {
 LENSPROF_MUST_USE lensprof_status lp_lensfun_read(const void *data, size_t size, const char *source,
                                                   lensprof_import_visitor visit, void *user, lensprof_error *error);
 
-/* Writes the falloffs of profiles as a database of version 1, which every Lensfun reads: model "pa", one <lens> per
- * lens and crop factor. Output as in base.h. Doubles round-trip exactly.
- *  - <maker> is the first word of key.lens, <model> all of it; the mount is Lensfun's "Generic".
- *  - Lensfun has one curve for all channels: the mean of three curves is written. Responses, covariances, units and
- *    provenance cannot be represented and are left out.
- *  - Infinite and unknown distances become 1000 m.
- *  - A centre is converted for 3:2 frames; Lensfun has one per lens.
+/* Writes the falloffs of profiles as a database of version 1, which every Lensfun reads, or adds them to that of
+ * options->into (options may be NULL): model "pa", one <lens> per lens and crop factor. Output as in base.h.
+ *  - Maker, model and mount as Lensfun writes them (formats/lensfun_names.hpp); "Generic" where no mount is known.
+ *  - Lensfun has one curve about the middle of the frame: the mean of three curves is written; a centre or gain grid is
+ *    fitted again without it, by least squares of the relative error over the frame (3:2 unless its size is given).
+ *  - k has 4 decimals. Infinite and unknown distances become 10 m and 1000 m.
+ *  - Entries are in the order of focal length, aperture, distance.
  * Errors (the text names the profile, counted from 0): ARGUMENT for an unknown lens, crop factor, focal length or
- * aperture, texts that are not UTF-8, two profiles of the same lens and setting, or different centres of one lens;
- * UNSUPPORTED for a gain grid or pictures corrected in camera; those of lensprof_profile_validate; CAPACITY;
- * MEMORY. */
+ * aperture, texts that are not UTF-8, or two profiles of the same lens and setting; UNSUPPORTED for pictures corrected
+ * in camera; those of lensprof_profile_validate; of `into` those of lp_lensfun_read; CAPACITY; MEMORY. */
 LENSPROF_MUST_USE lensprof_status lp_lensfun_write(const lensprof_profile *const *profiles, uint32_t profile_count,
-                                                   void *data, size_t capacity, size_t *count, lensprof_error *error);
+                                                   const lensprof_export_options *options, void *data, size_t capacity,
+                                                   size_t *count, lensprof_error *error);
 
 /* Writes profiles as printed by `lensprof profile show --json` (docs/json.md): one object for one profile, otherwise
  * {"schema": 1, "profiles": [...]}. Doubles, and the floats of gain grids, round-trip exactly; bytes of texts that are

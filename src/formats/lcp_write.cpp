@@ -67,6 +67,7 @@ void append_value(pugi::xml_node parent, const char *name, double value) {
 
 void LcpWriter::check_key(const lensprof_profile &profile, uint32_t index) {
     check_exported(profile, index, "a lens profile");
+    check_no_grid(profile, index, "a lens profile");
     const lensprof_profile_key &key = profile.key;
     for (const char *text : {key.camera_maker, key.camera_model})
         demand_of_profile(find_not_utf8(text) == std::strlen(text), index,

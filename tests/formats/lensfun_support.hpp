@@ -48,9 +48,10 @@ inline std::string write_lensfun(const std::vector<lensprof_profile> &profiles, 
     const auto count = static_cast<uint32_t>(profiles.size());
     size_t needed = 0;
     lensprof_error error;
-    lensprof_status result = lp_lensfun_write(pointers.data(), count, nullptr, 0, &needed, &error);
+    lensprof_status result = lp_lensfun_write(pointers.data(), count, nullptr, nullptr, 0, &needed, &error);
     std::string text(needed, '\0');
-    if (result == LENSPROF_OK) result = lp_lensfun_write(pointers.data(), count, text.data(), needed, &needed, &error);
+    if (result == LENSPROF_OK)
+        result = lp_lensfun_write(pointers.data(), count, nullptr, text.data(), needed, &needed, &error);
     if (status) *status = result;
     if (why) *why = error.text;
     return result == LENSPROF_OK ? text : "";

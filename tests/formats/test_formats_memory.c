@@ -87,7 +87,7 @@ static lensprof_status write_lensfun(world *w) {
     const lensprof_profile *const profiles[1] = {w->profile};
     char text[1000] = "untouched";
     size_t needed = 0;
-    lensprof_status status = lp_lensfun_write(profiles, 1, text, sizeof text, &needed, NULL);
+    lensprof_status status = lp_lensfun_write(profiles, 1, NULL, text, sizeof text, &needed, NULL);
     assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
     return status;
 }

@@ -502,6 +502,10 @@ static void print_structs(void) {
     FIELD(lensprof_export_options, pack);
     FIELD(lensprof_export_options, color_temperature_k);
     FIELD(lensprof_export_options, name);
+    FIELD(lensprof_export_options, camera);
+    FIELD(lensprof_export_options, into);
+    FIELD(lensprof_export_options, into_size);
+    FIELD(lensprof_export_options, cost_ev);
     STRUCT(lensprof_rendering_shot);
     FIELD(lensprof_rendering_shot, struct_size);
     FIELD(lensprof_rendering_shot, width);

@@ -43,7 +43,7 @@ BYTES(pto_write, lensprof_pto_write(pto, b, capacity, count, error))
 BYTES(exposures_write,
       lensprof_exposures_write(&exposures, &one_camera, &one_lens, &one_image, b, capacity, count, error))
 BYTES(points_write, lensprof_points_write(&one_pair, 1, cameras, 2, b, capacity, count, error))
-BYTES(lensfun_write, lp_lensfun_write(profiles, 1, b, capacity, count, error))
+BYTES(lensfun_write, lp_lensfun_write(profiles, 1, NULL, b, capacity, count, error))
 BYTES(json_write, lp_json_write(profiles, 1, b, capacity, count, error))
 BYTES(lcp_write, lp_lcp_write(profiles, 1, 0, 0, b, capacity, count, error))
 BYTES(pcalib_write, lp_pcalib_write(&here.linear, b, capacity, count, error))

@@ -1160,6 +1160,10 @@ class ExportOptions(Structure):
         ("pack", c_uint32),
         ("color_temperature_k", c_double),
         ("name", c_char_p),
+        ("camera", POINTER(CameraModel)),
+        ("into", c_void_p),
+        ("into_size", c_size_t),
+        ("cost_ev", POINTER(c_double)),
     ]
 
 

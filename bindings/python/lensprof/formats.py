@@ -7,7 +7,8 @@ from __future__ import annotations
 import math
 import os
 import pathlib
-from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, create_string_buffer, pointer
+from ctypes import (POINTER, byref, c_double, c_float, c_size_t, c_uint32, c_void_p, cast, create_string_buffer,
+                    pointer)
 from typing import TYPE_CHECKING, Any, Callable, Iterable, NamedTuple, Optional, Sequence, TypedDict, TypeVar, Union
 
 import numpy as np
@@ -450,7 +451,9 @@ def write_map(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int
 
 class WriteOptions(TypedDict, total=False):
     """How profiles are written. format: Format.AUTO = by the name. frame, tables: as for read_profiles; rows of curves
-    are tables[1]. layout, form: of opcodes. curve: of curves. covariance: of a blob. color_temperature_k: of alsc."""
+    are tables[1]. layout, form: of opcodes. curve: of curves. covariance: of a blob. color_temperature_k: of alsc.
+    camera: of Lensfun's files, gives maker, mount and crop factor. into: a Lensfun database, to which the profiles are
+    added."""
 
     format: Format
     frame: tuple[int, int]
@@ -460,6 +463,8 @@ class WriteOptions(TypedDict, total=False):
     curve: CurveKind
     covariance: bool
     color_temperature_k: float
+    camera: CameraModel
+    into: Source
 
 
 class FormatInfo(NamedTuple):
@@ -522,7 +527,8 @@ def write_profiles(path: PathLike, profiles: Iterable[Profile], **options: Unpac
 def encode_profiles(profiles: Iterable[Profile], name: str = "", *, format: Format = Format.AUTO,
                     frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0), layout: Layout = Layout.RGB,
                     form: DngForm = DngForm.AUTO, curve: CurveKind = CurveKind.INVERSE, covariance: bool = False,
-                    color_temperature_k: float = _abi.UNKNOWN) -> bytes:
+                    color_temperature_k: float = _abi.UNKNOWN, camera: Optional[CameraModel] = None,
+                    into: Optional[Source] = None) -> bytes:
     """The same as bytes; name: of the file, whose ending selects the format."""
     for other in Format:
         if other and not format and info(other).name == name:
@@ -533,4 +539,9 @@ def encode_profiles(profiles: Iterable[Profile], name: str = "", *, format: Form
     options.columns, options.rows = (integer(side, "tables") for side in tables)
     options.dng_form, options.pack = int(DngForm(form)), int(Pack.COVARIANCE) if covariance else 0
     options.color_temperature_k, options.name = color_temperature_k, text
+    if camera is not None:
+        options.camera = pointer(_abi.CameraModel.from_buffer(camera))
+    content = create_string_buffer(b"" if into is None else _content(into))
+    if into is not None:
+        options.into, options.into_size = cast(content, c_void_p), len(content) - 1
     return _database(lib.lensprof_export, profiles, (byref(options),), "the file cannot be written")

@@ -16,19 +16,23 @@
 #include "cli/report/report.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/key_filter.hpp"
+#include "photo/calibration/lens_file.hpp"
 #include "photo/pictures/picture.hpp"
 
 namespace lensprof {
 namespace {
+
+constexpr double noted_cost_ev = 0.02;  // of a format that cannot hold all of a falloff
 
 struct ExportOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
     ForeignOptions foreign;
     std::vector<std::string> dbs;
-    std::string output, format;
+    std::string output, format, into;
     double crop_factor = LENSPROF_UNKNOWN;
     bool covariance = false, all = false, json = false, split = false;
 };
@@ -42,6 +46,8 @@ void declare(Command &command, ExportOptions &o) {
     command.expert().flag(
         "--split", o.split,
         "write one file per lens, or per profile if the format holds only one, into the folder -o; needs --format");
+    command.expert().file("--into", o.into,
+                          "Lensfun database to which the entries are added; -o receives the whole, the file stays");
     declare_foreign(command, o.foreign, true)
         .flag("covariance", o.covariance, "write the covariance into a blob too, which cameras do not need");
     declare_listed_databases(command, o.dbs, "; ids and --all refer to the first, filters to the first with a match");
@@ -135,6 +141,16 @@ void export_split(const ExportOptions &o, const ForeignRule &rule, const std::ve
                streams.out);
 }
 
+void note_costs(const LensFileCost &cost, const std::vector<std::string> &names, Streams &streams) {
+    for (const std::string &camera : cost.unknown_cameras)
+        note(streams, (camera.empty() ? "camera unknown" : camera + ": not in the table of cameras")
+                          + std::string("; mount and maker are taken from the names of the lenses, or Generic"));
+    for (size_t i = 0; i < cost.ev.size(); i++)
+        if (cost.ev[i] > noted_cost_ev)
+            note(streams, names[i] + ": written about the middle of the frame as one curve, which is off by up to "
+                              + format("%.2f EV in a corner", cost.ev[i]));
+}
+
 void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
                     Streams &streams) {
     std::vector<const lensprof_profile *> profiles;
@@ -145,11 +161,19 @@ void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::
         profiles.push_back(stored.profile.get()), ids.push_back(stored.id);
         names.push_back("profile " + std::to_string(stored.id));
     }
-    write_foreign(rule, o.output, o.foreign, profiles, names);
+    Json result{{"schema", json_schema}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}};
+    if (rule.format == LENSPROF_FORMAT_LENSFUN) {
+        LensFileCost cost;
+        const std::string text = lens_file_text(profiles, o.dbs, o.into, cost, names);
+        write_file(o.output, text.data(), text.size());
+        note_costs(cost, names, streams);
+        result["cost_ev"] = cost.ev;
+    } else {
+        write_foreign(rule, o.output, o.foreign, profiles, names);
+    }
     note_means(rule, o, chosen, streams);
     if (o.json)
-        print_json(Json{{"schema", json_schema}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}},
-                   streams.out);
+        print_json(result, streams.out);
     else
         streams.out << format("wrote %s: %zu profile%s as %s\n", o.output.c_str(), chosen.size(),
                               chosen.size() == 1 ? "" : "s", rule.name);
@@ -158,6 +182,8 @@ void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::
 int run(ExportOptions &o, Streams &streams) {
     check_options(o);
     const ForeignRule &rule = format_to_write(o.output, o.format);
+    if (!o.into.empty() && (rule.format != LENSPROF_FORMAT_LENSFUN || o.split))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "profile export: --into needs a single file of --format lensfun");
     if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "profile export: --encoding covariance=yes needs --format blob; add it, or omit the covariance");

@@ -73,7 +73,7 @@ lensprof_status write_many(const lensprof_profile *const *profiles, uint32_t pro
     size_t size = 0;
     const auto write = [&](void *data, size_t capacity, size_t *count) {
         if (o.format == LENSPROF_FORMAT_LENSFUN)
-            return lp_lensfun_write(profiles, profile_count, data, capacity, count, out.error);
+            return lp_lensfun_write(profiles, profile_count, &o, data, capacity, count, out.error);
         if (o.format == LENSPROF_FORMAT_LCP)
             return lp_lcp_write(profiles, profile_count, o.width, o.height, data, capacity, count, out.error);
         return lp_json_write(profiles, profile_count, data, capacity, count, out.error);

@@ -20,11 +20,15 @@ void check_exported(const lensprof_profile &profile, uint32_t index, const std::
     demand(key.crop_factor != LENSPROF_UNKNOWN, "its crop factor is unknown; set key.crop_factor");
     demand(key.focal_mm != LENSPROF_UNKNOWN, "its focal length is unknown; set key.focal_mm");
     demand(key.aperture != LENSPROF_UNKNOWN, "its aperture is unknown; set key.aperture");
-    demand(profile.grid.columns == 0, "has a gain grid, which " + format + " cannot hold; fit only a radial falloff",
-           LENSPROF_ERROR_UNSUPPORTED);
     demand(key.processing != LENSPROF_PROCESSING_CORRECTED,
            "is for pictures corrected in camera, which " + format + " does not correct; leave it out",
            LENSPROF_ERROR_UNSUPPORTED);
+}
+
+void check_no_grid(const lensprof_profile &profile, uint32_t index, const std::string &format) {
+    demand_of_profile(profile.grid.columns == 0, index,
+                      "has a gain grid, which " + format + " cannot hold; fit only a radial falloff",
+                      LENSPROF_ERROR_UNSUPPORTED);
 }
 
 std::array<double, 3> mean_curve(const lensprof_profile &profile) {
