@@ -15,6 +15,9 @@
  *     E = sum_i w_i g(B_i) / t_i  /  sum_i w_i,
  * and the falloff is fitted to the result (equation 14):
  *     sum over cells of ( E - t L0 M(r) )^2,        M(0) = 1.
+ * M is a polynomial in r^2 or, where this fits far better, as for deep falloffs, the exponential of one; the profile
+ * then holds the nearest polynomial, and a gain grid the rest. What lies beyond the image circle is left out.
+ *
  * Beyond the paper: cells are weighted by their noise, outliers are down-weighted, channels get curves of their own if
  * they differ, the centre is free, the gradient of the light is estimated, and the result has a covariance and
  * findings.
@@ -66,15 +69,16 @@ static inline void lensprof_flat_image_init(lensprof_flat_image *image) {
 }
 
 typedef enum lensprof_flat_light {
-    LENSPROF_FLAT_LIGHT_AUTO = 0,     /* PLANE; EVEN for a card at several places */
+    LENSPROF_FLAT_LIGHT_AUTO = 0,     /* PLANE; EVEN for a card at several places, and for shots at one angle that an
+                                         even light and a lens a little off centre describe as well */
     LENSPROF_FLAT_LIGHT_EVEN = 1,     /* the light is even: all asymmetry is due to the centre of the lens */
     LENSPROF_FLAT_LIGHT_PLANE = 2,    /* the logarithm of the light is a plane over the scene, one per channel */
     LENSPROF_FLAT_LIGHT_QUADRATIC = 3 /* PLANE plus the two second-order terms that no falloff has: x^2 - y^2 and xy */
 } lensprof_flat_light;
 
 typedef enum lensprof_flat_grid {
-    LENSPROF_FLAT_GRID_AUTO = 0, /* if the polynomial leaves more than 0.3 % (rms) */
-    LENSPROF_FLAT_GRID_NONE = 1,
+    LENSPROF_FLAT_GRID_AUTO = 0, /* if the falloff leaves more than 0.3 % (rms), or is not a polynomial in r^2 */
+    LENSPROF_FLAT_GRID_NONE = 1, /* the falloff is then the polynomial nearest to the pictures */
     LENSPROF_FLAT_GRID_ALWAYS = 2
 } lensprof_flat_grid;
 
@@ -166,11 +170,18 @@ typedef struct lensprof_flat_result {
                               single shot, the light may be uneven instead) */
     double shot_residual;  /* coarser, different in each shot: the light does not follow the model; 0 for one shot */
     double inlier_share;   /* share of cells within 3 sigma */
-    double corner_sigma;   /* standard error of M at r = 1 */
+    double corner_sigma;   /* standard error of the falloff at r = 1, or at the edge if there is one */
     double grid_residual;  /* what falloff and grid together leave of frame_residual; 0 without a grid */
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lensprof_gain_grid gain_grid; /* residual of the polynomial: the attenuation is M times this grid, which is 1 at the
                                      centre of M. 0 x 0 if not requested, or if the pictures do not constrain it */
+    double corner;                /* M times grid: mean of the corners and channels; with an edge, the mean along it */
+    double edge_radius; /* where the image circle, or something in front of the lens, ends the data: half diagonals from
+                           the middle of the frame; 0 = the data end with the frame */
+    double edge_share;  /* share of the frame beyond the edge, which was left out */
+    double light_ev;    /* largest change of the falloff in a corner if the light were stated to be even (PLANE was
+                           chosen) or a plane (EVEN was chosen), EV; 0 if the light was not chosen by the data */
+    double polynomial_error; /* largest relative error of M without the grid, where the falloff is not a polynomial */
 } lensprof_flat_result;
 
 /* An empty result. */

@@ -73,19 +73,22 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FEW_IMAGES = 411,       /* images of a moving camera; images needed */
 
     /* Flat fields. */
-    LENSPROF_REASON_FLAT_WHITE = 501,          /* shot: share of the card */
-    LENSPROF_REASON_FLAT_BLACK = 502,          /* shot: share of the card */
-    LENSPROF_REASON_FLAT_NO_CARD = 503,        /* shot */
-    LENSPROF_REASON_FLAT_FEW_CELLS = 504,      /* cells */
-    LENSPROF_REASON_FLAT_RESPONSE = 505,       /* image: d ln irradiance / d ln grey */
-    LENSPROF_REASON_FLAT_EXPOSURE_WRONG = 506, /* image: distance, EV */
-    LENSPROF_REASON_FLAT_TEXTURE = 507,        /* share of the light */
-    LENSPROF_REASON_FLAT_SHOTS_DIFFER = 508,   /* share of the light */
-    LENSPROF_REASON_FLAT_STEEP = 509,          /* shot: share of the light per half diagonal */
-    LENSPROF_REASON_FLAT_NOT_RADIAL = 510,     /* share of the light that is not radial; with a gain grid, the share
-                                                  that it leaves */
-    LENSPROF_REASON_FLAT_CENTER_BY_PRIOR = 511,
-    LENSPROF_REASON_FLAT_DUST = 512, /* spots */
+    LENSPROF_REASON_FLAT_WHITE = 501,           /* shot: share of the card */
+    LENSPROF_REASON_FLAT_BLACK = 502,           /* shot: share of the card */
+    LENSPROF_REASON_FLAT_NO_CARD = 503,         /* shot */
+    LENSPROF_REASON_FLAT_FEW_CELLS = 504,       /* cells */
+    LENSPROF_REASON_FLAT_RESPONSE = 505,        /* image: d ln irradiance / d ln grey */
+    LENSPROF_REASON_FLAT_EXPOSURE_WRONG = 506,  /* image: distance, EV */
+    LENSPROF_REASON_FLAT_TEXTURE = 507,         /* share of the light; error of the falloff in the corner */
+    LENSPROF_REASON_FLAT_SHOTS_DIFFER = 508,    /* share of the light */
+    LENSPROF_REASON_FLAT_STEEP = 509,           /* shot: share of the light per half diagonal */
+    LENSPROF_REASON_FLAT_NOT_RADIAL = 510,      /* share of the light that is not radial; with a gain grid, the share
+                                                   that it leaves */
+    LENSPROF_REASON_FLAT_CENTER_BY_PRIOR = 511, /* change of the falloff in a corner with the other light, EV */
+    LENSPROF_REASON_FLAT_DUST = 512,            /* spots; standard error of the falloff in the corner */
+    LENSPROF_REASON_FLAT_EDGE = 513,            /* radius, half diagonals; share of the frame beyond it */
+    LENSPROF_REASON_FLAT_ONE_LIGHT = 514,
+    LENSPROF_REASON_FLAT_NEEDS_GRID = 515, /* relative error of k1..k3 without the gain grid */
 
     /* Lookups of profiles; from 651 on, the profile was found. */
     LENSPROF_REASON_LOOKUP_NO_LENS = 601,

@@ -4,22 +4,18 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "falloff/refit.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double kDark = 0.05;        // of the largest value: the noise of a coded picture reaches .02
-constexpr double kBright = 2.5;       // times that, on the other side of an edge; a falloff rises less within kEdge
-constexpr uint32_t kEdge = 3;         // least number of values that are means of both sides
-constexpr double kDarkShare = 0.01;   // of a map, below which dark values are specks
-constexpr uint32_t kLeastSide = 48;   // of a map that shows an edge
-constexpr double kRoundShare = 0.95;  // of an outline within kOffCircle values of a circle
-constexpr double kOffCircle = 1.5;
-constexpr double kFarthestCircle = 0.5;  // of a circle, half diagonals: a straight outline is not one
-constexpr double kMiddle = 0.05;         // how far from the middle that of a rectangle may be, half diagonals
+constexpr double kDark = 0.05;       // of the largest value: the noise of a coded picture reaches .02
+constexpr double kBright = 2.5;      // times that, on the other side of an edge; a falloff rises less within kEdge
+constexpr uint32_t kEdge = 3;        // least number of values that are means of both sides
+constexpr double kDarkShare = 0.01;  // of a map, below which dark values are specks
+constexpr uint32_t kLeastSide = 48;  // of a map that shows an edge
+constexpr double kOffCircle = 1.5;   // values between an outline and its circle
+constexpr double kMiddle = 0.05;     // how far from the middle that of a rectangle may be, half diagonals
 
 using Mask = std::vector<uint8_t>;
 
@@ -99,11 +95,12 @@ std::vector<double> ends_of(uint32_t length, IsDark is_dark) {
     return ends;
 }
 
-// Places of the outline in the frame, px, found along rows and columns.
+// Places of the outline in the frame, half diagonals from its middle, found along rows and columns.
 Points outline(const FalloffMap &map, const Mask &dark) {
     Points points;
-    const auto x_at = [&](double i) { return map.x0 + i * map.dx; };
-    const auto y_at = [&](double j) { return map.y0 + j * map.dy; };
+    const double half = lensprof_half_diagonal(map.width, map.height);
+    const auto x_at = [&](double i) { return (map.x0 + i * map.dx - (map.width - 1.0) / 2.0) / half; };
+    const auto y_at = [&](double j) { return (map.y0 + j * map.dy - (map.height - 1.0) / 2.0) / half; };
     for (uint32_t j = 0; j < map.rows; j++)
         for (const double end : ends_of(map.columns, [&](uint32_t i) { return dark[size_t(j) * map.columns + i]; }))
             points.push_back({x_at(end), y_at(j)});
@@ -111,31 +108,6 @@ Points outline(const FalloffMap &map, const Mask &dark) {
         for (const double end : ends_of(map.rows, [&](uint32_t j) { return dark[size_t(j) * map.columns + i]; }))
             points.push_back({x_at(i), y_at(end)});
     return points;
-}
-
-// Least squares of |p|^2 = 2 a.p + b (Kasa 1976): the centre a, and b + |a|^2 the squared radius.
-std::optional<Circle> circle_through(const FalloffMap &map, const Points &points) {
-    if (points.size() < 16) return std::nullopt;
-    const double half = lensprof_half_diagonal(map.width, map.height);
-    const auto place = [&](const std::array<double, 2> &p) {
-        return Eigen::Vector2d((p[0] - (map.width - 1.0) / 2.0) / half, (p[1] - (map.height - 1.0) / 2.0) / half);
-    };
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (const auto &point : points) {
-        const Eigen::Vector2d p = place(point);
-        const Eigen::Vector3d row(2.0 * p[0], 2.0 * p[1], 1.0);
-        normal += row * row.transpose(), right += row * p.squaredNorm();
-    }
-    const Eigen::Vector3d found = normal.ldlt().solve(right);
-    const Eigen::Vector2d center = found.head<2>();
-    const double radius = std::sqrt(found[2] + center.squaredNorm());
-    const double slack = kOffCircle * std::max(map.dx, map.dy) / half;
-    const auto is_near = [&](const auto &point) { return std::fabs((place(point) - center).norm() - radius) <= slack; };
-    const auto near = static_cast<double>(std::count_if(points.begin(), points.end(), is_near));
-    if (!(near >= kRoundShare * static_cast<double>(points.size())) || !(center.norm() <= kFarthestCircle))
-        return std::nullopt;
-    return Circle{{center[0], center[1]}, radius};
 }
 
 // The median of the values next to the dark ones, of the largest of their channel.
@@ -215,7 +187,8 @@ KnownArea drop_surround(FalloffMap &map) {
         unknown = grown(map, known, edge);
         for (size_t i = 0; i < unknown.size(); i++) empty[i] |= dark[i], unknown[i] = dark[i] || !unknown[i];
     }
-    const std::optional<Circle> circle = circle_through(map, outline(map, unknown));
+    const double slack = kOffCircle * std::max(map.dx, map.dy) / lensprof_half_diagonal(map.width, map.height);
+    const std::optional<Circle> circle = circle_through(outline(map, unknown), slack);
     for (size_t i = 0; i < unknown.size(); i++) unknown[i] |= empty[i];
     const Mask inside = circle ? inside_circle(map, *circle, edge) : inside_box(map, unknown);
     return {circle, share(empty, Mask(empty.size(), 1)), share(unknown, inside)};

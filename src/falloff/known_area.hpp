@@ -3,14 +3,10 @@
 
 #include <optional>
 
+#include "falloff/circle.hpp"
 #include "falloff/map_fit.hpp"
 
 namespace lensprof {
-
-// Half diagonals of the frame, from its middle.
-struct Circle {
-    double center[2], radius;
-};
 
 struct KnownArea {
     std::optional<Circle> circle;  // if what is known is one, or the part of one within the frame

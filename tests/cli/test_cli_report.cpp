@@ -193,7 +193,7 @@ void test_flat(void **) {
     const Json &images = page["result"]["images"];
     assert_true(images.size() == 1 && contains(images[0]["file"], "card.png") && page["result"]["gain_grid"].is_null());
     assert_true(page["verdict"]["level"] == "good" && page["verdict"]["details"].empty());
-    assert_true(contains(page["verdict"]["notes"].dump(), "the centre depends on its prior"));
+    assert_true(contains(page["verdict"]["notes"].dump(), "of the light from the centre"));
     must_exit(done, flat + Words{"--report", work("r.html"), "--card", "40,30,240,180"});
     const Json part = data_of(work("r.html"))["verdict"];  // a warning
     assert_true(part["level"] == "warn" && contains(part["details"].dump(), "extrapolated"));

@@ -75,6 +75,15 @@ struct FlatPictures {
         for (auto &v : vignetting) v.center[0] = x, v.center[1] = y;
     }
 
+    // The falloff is one of the radius, half diagonals from a centre.
+    void set_falloff(double center_x, double center_y, const std::function<double(double r)> &m) {
+        const double half = 0.5 * std::hypot(width, height), w = width, h = height;
+        for (auto &v : vignetting) v = {{0.0, 0.0, 0.0}, {0.0, 0.0}};
+        defect = [=](double x, double y, uint32_t) {
+            return m(std::hypot((x - 0.5 * (w - 1.0)) / half - center_x, (y - 0.5 * (h - 1.0)) / half - center_y));
+        };
+    }
+
     // The light that reaches a pixel, falloff included.
     double light(double x, double y, uint32_t channel, double rotation_deg) const {
         double half = 0.5 * std::hypot(width, height), turn = rotation_deg * 3.14159265358979 / 180.0;
@@ -153,6 +162,33 @@ struct FlatPictures {
         return result;
     }
 };
+
+// M times grid of a result at a place, relative to that in the middle of the frame.
+inline double found_falloff(const lensprof_flat_result &r, const FlatPictures &p, double x, double y, uint32_t c = 1) {
+    const auto at = [&](double px, double py) {
+        const double r2 = lensprof_vignetting_r2(&r.vignetting[c], p.width, p.height, px, py, nullptr);
+        const double m = lensprof_vignetting_eval(&r.vignetting[c], r2, nullptr);
+        return r.gain_grid.columns ? m * lensprof_gain_grid_eval(&r.gain_grid, p.width, p.height, px, py, c) : m;
+    };
+    return at(x, y) / at(0.5 * (p.width - 1.0), 0.5 * (p.height - 1.0));
+}
+
+// Half diagonals from the middle of the frame.
+inline double radius_at(const FlatPictures &p, double x, double y) {
+    return std::hypot(x - 0.5 * (p.width - 1.0), y - 0.5 * (p.height - 1.0)) / (0.5 * std::hypot(p.width, p.height));
+}
+
+// Largest difference of a result from the light of its pictures, within a radius.
+inline double largest_error(const lensprof_flat_result &r, const FlatPictures &p, double radius = 2.0) {
+    const double middle = p.light(0.5 * (p.width - 1.0), 0.5 * (p.height - 1.0), 1, 0.0);
+    double worst = 0.0;
+    for (uint32_t i = 0; i < 900; i++) {
+        const double x = (i % 30) * (p.width - 1.0) / 29.0, y = (i / 30) * (p.height - 1.0) / 29.0;
+        if (radius_at(p, x, y) > radius) continue;
+        worst = std::fmax(worst, std::fabs(found_falloff(r, p, x, y) - p.light(x, y, 1, 0.0) / middle));
+    }
+    return worst;
+}
 
 // Largest difference between two falloffs over the frame.
 inline double falloff_error(const lensprof_vignetting &a, const lensprof_vignetting &b, uint32_t width,

@@ -7,8 +7,9 @@ using namespace lensprof;
 
 static void derivatives_are_those_of_central_differences(void **) {
     uint64_t random = 3;
-    for (int variant = 0; variant < 8; variant++) {
+    for (int variant = 0; variant < 16; variant++) {
         FlatModel model;
+        model.form = variant & 8 ? FalloffForm::logarithm : FalloffForm::powers;
         model.grid = {600, 400, 96, 64};
         model.curves = variant & 1 ? 3 : 1;
         model.own_light = (variant & 2) != 0;

@@ -438,6 +438,11 @@ static void print_structs(void) {
     FIELD(lensprof_flat_result, grid_residual);
     FIELD(lensprof_flat_result, covariance);
     FIELD(lensprof_flat_result, gain_grid);
+    FIELD(lensprof_flat_result, corner);
+    FIELD(lensprof_flat_result, edge_radius);
+    FIELD(lensprof_flat_result, edge_share);
+    FIELD(lensprof_flat_result, light_ev);
+    FIELD(lensprof_flat_result, polynomial_error);
     STRUCT(lensprof_pto_image);
     FIELD(lensprof_pto_image, struct_size);
     FIELD(lensprof_pto_image, response_type);
@@ -935,6 +940,9 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_FLAT_NOT_RADIAL);
     VALUE(LENSPROF_REASON_FLAT_CENTER_BY_PRIOR);
     VALUE(LENSPROF_REASON_FLAT_DUST);
+    VALUE(LENSPROF_REASON_FLAT_EDGE);
+    VALUE(LENSPROF_REASON_FLAT_ONE_LIGHT);
+    VALUE(LENSPROF_REASON_FLAT_NEEDS_GRID);
     VALUE(LENSPROF_REASON_LOOKUP_NO_LENS);
     VALUE(LENSPROF_REASON_LOOKUP_NO_CAMERA);
     VALUE(LENSPROF_REASON_LOOKUP_OTHER_PROCESSING);

@@ -228,6 +228,9 @@ class Reason(IntEnum):
     FLAT_NOT_RADIAL = 510
     FLAT_CENTER_BY_PRIOR = 511
     FLAT_DUST = 512
+    FLAT_EDGE = 513
+    FLAT_ONE_LIGHT = 514
+    FLAT_NEEDS_GRID = 515
     LOOKUP_NO_LENS = 601
     LOOKUP_NO_CAMERA = 602
     LOOKUP_OTHER_PROCESSING = 603
@@ -1062,6 +1065,11 @@ class FlatResult(Structure):
         ("grid_residual", c_double),
         ("covariance", c_double * 1296),
         ("gain_grid", GainGrid),
+        ("corner", c_double),
+        ("edge_radius", c_double),
+        ("edge_share", c_double),
+        ("light_ev", c_double),
+        ("polynomial_error", c_double),
     ]
 
 

@@ -86,7 +86,9 @@ class FlatResult(WithFindings, Struct, _abi.FlatResult):
     that hold. vignetting: tuple of 1 (all channels)
     or 3. separated: the pictures tell the light's gradient from the centre. spot: dust, FLAT_SPOT_DTYPE.
     radius: largest r of a cell used. noise, residual, texture, frame_residual, shot_residual, grid_residual: of a cell.
-    corner_sigma: standard error of M at r = 1. gain_grid: what the polynomial leaves. covariance: n x n as in Profile.
+    corner: M times grid in the corners, or along the edge if there is one; corner_sigma: its standard error. edge_radius,
+    edge_share: where the image circle ends, half diagonals (0: with the frame), and the share of the frame beyond it.
+    light_ev: change in a corner for another model of the light, EV. polynomial_error: largest, of M without the grid. gain_grid: what the polynomial leaves. covariance: n x n as in Profile.
     image_quality: what every picture gave, FLAT_QUALITY_DTYPE.
     """
 
@@ -108,6 +110,11 @@ class FlatResult(WithFindings, Struct, _abi.FlatResult):
     shot_residual: float = default
     inlier_share: float = default
     corner_sigma: float = default
+    corner: float = default
+    edge_radius: float = default
+    edge_share: float = default
+    light_ev: float = default
+    polynomial_error: float = default
     grid_residual: float = default
     covariance_size: int = default
     covariance: Covariance = Covariance()

@@ -45,7 +45,7 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
                  {"plane", LENSPROF_FLAT_LIGHT_PLANE},
                  {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
                 "model of the light on the card: even, plane, quadratic or auto (default: plane, or even with "
-                "--several)");
+                "--several or where it fits as well)");
     keys.flag("own-light", o.own_light, "estimate the light per shot, instead of one for all shots");
     keys.choice("falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
                 "number of falloff curves: 1, 3 (one per channel) or auto (default: 3 if they clearly differ)");
@@ -54,7 +54,8 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
     keys.choice(
         "grid", o.grid,
         {{"auto", LENSPROF_FLAT_GRID_AUTO}, {"none", LENSPROF_FLAT_GRID_NONE}, {"always", LENSPROF_FLAT_GRID_ALWAYS}},
-        "gain grid for the non-radial part: auto (default: if 0.3 % or more remain), none or always");
+        "gain grid for what k1..k3 leave: auto (default: if 0.3 % or more remain, or for a deep falloff), none or "
+        "always");
     keys.number("black", o.black, {0.0, 1.0}, "ignore grey values below this, 0 to 1; default 2/255");
     keys.number("white", o.white, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
     declare_max_side(keys, o.max_side);

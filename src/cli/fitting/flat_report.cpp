@@ -108,7 +108,11 @@ Json flat_json(const FlatReport &report) {
                         {"shot", fit.shot_residual},
                         {"with_grid", fit.gain_grid.columns ? Json(fit.grid_residual) : Json()},
                         {"inlier_share", fit.inlier_share}};
+    json["corner"] = fit.corner;
     json["corner_sigma"] = fit.corner_sigma;
+    json["edge"] = fit.edge_radius > 0.0 ? Json{{"radius", fit.edge_radius}, {"share", fit.edge_share}} : Json();
+    json["light_ev"] = fit.light_ev;
+    json["polynomial_error"] = fit.polynomial_error;
     json["spot_count"] = fit.spots;
     json["spots"] = spots_json(fit);
     json["gain_grid"] = grid_json(fit.gain_grid);
@@ -133,9 +137,12 @@ void print_flat(const FlatReport &report, std::ostream &out) {
         "%% inliers of %u cells\n",
         100.0 * fit.residual, 100.0 * fit.noise, 100.0 * fit.texture, 100.0 * fit.frame_residual,
         100.0 * fit.shot_residual, 100.0 * fit.inlier_share, fit.cells);
-    if (fit.gain_grid.columns)
-        out << format("grid      %u x %u nodes for the non-radial part: %.2f %% remain\n", fit.gain_grid.columns,
+    if (fit.gain_grid.columns) {
+        out << format("corner    %.4f +- %.4f of the light in the middle, with the grid\n", fit.corner,
+                      fit.corner_sigma);
+        out << format("grid      %u x %u nodes for what k1..k3 leave: %.2f %% remain\n", fit.gain_grid.columns,
                       fit.gain_grid.rows, 100.0 * fit.grid_residual);
+    }
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!fit.usable) out << "NOT USABLE: " << report.verdict.headline() << "\n";

@@ -1,6 +1,10 @@
 // The flat field fit, from pictures to verdict.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <vector>
+
 #include "fit/flat/solver.hpp"
 #include "fit/verdict/finding.hpp"
 
@@ -12,18 +16,47 @@ struct FlatResult : lensprof_flat_result {
     Findings verdict;
 };
 
-// All data of one call.
-struct FlatFit {
+// The end of the image circle in the frame, or what covers its corners.
+struct FlatEdge {
+    double radius = 0.0;        // of its circle, or of the nearest dark place; half diagonals, 0: none
+    double inner = 0.0;         // up to which there are cells
+    double share = 0.0;         // of the frame's cells, left out
+    std::vector<bool> outside;  // per cell
+};
+
+// One light and falloff, fitted.
+struct FlatSolution {
+    FlatProblem problem;
+    FlatEstimate estimate;
+    Eigen::MatrixXd covariance;  // empty if not determined
+};
+
+// What a profile holds of the falloff: k1..k3 of the curves and the centre, and their covariance (empty if not
+// determined). Where the form of the model is another, they are those nearest to it.
+struct HeldFalloff {
+    std::array<lensprof_vignetting, 3> curve;
+    Eigen::MatrixXd covariance;
+    bool is_whole = true;  // else a grid has to carry the rest
+    double left = 0.0;     // largest |k1..k3 / M - 1| within the data
+};
+
+// r^2 of the outermost corner of a solution's cells, from the centre of its falloff.
+double data_reach(const CellGrid &grid, const FlatSolution &solution);
+
+// All data of one call; the solution is the last one.
+struct FlatFit : FlatSolution {
     const lensprof_flat_options &options;
     const lensprof_flat_image *images;
     uint32_t count;
     CellGrid grid;
-    std::vector<CellPicture> pictures;
-    std::vector<Shot> shots;
-    std::vector<std::vector<bool>> left_out;  // per shot: cells with dust
-    FlatProblem problem;
-    FlatEstimate estimate;
-    Eigen::MatrixXd covariance;  // empty if not determined
+    std::vector<CellPicture> pictures{};
+    std::vector<Shot> shots{};
+    std::vector<std::vector<bool>> left_out{};  // per shot: cells with dust
+    FlatEdge edge{};
+    uint32_t light = LENSPROF_FLAT_LIGHT_PLANE;  // the model in use
+    std::optional<FlatSolution> other{};         // if the light was chosen: the fit with the one not chosen,
+    double light_ev = 0.0;                       // and its largest difference in a corner
+    HeldFalloff held{};
 };
 
 // Throws Cancelled. False if no cell lies between black and white.
@@ -34,11 +67,27 @@ bool fit_flat(const lensprof_flat_options &options, const lensprof_flat_image *i
 // cells without a residual. With `dust`, includes the cells that are left out.
 std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, const lensprof_gain_grid *gain, bool dust);
 
+// Looks for a dark surround in a shot, such as the corners outside of an image circle.
+FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot);
+
+// Fills `held`, and sets where the model's falloff ends.
+void hold_falloff(FlatFit &fit);
+
+// M of a channel at a place that the profile's k1..k3 give, over M of the model, continued beyond the data.
+double held_ratio(const FlatFit &fit, int channel, double x, double y);
+
+// Coarse residual of the model that all shots have in common, share of the light.
+double frame_residual(const FlatFit &fit);
+
+// The largest r^2 of the data up to the corner, where errors are stated.
+double corner_r2(const FlatModel &model);
+
 // Looks for small dark spots. Adds their cells and the cells around them to left_out, and fills the result's spots.
 void find_spots(FlatFit &fit, FlatResult &result);
 
-// Fits a grid of nodes to the residual of the falloff common to all shots; false if the cells do not cover the frame.
-bool fit_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);
+// Fits a grid of nodes to what k1..k3 leave: of the model's falloff and, with `residual`, of the light common to all
+// shots. False if the cells do not cover the frame within the edge.
+bool fit_gain_grid(const FlatFit &fit, bool residual, lensprof_gain_grid &gain);
 
 // Scales the grid to 1 at the centre of M, where M is 1 as well.
 void normalise_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain);

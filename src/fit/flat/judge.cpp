@@ -43,8 +43,10 @@ bool lacks_card(const FlatFit &fit, uint32_t &number) {
 
 Worst steepest(const FlatFit &fit) {
     Worst worst;
+    const bool is_other = fit.light == LENSPROF_FLAT_LIGHT_EVEN && fit.other;  // the plane that was not chosen
     for (size_t s = 0; s < fit.shots.size(); s++) {
-        auto slope = light_gradient(fit.problem.model, fit.estimate.u, static_cast<int>(s));
+        auto slope = is_other ? light_gradient(fit.other->problem.model, fit.other->estimate.u, static_cast<int>(s))
+                              : light_gradient(fit.problem.model, fit.estimate.u, static_cast<int>(s));
         worst.take(std::hypot(slope[0], slope[1]), fit.shots[s].number);
     }
     return worst;
@@ -73,12 +75,33 @@ double contrast_of_light(const FlatFit &fit, uint32_t image) {
 
 uint32_t state_of(const FlatFit &fit, const FlatResult &r) {
     const bool is_sloped = fit.problem.model.light_terms > 0;
+    const bool is_even = fit.light == LENSPROF_FLAT_LIGHT_EVEN;
     uint32_t state = r.separated ? kSeparated : kNotSeparated;
     state |= r.gain_grid.columns ? kHasGrid : kHasNoGrid;
     if (is_sloped) state |= kSloped;
     if (is_sloped && fit.problem.model.angles() < kTellingAngles) state |= kFewAngles;
-    if (is_sloped && !r.separated && (fit.options.free & LENSPROF_FREE_CENTER)) state |= kCenterByPrior;
+    if ((is_sloped || fit.other) && !r.separated && (fit.options.free & LENSPROF_FREE_CENTER)) state |= kCenterByPrior;
+    if (!fit.options.several && fit.problem.model.angles() == 1) state |= kOneAngle;
+    if (fit.other) state |= is_even ? kEvenChosen : kPlaneChosen;
     return state;
+}
+
+// Adds the mean place of a shot's cells in a state, half diagonals from the middle, and the error in the corner.
+Measured with_place(const JudgedFlat &judged, const Worst &worst, CellState state) {
+    Measured measured = of_shot(of_value(worst.value), worst.shot);
+    double count = 0.0, x = 0.0, y = 0.0;
+    const CellGrid &grid = judged.fit.grid;
+    for (const Shot &shot : judged.fit.shots)
+        for (int i = 0; i < grid.count() && shot.number == worst.shot; i++) {
+            const auto cell = static_cast<size_t>(i);
+            if (!shot.card[cell] || shot.light[cell].state != state) continue;
+            count += 1.0;
+            x += (i % grid.columns + 0.5) * grid.cell_width() - 0.5 * grid.width;
+            y += (i / grid.columns + 0.5) * grid.cell_height() - 0.5 * grid.height;
+        }
+    const double half = std::max(count, 1.0) * lensprof_half_diagonal(grid.width, grid.height);
+    measured.values = {worst.value, x / half, y / half, judged.r.corner_sigma};
+    return measured;
 }
 
 }  // namespace
@@ -91,13 +114,11 @@ JudgedFlat::JudgedFlat(const FlatFit &of, const FlatResult &result)
 namespace measure {
 
 Measured white_share(const JudgedFlat &judged) {
-    const Worst white = worst_share_in(judged.fit, CellState::white);
-    return of_shot(of_value(white.value), white.shot);
+    return with_place(judged, worst_share_in(judged.fit, CellState::white), CellState::white);
 }
 
 Measured black_share(const JudgedFlat &judged) {
-    const Worst black = worst_share_in(judged.fit, CellState::black);
-    return of_shot(of_value(black.value), black.shot);
+    return with_place(judged, worst_share_in(judged.fit, CellState::black), CellState::black);
 }
 
 Measured has_card(const JudgedFlat &judged) {
@@ -108,7 +129,13 @@ Measured has_card(const JudgedFlat &judged) {
 
 Measured cells(const JudgedFlat &judged) { return of_value(judged.r.cells); }
 
-Measured card_radius(const JudgedFlat &judged) { return of_value(judged.r.radius); }
+// If the data end at an edge, what reaches it is whole.
+Measured card_radius(const JudgedFlat &judged) {
+    const double inner = judged.fit.edge.inner;
+    Measured measured = of_value(judged.r.radius);
+    if (inner > 0.0) measured.value = std::min(1.0, judged.r.radius / inner);
+    return measured;
+}
 
 // Contrasts of light have the number of their picture.
 Measured least_contrast(const JudgedFlat &judged) {
@@ -126,7 +153,11 @@ Measured exposure_distance(const JudgedFlat &judged) {
     return of_image(of_value(wrong.value), wrong.shot);
 }
 
-Measured texture(const JudgedFlat &judged) { return of_value(judged.r.texture); }
+// The share of the corner's error that texture has: errors add up by their squares.
+Measured texture(const JudgedFlat &judged) {
+    const FlatResult &r = judged.r;
+    return of_values(r.texture, r.texture, r.corner_sigma * r.texture / std::hypot(r.texture, r.noise));
+}
 
 Measured shot_difference(const JudgedFlat &judged) { return of_value(judged.r.shot_residual); }
 
@@ -167,9 +198,25 @@ Measured center_distance(const JudgedFlat &judged) {
     return of_value(std::hypot(center[0], center[1]));
 }
 
-Measured center_by_prior(const JudgedFlat &) { return {1.0, 0, {}}; }
+Measured center_by_prior(const JudgedFlat &judged) { return {1.0, 1, {judged.r.light_ev}}; }
 
-Measured spots(const JudgedFlat &judged) { return of_value(judged.r.spots); }
+Measured spots(const JudgedFlat &judged) {
+    const FlatResult &r = judged.r;
+    double share = 0.0;
+    for (const auto &left_out : judged.fit.left_out)
+        share += static_cast<double>(std::count(left_out.begin(), left_out.end(), true)) / judged.fit.grid.count()
+                 / static_cast<double>(judged.fit.left_out.size());
+    const auto spots = static_cast<double>(r.spots);
+    return {spots, 2, {spots, r.corner_sigma, share, r.spot[0].x, r.spot[0].y}};
+}
+
+Measured edge(const JudgedFlat &judged) {
+    return of_values(judged.r.edge_radius, judged.r.edge_radius, judged.r.edge_share);
+}
+
+Measured one_light(const JudgedFlat &) { return {1.0, 0, {}}; }
+
+Measured polynomial_error(const JudgedFlat &judged) { return of_value(judged.r.polynomial_error); }
 
 }  // namespace measure
 

@@ -40,6 +40,8 @@ constexpr double kMuchNotRadial = 0.01, kNotRadial = 0.003;
 // EV, within a shot. Wrong: cards 0/25, 0/25, 0/27.
 constexpr double kWrongEv = 0.3, kDoubtfulEv = 0.1;
 
+constexpr double kNotPolynomial = 0.01;  // of M: what a corrected picture shows
+
 constexpr double kSteepest = 0.05, kFlattest = 20.0;  // d ln E / d ln B; of cameras .2 to 10
 constexpr double kFewInliers = 0.5;
 constexpr double kFarCenter = 0.1;  // half diagonals, as for pairs. Cards 0/10, 0/11, 0/11

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/covariance.h"
+#include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/flat/fit.hpp"
 #include "fit/problem/loss.hpp"
@@ -11,10 +11,37 @@
 namespace lensprof {
 namespace {
 
-constexpr int kSmooth = 2;             // coarse: means over 5 x 5 cells
-constexpr double kSmoothed = 25.0;     // cells
-constexpr double kTrimming = 1.06;     // variance of a robust mean of a few pixels, relative to that of the mean
-constexpr double kGridNeeded = 0.003;  // of the light, rms
+constexpr int kSmooth = 2;              // coarse: means over 5 x 5 cells
+constexpr double kSmoothed = 25.0;      // cells
+constexpr double kTrimming = 1.06;      // variance of a robust mean of a few pixels, relative to that of the mean
+constexpr double kTextured = 1.25;      // variance of fine residuals, relative to the noise: what is less is its error
+constexpr double kGridNeeded = 0.003;   // of the light, rms
+constexpr double kAddedToGrid = 1e-3;   // the same if there is a grid anyway
+constexpr double kDim = 0.1;            // of the light in the middle: a black cell is dark because of the falloff
+constexpr double kMostContinued = 0.3;  // the same at most: what is black is not much brighter
+constexpr double kContinued = 0.3;      // error of ln M beyond the data, relative to its change there
+
+// What a cell has beyond the mean of those around it, of one side as many as of the other: a slope leaves nothing. NaN
+// where a cell has no such neighbours. With the factor that makes its square that of independent cells.
+std::vector<double> detail(const CellGrid &grid, const std::vector<double> &map) {
+    std::vector<double> out(map.size(), std::numeric_limits<double>::quiet_NaN());
+    for (int cell = 0; cell < grid.count(); cell++) {
+        const int column = cell % grid.columns, row = cell / grid.columns;
+        const int across = std::min({kSmooth, column, grid.columns - 1 - column});
+        const int down = std::min({kSmooth, row, grid.rows - 1 - row});
+        double sum = 0.0, count = 0.0;
+        for (int y = -down; y <= down; y++)
+            for (int x = -across; x <= across; x++) {
+                const double value = map[static_cast<size_t>(cell + y * grid.columns + x)];
+                const double opposite = map[static_cast<size_t>(cell - y * grid.columns - x)];
+                if (!std::isnan(value) && !std::isnan(opposite)) sum += value, count += 1.0;
+            }
+        if (count > 1.0)
+            out[static_cast<size_t>(cell)] =
+                (map[static_cast<size_t>(cell)] - sum / count) * std::sqrt(count / (count - 1.0));
+    }
+    return out;
+}
 
 // Mean over the cells around each cell that have a value.
 std::vector<double> smooth(const CellGrid &grid, const std::vector<double> &map) {
@@ -56,12 +83,10 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
         for (int s = 0; s < shots; s++) {
             std::vector<double> map = residual_map(fit, s, c, gain, false);
             coarse.push_back(smooth(fit.grid, map));
+            for (const double rest : detail(fit.grid, map))
+                if (!std::isnan(rest)) fine.add(rest * rest);
             for (size_t i = 0; i < map.size(); i++)
-                if (!std::isnan(map[i])) {
-                    double rest = map[i] - coarse.back()[i];
-                    fine.add(rest * rest);
-                    common[i].add(coarse.back()[i]);
-                }
+                if (!std::isnan(map[i])) common[i].add(coarse.back()[i]);
         }
         for (size_t i = 0; i < common.size(); i++) {
             if (common[i].count == 0.0) continue;
@@ -73,15 +98,90 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
         }
     }
     depth = frame.count > 0.0 ? depth / frame.count : 1.0;  // mean of 1 / number of shots that see a cell
-    return {root_of_rest(fine.value() * kSmoothed / (kSmoothed - 1.0), noise),
+    return {fine.value() > kTextured * noise ? root_of_rest(fine.value(), noise) : 0.0,
             root_of_rest(frame.value(), noise * depth / kSmoothed), root_of_rest(per_shot.value(), noise / kSmoothed)};
 }
 
+constexpr double kNearCorner = 0.85;  // of the r^2 of the corner, from which on the pattern left counts as error there
+
+// Mean square of the coarse residual near the corner, relative to the light, less that of noise.
+double corner_misfit(const FlatFit &fit, const lensprof_gain_grid *gain) {
+    const FlatModel &model = fit.problem.model;
+    const lensprof_vignetting v = falloff_of(model, fit.estimate.u, 0);
+    Mean square, noise;
+    for (int s = 0; s < model.shots; s++)
+        for (int c = 0; c < model.channels; c++) {
+            const std::vector<double> map = smooth(fit.grid, residual_map(fit, s, c, gain, false));
+            for (size_t i = 0; i < map.size(); i++) {
+                const CellLight &light = fit.shots[static_cast<size_t>(s)].light[i];
+                const double r2 =
+                    lensprof_vignetting_r2(&v, fit.grid.width, fit.grid.height, light.x, light.y, nullptr);
+                if (std::isnan(map[i]) || r2 < kNearCorner * std::min(corner_r2(model), model.reach)) continue;
+                const auto channel = static_cast<size_t>(c);
+                square.add(map[i] * map[i]);
+                noise.add(light.variance[channel] / (light.value[channel] * light.value[channel]));
+            }
+        }
+    return std::max(square.value() - kTrimming * noise.value() / kSmoothed, 0.0);
+}
+
+// Standard error of M where the corner is, of the curve with the largest one.
 double corner_sigma(const FlatFit &fit) {
-    const auto &model = fit.problem.model;
-    const double variance = lp_corner_variance(fit.covariance.data(), static_cast<uint32_t>(fit.covariance.rows()),
-                                               static_cast<uint32_t>(model.k(0)), static_cast<uint32_t>(model.curves));
-    return std::sqrt(std::max(variance, 0.0));
+    const FlatModel &model = fit.problem.model;
+    double largest = 0.0;
+    for (int curve = 0; curve < model.curves && fit.covariance.size(); curve++) {
+        const FalloffAt at = continued_falloff(model, fit.estimate.u, curve, corner_r2(model));
+        const Eigen::Map<const Eigen::VectorXd> by_term(at.by_term.data(), model.terms());
+        const Eigen::Index first = model.k(curve), n = model.terms();
+        largest = std::max(largest, by_term.dot(fit.covariance.block(first, first, n, n) * by_term));
+    }
+    return std::sqrt(largest);
+}
+
+// Error of ln M in the corner from what continues it beyond the data, and beyond the first cell that is black.
+double continued_error(const FlatFit &fit) {
+    const FlatModel &model = fit.problem.model;
+    const lensprof_vignetting v = falloff_of(model, fit.estimate.u, 0);
+    double seen = std::min(model.reach, corner_r2(model));
+    for (int s = 0; s < model.shots; s++) {
+        const Shot &shot = fit.shots[static_cast<size_t>(s)];
+        const double dim = kDim * std::exp(fit.estimate.u[model.level(s, 0)]);  // not part of a dark border
+        for (size_t i = 0; i < shot.light.size(); i++) {
+            if (!shot.card[i] || shot.light[i].state != CellState::black || shot.light[i].value[0] > dim) continue;
+            const auto column = static_cast<double>(i % static_cast<size_t>(fit.grid.columns)),
+                       row = static_cast<double>(i / static_cast<size_t>(fit.grid.columns));
+            seen = std::min(seen, lensprof_vignetting_r2(&v, fit.grid.width, fit.grid.height,
+                                                         (column + 0.5) * fit.grid.cell_width() - 0.5,
+                                                         (row + 0.5) * fit.grid.cell_height() - 0.5, nullptr));
+        }
+    }
+    const double end = continued_falloff(model, fit.estimate.u, 0, seen).value;
+    const double change = std::log(continued_falloff(model, fit.estimate.u, 0, corner_r2(model)).value / end);
+    return std::min(kContinued * std::abs(change), kMostContinued);
+}
+
+// M times grid where the corner is: mean of the channels over the directions in which it is in the frame.
+double corner_of(const FlatFit &fit, const FlatResult &r) {
+    const double w = fit.grid.width - 1.0, h = fit.grid.height - 1.0;
+    const double half = lensprof_half_diagonal(fit.grid.width, fit.grid.height);
+    const bool is_edge = fit.edge.radius > 0.0;
+    Mean mean;
+    for (int i = 0; i < (is_edge ? 64 : 4); i++) {
+        const lensprof_vignetting &v = r.vignetting[0];
+        const double angle = 2.0 * kPi * i / 64.0, radius = half * std::sqrt(corner_r2(fit.problem.model));
+        const double x = is_edge ? 0.5 * w + half * v.center[0] + radius * std::cos(angle) : (i & 1) * w;
+        const double y = is_edge ? 0.5 * h + half * v.center[1] + radius * std::sin(angle) : (i >> 1) * h;
+        if (x < 0.0 || y < 0.0 || x > w || y > h) continue;
+        for (int c = 0; c < fit.problem.model.channels; c++) {
+            const auto channel = static_cast<uint32_t>(c);
+            const double r2 = lensprof_vignetting_r2(&r.vignetting[c], fit.grid.width, fit.grid.height, x, y, nullptr);
+            const double m = lensprof_vignetting_eval(&r.vignetting[c], r2, nullptr);
+            mean.add(r.gain_grid.columns
+                         ? m * lensprof_gain_grid_eval(&r.gain_grid, fit.grid.width, fit.grid.height, x, y, channel)
+                         : m);
+        }
+    }
+    return mean.value();
 }
 
 void describe_picture(const FlatFit &fit, const Shot &shot, uint32_t image, lensprof_flat_image_quality &q) {
@@ -153,14 +253,28 @@ std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, cons
         const double x = shot_data.light[i].x, y = shot_data.light[i].y;
         double p = predict(fit.problem.model, fit.estimate.u, shot, channel, x, y).value;
         if (gain)
-            p *= lensprof_gain_grid_eval(gain, fit.grid.width, fit.grid.height, x, y, static_cast<uint32_t>(channel));
+            p *= held_ratio(fit, channel, x, y)
+                 * lensprof_gain_grid_eval(gain, fit.grid.width, fit.grid.height, x, y, static_cast<uint32_t>(channel));
         map[i] = shot_data.light[i].value[static_cast<size_t>(channel)] / p - 1.0;
     }
     return map;
 }
 
+// Mean variance of a cell's noise, relative to its light.
+double noise_variance(const FlatFit &fit) {
+    Mean noise;
+    for (const FlatCell &cell : fit.problem.cells)
+        for (int c = 0; c < fit.problem.model.channels; c++) {
+            const double p = flat_residual(fit.problem, fit.estimate, cell, c).prediction.value;
+            noise.add(cell.variance[static_cast<size_t>(c)] / (p * p));
+        }
+    return noise.value();
+}
+
+double frame_residual(const FlatFit &fit) { return split_residuals(fit, nullptr, noise_variance(fit)).frame; }
+
 void describe_flat(const FlatFit &fit, FlatResult &r) {
-    Mean square, noise, inlier;
+    Mean square, inlier;
     r.radius = 0.0;
     for (const FlatCell &cell : fit.problem.cells) {
         r.radius = std::max(r.radius, radius_of(fit, r.vignetting[0], cell));
@@ -168,26 +282,32 @@ void describe_flat(const FlatFit &fit, FlatResult &r) {
         for (int c = 0; c < fit.problem.model.channels; c++) {
             double p = flat_residual(fit.problem, fit.estimate, cell, c).prediction.value;
             square.add(std::pow(cell.value[static_cast<size_t>(c)] / p - 1.0, 2));
-            noise.add(cell.variance[static_cast<size_t>(c)] / (p * p));
         }
     }
+    const double noise = noise_variance(fit);
     r.residual = std::sqrt(square.value());
-    r.noise = std::sqrt(noise.value());
+    r.noise = std::sqrt(noise);
     r.inlier_share = inlier.value();
     r.corner_sigma = corner_sigma(fit);
-    Patterns rest = split_residuals(fit, nullptr, noise.value());
+    Patterns rest = split_residuals(fit, nullptr, noise);
     r.texture = rest.texture;
     r.frame_residual = rest.frame;
     r.shot_residual = fit.shots.size() > 1 ? rest.per_shot : 0.0;
     r.grid_residual = 0.0;
     lensprof_gain_grid_init(&r.gain_grid);
-    bool wanted = fit.options.grid == LENSPROF_FLAT_GRID_ALWAYS
-                  || (fit.options.grid == LENSPROF_FLAT_GRID_AUTO && rest.frame > kGridNeeded);
-    if (wanted && fit_gain_grid(fit, r.gain_grid)) {
-        Patterns left = split_residuals(fit, &r.gain_grid, noise.value());
+    const bool is_auto = fit.options.grid == LENSPROF_FLAT_GRID_AUTO;
+    const double needed = fit.held.is_whole ? kGridNeeded : kAddedToGrid;
+    const bool residual = fit.options.grid == LENSPROF_FLAT_GRID_ALWAYS || (is_auto && rest.frame > needed);
+    if ((residual || (is_auto && !fit.held.is_whole)) && fit_gain_grid(fit, residual, r.gain_grid)) {
+        Patterns left = split_residuals(fit, &r.gain_grid, noise);
         r.grid_residual = left.frame;
-        r.texture = left.texture;  // a steep residual contributes to it at the frame's border
+        r.texture = std::min(left.texture, rest.texture);  // a steep residual contributes to it at the frame's border
         normalise_gain_grid(fit, r.gain_grid);
+    }
+    r.corner = corner_of(fit, r);
+    if (!fit.held.is_whole) {
+        const double left = corner_misfit(fit, r.gain_grid.columns ? &r.gain_grid : nullptr);
+        r.corner_sigma = std::hypot(r.corner_sigma, r.corner * std::sqrt(left), r.corner * continued_error(fit));
     }
     describe_images(fit, r);
 }

@@ -17,7 +17,10 @@ enum FlatState : uint32_t {
     kHasGrid = 8,
     kHasNoGrid = 16,
     kCenterByPrior = 32,
-    kFewAngles = 64  // of shots: they do not separate the light from a lens that is not radial
+    kFewAngles = 64,  // of shots: they do not separate the light from a lens that is not radial
+    kOneAngle = 128,  // one light and one angle
+    kEvenChosen = 256,
+    kPlaneChosen = 512
 };
 
 struct JudgedFlat {
@@ -55,6 +58,9 @@ Measured not_radial_grid(const JudgedFlat &judged);
 Measured center_distance(const JudgedFlat &judged);
 Measured center_by_prior(const JudgedFlat &judged);
 Measured spots(const JudgedFlat &judged);
+Measured edge(const JudgedFlat &judged);
+Measured one_light(const JudgedFlat &judged);
+Measured polynomial_error(const JudgedFlat &judged);
 
 }  // namespace measure
 
@@ -87,7 +93,9 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_FLAT_STEEP,           kWarns,   kCenterByPrior,        measure::slope,                   Side::above, flat_limits::kSlantAlone,         Wording::weak},
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewAngles|kHasGrid,   measure::not_radial_grid,         Side::above, flat_limits::kMuchNotRadial,      Wording::alone_grid},
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewAngles|kHasNoGrid, measure::not_radial,              Side::above, flat_limits::kMuchNotRadial,      Wording::alone},
+    {LENSPROF_REASON_FLAT_NEEDS_GRID,      kWarns,   kHasNoGrid,            measure::polynomial_error,        Side::above, flat_limits::kNotPolynomial,      Wording::alone},
     // Worth knowing.
+    {LENSPROF_REASON_FLAT_EDGE,            kNotes,   kOfAll,                measure::edge,                    Side::above, 0.0,                              Wording::usual},
     {LENSPROF_REASON_FLAT_WHITE,           kNotes,   kOfAll,                measure::white_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
     {LENSPROF_REASON_FLAT_BLACK,           kNotes,   kOfAll,                measure::black_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
     {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kNotes,   kOfAll,                measure::shot_difference,         Side::above, flat_limits::kSomePerShot,        Wording::weak},
@@ -95,8 +103,12 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kNotes,   kHasGrid,              measure::not_radial_grid,         Side::above, flat_limits::kNotRadial,          Wording::grid},
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kNotes,   kHasNoGrid,            measure::not_radial,              Side::above, flat_limits::kNotRadial,          Wording::usual},
     {LENSPROF_REASON_FAR_CENTER,           kNotes,   kOfAll,                measure::center_distance,         Side::above, flat_limits::kFarCenter,          Wording::card},
-    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, kNotes,   kCenterByPrior,        measure::center_by_prior,         Side::above, 0.0,                              Wording::usual},
+    {LENSPROF_REASON_FLAT_NEEDS_GRID,      kNotes,   kHasGrid,              measure::polynomial_error,        Side::above, flat_limits::kNotPolynomial,      Wording::weak},
+    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, kNotes,   kCenterByPrior|kPlaneChosen, measure::center_by_prior,   Side::above, 0.0,                              Wording::weak},
+    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, kNotes,   kCenterByPrior|kEvenChosen,  measure::center_by_prior,   Side::above, 0.0,                              Wording::less},
+    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, kNotes,   kCenterByPrior,        measure::center_by_prior,         Side::above, 0.0,                              Wording::held},
     {LENSPROF_REASON_FLAT_DUST,            kNotes,   kOfAll,                measure::spots,                   Side::above, 0.0,                              Wording::usual},
+    {LENSPROF_REASON_FLAT_ONE_LIGHT,       kNotes,   kOneAngle,             measure::one_light,               Side::above, 0.0,                              Wording::usual},
 };
 // clang-format on
 constexpr size_t kFlatRuleCount = sizeof kFlatRules / sizeof *kFlatRules;

@@ -40,6 +40,7 @@ Sample sample_of(const lensprof_flat_image &image, const CellPicture &picture, c
 }
 
 // Sets the state of cells that are beyond the limits in every exposure: white in the lowest, or black in the highest.
+// Of a white cell the light is that of the limit, at least; of a black one that of its mean.
 void set_beyond(const lensprof_flat_image *images, const std::vector<CellPicture> &pictures, size_t cell, int channels,
                 const Responses &responses, const Shot &shot, CellLight &light) {
     uint32_t least = shot.images.front(), greatest = shot.images.back();
@@ -48,9 +49,11 @@ void set_beyond(const lensprof_flat_image *images, const std::vector<CellPicture
     light.state = white ? CellState::white : black ? CellState::black : CellState::masked;
     if (!white && !black) return;
     const auto &image = images[white ? least : greatest];
-    for (int c = 0; c < channels; c++)
-        light.value[static_cast<size_t>(c)] =
-            responses.invert(c, white ? image.white : image.black, nullptr) / std::exp2(image.ev);
+    for (int c = 0; c < channels; c++) {
+        const auto channel = static_cast<size_t>(c);
+        const double mean = static_cast<double>(pictures[greatest].cells[cell].value[channel]);
+        light.value[channel] = responses.invert(c, white ? image.white : mean, nullptr) / std::exp2(image.ev);
+    }
 }
 
 double brightness(const CellLight &light, int channels) {

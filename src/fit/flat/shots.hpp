@@ -13,7 +13,7 @@ struct CellLight {
     CellState state = CellState::masked;  // white or black: in every exposure
     float low_share = 0.0f;               // share of pixels far darker than the rest
     double x = 0.0, y = 0.0;              // centre of these pixels, px of the frame
-    std::array<double, 3> value{};        // E; if white or black, that of the limit
+    std::array<double, 3> value{};        // E; if white, that of the limit; if black, of the mean
     std::array<double, 3> variance{};     // of E, from the noise of its pixels
 };
 

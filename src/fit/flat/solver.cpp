@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "falloff/levenberg_marquardt.hpp"
+#include "falloff/power_fit.hpp"
 #include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/prior/prior.hpp"
@@ -22,6 +23,7 @@ constexpr double kSmallestScale = 0.2;
 constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;   // of chi-squared, 1 and 3 degrees of freedom
 constexpr double kInlierSquare = 0.973, kInlierSquare3 = 0.988;  // mean square of the residuals within inlier_limit
 constexpr int kBlocks[] = {4, 8, 16, 32};                        // cells along a block
+constexpr double kStartNoise = 0.01;                             // of a cell's light, in the start values
 constexpr double kSmallestPivot = 1e-11;  // of the scaled normal equations: below it, they are singular
 
 double cutoff(const FlatProblem &problem) { return kCutoff * kCutoff * problem.model.channels; }
@@ -107,7 +109,7 @@ QuadraticModel normal_equations(const FlatProblem &problem, const Eigen::VectorX
 
 bool is_falloff(const FlatModel &model, const Eigen::VectorXd &u) {
     for (int curve = 0; curve < model.curves; curve++) {
-        lensprof_vignetting v = falloff_of(model, u, curve);
+        lensprof_vignetting v = falloff_of(model, u, curve);  // a logarithm is always above 0
         if (lensprof_vignetting_validate(&v) != LENSPROF_OK) return false;
     }
     return u.allFinite();
@@ -216,6 +218,25 @@ void measure_noise(const FlatProblem &problem, FlatEstimate &estimate) {
         estimate.inflation = std::max(estimate.inflation, block_inflation(problem, residuals, side));
 }
 
+// Least squares of the logarithm of the first shot's light, as if the light were even.
+void start_logarithm(const FlatProblem &problem, int curve, Eigen::VectorXd &u) {
+    const FlatModel &model = problem.model;
+    const lensprof_vignetting middle = falloff_of(model, u, curve);
+    std::vector<PowerSample> samples;
+    for (const FlatCell &cell : problem.cells) {
+        const auto c = static_cast<size_t>(model.curves == 3 ? curve : model.channels / 2);
+        const double e = cell.value[c], weight = 1.0 / (cell.variance[c] / (e * e) + kStartNoise * kStartNoise);
+        const double r2 = lensprof_vignetting_r2(&middle, model.grid.width, model.grid.height, cell.x, cell.y, nullptr);
+        double slope;
+        if (cell.shot == problem.cells.front().shot)
+            samples.push_back({power_base(model.form, r2, &slope), std::log(e), weight});
+    }
+    constexpr int kPower[kMaxPowers] = {0, 1, 2, 3, 4, 5};
+    const PowerTerms terms = fit_powers(kPower, kMaxPowers, static_cast<int>(samples.size()), 1,
+                                        [&](int i) { return samples[static_cast<size_t>(i)]; });
+    for (int n = 0; n + 1 < kMaxPowers; n++) u[model.k(curve) + n] = terms[n + 1];
+}
+
 }  // namespace
 
 FlatPrior make_flat_prior(const lensprof_flat_options &options, const FlatModel &model) {
@@ -223,10 +244,12 @@ FlatPrior make_flat_prior(const lensprof_flat_options &options, const FlatModel 
     FlatPrior prior{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
     Prior lens = make_prior(options.prior_weight, model.curves, 1);
     make_falloff_linear(model.curves, lens);
+    // The prior knows k1..k3; the terms of a logarithm are free.
+    const int first = model.form == FalloffForm::powers ? 0 : model.center();
     auto column = [&](int i) { return i < model.center() ? kFalloff + i : kCenter + i - model.center(); };
-    for (int i = 0; i < model.levels(); i++) {
+    for (int i = first; i < model.levels(); i++) {
         prior.mean[i] = lens.mean[column(i)];
-        for (int j = 0; j < model.levels(); j++) prior.precision(i, j) = lens.precision(column(i), column(j));
+        for (int j = first; j < model.levels(); j++) prior.precision(i, j) = lens.precision(column(i), column(j));
     }
     for (int shot = 0; shot < model.shots && model.several; shot++) {
         double sigma = options.ev_sigma * kLn2;
@@ -239,7 +262,7 @@ std::vector<int> free_unknowns(const FlatModel &model, uint32_t free) {
     const uint32_t flags[3] = {LENSPROF_FREE_K1, LENSPROF_FREE_K2, LENSPROF_FREE_K3};
     std::vector<int> unknowns;
     for (int i = 0; i < model.unknowns(); i++) {
-        bool held = i < model.center()   ? !(free & flags[i % 3])
+        bool held = i < model.center()   ? model.form == FalloffForm::powers && !(free & flags[i % 3])
                     : i < model.levels() ? !(free & LENSPROF_FREE_CENTER)
                                          : false;
         if (!held) unknowns.push_back(i);
@@ -254,6 +277,8 @@ Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting
     for (int i : problem.free)
         if (i < model.levels()) u[i] = 0.0;
     if (!is_falloff(model, u)) set_falloff(model, given, u);
+    for (int curve = 0; curve < model.curves && model.form == FalloffForm::logarithm; curve++)
+        start_logarithm(problem, curve, u);
     for (int shot = 0; shot < (model.several ? 1 : model.shots); shot++)
         for (int c = 0; c < model.channels; c++) {
             std::vector<double> values;
@@ -277,6 +302,13 @@ FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estim
     return r;
 }
 
+double flat_cost(const FlatProblem &problem, const FlatEstimate &estimate) {
+    double sum = 0.0, divisor;
+    for (const FlatCell &cell : problem.cells)
+        sum += 0.5 * robust_cost(flat_chi2(problem, estimate, cell), cutoff(problem), &divisor);
+    return sum / estimate.inflation + prior_objective(problem, estimate.u);
+}
+
 double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell) {
     double sum = 0.0;
     for (int c = 0; c < problem.model.channels; c++) {
@@ -286,8 +318,18 @@ double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const
     return sum;
 }
 
-void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
+void refine_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     auto state = [&] { return Eigen::Vector3d(estimate.unevenness, estimate.scale, estimate.inflation); };
+    measure_noise(problem, estimate);
+    for (int round = 0; round < kRounds; round++) {
+        Eigen::Vector3d before = state();
+        descend(problem, estimate);
+        measure_noise(problem, estimate);
+        if ((state() - before).norm() < kNoiseTolerance * before.norm()) break;
+    }
+}
+
+void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     // The first fit holds the centre and counts cells as independent: before the falloff is near its solution, the
     // errors of all cells are correlated, and the priors would be too strong.
     FlatProblem held = problem;
@@ -297,13 +339,7 @@ void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     measure_noise(held, estimate);
     estimate.inflation = 1.0;
     descend(held, estimate);
-    measure_noise(problem, estimate);
-    for (int round = 0; round < kRounds; round++) {
-        Eigen::Vector3d before = state();
-        descend(problem, estimate);
-        measure_noise(problem, estimate);
-        if ((state() - before).norm() < kNoiseTolerance * before.norm()) break;
-    }
+    refine_flat(problem, estimate);
 }
 
 Eigen::MatrixXd flat_covariance(const FlatProblem &problem, const FlatEstimate &estimate) {

@@ -39,7 +39,7 @@ struct FlatEstimate {
 // others.
 std::vector<int> free_unknowns(const FlatModel &model, uint32_t free);
 
-// Start values: k = 0 (or the held values), even light and the levels of the cells.
+// Start values: k = 0 (or the held values; a logarithm fitted to the cells), even light and the levels of the cells.
 Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting &given);
 
 // Residual of a cell and channel, (E - P) / sigma, and P with its derivatives.
@@ -52,10 +52,16 @@ FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estim
 // Sum of squared residuals of a cell, in units of scale^2: chi-squared, one degree of freedom per channel.
 double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);
 
+// The objective of all cells and the prior, for the noise that the estimate states: half of chi-squared.
+double flat_cost(const FlatProblem &problem, const FlatEstimate &estimate);
+
 // Neighbouring cells whose residuals are correlated count as fewer cells. The weight of the cells against the prior and
 // in the covariance is divided by the inflation: how much more their sums over blocks of 4 to 32 cells per side vary
 // than those of independent cells.
 void solve_flat(const FlatProblem &problem, FlatEstimate &estimate);
+
+// The same from values that are near the solution, with the centre free.
+void refine_flat(const FlatProblem &problem, FlatEstimate &estimate);
 
 // Covariance of all unknowns, zero for held ones. Empty if the cells do not determine every free unknown.
 Eigen::MatrixXd flat_covariance(const FlatProblem &problem, const FlatEstimate &estimate);

@@ -11,7 +11,7 @@ namespace lensprof {
 namespace {
 
 // {item} is "image 3" or "shot 3"; {0} and {1} are the values, {0.2} with two decimals, {|0.2} without its sign, {0.1%}
-// a share as "3.4 %".
+// a share as "3.4 %", {0.2e} a share as "0.05 EV".
 struct Sentence {
     lensprof_reason code;
     Wording wording;
@@ -139,11 +139,11 @@ constexpr Sentence kSentences[] = {
     {LENSPROF_REASON_FLAT_WHITE, Wording::usual,
      "{0%} of the card in {item} is white in every exposure; take a shorter exposure"},
     {LENSPROF_REASON_FLAT_WHITE, Wording::weak,
-     "{0.1%} of the card in {item} is white in every exposure and was left out"},
+     "{0.1%} of the card in {item} is white in every exposure and was left out, about {1.2},{2.2} half diagonals from the middle; the falloff in the corners is then known to +- {3.2%}"},
     {LENSPROF_REASON_FLAT_BLACK, Wording::usual,
      "{0%} of the card in {item} is black in every exposure; take a longer exposure"},
     {LENSPROF_REASON_FLAT_BLACK, Wording::weak,
-     "{0.1%} of the card in {item} is black in every exposure and was left out"},
+     "{0.1%} of the card in {item} is black in every exposure and was left out, about {1.2},{2.2} half diagonals from the middle; the falloff in the corners is then known to +- {3.2%}"},
     {LENSPROF_REASON_FLAT_NO_CARD, Wording::usual,
      "no card was found in {item}: no even bright region is larger than a hundredth of the frame; specify where it is, or light the whole frame evenly"},
     {LENSPROF_REASON_FLAT_FEW_CELLS, Wording::usual,
@@ -157,19 +157,19 @@ constexpr Sentence kSentences[] = {
     {LENSPROF_REASON_FLAT_EXPOSURE_WRONG, Wording::weak,
      "{item} is {0.2} EV away from the others of its shot: the given exposures or response are slightly wrong"},
     {LENSPROF_REASON_FLAT_TEXTURE, Wording::usual,
-     "the card is not uniform: it has texture of {0.1%} above the noise; defocus, come closer, or use a diffuser"},
+     "the card is not uniform: it has texture of {0.1%} above the noise, which leaves the falloff in the corners uncertain by {1.1%}; defocus, come closer, or use a diffuser"},
     {LENSPROF_REASON_FLAT_TEXTURE, Wording::weak,
-     "the card has texture of {0.1%} above the noise; defocus or use a diffuser"},
+     "the card has texture of {0.1%} above the noise, all over it, which leaves the falloff in the corners uncertain by {1.2%}; defocus or use a diffuser"},
     {LENSPROF_REASON_FLAT_SHOTS_DIFFER, Wording::usual,
-     "the shots differ by {0.1%} in ways that one lens and one light do not explain: the light changed, a shadow fell on the card, or the angles of the rotated shots are wrong"},
+     "the shots differ by {0.1%} ({0.3e}) in ways that one lens and one light do not explain: the light changed, a shadow fell on the card, or the angles of the rotated shots are wrong"},
     {LENSPROF_REASON_FLAT_SHOTS_DIFFER, Wording::weak,
-     "the shots differ by {0.1%} in ways that one lens and one light do not explain"},
+     "the shots differ by {0.1%} ({0.3e}) in ways that one lens and one light do not explain"},
     {LENSPROF_REASON_FLAT_STEEP, Wording::usual,
-     "the light of {item} varies by {0%} per half diagonal, which a plane does not describe; even it out"},
+     "the light of {item} varies by {0%} ({0.2e}) per half diagonal, which a plane does not describe; even it out"},
     {LENSPROF_REASON_FLAT_STEEP, Wording::alone,
-     "the light of {item} varies by {0%} per half diagonal; without a rotated shot it cannot be separated from the lens; even it out, or add a shot with the camera rotated by 90 or 180 degrees"},
+     "the light of {item} varies by {0%} ({0.2e}) per half diagonal; without a rotated shot it cannot be separated from the lens; even it out, or add a shot with the camera rotated by 90 or 180 degrees"},
     {LENSPROF_REASON_FLAT_STEEP, Wording::weak,
-     "the light varies by {0%} per half diagonal; without a rotated shot it cannot be separated from the lens: the centre depends on its prior; add a shot with the camera rotated by 90 or 180 degrees"},
+     "the light varies by {0%} ({0.2e}) per half diagonal, or the lens is off centre; without a rotated shot, only the prior on the centre separates them; add a shot with the camera rotated by 90 or 180 degrees"},
     {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::alone,
      "{0.1%} of the light is not radial: a shadow, a second lamp, wrong angles, or the lens; show the card at three different angles of the camera, which separates lens and light"},
     {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::alone_grid,
@@ -179,7 +179,21 @@ constexpr Sentence kSentences[] = {
     {LENSPROF_REASON_FLAT_NOT_RADIAL, Wording::usual,
      "{0.1%} of the light is not radial; request a gain grid"},
     {LENSPROF_REASON_FLAT_DUST, Wording::usual,
-     "{0} spots of dust were left out"},
+     "{0} spots of dust were left out ({2.1%} of the frame), the largest at {3},{4} px; the falloff in the corners is then known to +- {1.2%}"},
+    {LENSPROF_REASON_FLAT_EDGE, Wording::usual,
+     "the picture ends {0.2} half diagonals from the middle of the frame, at the image circle or something in front of the lens: {1.1%} of the frame was left out; the falloff keeps its value beyond the edge"},
+    {LENSPROF_REASON_FLAT_ONE_LIGHT, Wording::usual,
+     "a light that is brighter in the middle looks like falloff, and no rotation of the camera shows it: check the profile against ordinary overlapping pictures, or with a second light"},
+    {LENSPROF_REASON_FLAT_NEEDS_GRID, Wording::usual,
+     "k1..k3 alone are off by up to {0%} of the light: the falloff is not such a polynomial, and the gain grid holds the rest; a program without the grid corrects wrongly"},
+    {LENSPROF_REASON_FLAT_NEEDS_GRID, Wording::alone,
+     "k1..k3 alone are off by up to {0%} of the light: the falloff is not such a polynomial; request a gain grid"},
+    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, Wording::usual,
+     "no rotated shot separates the gradient of the light from the centre, which depends on its prior; stating an even light would change the falloff in a corner by {0.2} EV"},
+    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, Wording::less,
+     "no rotated shot separates the gradient of the light from the centre: even light and the prior on the centre describe the pictures; stating a sloping light would change the falloff in a corner by {0.2} EV"},
+    {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, Wording::held,
+     "no rotated shot separates the gradient of the light from the centre, which depends on its prior"},
     {LENSPROF_REASON_PRIOR_OVERRULED, Wording::usual,
      "the profile given as the prior contradicts the pictures (it is off by {0.1}, held-out pairs by {1.1} standard errors) and was rejected; check that it is for this lens and setting"},
     {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, Wording::usual,
@@ -213,20 +227,21 @@ std::string sentence_of(lensprof_reason code, Wording wording) {
 }
 
 // The value for a placeholder such as "0.1%" or "|0.2".
-std::string spell_value(std::string place, const double (&values)[2]) {
+std::string spell_value(std::string place, const std::array<double, kTextValues> &values) {
     const bool is_size = place[0] == '|';
     if (is_size) place.erase(0, 1);
     const double given = values[static_cast<size_t>(place[0] - '0')], value = is_size ? std::abs(given) : given;
     const size_t point = place.find('.');
     const int decimals = point == std::string::npos ? 0 : place[point + 1] - '0';
-    const bool is_share = place.back() == '%';
+    const bool is_share = place.back() == '%', is_ratio = place.back() == 'e';
+    const double number = is_share ? 100.0 * value : is_ratio ? std::log2(1.0 + value) : value;
     char text[64];
-    std::snprintf(text, sizeof text, is_share ? "%.*f %%" : "%.*f", decimals, (is_share ? 100.0 : 1.0) * value);
+    std::snprintf(text, sizeof text, is_share ? "%.*f %%" : is_ratio ? "%.*f EV" : "%.*f", decimals, number);
     return text;
 }
 
 // Writes the sentence into the finding, and notes where it names the item.
-void write_text(const std::string &wording, lensprof_finding &finding) {
+void write_text(const std::string &wording, const std::array<double, kTextValues> &values, lensprof_finding &finding) {
     std::string text;
     for (size_t position = 0; position < wording.size();) {
         if (wording[position] != '{') {
@@ -241,7 +256,7 @@ void write_text(const std::string &wording, lensprof_finding &finding) {
             finding.item.text_begin = static_cast<uint32_t>(begin);
             finding.item.text_bytes = static_cast<uint32_t>(text.size() - begin);
         } else {
-            text += spell_value(place, finding.value);
+            text += spell_value(place, values);
         }
         position = end + 1;
     }
@@ -265,9 +280,9 @@ lensprof_finding finding_of(lensprof_reason code, lensprof_severity severity, co
     lensprof_finding finding = passed_of(code, severity, measured.value, limit);
     finding.severity = severity;
     finding.value_count = static_cast<uint32_t>(measured.count);
-    std::copy(std::begin(measured.values), std::end(measured.values), finding.value);
+    std::copy_n(measured.values.begin(), measured.count, finding.value);
     finding.item.kind = measured.kind, finding.item.index = measured.index;
-    write_text(sentence_of(code, wording), finding);
+    write_text(sentence_of(code, wording), measured.values, finding);
     return finding;
 }
 

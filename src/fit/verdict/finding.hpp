@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -30,17 +31,19 @@ enum class Wording {
     map          // a rendering whose tones may be mapped locally
 };
 
+constexpr size_t kTextValues = 5;
+
 // What a rule measures: the number compared with its limit, the item that has it, and the values of the code.
 struct Measured {
     double value = NAN;  // NaN: the rule does not apply
-    size_t count = 0;    // of `values`
-    double values[2] = {0.0, 0.0};
+    size_t count = 0;    // of `values` that the code has; the text can use all of them
+    std::array<double, kTextValues> values = {};
     lensprof_item_kind kind = LENSPROF_ITEM_NONE;
     uint32_t index = 0;
 };
 
 // A measure whose number is its only value.
-inline Measured of_value(double value) { return {value, 1, {value, 0.0}}; }
+inline Measured of_value(double value) { return {value, 1, {value}}; }
 inline Measured of_values(double value, double first, double second) { return {value, 2, {first, second}}; }
 inline Measured of_image(Measured measured, uint32_t index) {
     measured.kind = LENSPROF_ITEM_IMAGE, measured.index = index;

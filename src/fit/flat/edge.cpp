@@ -1,0 +1,169 @@
+// The end of the image circle: a dark surround that the light falls to within a few cells, far faster than a falloff.
+#include <algorithm>
+#include <cmath>
+
+#include "falloff/circle.hpp"
+#include "fit/base/quantile.hpp"
+#include "fit/flat/fit.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kDark = 0.06;      // of the bright cells' light: stray light and noise stay below it
+constexpr double kBright = 0.9;     // quantile of the light that counts as bright
+constexpr double kWidth = 0.07;     // half diagonals, within which the light falls from inside to the dark,
+constexpr double kSteepest = 19.0;  // by more than this, ln per half diagonal: six stops of r^2 to r^4 reach 17
+constexpr double kMostSoft = 0.14;  // half diagonals: width of a soft edge
+constexpr double kSoft = 7.0;       // ln per half diagonal inside of it: more than most falloffs have
+constexpr size_t kFewest = 3;       // cells of a dark place,
+constexpr int kDepth = 2;           // and as many from the frame's border: a narrower one is a border of the picture,
+constexpr size_t kCorner = 12;      // unless it has so few that it is a corner
+constexpr double kOffCircle = 2.0;  // cells between a place of the outline and its circle
+
+struct DarkMap {
+    const CellGrid &grid;
+    std::vector<double> light;  // ln, the mean of the channels; NaN without data
+    double side;                // of a cell, half diagonals
+
+    int cells(double width) const { return std::max(2, static_cast<int>(std::lround(width / side))); }
+
+    double at(int column, int row) const { return light[static_cast<size_t>(row * grid.columns + column)]; }
+
+    // The light so many cells from a cell towards the middle of the frame.
+    double inward(int cell, int steps) const {
+        const int column = cell % grid.columns, row = cell / grid.columns;
+        const double across = 0.5 * (grid.columns - 1) - column, down = 0.5 * (grid.rows - 1) - row;
+        const double far = std::max(std::hypot(across, down), 1.0);
+        return at(static_cast<int>(std::lround(column + steps * across / far)),
+                  static_cast<int>(std::lround(row + steps * down / far)));
+    }
+};
+
+DarkMap dark_map(const CellGrid &grid, int channels, const Shot &shot) {
+    const double half = lensprof_half_diagonal(grid.width, grid.height);
+    DarkMap map{grid, std::vector<double>(shot.light.size(), NAN),
+                std::max(grid.cell_width(), grid.cell_height()) / half};
+    for (size_t i = 0; i < map.light.size(); i++) {
+        if (shot.light[i].state == CellState::masked || !shot.card[i]) continue;
+        double sum = 0.0;
+        for (int c = 0; c < channels; c++) sum += std::log(std::max(shot.light[i].value[static_cast<size_t>(c)], 1e-9));
+        map.light[i] = sum / channels;
+    }
+    return map;
+}
+
+int distance_to_border(const CellGrid &grid, int cell) {
+    const int column = cell % grid.columns, row = cell / grid.columns;
+    return std::min({column, row, grid.columns - 1 - column, grid.rows - 1 - row});
+}
+
+// Cells of a group that have a neighbour outside of it.
+std::vector<int> rim_of(const CellGrid &grid, const std::vector<bool> &member) {
+    std::vector<int> rim;
+    for (int cell = 0; cell < grid.count(); cell++) {
+        if (!member[static_cast<size_t>(cell)]) continue;
+        const int column = cell % grid.columns, row = cell / grid.columns;
+        const auto is_out = [&](bool exists, int other) { return exists && !member[static_cast<size_t>(other)]; };
+        if (is_out(column > 0, cell - 1) || is_out(column + 1 < grid.columns, cell + 1)
+            || is_out(row > 0, cell - grid.columns) || is_out(row + 1 < grid.rows, cell + grid.columns))
+            rim.push_back(cell);
+    }
+    return rim;
+}
+
+// Median of the rise of the light between two distances from the rim, cells: ln per half diagonal.
+double rise(const DarkMap &map, const std::vector<int> &rim, int from, int to) {
+    std::vector<double> rises;
+    for (int cell : rim) {
+        const double step = map.inward(cell, to) - map.inward(cell, from);
+        if (!std::isnan(step)) rises.push_back(step);
+    }
+    return rises.empty() ? 0.0 : median(rises) / ((to - from) * map.side);
+}
+
+// Dark places at the border of the frame, which end steeply.
+std::vector<bool> surround(const DarkMap &map, std::vector<int> &rim) {
+    const CellGrid &grid = map.grid;
+    std::vector<double> seen;
+    for (double light : map.light)
+        if (!std::isnan(light)) seen.push_back(light);
+    std::vector<bool> dark(map.light.size()), found(map.light.size());
+    if (seen.empty()) return found;
+    const auto place = seen.begin() + static_cast<std::ptrdiff_t>(kBright * static_cast<double>(seen.size() - 1));
+    std::nth_element(seen.begin(), place, seen.end());
+    for (size_t i = 0; i < dark.size(); i++) dark[i] = map.light[i] < *place + std::log(kDark);
+    for (const auto &group : connected_cells(grid, dark, [](int, int) { return true; })) {
+        int nearest = grid.columns, deepest = 0;
+        std::vector<bool> member(dark.size());
+        for (int cell : group) {
+            nearest = std::min(nearest, distance_to_border(grid, cell));
+            deepest = std::max(deepest, distance_to_border(grid, cell));
+            member[static_cast<size_t>(cell)] = true;
+        }
+        const bool is_line = deepest + 1 < kDepth && group.size() > kCorner;
+        if (nearest > 0 || is_line || group.size() < kFewest) continue;
+        const std::vector<int> around = rim_of(grid, member);
+        if (rise(map, around, 0, map.cells(kWidth)) < kSteepest) continue;
+        rim.insert(rim.end(), around.begin(), around.end());
+        for (int cell : group) found[static_cast<size_t>(cell)] = true;
+    }
+    return found;
+}
+
+void grow(const CellGrid &grid, std::vector<bool> &cells) {
+    const std::vector<bool> before = cells;
+    for (int cell = 0; cell < grid.count(); cell++) {
+        if (!before[static_cast<size_t>(cell)]) continue;
+        const int column = cell % grid.columns, row = cell / grid.columns;
+        for (int y = std::max(0, row - 1); y <= std::min(grid.rows - 1, row + 1); y++)
+            for (int x = std::max(0, column - 1); x <= std::min(grid.columns - 1, column + 1); x++)
+                cells[static_cast<size_t>(y * grid.columns + x)] = true;
+    }
+}
+
+// Cells with a part in the dark, where it is narrower than a cell.
+void add_black(const CellGrid &grid, const Shot &shot, std::vector<bool> &outside) {
+    std::vector<bool> black(outside.size());
+    for (size_t i = 0; i < black.size(); i++) black[i] = outside[i] || shot.light[i].state == CellState::black;
+    for (const auto &group : connected_cells(grid, black, [](int, int) { return true; })) {
+        const auto is_outside = [&](int cell) { return static_cast<bool>(outside[static_cast<size_t>(cell)]); };
+        if (std::none_of(group.begin(), group.end(), is_outside)) continue;
+        for (int cell : group) outside[static_cast<size_t>(cell)] = true;
+    }
+}
+
+// The circle through the outline; where it is not a circle, the distance of its nearest place from the middle.
+void set_radius(const DarkMap &map, const std::vector<int> &rim, FlatEdge &edge) {
+    const CellGrid &grid = map.grid;
+    const double half = lensprof_half_diagonal(grid.width, grid.height);
+    std::vector<std::array<double, 2>> places;
+    edge.radius = INFINITY;
+    for (int cell : rim) {
+        const double x = (cell % grid.columns + 0.5) * grid.cell_width() - 0.5 * grid.width;
+        const double y = (cell / grid.columns + 0.5) * grid.cell_height() - 0.5 * grid.height;
+        if (distance_to_border(grid, cell) > 0) places.push_back({x / half, y / half});
+        edge.radius = std::min(edge.radius, std::hypot(x, y) / half);
+    }
+    const std::optional<Circle> circle = circle_through(places, kOffCircle * map.side);
+    if (circle) edge.radius = circle->radius;
+}
+
+}  // namespace
+
+FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
+    const DarkMap map = dark_map(grid, channels, shot);
+    FlatEdge edge;
+    std::vector<int> rim;
+    edge.outside = surround(map, rim);
+    if (rim.empty()) return edge;
+    set_radius(map, rim, edge);
+    int soft = 1;
+    while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;
+    for (int step = 0; step <= soft; step++) grow(grid, edge.outside);
+    add_black(grid, shot, edge.outside);
+    edge.inner = edge.radius - (soft + 2) * map.side;
+    edge.share = static_cast<double>(std::count(edge.outside.begin(), edge.outside.end(), true)) / grid.count();
+    return edge;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,173 @@
+// Falloffs that are not polynomials in r^2, image circles, and what one light leaves open, on simulated cards.
+#include "flat_pictures.hpp"
+
+static FlatPictures small_card(double noise_levels = 1.0) {
+    FlatPictures p;
+    p.width = 480, p.height = 320;
+    p.noise = noise_levels / 255.0;
+    return p;
+}
+
+static std::function<double(double)> law_of_the_cosine(double corner) {
+    return [=](double r) { return std::pow(1.0 + (1.0 / std::sqrt(corner) - 1.0) * r * r, -2.0); };
+}
+
+static void up_to_six_stops_are_measured(void **) {
+    const struct {
+        uint32_t sample;
+        double center, noise_levels, corner, worst;
+        std::function<double(double)> falloff;
+    } cards[] = {
+        {LENSPROF_SAMPLE_U16, 0.0, 0.5, 0.0625, 0.004, [](double r) { return std::exp2(-4.0 * std::pow(r, 2.2)); }},
+        {LENSPROF_SAMPLE_F32, 0.03, 0.3, 0.016, 0.012, law_of_the_cosine(0.016)},
+        {LENSPROF_SAMPLE_U8, 0.0, 1.0, 0.0625, 0.012, law_of_the_cosine(0.0625)},
+        {LENSPROF_SAMPLE_U16, 0.02, 1.0, 0.137, 0.015,
+         [](double r) { return law_of_the_cosine(0.3)(r) / (1.0 + std::exp((r - 0.98) / 0.08)); }},
+    };
+    for (const auto &card : cards) {
+        FlatPictures p = small_card(card.noise_levels);
+        p.sample = card.sample;
+        if (card.sample == LENSPROF_SAMPLE_U8) assert_ok(lensprof_response_set_gamma(&p.response, 2.2));
+        p.set_falloff(card.center, 0.0, card.falloff);
+        p.shoot(0);
+        const auto r = p.fit(p.options());
+        assert_true(r->usable);
+        assert_null(r->with(LENSPROF_REASON_FLAT_TEXTURE));
+        const lensprof_finding *finding = r->with(LENSPROF_REASON_FLAT_NEEDS_GRID);
+        assert_non_null(finding);
+        assert_int_equal(finding->severity, LENSPROF_SEVERITY_NOTE);
+        assert_close(finding->value[0], r->polynomial_error, 0.0);
+        assert_close(r->corner, card.corner, 0.004 + 2.0 * r->corner_sigma);
+        assert_true(r->corner_sigma > 0.0 && r->corner_sigma < 0.01);
+        assert_close(largest_error(*r, p), 0.0, card.worst);
+        for (const auto &v : r->vignetting) assert_ok(lensprof_vignetting_validate(&v));
+        assert_ok(lensprof_gain_grid_validate(&r->gain_grid));
+    }
+}
+
+static void without_a_grid_a_deep_falloff_is_warned_of(void **) {
+    FlatPictures p = small_card();
+    p.set_falloff(0.0, 0.0, law_of_the_cosine(0.2));
+    p.shoot(0);
+    lensprof_flat_options o = p.options();
+    o.grid = LENSPROF_FLAT_GRID_NONE;
+    const auto r = p.fit(o);
+    assert_int_equal(r->gain_grid.columns, 0);
+    assert_null(r->with(LENSPROF_REASON_FLAT_TEXTURE));
+}
+
+static void what_lies_outside_the_image_circle_is_left_out(void **) {
+    const struct { double radius, x, share; } circles[] = {{0.9, 0.0, 0.06}, {0.8, 0.08, 0.2}, {0.55, 0.0, 0.59}};
+    for (const auto &circle : circles) {
+        FlatPictures p = small_card();
+        const auto falloff = law_of_the_cosine(0.4);
+        p.set_falloff(0.0, 0.0, falloff);
+        p.defect = [&, inside = p.defect](double x, double y, uint32_t c) {
+            const double half = 0.5 * std::hypot(480, 320);
+            const double r = std::hypot((x - 239.5) / half - circle.x, (y - 159.5) / half);
+            return inside(x, y, c) * (r < circle.radius ? 1.0 : 0.001);
+        };
+        p.shoot(0);
+        const auto r = p.fit(p.options());
+        assert_true(r->usable);
+        const lensprof_finding *finding = r->with(LENSPROF_REASON_FLAT_EDGE);
+        assert_non_null(finding);
+        assert_int_equal(finding->severity, LENSPROF_SEVERITY_NOTE);
+        assert_close(finding->value[0], circle.radius, 0.02);
+        assert_close(finding->value[1], circle.share, 0.03);
+        assert_null(r->with(LENSPROF_REASON_FLAT_BLACK));
+        assert_close(largest_error(*r, p, circle.radius - circle.x - 0.05), 0.0, 0.005);
+        assert_close(r->corner, falloff(r->radius), 0.02);
+        for (const auto &corner : {std::array<double, 2>{0, 0}, {479, 0}, {0, 319}, {479, 319}}) {  // as at the edge
+            const double held = found_falloff(*r, p, corner[0], corner[1]) / falloff(r->radius);
+            assert_true(held > 0.85 && held < 1.05);
+        }
+    }
+    FlatPictures whole = small_card();
+    whole.set_falloff(0.0, 0.0, law_of_the_cosine(0.016));
+    whole.shoot(0);
+    assert_true(whole.fit(whole.options())->edge_radius == 0.0);  // black in the corners, but without an edge
+}
+
+static void one_light_is_noted(void **) {
+    FlatPictures p = small_card();
+    p.shoot(0);
+    const auto alone = p.fit(p.options());
+    const lensprof_finding *finding = alone->with(LENSPROF_REASON_FLAT_ONE_LIGHT);
+    assert_non_null(finding);
+    assert_int_equal(finding->severity, LENSPROF_SEVERITY_NOTE);
+    assert_non_null(strstr(finding->text, "overlapping pictures"));
+    p.shoot(1);
+    assert_non_null(p.fit(p.options())->with(LENSPROF_REASON_FLAT_ONE_LIGHT));
+    p.shoot(2, 0.0, 90.0);
+    assert_null(p.fit(p.options())->with(LENSPROF_REASON_FLAT_ONE_LIGHT));
+}
+
+// exp(-a r^2) off centre is exp(-a r^2) in the middle under a plane: only the prior separates them. Other falloffs
+// differ from that.
+static void the_light_is_even_where_that_describes_the_card(void **) {
+    FlatPictures even = small_card();
+    even.set_falloff(0.03, -0.02, [](double r) { return std::exp(-1.5 * r * r); });
+    even.shoot(0);
+    auto r = even.fit(even.options());
+    assert_true(r->usable);
+    assert_int_equal(r->light, LENSPROF_FLAT_LIGHT_EVEN);
+    assert_int_equal(r->separated, 0);
+    assert_close(largest_error(*r, even), 0.0, 0.004);
+    const lensprof_finding *finding = r->with(LENSPROF_REASON_FLAT_CENTER_BY_PRIOR);
+    assert_non_null(finding);
+    assert_close(finding->value[0], r->light_ev, 0.0);
+    assert_true(r->light_ev > 0.05);
+
+    FlatPictures sloped = small_card();
+    for (auto &v : sloped.vignetting) v = {{-0.3, 0.0, -0.2}, {0.0, 0.0}};
+    sloped.gradient[0] = 0.08;
+    sloped.shoot(0);
+    r = sloped.fit(sloped.options());
+    assert_true(r->usable);
+    assert_int_equal(r->light, LENSPROF_FLAT_LIGHT_PLANE);
+    assert_true(r->light_ev > 0.05);
+    assert_close(error_of(*r, sloped), 0.0, 0.003);
+}
+
+static void dust_texture_and_a_clipped_middle_are_named_each(void **) {
+    FlatPictures p = small_card();
+    p.width = 600, p.height = 450, p.level = 0.6;
+    uint64_t random = 5;
+    std::vector<std::array<double, 3>> spots(40);
+    for (auto &spot : spots)
+        spot = {600 * lp_random(&random), 450 * lp_random(&random), 2.0 + 3.0 * lp_random(&random)};
+    const std::vector<double> &normals = normal_numbers();
+    p.defect = [&](double x, double y, uint32_t) {
+        double light = std::hypot(x - 320, y - 215) < 40 ? 2.5 : 1.0;
+        for (const auto &s : spots)
+            if (std::hypot(x - s[0], y - s[1]) < s[2]) light *= 0.8;
+        const auto grain = static_cast<size_t>(y / 2.5) * 240 + static_cast<size_t>(x / 2.5);  // 2.5 px, 2 %
+        return light * (1.0 + 0.02 * normals[grain * 2654435761u % normals.size()]);
+    };
+    p.shoot(0);
+    const auto r = p.fit(p.options());
+    assert_true(r->usable);
+    const lensprof_finding *white = r->with(LENSPROF_REASON_FLAT_WHITE), *dust = r->with(LENSPROF_REASON_FLAT_DUST),
+                           *texture = r->with(LENSPROF_REASON_FLAT_TEXTURE);
+    assert_true(white && dust && texture);
+    assert_close(white->value[0], 0.019, 0.005);
+    assert_non_null(strstr(white->text, "0.05,-0.03 half diagonals"));
+    assert_true(dust->value[0] > 25.0 && dust->value[0] < 45.0);
+    assert_close(dust->value[1], r->corner_sigma, 0.0);
+    assert_true(texture->value[0] > 0.005 && texture->value[1] < 0.005);
+    for (int i = 0; i < 3; i++) assert_close(r->vignetting[1].k[i], p.vignetting[1].k[i], 0.02);
+    assert_close(error_of(*r, p), 0.0, 0.004);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(up_to_six_stops_are_measured),
+        cmocka_unit_test(without_a_grid_a_deep_falloff_is_warned_of),
+        cmocka_unit_test(what_lies_outside_the_image_circle_is_left_out),
+        cmocka_unit_test(one_light_is_noted),
+        cmocka_unit_test(the_light_is_even_where_that_describes_the_card),
+        cmocka_unit_test(dust_texture_and_a_clipped_middle_are_named_each),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
