@@ -129,7 +129,14 @@ typedef struct lensprof_apply_options {
                                                  plan init only */
     uint32_t output_responses;                /* 1 for all channels, or 3; 0 without output_response */
     uint32_t reserved2;                       /* 0 */
+    uint32_t chroma;                          /* 1: correct only the colour of the falloff; 0: all of it. See below */
+    uint32_t reserved3;                       /* 0 */
 } lensprof_apply_options;
+
+/* chroma: M of a channel is replaced by M / Y, where Y = 0.2126 M_red + 0.7152 M_green + 0.0722 M_blue is the luminance
+ * that falls on this place of a neutral scene, by the weights of ITU-R BT.709. Neutral grey becomes neutral and keeps
+ * its linear luminance exactly; a colour changes it by at most max |M / Y - 1| of the channels. gain_cap limits Y / M.
+ * A model whose channels have one falloff, grey pixels too, keep theirs. */
 
 /* Correct, encoded input and output, u8 RGB in and out, exposures 0 EV, strength 1. The rest is zero; the caller must
  * set it. */

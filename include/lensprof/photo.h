@@ -377,9 +377,11 @@ typedef struct lensprof_correct_options {
     double gain_cap;              /* largest gain of the falloff correction, 1 or more; 0: unlimited */
     uint32_t simulate;            /* 1: add the falloff instead of correcting it */
     uint32_t dither;              /* 1: ordered dither instead of rounding in 8 bit pictures, against banding */
+    uint32_t chroma;              /* 1: correct only the colour of the falloff, and keep luminance (apply.h) */
+    uint32_t reserved2;           /* 0 */
 } lensprof_correct_options;
 
-/* Defaults: MEAN, 0, 0, 0, 0, 1, none, 0, 0, 0. */
+/* Defaults: MEAN, 0, 0, 0, 0, 1, none, 0, 0, 0, 0. */
 LENSPROF_API void lensprof_correct_options_init_sized(lensprof_correct_options *options, size_t size);
 static inline void lensprof_correct_options_init(lensprof_correct_options *options) {
     lensprof_correct_options_init_sized(options, sizeof *options);

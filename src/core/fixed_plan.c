@@ -110,6 +110,7 @@ static lensprof_status validate(const lensprof_apply_options *given, lensprof_ap
         || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED,
                        "integers take U8 and U16 to the same, no planes, grid or dither");
+    if (o->chroma) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take chroma");
     if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, LP_INPUT) && is_linear(o, m, LP_OUTPUT)))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U16 through a linear response only");
     return LENSPROF_OK;

@@ -6,6 +6,7 @@
 
 #include "core/exposure.h"
 #include "core/fail.h"
+#include "core/plan.h"
 #include "core/profile.h"
 #include "core/response.h"
 
@@ -165,8 +166,8 @@ static lensprof_status validate_options(const lensprof_apply_options *o, lenspro
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "a sample type or the layout is unknown");
     if (!(o->strength >= 0.0 && o->strength <= 1.0)
         || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)) || o->dither > 1
-        || o->reserved || o->reserved2)
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength, gain_cap, dither or reserved is wrong");
+        || o->chroma > LP_HAS_CHROMA || o->reserved || o->reserved2 || o->reserved3)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength, gain_cap, dither, chroma or reserved is wrong");
     if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
         return lp_fail(error, LENSPROF_ERROR_SIZE, "frame size is 0, or over 2^20");
     const lensprof_status status = validate_exposures(o, error);

@@ -64,11 +64,16 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     if (row != channel) plan->nodes[row] = plan->nodes[channel];
 }
 
+/* Whether all channels have the same falloff, which has no colour. */
+static int has_one_falloff(const lensprof_plan *plan) {
+    for (uint32_t c = 1; c < plan->channels; c++)
+        if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->nodes[c] != plan->nodes[0]) return 0;
+    return 1;
+}
+
 /* Channels that differ only in their factors share one division per pixel, if the rounding has no visible effect. */
 static void share_gains(lensprof_plan *plan) {
-    if (plan->gains == 1 || (plan->target_sample == LENSPROF_SAMPLE_F32 && plan->encode < LP_CURVE_TABLE)) return;
-    for (uint32_t c = 1; c < LP_CHANNELS; c++)
-        if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->nodes[c] != plan->nodes[0]) return;
+    if (plan->target_sample == LENSPROF_SAMPLE_F32 && plan->encode < LP_CURVE_TABLE) return;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
         plan->times[c] = plan->simulate ? 1.0f / plan->factor[c] : plan->factor[c];
         plan->factor[c] = 1.0f;
@@ -88,12 +93,15 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, 
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
         if (plan->channels == 1 && c != 1) continue;
         prepare_gain(plan, o, m, c);
-        if (plan->channels == 3
-            && (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->factor[c] != plan->factor[0]
-                || plan->nodes[c] != plan->nodes[0]))
-            plan->gains = 3;
+        if (plan->channels == 3 && plan->factor[c] != plan->factor[0]) plan->gains = 3;
     }
-    share_gains(plan);
+    if (!has_one_falloff(plan)) {
+        plan->gains = 3;
+        plan->chroma = o->chroma; /* needs M of all channels */
+        return;
+    }
+    if (LP_HAS_CHROMA && o->chroma) memset(plan->k, 0, sizeof plan->k), plan->columns = 0;
+    if (plan->gains == 3) share_gains(plan);
 }
 
 lensprof_status lensprof_plan_init(void *memory, size_t size, const lensprof_apply_options *given,

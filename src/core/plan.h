@@ -8,6 +8,13 @@
 #define LP_CELL_SHIFT 11
 #define LP_CELLS (1 << LP_CELL_SHIFT) /* cells of the range 0..1, to find values among the samples */
 
+/* -DLENSPROF_NO_CHROMA leaves out the correction of colour alone (chroma of lensprof_apply_options). */
+#ifdef LENSPROF_NO_CHROMA
+#define LP_HAS_CHROMA 0
+#else
+#define LP_HAS_CHROMA 1
+#endif
+
 /* How codes or values become irradiance, and how irradiance becomes a value 0..1 again. */
 enum lp_curve {
     LP_CURVE_NONE,  /* linear; codes are in units of their own, which the plan's factors include */
@@ -28,6 +35,7 @@ struct lensprof_plan {
     uint32_t samples, channels; /* of a pixel; colour channels */
     uint32_t decode, encode;    /* lp_curve */
     uint32_t simulate, dither;
+    uint32_t chroma;        /* M of a channel is relative to that of luminance; the gains are then 3 */
     uint32_t neutral_white; /* LENSPROF_SATURATED_NEUTRAL is in force */
     uint32_t frame_width, frame_height;
     uint32_t gains;     /* 1 if all channels have the same gain, else 3 */

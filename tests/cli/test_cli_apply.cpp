@@ -137,6 +137,48 @@ void test_folder(void **) {
         contains(run_words(words + Words{work("empty")}).err, work("empty") + ": is a folder without pictures"));
 }
 
+// Of a neutral scene through a lens whose falloff differs by channel, --chroma leaves the luminance and no colour; a
+// profile with one curve changes nothing, which a note states.
+void test_colour_alone(void **) {
+    auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("p.db").c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    p->vignetting[0].k[0] = -0.4;
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    p->vignettings = 3;
+    for (int c = 0; c < 3; c++) p->vignetting[c].k[0] = -0.2 - 0.1 * c;
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    Picture scene_light = make_noise(64, 48, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    auto *values = reinterpret_cast<uint16_t *>(scene_light.pixels.data());
+    for (size_t i = 0; i < size_t(64) * 48 * 3; i++) {
+        const double r2 =
+            lensprof_vignetting_r2(p->vignetting, 64, 48, double(i / 3 % 64), double(i / 3 / 64), nullptr);
+        values[i] =
+            static_cast<uint16_t>(std::lround(40000 * lensprof_vignetting_eval(&p->vignetting[i % 3], r2, nullptr)));
+    }
+    write_picture(work("flat.tif"), scene_light);
+    const auto apply = [&](const char *id, const char *out) {
+        return run_words(
+            {"apply", "--profile", id, "--db", work("p.db"), work("flat.tif"), "--chroma", "-o", work(out)});
+    };
+    assert_int_equal(apply("2", "coloured").code, done);
+    const Picture neutral = read_picture(work("coloured/flat.tif"));
+    for (size_t i = 0; i < size_t(64) * 48 * 3; i += 3) {
+        const auto luminance = [&](const Picture &picture) {
+            return 0.2126 * value_of(picture, i) + 0.7152 * value_of(picture, i + 1)
+                   + 0.0722 * value_of(picture, i + 2);
+        };
+        assert_close(luminance(neutral) / luminance(scene_light), 1.0, 0.002);
+        assert_close(value_of(neutral, i) / value_of(neutral, i + 2), 1.0, 0.001);
+    }
+    const Outcome one_curve = apply("1", "plain");
+    assert_int_equal(one_curve.code, done);
+    assert_true(contains(one_curve.err, "one falloff for all channels"));
+    assert_true(read_picture(work("plain/flat.tif")).pixels == scene_light.pixels);
+}
+
 // The keys strength and gain-cap limit the effect of the falloff; dither preserves the mean that rounding would change.
 void test_strength_cap_and_dither(void **) {
     auto p = std::make_unique<lensprof_profile>();
@@ -434,19 +476,13 @@ void test_doubts_of_crops(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_output_exposures),
-        CLI_TEST(test_linear_is_float),
-        CLI_TEST(test_simulate_undoes_correct),
-        CLI_TEST(test_some_pictures_of_a_project),
-        CLI_TEST(test_overlaps_agree_better),
-        CLI_TEST(test_pictures_keep_their_nature),
-        CLI_TEST(test_profile_by_id_or_exif),
-        CLI_TEST(test_gain_grid_of_a_profile),
-        CLI_TEST(test_contact_sheet),
-        CLI_TEST(test_two_circles),
-        CLI_TEST(test_doubts_of_crops),
-        CLI_TEST(test_strength_cap_and_dither),
-        CLI_TEST(test_folder),
+        CLI_TEST(test_output_exposures),        CLI_TEST(test_linear_is_float),
+        CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
+        CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
+        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
+        CLI_TEST(test_contact_sheet),           CLI_TEST(test_two_circles),
+        CLI_TEST(test_doubts_of_crops),         CLI_TEST(test_colour_alone),
+        CLI_TEST(test_strength_cap_and_dither), CLI_TEST(test_folder),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

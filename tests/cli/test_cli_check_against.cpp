@@ -91,10 +91,12 @@ void test_right_one_is_named(void **) {
         assert_true(json["none"]["rms"] > of(json, 2)["rms"]);
         assert_true(json["before_rms"] > json["none"]["rms"]);
         assert_true(of(json, 1)["response"] == "own");
+        assert_true(of(json, 1)["corners"] == "agree" && of(json, 2)["corners"] == "too-dark");
+        assert_true(json["none"]["corners"] == "too-dark" && json["none"]["ring_ev"].size() == 5);
     }
     const std::string said = must_exit(done, against("2 1", folder_of + "/pano.pto"));
     assert_true(contains(said, "best           profile 1\n"));
-    assert_true(contains(said, "no falloff"));
+    assert_true(contains(said, "no falloff") && contains(said, "undercorrects the corners by -0."));
     // As a shell expands *.png: the words after the first are further pictures.
     const Words more = {folder_of + "/img001.png", folder_of + "/img002.png", folder_of + "/img003.png"};
     assert_int_equal(json_of(against("1 2", folder_of + "/img000.png", more + Words{"--json"}))["best"], 1);

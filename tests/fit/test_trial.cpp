@@ -119,6 +119,28 @@ void test_raw(void **) {
     assert_true(mixed.candidates[0].heldout_rms < 0.01);
 }
 
+// A profile with too much or too little light in the corners leaves them too dark or too bright.
+void test_rings(void **) {
+    const Simulation simulation = simulated(1.0, 0.1);
+    std::vector<lensprof_profile> profiles(3, profile_of(simulation, 1.0));
+    const double off[] = {0.0, 0.2, -0.2};
+    for (int i = 1; i < 3; i++) profiles[static_cast<size_t>(i)].vignetting[0].k[0] += off[i] * std::log(2.0) * 0.7;
+    Outcome outcome(4);
+    assert_ok(run(simulation, {&profiles[0], &profiles[1], &profiles[2]}, outcome));
+    const lensprof_trial_candidate *found = outcome.candidates.data();
+    const uint32_t last = found[0].rings - 1;
+    assert_true(last >= 2 && outcome.result.ring_end[0] == 0.25 && outcome.result.ring_end[4] == 1.0);
+    assert_int_equal(found[0].corners, LENSPROF_TRIAL_CORNERS_AGREE);
+    assert_int_equal(found[1].corners, LENSPROF_TRIAL_CORNERS_TOO_DARK);
+    assert_int_equal(found[2].corners, LENSPROF_TRIAL_CORNERS_TOO_BRIGHT);
+    assert_int_equal(found[3].corners, LENSPROF_TRIAL_CORNERS_TOO_DARK);
+    for (uint32_t k = 0; k <= last; k++) {
+        assert_true(std::fabs(found[0].ring_ev[k]) <= 3.0 * found[0].ring_sigma_ev[k]);
+        assert_true(found[0].ring_sigma_ev[k] < 0.05);
+    }
+    assert_true(found[1].better_than_none && found[2].better_than_none && !found[3].better_than_none);
+}
+
 void test_before_rms(void **) {
     Simulation simulation = simulated(0.0, 0.0);
     for (lensprof_pair &pair : simulation.pairs)
@@ -237,6 +259,7 @@ int main(void) {
         cmocka_unit_test(test_true_profile_explains_all),
         cmocka_unit_test(test_noise),
         cmocka_unit_test(test_raw),
+        cmocka_unit_test(test_rings),
         cmocka_unit_test(test_before_rms),
         cmocka_unit_test(test_few_pairs),
         cmocka_unit_test(test_bad_pairs),

@@ -129,6 +129,8 @@ static void print_structs(void) {
     FIELD(lensprof_apply_options, output_response);
     FIELD(lensprof_apply_options, output_responses);
     FIELD(lensprof_apply_options, reserved2);
+    FIELD(lensprof_apply_options, chroma);
+    FIELD(lensprof_apply_options, reserved3);
     STRUCT(lensprof_exposure_settings);
     FIELD(lensprof_exposure_settings, time_s);
     FIELD(lensprof_exposure_settings, f_number);
@@ -653,6 +655,10 @@ static void print_structs(void) {
     FIELD(lensprof_trial_candidate, above_best_sigma);
     FIELD(lensprof_trial_candidate, below_none);
     FIELD(lensprof_trial_candidate, below_none_sigma);
+    FIELD(lensprof_trial_candidate, corners);
+    FIELD(lensprof_trial_candidate, rings);
+    FIELD(lensprof_trial_candidate, ring_ev);
+    FIELD(lensprof_trial_candidate, ring_sigma_ev);
     STRUCT(lensprof_trial_result);
     FIELD(lensprof_trial_result, struct_size);
     FIELD(lensprof_trial_result, usable);
@@ -663,6 +669,7 @@ static void print_structs(void) {
     FIELD(lensprof_trial_result, measured);
     FIELD(lensprof_trial_result, unexplained);
     FIELD(lensprof_trial_result, before_rms);
+    FIELD(lensprof_trial_result, ring_end);
     STRUCT(lensprof_notice);
     FIELD(lensprof_notice, severity);
     FIELD(lensprof_notice, reserved);
@@ -763,6 +770,8 @@ static void print_structs(void) {
     FIELD(lensprof_correct_options, gain_cap);
     FIELD(lensprof_correct_options, simulate);
     FIELD(lensprof_correct_options, dither);
+    FIELD(lensprof_correct_options, chroma);
+    FIELD(lensprof_correct_options, reserved2);
     STRUCT(lensprof_folder_options);
     FIELD(lensprof_folder_options, struct_size);
     FIELD(lensprof_folder_options, one_lens);
@@ -807,6 +816,7 @@ static void print_values(void) {
     VALUE(LENSPROF_LOOKUP_NEAREST);
     VALUE(LENSPROF_STATS_GROUPS);
     VALUE(LENSPROF_TRIAL_PAIRS);
+    VALUE(LENSPROF_TRIAL_RINGS);
     VALUE(LENSPROF_CAMERA_AUTO);
     VALUE(LENSPROF_OK);
     VALUE(LENSPROF_ERROR_ARGUMENT);
@@ -1070,6 +1080,10 @@ static void print_values(void) {
     VALUE(LENSPROF_TRIAL_RESPONSE_OTHER);
     VALUE(LENSPROF_TRIAL_RESPONSE_KIND);
     VALUE(LENSPROF_TRIAL_RESPONSE_LINEAR);
+    VALUE(LENSPROF_TRIAL_CORNERS_NOT_SHOWN);
+    VALUE(LENSPROF_TRIAL_CORNERS_AGREE);
+    VALUE(LENSPROF_TRIAL_CORNERS_TOO_DARK);
+    VALUE(LENSPROF_TRIAL_CORNERS_TOO_BRIGHT);
     VALUE(LENSPROF_COPY_EXPOSURE_MEAN);
     VALUE(LENSPROF_COPY_EXPOSURE_KEEP);
     VALUE(LENSPROF_COPY_EXPOSURE_REFERENCE);

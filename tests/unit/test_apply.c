@@ -141,6 +141,61 @@ static void compare(const fixture *f, const lensprof_target *source, const lensp
             }
 }
 
+/* Chroma: a neutral scene under the falloff becomes neutral with its luminance, by polynomials and a grid. */
+static void test_chroma_keeps_luminance(void **state) {
+    (void)state;
+    const double weight[3] = {0.2126, 0.7152, 0.0722};
+    for (uint32_t n = 0; n < 8; n++) {
+        fixture f;
+        make_model(&f, LENSPROF_RESPONSE_LINEAR, 3);
+        if (n % 2) make_grid(&f, 5, 4, 3);
+        f.options.strength = n / 2 % 2 ? 0.4 : 1.0;
+        f.options.gain_cap = n / 4 ? 1.02 : 0.0;
+        f.options.source = f.options.target, f.options.chroma = 1;
+        f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_F32;
+        make_plan(&f);
+        lensprof_target image = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 1);
+        double m[H][W][3], luminance[H][W];
+        for (uint32_t y = 0; y < H; y++)
+            for (uint32_t x = 0; x < W; x++) {
+                luminance[y][x] = 0.0;
+                for (uint32_t c = 0; c < 3; c++) {
+                    const lensprof_vignetting *v = &f.vignetting[c];
+                    m[y][x][c] = lensprof_vignetting_eval(v, lensprof_vignetting_r2(v, W, H, x, y, NULL), NULL);
+                    if (n % 2) m[y][x][c] *= lensprof_gain_grid_eval(&f.grid, W, H, x, y, c);
+                    m[y][x][c] = 1.0 + f.options.strength * (m[y][x][c] - 1.0);
+                    luminance[y][x] += weight[c] * m[y][x][c];
+                    ((float *)image.data)[(y * W + x) * 3 + c] = (float)(0.5 * m[y][x][c]);
+                }
+            }
+        assert_ok(lensprof_apply(f.plan, NULL, &image, 0, 0));
+        for (uint32_t y = 0; y < H; y++)
+            for (uint32_t x = 0; x < W; x++)
+                for (uint32_t c = 0; c < 3; c++) {
+                    const double ratio = fmax(m[y][x][c] / luminance[y][x], n / 4 ? 1.0 / 1.02 : 0.0);
+                    assert_close(((float *)image.data)[(y * W + x) * 3 + c], 0.5 * m[y][x][c] / ratio, 2e-6);
+                }
+        free(image.data), free(f.memory);
+    }
+}
+
+/* Chroma with one falloff, and of grey pixels: none. */
+static void test_chroma_of_one_falloff_is_none(void **state) {
+    (void)state;
+    for (uint32_t layout = 0; layout < 3; layout += 2) {
+        fixture f;
+        make_model(&f, LENSPROF_RESPONSE_LINEAR, layout ? 1 : 3);
+        f.options.source = f.options.target, f.options.chroma = 1, f.options.source_layout = layout;
+        f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_F32;
+        make_plan(&f);
+        lensprof_target image = make_image(LENSPROF_SAMPLE_F32, layout, 1);
+        lensprof_target before = make_image(LENSPROF_SAMPLE_F32, layout, 1);
+        assert_ok(lensprof_apply(f.plan, NULL, &image, 0, 0));
+        assert_memory_equal(image.data, before.data, (size_t)image.row_bytes * H);
+        free(image.data), free(before.data), free(f.memory);
+    }
+}
+
 /* Every input and output sample type, layout, response kind, direction and encoding, with one and three curves. */
 static void test_every_format_follows_the_formula(void **state) {
     (void)state;
@@ -353,6 +408,7 @@ static void test_plan_refuses(void **state) {
     REFUSED(f.options.source_sample = 4, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.target_sample = 4, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.source_layout = 11, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.chroma = 2, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.strength = 1.5, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.strength = NAN, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.gain_cap = 0.5, LENSPROF_ERROR_ARGUMENT);
@@ -493,6 +549,8 @@ static void test_apply_refuses_and_writes_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_chroma_keeps_luminance),
+        cmocka_unit_test(test_chroma_of_one_falloff_is_none),
         cmocka_unit_test(test_every_format_follows_the_formula),
         cmocka_unit_test(test_output_has_a_response_of_its_own),
         cmocka_unit_test(test_gain_grids_follow_the_formula),

@@ -298,6 +298,7 @@ static void test_options_that_are_refused(void **state) {
     REFUSED(o->source_sample = o->target_sample = LENSPROF_SAMPLE_F16, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(o->source_layout = LENSPROF_LAYOUT_PLANAR, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(o->strength = 1.0; o->vignettings = 1; f.m.vignetting[0].k[2] = 1e6, LENSPROF_ERROR_UNSUPPORTED);
+    REFUSED(o->chroma = 1, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(o->grid = &f.m.grid; lensprof_gain_grid_init(&f.m.grid); f.m.grid.columns = f.m.grid.rows = 2;
             f.m.grid.channels = 1;
             for (int i = 0; i < 4; i++) f.m.grid.attenuation[i] = 1.0f, LENSPROF_ERROR_UNSUPPORTED);

@@ -79,6 +79,7 @@ static void make_model(model *m, uint64_t seed) {
     o->saturated = lp_random(&random) < 0.5;
     o->dither = lp_random(&random) < 0.3;
     if (lp_random(&random) < 0.3) o->strength = lp_random(&random);
+    if (lp_random(&random) < 0.3) o->chroma = 1;
     if (lp_random(&random) < 0.3) o->gain_cap = 1.0 + lp_random(&random);
     o->source = (lensprof_exposure){lp_random(&random), {1.0 + lp_random(&random), 1.0, 0.8}};
     if (lp_random(&random) < 0.3) o->source = o->target;

@@ -10,7 +10,7 @@ from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_
                    DistanceRule, Encoding, ExposureState, FitModel, FitResponse, FlatGrid, FlatLight, Free, GammaFrom,
                    ItemKind, Layout, LinkState, Loss, Method, Pack, Processing, ProfilePrior, Projection, Reason,
                    ResponseFrom, ResponseKind, SampleType, Sampling, Saturated, Severity, Status, StoreMode, StoreNames,
-                   TrialResponse)
+                   TrialCorners, TrialResponse)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, EXPOSURE_SETTINGS_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE,
                       KNOWN_EXPOSURE_DTYPE, LINK_DTYPE, MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE,
@@ -48,8 +48,8 @@ __all__ = [
     "Provenance", "RESPONSE_SAMPLES", "Reason", "RenderingResult", "RenderingShot", "Response", "ResponseFrom",
     "ResponseKind", "SCENE_LINK_DTYPE", "SETTINGS_MAX", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Scene",
     "SceneImage", "Severity", "Status", "Store", "StoreFault", "StoreMode", "StoreNames", "StoreRow", "StoreStats",
-    "StoreSummary", "TrialCandidate", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting", "calibrate",
-    "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_flat",
+    "StoreSummary", "TrialCandidate", "TrialCorners", "TrialResponse", "TrialResult", "UNKNOWN", "Vignetting",
+    "calibrate", "calibrate_folder", "correct", "correct_file", "correct_files", "emor_table", "encode_picture", "fit_flat",
     "fit_overlap", "fit_radiance", "fit_rendering", "formats", "half_diagonal", "known_exposures", "layout_channels",
     "layout_samples", "lookup_in", "read_picture", "reason_name", "reason_text", "sample_matches", "sample_overlap",
     "sample_tracks", "sample_type_bytes", "settings_ev", "simulate", "status_name", "try_profiles", "version",

@@ -42,6 +42,7 @@ LOOKUP_RESPONSES = 8
 LOOKUP_NEAREST = 3
 STATS_GROUPS = 8
 TRIAL_PAIRS = 30
+TRIAL_RINGS = 5
 CAMERA_AUTO = 4294967295
 DOUBT_RESPONSE = "response not shown by the pictures: typical of the kind"
 
@@ -448,6 +449,14 @@ class TrialResponse(IntEnum):
     LINEAR = 3
 
 
+class TrialCorners(IntEnum):
+    """lensprof_trial_corners; see lensprof/trial.h."""
+    NOT_SHOWN = 0
+    AGREE = 1
+    TOO_DARK = 2
+    TOO_BRIGHT = 3
+
+
 class CopyExposure(IntEnum):
     """lensprof_copy_exposure; see lensprof/photo.h."""
     MEAN = 0
@@ -640,6 +649,8 @@ class ApplyOptions(Structure):
         ("output_response", POINTER(Response)),
         ("output_responses", c_uint32),
         ("reserved2", c_uint32),
+        ("chroma", c_uint32),
+        ("reserved3", c_uint32),
     ]
 
 
@@ -1369,6 +1380,10 @@ class TrialCandidate(Structure):
         ("above_best_sigma", c_double),
         ("below_none", c_double),
         ("below_none_sigma", c_double),
+        ("corners", c_uint32),
+        ("rings", c_uint32),
+        ("ring_ev", c_double * 5),
+        ("ring_sigma_ev", c_double * 5),
     ]
 
 
@@ -1383,6 +1398,7 @@ class TrialResult(Structure):
         ("measured", c_uint32),
         ("unexplained", c_uint32),
         ("before_rms", c_double),
+        ("ring_end", c_double * 5),
     ]
 
 
@@ -1549,6 +1565,8 @@ class CorrectOptions(Structure):
         ("gain_cap", c_double),
         ("simulate", c_uint32),
         ("dither", c_uint32),
+        ("chroma", c_uint32),
+        ("reserved2", c_uint32),
     ]
 
 
@@ -1614,6 +1632,7 @@ ENUMS = {
     "LENSPROF_RESPONSE_FROM_": ResponseFrom,
     "LENSPROF_NAMES_": StoreNames,
     "LENSPROF_TRIAL_RESPONSE_": TrialResponse,
+    "LENSPROF_TRIAL_CORNERS_": TrialCorners,
     "LENSPROF_COPY_EXPOSURE_": CopyExposure,
     "LENSPROF_FREE_": Free,
 }

@@ -65,7 +65,7 @@ class Struct:
         shown = {field.field: name for base in cls.__mro__ for name, field in vars(base).items()
                  if isinstance(field, _Field)}
         return [shown.get(field[0], field[0]) for field in _raw(cls)._fields_
-                if field[0] not in ("struct_size", "image_quality_size", "reserved", "reserved2")]
+                if field[0] not in ("struct_size", "image_quality_size", "reserved", "reserved2", "reserved3")]
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):

@@ -43,7 +43,8 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     exposure and white balance of the picture. target: the wanted ones. grid: a GainGrid multiplied by the vignetting,
     or None. strength: 0..1 of the falloff. gain_cap: the largest gain for the falloff, 1..1e6, or 0. dither: dither
     instead of rounding, for uint8 output. blob: a result of Profile.pack, instead of response, vignetting and grid, or
-    None. output_response: one response or three that encode the output instead; None = those of the model.
+    None. chroma: correct only the colour of the falloff, luminance stays. output_response: one response or three that
+    encode the output instead; None = those of the model.
     """
 
     direction: Enumerated[Direction] = Enumerated(Direction)
@@ -69,6 +70,7 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     blob_bytes = Count("assign blob")
     output_response: Referenced[Response] = Referenced(Response, "output_responses", optional=True)
     output_responses = Count("assign output_response")
+    chroma: Flag = Flag()
 
     def set_profile(self, profile: Profile) -> None:
         """Sets response, vignetting and grid from a copy of the profile, replacing previous values."""

@@ -23,8 +23,8 @@ class CorrectOptions(TypedDict, total=False):
     replace existing files even if they were made from other pictures. threads: 0 = all cores. force_falloff: correct
     also pictures whose falloff was corrected before. strength: of the falloff correction; gain_cap: its largest gain,
     0 = unlimited. simulate: add the falloff instead. dither: ordered dither instead of rounding in 8 bit pictures.
-    databases: without a calibration, profile databases; none = the user's own and the installed one. progress: see
-    Progress."""
+    chroma: correct only the colour of the falloff. databases: without a calibration, profile databases; none = the
+    user's own and the installed one. progress: see Progress."""
 
     exposure: CopyExposure
     linear: bool
@@ -35,6 +35,7 @@ class CorrectOptions(TypedDict, total=False):
     gain_cap: float
     simulate: bool
     dither: bool
+    chroma: bool
     databases: Sequence[PathLike]
     progress: Progress
 
@@ -49,6 +50,7 @@ class _RawOptions(Struct, _abi.CorrectOptions):
     gain_cap: float = default
     simulate: Flag = Flag()
     dither: Flag = Flag()
+    chroma: Flag = Flag()
 
     def __init__(self, databases: Sequence[PathLike] = (), **fields: Any):
         super().__init__(**fields)

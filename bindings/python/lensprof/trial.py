@@ -5,9 +5,9 @@ from ctypes import byref
 from typing import Iterable, Sequence
 
 from . import _abi, _arrays
-from ._abi import CameraKind, TrialResponse
+from ._abi import CameraKind, TrialCorners, TrialResponse
 from ._library import check, initialised, lib
-from ._struct import Enumerated, Flag, Struct, default, integer
+from ._struct import Enumerated, Flag, Struct, Vector, default, integer
 from ._types import Records
 from .fit import FitImage
 from .profile import Profile, profile_pointers
@@ -19,7 +19,9 @@ class TrialCandidate(Struct, _abi.TrialCandidate):
     has_falloff: a polynomial or a gain grid. response_from: a TrialResponse; response_profile: for OTHER, the index of
     the profile. as_good_as_best: its RMS is not clearly above that of the best profile. better_than_none: it is clearly
     below that without falloff. heldout_rms, heldout_median: residuals. above_best, below_none: differences of RMS;
-    above_best_sigma, below_none_sigma: their standard errors.
+    above_best_sigma, below_none_sigma: their standard errors. corners: a TrialCorners. rings: that the pictures show,
+    from the middle on; ring_ev, ring_sigma_ev: brightness left in each, EV relative to the first, and its standard
+    error.
     """
 
     has_falloff: Flag = Flag()
@@ -33,6 +35,10 @@ class TrialCandidate(Struct, _abi.TrialCandidate):
     above_best_sigma: float = default
     below_none: float = default
     below_none_sigma: float = default
+    corners: Enumerated[TrialCorners] = Enumerated(TrialCorners)
+    rings: int = default
+    ring_ev: Vector = Vector(writable=False)
+    ring_sigma_ev: Vector = Vector(writable=False)
 
 
 class TrialResult(Struct, _abi.TrialResult):
@@ -40,8 +46,8 @@ class TrialResult(Struct, _abi.TrialResult):
 
     usable: a profile is better than none. best: index of the one with the smallest RMS; decided: all others are clearly
     worse. images: with pairs. fitted, measured: pairs that determine exposures, and pairs that count; unexplained: pairs
-    that no candidate explains. before_rms: of the pictures as they are, levels of 255. candidates: tuple of
-    TrialCandidate, one per profile, in their order; none: the one without falloff.
+    that no candidate explains. before_rms: of the pictures as they are, levels of 255. ring_end: largest r of each ring,
+    half diagonals. candidates: tuple of TrialCandidate, one per profile, in their order; none: the one without falloff.
     """
 
     usable: Flag = Flag()
@@ -52,6 +58,7 @@ class TrialResult(Struct, _abi.TrialResult):
     measured: int = default
     unexplained: int = default
     before_rms: float = default
+    ring_end: Vector = Vector(writable=False)
     _candidates: tuple[TrialCandidate, ...] = ()
     _none: TrialCandidate
 

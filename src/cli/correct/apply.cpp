@@ -56,6 +56,21 @@ Json left_out_json(const ApplyWork &work) {
     return list;
 }
 
+bool has_one_falloff(const lensprof_profile &model) {
+    const auto is_first = [&](const lensprof_vignetting &v) { return std::equal(v.k, v.k + 3, model.vignetting[0].k); };
+    return model.grid.channels != 3 && std::all_of(model.vignetting, model.vignetting + model.vignettings, is_first);
+}
+
+// For --chroma: pictures whose colour the profile cannot correct.
+void note_colourless(const std::vector<Correction> &jobs, Streams &streams) {
+    const auto is_colourless = [](const Correction &job) { return has_one_falloff(*job.model); };
+    const auto first = std::find_if(jobs.begin(), jobs.end(), is_colourless);
+    if (first == jobs.end()) return;
+    const auto count = static_cast<size_t>(std::count_if(first, jobs.end(), is_colourless));
+    note(streams, first->source + (count > 1 ? format(" and %zu more", count - 1) : "")
+                      + ": its profile has one falloff for all channels, so that --chroma leaves it unchanged");
+}
+
 // Prints each note once, with the first picture it applies to; for pictures with the same answer the largest error.
 void print_notes(const std::vector<Correction> &jobs, Streams &streams) {
     struct Answer {
@@ -170,6 +185,7 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
     make_folder(o.output);
     Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());
+    if (o.kind.chroma) note_colourless(work.jobs, streams);
     print_notes(work.jobs, streams);
     const CopySink sink{sheet.side(), [&](uint32_t i, const SmallCopies &small) {
                             sheet.put(i, sheet_cell(work.jobs[i], small, sheet.side()));

@@ -36,6 +36,8 @@ static void declare_experts(Command command, ApplyOptions &o) {
                  "use exposures, response and falloff of this exposures.json of `build --write exposures=FILE`");
     command.folder("--images", o.images,
                    "folder of the pictures, with --model, if they were moved; default as stored in the file");
+    command.flag("--chroma", o.kind.chroma,
+                 "correct only the colour of the falloff: neutral grey becomes neutral and keeps its luminance");
     command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float");
     command.flag(
         "--merge", o.merge,
@@ -84,9 +86,10 @@ void check_merge(const ApplyOptions &o) {
     if (o.model.profile || o.model.from_db || o.model.response)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--merge: uses response and falloff of the project; omit --profile and --set response");
-    if (o.kind.simulate || o.kind.strength != 1.0 || o.kind.gain_cap != 0.0 || o.kind.dither || !o.sheet.empty())
+    if (o.kind.simulate || o.kind.chroma || o.kind.strength != 1.0 || o.kind.gain_cap != 0.0 || o.kind.dither
+        || !o.sheet.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      "--merge: corrects the falloff completely and writes irradiance; omit --set simulate, "
+                      "--merge: corrects the falloff completely and writes irradiance; omit --chroma, --set simulate, "
                       "strength and gain-cap, --encoding dither and --contact-sheet");
 }
 

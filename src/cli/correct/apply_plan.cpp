@@ -30,14 +30,14 @@ namespace {
 // A DNG stays a DNG with the falloff as an opcode, unless the options need more than an opcode can express.
 bool becomes_dng(const ApplyOptions &o, const std::string &raw) {
     const CorrectionKind &kind = o.kind;
-    const bool is_plain = !kind.linear && !kind.simulate && kind.strength == 1.0 && kind.gain_cap == 0.0
+    const bool is_plain = !kind.linear && !kind.simulate && !kind.chroma && kind.strength == 1.0 && kind.gain_cap == 0.0
                           && o.project().empty() && o.sheet.empty();
     if (o.raw_output == RawOutput::dng && raw != "DNG")
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--encoding raw=dng: needs DNG files, but one is a " + raw
                                                    + "; convert it to DNG first, or omit the option");
     if (o.raw_output == RawOutput::dng && !is_plain)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      "--encoding raw=dng: an opcode stores only the falloff; omit --linear, --set simulate, "
+                      "--encoding raw=dng: an opcode stores only the falloff; omit --linear, --chroma, --set simulate, "
                       "strength and gain-cap, --pto and --contact-sheet, or use raw=tif");
     return raw == "DNG" && is_plain && o.raw_output != RawOutput::tif;
 }

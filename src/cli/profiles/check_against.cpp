@@ -11,6 +11,7 @@
 #include "cli/program/progress.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/calibration/known_exposures.hpp"
 #include "photo/calibration/scene_fit.hpp"
 #include "photo/scene/open_scene.hpp"
 #include "photo/scene/scene_pictures.hpp"
@@ -123,7 +124,9 @@ void measure(const Scene &scene, const std::vector<StoredProfile> &profiles, Pro
     trial.camera_kind = camera_kind_of({}, metadata[first].key, metadata[first]).kind;
     std::vector<const lensprof_profile *> given;
     for (const StoredProfile &stored : profiles) given.push_back(stored.profile.get());
-    const std::vector<lensprof_fit_image> images = fit_images(scene);
+    std::vector<lensprof_fit_image> images = fit_images(scene);
+    WarningsAlone warnings(progress);
+    add_known_exposures(options.fit, scene, metadata, images, warnings);
     lensprof_error error{};
     const lensprof_status status = lensprof_trial_run(
         &trial, images.data(), static_cast<uint32_t>(images.size()), pairs.data(), static_cast<uint32_t>(pairs.size()),

@@ -41,8 +41,60 @@ void add_response(const TrialReport &report, const lensprof_trial_candidate &can
                                    : Json();
 }
 
+Json rings_json(const lensprof_trial_candidate &candidate) {
+    static const char *const corners[] = {"not-shown", "agree", "too-dark", "too-bright"};
+    Json ev = Json::array(), sigma = Json::array();
+    for (uint32_t k = 0; k < candidate.rings; k++)
+        ev.push_back(candidate.ring_ev[k]), sigma.push_back(candidate.ring_sigma_ev[k]);
+    return {{"corners", corners[candidate.corners]}, {"ring_ev", ev}, {"ring_sigma_ev", sigma}};
+}
+
 Json figures_json(const lensprof_trial_candidate &candidate) {
     return {{"rms", candidate.heldout_rms}, {"median", candidate.heldout_median}};
+}
+
+std::string label_of(const TrialReport &report, size_t i) {
+    return i < report.ids.size() ? "profile " + std::to_string(report.ids[i]) : "no falloff";
+}
+
+// "overcorrects the corners by +0.21 +- 0.04 EV".
+std::string describe_corners(const lensprof_trial_candidate &candidate, const double *ends, bool is_profile) {
+    if (candidate.rings < 2) return "these pictures do not show the corners";
+    const uint32_t last = candidate.rings - 1;
+    const std::string place = candidate.rings == LENSPROF_TRIAL_RINGS
+                                  ? "the corners"
+                                  : format("the parts up to r = %.2f, where pairs end,", ends[last]);
+    const std::string amount = format("%+.2f +- %.2f EV", candidate.ring_ev[last], candidate.ring_sigma_ev[last]);
+    const bool is_bright = candidate.corners == LENSPROF_TRIAL_CORNERS_TOO_BRIGHT;
+    switch (candidate.corners) {
+    case LENSPROF_TRIAL_CORNERS_AGREE: return place + " agree within the error: " + amount;
+    case LENSPROF_TRIAL_CORNERS_NOT_SHOWN: return "these pictures do not show whether it is right: " + amount;
+    default:
+        if (is_profile) return (is_bright ? "overcorrects " : "undercorrects ") + place + " by " + amount;
+        return place + (is_bright ? " are too bright by " : " are too dark by ") + amount;
+    }
+}
+
+// Per candidate the brightness that it leaves in each ring, relative to the middle, and what follows for the corners.
+void print_rings(const TrialReport &report, std::ostream &out) {
+    const double *ends = report.result.ring_end;
+    out << "brightness left, EV relative to r up to " << format("%.2f", ends[0]) << "; + too bright, - too dark\n";
+    out << format("%-14s", "r up to");
+    for (size_t k = 1; k < LENSPROF_TRIAL_RINGS; k++) out << format(" %17.2f", ends[k]);
+    out << "\n";
+    for (size_t i = 0; i < report.candidates.size(); i++) {
+        const lensprof_trial_candidate &candidate = report.candidates[i];
+        out << format("%-14s", label_of(report, i).c_str());
+        for (uint32_t k = 1; k < LENSPROF_TRIAL_RINGS; k++)
+            out << format(" %-15s",
+                          k < candidate.rings
+                              ? format("%+.3f +- %.3f", candidate.ring_ev[k], candidate.ring_sigma_ev[k]).c_str()
+                              : "-");
+        out << "\n";
+    }
+    for (size_t i = 0; i < report.candidates.size(); i++)
+        out << format("%-14s ", label_of(report, i).c_str())
+            << describe_corners(report.candidates[i], ends, i < report.ids.size()) << "\n";
 }
 
 }  // namespace
@@ -69,10 +121,12 @@ Json trial_json(const TrialReport &report) {
         entry["below_none_sigma"] = candidate.below_none_sigma;
         entry["better_than_none"] = candidate.better_than_none != 0;
         entry["has_falloff"] = candidate.has_falloff != 0;
+        entry.update(rings_json(candidate));
         add_response(report, candidate, entry);
         profiles.push_back(entry);
     }
     Json none = figures_json(report.candidates.back());
+    none.update(rings_json(report.candidates.back()));
     add_response(report, report.candidates.back(), none);
     const lensprof_trial_result &result = report.result;
     return {{"schema", json_schema},
@@ -83,6 +137,7 @@ Json trial_json(const TrialReport &report) {
             {"measured", result.measured},
             {"unexplained", result.unexplained},
             {"before_rms", result.before_rms},
+            {"ring_ends", result.ring_end},
             {"none", none},
             {"profiles", profiles},
             {"best", result.usable ? Json(report.ids[result.best]) : Json()},
@@ -105,13 +160,13 @@ void print_trial(const TrialReport &report, std::ostream &out) {
         const std::string response = describe_response(report, candidate);
         const std::string label = !is_profile ? "exposures and white balances alone, " + response
                                               : report.labels[i] + (candidate.has_falloff ? "" : "; has no falloff");
-        out << format("%-14s %7.3f %7.3f   %-18s %s\n",
-                      (is_profile ? "profile " + std::to_string(report.ids[i]) : "no falloff").c_str(),
-                      candidate.heldout_rms, candidate.heldout_median, above.c_str(), label.c_str());
+        out << format("%-14s %7.3f %7.3f   %-18s %s\n", label_of(report, i).c_str(), candidate.heldout_rms,
+                      candidate.heldout_median, above.c_str(), label.c_str());
         if (is_profile && candidate.response_from != LENSPROF_TRIAL_RESPONSE_OWN)
             out << format("%-51s %s\n", "", response.c_str());
     }
     out << format("%-14s %7.3f\n", "as they are", result.before_rms);
+    print_rings(report, out);
     const std::vector<int64_t> best_ids = as_good_as_best(report);
     if (!result.usable)
         out << "best           none\n";

@@ -27,7 +27,7 @@ static void grid_values(const lensprof_plan *plan, const float *nodes, uint32_t 
     }
 }
 
-/* factor / M of channel c for pixels of the row (or M / factor, to simulate), to s->gain[c]. */
+/* factor / M of channel c for pixels of the row (or M / factor, to simulate), to s->gain[c]; with chroma M itself. */
 static void gains_of_channel(const lensprof_plan *plan, uint32_t c, uint32_t x, float dy, uint32_t count, strip *s) {
     float *gain = s->gain[c];
     const int has_grid = plan->columns != 0;
@@ -45,7 +45,23 @@ static void gains_of_channel(const lensprof_plan *plan, uint32_t c, uint32_t x, 
             off = f_mul(strength, f_add(f_add(off, grid), f_mul(off, grid)));
         }
         const lane_f m = f_max(f_add(one, off), least);
-        f_store(gain + i, plan->simulate ? f_div(m, factor) : f_div(factor, m));
+        f_store(gain + i, LP_HAS_CHROMA && plan->chroma ? f_add(one, off)
+                          : plan->simulate              ? f_div(m, factor)
+                                                        : f_div(factor, m));
+    }
+}
+
+/* With chroma: the gains of all channels from their M, relative to that of luminance (weights of ITU-R BT.709). */
+static void gains_of_colour(const lensprof_plan *plan, uint32_t count, strip *s) {
+    const lane_f red = f_set(0.2126f), green = f_set(0.7152f), blue = f_set(0.0722f), least = f_set(plan->least);
+    for (uint32_t i = 0; i < count; i += LANES) {
+        const lane_f bright = f_add(f_mul(red, f_load(s->gain[0] + i)), f_mul(green, f_load(s->gain[1] + i)));
+        const lane_f luminance = f_add(bright, f_mul(blue, f_load(s->gain[2] + i)));
+        for (uint32_t c = 0; c < LP_CHANNELS; c++) {
+            const lane_f factor = f_set(plan->factor[c]);
+            const lane_f m = f_max(f_div(f_load(s->gain[c] + i), luminance), least);
+            f_store(s->gain[c] + i, plan->simulate ? f_div(m, factor) : f_div(factor, m));
+        }
     }
 }
 

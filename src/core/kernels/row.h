@@ -251,6 +251,7 @@ void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8
         const uint32_t n = count - done < STRIP ? count - done : STRIP;
         run runs[3];
         for (uint32_t c = 0; c < plan->gains; c++) gains_of_channel(plan, c, x + done, dy, n, &s);
+        if (LP_HAS_CHROMA && plan->chroma) gains_of_colour(plan, n, &s);
         spread_gains(plan, x + done, y, n, &s);
         for (uint32_t p = 0; p < planes; p++)
             runs[p] = (run){source[p] + (size_t)done * from_step, target[p] + (size_t)done * to_step,

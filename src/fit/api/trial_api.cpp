@@ -27,7 +27,7 @@ lensprof_status take_options(const lensprof_trial_options *given, TrialInput &in
     };
     if (const char *wrong = first_broken(rules))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "trial options: %s", wrong);
-    input.channels = options.channels;
+    input.channels = options.channels, input.camera_kind = options.camera_kind;
     return LENSPROF_OK;
 }
 

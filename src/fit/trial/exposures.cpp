@@ -1,21 +1,14 @@
 #include "fit/trial/exposures.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "fit/base/constants.hpp"
-#include "fit/base/quantile.hpp"
+#include "fit/trial/robust.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double kMinScale = 0.3;     // levels: quantisation alone causes as much
-constexpr double kFirstLimit = 40.0;  // in scales: nearly all differences count
-constexpr double kLastLimit = 3.0;    // larger differences get little weight
-constexpr double kLimitFactor = 0.7;  // per iteration
-constexpr int kRoundsAtLastLimit = 6;
 constexpr double kTolerance = 1e-20;  // of the squared residual
 
 // Weighted differences of all pairs of images as one least squares problem.
@@ -84,30 +77,20 @@ std::vector<double> residual_levels(const std::vector<IrradianceDifference> &dif
     return residuals;
 }
 
-double scale_of(const std::vector<double> &residuals) {
-    return std::max(kMinScale, kMadToSigma * upper_median(residuals));
-}
-
 }  // namespace
 
 std::vector<double> log_exposures(const std::vector<IrradianceDifference> &differences, uint32_t images) {
     std::vector<double> x(images);
     if (differences.empty()) return x;
-    std::vector<double> residuals(differences.size(), 0.0);  // initially all count equally
-    double limit = kFirstLimit;
-    for (int rounds_at_last = 0; rounds_at_last < kRoundsAtLastLimit;) {
-        const double end = limit * scale_of(residuals);
+    solve_robustly(differences.size(), [&](const std::vector<double> &residuals, double, double end) {
         Links links(images);
         for (size_t p = 0; p < differences.size(); p++) {
-            if (!(differences[p].sigma > 0.0)) continue;
-            const double off = 1.0 + residuals[p] * residuals[p] / (end * end);
-            links.add(differences[p], 1.0 / (differences[p].sigma * differences[p].sigma * off * off));
+            const double sigma = differences[p].sigma;
+            if (sigma > 0.0) links.add(differences[p], robust_weight(residuals[p], end) / (sigma * sigma));
         }
         x = links.solve();
-        residuals = residual_levels(differences, x);
-        limit = std::max(kLastLimit, kLimitFactor * limit);
-        rounds_at_last += limit == kLastLimit;
-    }
+        return residual_levels(differences, x);
+    });
     return x;
 }
 

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "fit/base/fail.hpp"
+#include "fit/trial/evaluator.hpp"
 #include "fit/trial/residuals.hpp"
+#include "fit/trial/rings.hpp"
 
 namespace lensprof {
 namespace {
@@ -15,6 +17,7 @@ struct Candidate {
     const lensprof_profile *profile = nullptr;
     std::vector<lensprof_response> responses;
     TrialErrors errors;
+    RingFalloff rings;
     lensprof_trial_candidate found;
 
     explicit Candidate(const lensprof_profile *of) : profile(of) {
@@ -22,8 +25,11 @@ struct Candidate {
         found.response_from = LENSPROF_TRIAL_RESPONSE_KIND;
     }
 
+    TrialModel with(const std::vector<lensprof_response> &curves) const {
+        return {profile, curves.data(), static_cast<uint32_t>(curves.size())};
+    }
     TrialErrors errors_with(const std::vector<lensprof_response> &curves, const TrialPairs &pairs) const {
-        return try_model(pairs, {profile, curves.data(), static_cast<uint32_t>(curves.size())});
+        return try_model(pairs, with(curves));
     }
 };
 
@@ -86,6 +92,43 @@ std::vector<Candidate> measured(const TrialPairs &pairs, const TrialInput &input
     return candidates;
 }
 
+// Natural logarithms of the exposures in green, or in grey, from all pairs.
+std::vector<double> exposures_with(const TrialPairs &pairs, const TrialModel &model) {
+    const Evaluator evaluator(pairs, model);
+    const uint32_t green = pairs.channels == 3 ? 1 : 0;
+    std::vector<IrradianceDifference> differences;
+    for (const auto *half : {&pairs.train, &pairs.heldout})
+        for (const lensprof_pair &pair : *half) differences.push_back(evaluator.difference(pair, green));
+    return log_exposures(differences, static_cast<uint32_t>(pairs.images.size()));
+}
+
+ResponseError error_of_response(const Candidate &candidate, const std::vector<Candidate> &candidates,
+                                uint32_t camera_kind) {
+    const uint32_t other = candidate.found.response_profile;
+    switch (candidate.found.response_from) {
+    case LENSPROF_TRIAL_RESPONSE_OWN: return own_error(*candidate.profile, camera_kind);
+    case LENSPROF_TRIAL_RESPONSE_OTHER: return foreign_error(candidates[other].profile, camera_kind);
+    case LENSPROF_TRIAL_RESPONSE_KIND: return foreign_error(nullptr, camera_kind);
+    default: return {};
+    }
+}
+
+// The falloff that each candidate leaves.
+void find_rings(const TrialPairs &pairs, const TrialInput &input, std::vector<Candidate> &candidates) {
+    for (Candidate &candidate : candidates) {
+        ResponseError error = error_of_response(candidate, candidates, input.camera_kind);
+        std::vector<lensprof_response> curves = candidate.responses;
+        if (candidate.found.response_from == LENSPROF_TRIAL_RESPONSE_OTHER)
+            curves = candidates[candidate.found.response_profile].responses;
+        else if (curves.empty())
+            curves = {input.typical};
+        const TrialModel model = candidate.with(curves);
+        add_known_exposures(pairs.images, exposures_with(pairs, model), error);
+        candidate.rings = remaining_falloff(pairs, model, error);
+        put_rings(candidate.rings, candidate.found);
+    }
+}
+
 // Fills in the figures of all candidates, of which the last has no falloff; false if no pair is explained.
 bool compare(const TrialPairs &pairs, std::vector<Candidate> &candidates, lensprof_trial_result &result) {
     std::vector<const TrialErrors *> errors;
@@ -111,7 +154,8 @@ bool compare(const TrialPairs &pairs, std::vector<Candidate> &candidates, lenspr
         const TrialDifference gain = difference_of(last->errors, candidate->errors, pairs, is_explained);
         found.above_best = excess.levels, found.above_best_sigma = excess.sigma;
         found.below_none = gain.levels, found.below_none_sigma = gain.sigma;
-        found.as_good_as_best = !excess.is_clear(), found.better_than_none = gain.is_clear();
+        found.as_good_as_best = !excess.is_clear(),
+        found.better_than_none = gain.is_clear() || is_flatter(candidate->rings);
         result.usable |= found.better_than_none;
         as_good += candidate != last && found.as_good_as_best;
     }
@@ -137,7 +181,9 @@ lensprof_status try_profiles(const TrialInput &input, Trial &trial, lensprof_err
                     "by a third",
                     input.pairs.size(), pairs.heldout.size(), LENSPROF_TRIAL_PAIRS);
     std::vector<Candidate> candidates = measured(pairs, input);
+    find_rings(pairs, input, candidates);
     lensprof_trial_result_init(&trial.result);
+    std::copy_n(kEnds, kRings, trial.result.ring_end);
     count_pairs(pairs, trial.result);
     if (!compare(pairs, candidates, trial.result))
         return fail(LENSPROF_ERROR_NO_SAMPLES, error,

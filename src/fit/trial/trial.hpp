@@ -8,7 +8,7 @@
 namespace lensprof {
 
 struct TrialInput {
-    uint32_t channels = 3;
+    uint32_t channels = 3, camera_kind = LENSPROF_CAMERA_ANY;
     lensprof_response typical;  // of the kind of camera; linear for sensor data, and then that of all candidates
     std::vector<lensprof_fit_image> images;
     std::vector<lensprof_pair> pairs;

@@ -32,6 +32,7 @@ CorrectionKind kind_of(const lensprof_correct_options &o) {
     kind.linear = o.linear != 0, kind.overwrite = o.overwrite != 0;
     kind.threads = o.threads, kind.strength = o.strength;
     kind.gain_cap = o.gain_cap, kind.dither = o.dither != 0, kind.simulate = o.simulate != 0;
+    kind.chroma = o.chroma != 0;
     return kind;
 }
 

@@ -49,6 +49,7 @@ struct CorrectionKind {
     bool linear = false;    // irradiance as 32 bit float
     double strength = 1.0;  // of the falloff correction; as in lensprof_apply_options
     double gain_cap = 0.0;
+    bool chroma = false;
     bool dither = false;
     bool overwrite = false;   // replace even outputs of other pictures
     uint32_t threads = 0;     // 0 = all cores

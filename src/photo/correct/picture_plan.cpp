@@ -18,6 +18,7 @@ lensprof_apply_options options_of(const Picture &source, const Correction &job, 
     options.strength = kind.strength;
     options.gain_cap = kind.gain_cap;
     options.dither = kind.dither;
+    options.chroma = kind.chroma;
     options.frame_width = source.frame_width;
     options.frame_height = source.frame_height;
     options.source_sample = source.sample;
