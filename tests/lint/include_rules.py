@@ -33,7 +33,7 @@ C_LIBRARY = FREESTANDING | {
     "time.h",
 }
 C_ARITHMETIC = C_LIBRARY - {"locale.h", "setjmp.h", "signal.h", "time.h"}
-POSIX = {"fcntl.h", "unistd.h", "sys/*"}
+POSIX = {"fcntl.h", "fnmatch.h", "unistd.h", "sys/*"}
 INTRINSICS = {"immintrin.h", "smmintrin.h", "arm_neon.h", "cpuid.h"}
 CPP_LIBRARY = {"<c++>"}  # every standard C++ header: a name without a dot
 CPP_OUTSIDE = {
@@ -98,7 +98,7 @@ ROOMS = {
                 "sampling", "flat", "rendering", "trial", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "correct", "folder", "api"],
+    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "cards", "correct", "folder", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
@@ -106,6 +106,7 @@ ROOMS = {
 ROOM_HEADERS = {
     "src/photo/registration": {"Eigen/*", "opencv2/*"},
     "src/photo/reconstruction": {"sqlite3.h"},
+    "src/cli/fitting": {"zip.h"},
     "src/photo/pictures": {"OpenEXR/*", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "jxl/*", "libheif/*", "libraw/*",
                            "png.h", "pugixml.hpp", "tiffio.h", "webp/*", "zlib.h"},
 }

@@ -14,6 +14,7 @@
 #include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
 #include "photo/base/events.hpp"
+#include "photo/base/format.hpp"
 #include "photo/base/lap.hpp"
 #include "photo/calibration/known_exposures.hpp"
 #include "photo/pictures/named_pictures.hpp"

@@ -1,29 +1,33 @@
 // `lensprof flat`: measures the falloff on pictures of a white card or another even light and stores a profile.
 #include "cli/fitting/flat.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
+#include "cli/fitting/lens_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
 #include "cli/program/message.hpp"
+#include "cli/program/numbers.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
-#include "cli/report/findings.hpp"
-#include "photo/base/events.hpp"
-#include "photo/base/lap.hpp"
+#include "photo/base/paths.hpp"
 #include "photo/calibration/outcome.hpp"
-#include "photo/pictures/orientation.hpp"
-#include "photo/pictures/rotated_profile.hpp"
-#include "photo/report/falloff.hpp"
+#include "photo/cards/lens_cards.hpp"
 
 namespace lensprof {
 namespace {
+
+struct FlatCommand : CardOptions {
+    std::vector<std::string> files;
+    std::string report, bundle, into, table;  // files; empty: none
+    std::vector<std::string> outputs, check;
+    bool json = false, progress = false;
+};
 
 std::array<double, 4> card_of(const std::string &word) {
     const std::vector<std::string> sides = split(word);
@@ -62,7 +66,7 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
 }
 
 void declare(Command &command, FlatCommand &o) {
-    command.files("FILE", o.files, "pictures of the card, all of one camera, lens and setting");
+    command.files("FILE", o.files, "pictures of the card, and folders of them: of one setting, or of all of a lens");
     command.require("FILE");
     command.flag(
         "--linear", o.linear,
@@ -71,8 +75,23 @@ void declare(Command &command, FlatCommand &o) {
     command.numbers("--rotation", o.rotation_deg, {-360.0, 360.0},
                     "rotation of the camera about its optical axis per shot, degrees, clockwise seen from the back of "
                     "the camera; separates the light from the lens; default 0");
+    command.words(
+        "--check", "FILE", [&o](const std::string &word) { o.check.push_back(word); },
+        "overlapping pictures of ordinary things, taken at a setting of the cards (folder, files or Hugin project): they "
+        "show whether the light on the cards was even, and what was not is removed");
+    command.words(
+        "-o,--output", "FILE", [&o](const std::string &word) { o.outputs.push_back(word); },
+        "write the lens: its good settings for Lensfun as .xml, a table of all settings as .csv; repeat for both");
+    command.file("--bundle", o.bundle,
+                 "write report, numbers, the lens for Lensfun and reduced pictures as one .zip file, for an upload");
     command.file("--report", o.report, "write a report with charts as one .html file");
     Command expert = command.expert();
+    expert.file(
+        "--into", o.into,
+        "database of Lensfun that the .xml file contains, too: the settings are added to its entry of the lens");
+    expert.flag("--turned", o.turned,
+                "the camera was rotated about its optical axis between the shots of a setting: by the orientation in "
+                "EXIF, instead of --rotation");
     expert.counts("--shots", o.shots, 0, 1000000,
                   "shot number per picture, such as 1,1,1,2,2,2: exposures of one shot are merged; default one shot "
                   "per picture");
@@ -89,132 +108,163 @@ void declare(Command &command, FlatCommand &o) {
         },
         "rectangle of the card, px of the frame: give once for all, or once per picture; find: find the card, which "
         "covers only a part of the frame; default the whole frame");
-    declare_store(command, o.store);
+    declare_store(command, o.store)
+        .file("table", o.table,
+              "CSV file of the settings of pictures, instead of EXIF: a header of file, maker, camera, lens, focal, "
+              "aperture, distance in any order, then a row per picture; names may have * and ?");
     declare_flat_fit(command, o);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }
 
-// JPEG rounds colours over blocks of 16 pixels, which averaging does not remove: no falloff per channel from JPEG.
-void handle_lossy_pictures(const FlatCommand &o, FlatInput &input, Streams &streams) {
-    for (size_t i = 0; i < input.pictures.size(); i++) {
-        if (!input.pictures[i].traits.is_lossy) continue;
-        if (o.falloff_curves == 0) input.options.vignettings = 1;
-        const bool is_jpeg = input.pictures[i].traits.format == FileFormat::jpeg;
-        warn(
-            streams,
-            o.files[i] + (is_jpeg ? ": JPEG" : ": its lossy compression")
-                + " rounds grey values and colours over blocks of pixels; the error of the falloff may exceed the "
-                  "stated one by half a grey level of the card. Use raw files, or 16 bit TIFF or PNG");
-        return;
-    }
+// Before anything is read.
+void check_options(const FlatCommand &o) {
+    check_store_options(o.store, !o.linear && !o.gamma);
+    if (o.linear + o.gamma.has_value() + (o.profile != 0) > 1)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "give the response of the pictures with one of --linear, --fit gamma=G, --fit profile=ID");
+    for (size_t i = 0; i < o.files.size(); i++)
+        for (size_t j = 0; j < i; j++)
+            if (is_same_file(o.files[i], o.files[j]))
+                throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": given twice; give it once");
+    if (!(o.black < o.white))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit black: must be less than white; give a smaller value");
+    if (o.max_side != 0 && o.max_side < least_card_side)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--fit max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
+    if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--several: assumes even light on the card; omit --fit light");
+    if (!o.into.empty() && o.outputs.empty() && o.bundle.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--into: needs -o FILE.xml, which receives the whole database");
+    if (o.turned && !o.rotation_deg.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--turned and --rotation exclude each other; give one of them");
+    if (o.find_card && !o.cards.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--card find and a rectangle exclude each other; give one of them");
 }
 
-// The report fields known before the fit.
-FlatReport begin_report(const FlatInput &input) {
-    FlatReport report;
-    report.names = input.names;
-    report.response = input.response;
-    for (const auto &image : input.images) {
-        report.shots.push_back(image.shot);
-        report.ev.push_back(image.ev);
-        report.rotated.push_back(image.rotation_deg);
-    }
-    report.quality.resize(input.images.size());
-    lensprof_flat_result_init(&report.fit);
-    return report;
+// The lens settings of the pictures, before anything is solved.
+CardSettings settings_of(const FlatCommand &o, Events &events) {
+    std::optional<SettingTable> table;
+    if (!o.table.empty()) table.emplace(o.table);
+    CardSettings settings = card_settings(o.files, o, table ? &*table : nullptr, events);
+    if (table)
+        for (const std::string &file : table->unused()) events.note(o.table, "no picture has the name " + file);
+    return settings;
 }
 
-// The report if no fit was possible.
-FlatReport failed_report(const FlatInput &input, const Failure &failure) {
-    FlatReport report = begin_report(input);
-    report.fit.vignettings = 1;
-    report.fit.corner_sigma = NAN;
-    report.verdict.refuse(LENSPROF_REASON_FLAT_FEW_CELLS, failure.what());
-    return report;
-}
-
-FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, Streams &streams) {
-    auto clock = std::chrono::steady_clock::now();
-    read_flat(o, progress, input);
-    progress.clear();
-    handle_lossy_pictures(o, input, streams);
-    stop_if_cancelled();
-    FlatReport report = begin_report(input);
-    report.load_s = lap(clock);
-    input.options.progress = on_fit_progress;
-    input.options.progress_user = &progress;
-    lensprof_error error{};
-    lensprof_flat *flat = nullptr;
-    const auto count = static_cast<uint32_t>(input.images.size());
-    const lensprof_status status =
-        lensprof_fit_flat(&input.options, input.images.data(), count, nullptr, 0, &flat, &error);
-    report.held = {flat, lensprof_flat_destroy};
-    progress.clear();
-    check_named(status, input.names.size() == 1 ? input.names[0] : input.names[0] + " and the others", error,
-                LENSPROF_ITEM_IMAGE, input.names);
-    check(lensprof_flat_get(flat, &report.fit, &error), "fit", &error);
-    for (uint32_t i = 0; i < count; i++) {
-        lensprof_flat_image_quality_init(&report.quality[i]);
-        check(lensprof_flat_image_at(flat, i, &report.quality[i], &error), "fit", &error);
-    }
-    report.solve_s = lap(clock);
-    report.verdict = verdict_of(flat);
-    name_images(report.names, report.verdict);
-    name_shots(report.names, report.shots, report.verdict);
-    return report;
-}
-
-int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &report, Streams &streams) {
-    const auto &fit = report.fit;
-    auto profile = profile_of(*report.held);
-    profile->key = input.key;
-    const lensprof_flat_image &frame = input.images.front();
-    const uint16_t turn = sensor_orientation(frame.width, frame.height, input.pictures.front().traits.orientation);
-    if (!turn)
-        note(streams, o.files.front() + ": no orientation states which way this portrait picture was rotated: the "
-                                        "profile is stored with its centre in the middle of the frame, and without "
-                                        "what differs between opposite sides; give the pictures as the camera wrote "
-                                        "them");
-    turn_profile_to_sensor(turn, *profile);
-    return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable != 0});
-}
-
-FlatReport measure_or_report_failure(const FlatCommand &o, FlatInput &input, Streams &streams) {
+CardFit fit_or_report_failure(const FlatCommand &o, const CardSetting &setting, Streams &streams) {
     Progress progress(streams, o.progress);
+    std::vector<std::string> files;
+    std::vector<PictureMetadata> metadata;
+    for (const CardPicture &picture : setting.pictures) {
+        files.push_back(picture.file);
+        metadata.push_back(picture.metadata);
+    }
+    CardInput input = prepare_cards(o, files, metadata, progress);
+    check_report(o.report, o.files, o.store);
+    check_store(o.store);
     try {
-        return measure(o, input, progress, streams);
+        return fit_cards(o, input, progress);
     } catch (const Failure &failure) {
         if (o.json && failure.group() == LENSPROF_ERROR_NOT_USABLE)
-            print_json(flat_json(failed_report(input, failure)), streams.out);
+            print_json(flat_json(failed_fit(input, failure)), streams.out);
         throw;
     }
 }
 
-int run(const FlatCommand &o, Streams &streams) {
-    check_flat_options(o);
-    FlatInput input = prepare_flat(o, streams);
-    check_report(o.report, o.files, o.store);
-    check_store(o.store);
-    FlatReport report = measure_or_report_failure(o, input, streams);
-    const bool is_stored = report.fit.usable || o.store.force;
+// All about the only setting.
+int run_one(const FlatCommand &o, const CardSetting &setting, Streams &streams) {
+    CardFit found = fit_or_report_failure(o, setting, streams);
+    const std::string &first = found.files.front();
+    const bool is_stored = found.fit.usable || o.store.force;
     stop_if_cancelled();
     OutputFiles outputs;
     if (!o.report.empty())
-        outputs.add(o.report, flat_page(report, o.files.front(), command_text(streams.words), streams.warnings));
-    if (is_stored && !o.store.no_store) report.profile_id = store(o, input, report, streams);
+        outputs.add(o.report, flat_page(found, first, command_text(streams.words), streams.warnings));
+    if (is_stored && !o.store.no_store) store_fit(o.store, found);
     outputs.commit();
     if (o.json)
-        print_json(flat_json(report), streams.out);
+        print_json(flat_json(found), streams.out);
     else
-        print_flat(report, streams.out);
-    if (report.profile_id && !o.json)
-        streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
-                    << describe_key(input.key) << "\n";
+        print_flat(found, streams.out);
+    if (found.profile_id && !o.json)
+        streams.out << "stored    profile " << found.profile_id << " in " << store_path(o.store.db) << ": "
+                    << describe_key(found.key) << "\n";
     Progress events(streams);
-    if (report.fit.usable) report_findings(report.verdict, o.files.front(), events);
-    if (!report.fit.usable) print_message(streams, not_usable_text(o.files.front(), report.verdict, o.store));
-    return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
+    if (found.fit.usable) report_findings(found.verdict, first, events);
+    if (!found.fit.usable) print_message(streams, not_usable_text(first, found.verdict, o.store));
+    return static_cast<int>(found.fit.usable ? ExitCode::done : ExitCode::not_usable);
+}
+
+// No output may replace an input, the database or another output.
+void check_outputs(const FlatCommand &o, const CardSettings &settings) {
+    std::vector<std::string> reserved = o.check;
+    if (!o.table.empty()) reserved.push_back(o.table);
+    for (const CardSetting &setting : settings.list)
+        for (const CardPicture &picture : setting.pictures) reserved.push_back(picture.file);
+    for (const LeftOutCard &card : settings.left_out) reserved.push_back(card.file);
+    check_report(o.report, reserved, o.store);
+    if (!o.store.no_store) reserved.push_back(store_path(o.store.db));
+    if (!o.report.empty()) reserved.push_back(o.report);
+    if (!o.bundle.empty()) {
+        check_bundle(o.bundle);
+        check_not_reserved(o.bundle, "bundle", reserved);
+        reserved.push_back(o.bundle);
+    }
+    for (const std::string &output : o.outputs) {
+        check_lens_output(output, o.store, settings);
+        check_not_reserved(output, "output", reserved);
+        check_output_file(output);
+        reserved.push_back(output);
+    }
+}
+
+LensCards measured(const FlatCommand &o, const CardSettings &settings, Events &events) {
+    LensCards cards;
+    cards.settings = measure_settings(o, settings, 0, events);
+    cards.left_out = settings.left_out, cards.given = settings.given;
+    if (!o.check.empty()) {
+        cards.light = check_light(o.check, cards.settings, events);
+        if (cards.light->finds_light()) cards.light_removed = remove_light(*cards.light, cards.settings);
+    }
+    cards.missing = missing_settings(cards.settings, largest_prediction_error);
+    return cards;
+}
+
+// A line per setting.
+int run_lens(const FlatCommand &o, const CardSettings &settings, Streams &streams) {
+    check_outputs(o, settings);
+    check_store(o.store);
+    Progress progress(streams, o.progress);
+    progress.note("", counted_settings(settings) + (settings.list.size() > 1 ? ": each is measured alone" : ""));
+    LensCards cards = measured(o, settings, progress);
+    const LensFileSource lens_file{o.store.dbs, o.into};
+    OutputFiles outputs;
+    for (const std::string &output : o.outputs) add_lens_output(output, lens_file, cards, outputs);
+    if (!cards.good())
+        for (const std::string &output : o.outputs)
+            if (lowercase_extension(output) == "xml") progress.warn(output, "not written: no setting is good");
+    if (!o.bundle.empty()) add_bundle(o.bundle, lens_file, cards, command_text(streams.words), progress, outputs);
+    stop_if_cancelled();
+    if (!o.store.no_store) store_settings(o.store, cards.settings);
+    if (!o.report.empty()) outputs.add(o.report, lens_page(cards, command_text(streams.words), streams.warnings));
+    progress.clear();
+    outputs.commit();
+    if (o.json)
+        print_json(lens_json(cards), streams.out);
+    else
+        print_lens(cards, o.store.no_store ? std::string() : store_path(o.store.db), streams.out);
+    return static_cast<int>(lens_exit_code(cards));
+}
+
+int run(const FlatCommand &o, Streams &streams) {
+    check_options(o);
+    Progress events(streams, o.progress);
+    const CardSettings settings = settings_of(o, events);
+    const bool is_one = settings.list.size() == 1 && !settings.has_folders && settings.left_out.empty();
+    if (is_one && o.outputs.empty() && o.bundle.empty() && o.check.empty())
+        return run_one(o, settings.list.front(), streams);
+    return run_lens(o, settings, streams);
 }
 
 }  // namespace
@@ -226,7 +276,11 @@ void declare_flat(Command &program) {
         "them.");
     auto o = std::make_shared<FlatCommand>();
     declare(command, *o);
-    command.example("lensprof flat card0.tif card90.tif --linear --rotation 0,90 --camera \"EOS R5\"");
+    command.footer(
+        "Pictures are grouped by camera, lens, focal length, aperture and distance, as EXIF or their names\n"
+        "state them, and every setting is measured alone; of several settings, or a folder, a table has a\n"
+        "line for each. Exit code 0: all are good; 4: some must be taken again; 3: files could not be read.");
+    command.example("lensprof flat cards -o lens.xml --report lens.html");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

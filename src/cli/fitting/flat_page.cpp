@@ -10,11 +10,11 @@
 namespace lensprof {
 namespace {
 
-Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
+Json flat_facts(const CardFit &report, const lensprof_profile &profile) {
     Json facts = Json::array();
     const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
     add("corner illuminance", corner_text(profile));
-    add("pictures", std::to_string(report.names.size()));
+    add("pictures", std::to_string(report.files.size()));
     add("shots", std::to_string(report.fit.shots));
     add("residual of a cell", format("%.2f %% (noise %.2f %%)", 100.0 * report.fit.residual, 100.0 * report.fit.noise));
     add("not radial", format("%.2f %%", 100.0 * report.fit.frame_residual));
@@ -24,7 +24,7 @@ Json flat_facts(const FlatReport &report, const lensprof_profile &profile) {
 
 }  // namespace
 
-std::string flat_page(const FlatReport &report, const std::string &title, const std::string &command,
+std::string flat_page(const CardFit &report, const std::string &title, const std::string &command,
                       const std::vector<std::string> &warnings) {
     const auto profile = profile_of(*report.held);
     Json page = new_page("card", title, "Falloff from pictures of a white card", command);

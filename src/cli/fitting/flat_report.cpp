@@ -16,11 +16,11 @@ const char *light_name(uint32_t light) {
     return light <= LENSPROF_FLAT_LIGHT_QUADRATIC ? names[light] : "unknown";
 }
 
-Json images_json(const FlatReport &report) {
+Json images_json(const CardFit &report) {
     Json images = Json::array();
-    for (size_t i = 0; i < report.names.size(); i++) {
+    for (size_t i = 0; i < report.files.size(); i++) {
         const auto &q = report.quality[i];
-        images.push_back({{"file", report.names[i]},
+        images.push_back({{"file", report.files[i]},
                           {"shot", report.shots[i]},
                           {"ev", report.ev[i]},
                           {"rotation_deg", report.rotated[i]},
@@ -60,15 +60,15 @@ Json grid_json(const lensprof_gain_grid &grid) {
     return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
 }
 
-void print_images(const FlatReport &report, std::ostream &out) {
+void print_images(const CardFit &report, std::ostream &out) {
     size_t width = 5;
-    for (const auto &name : report.names) width = std::max(width, name.size());
+    for (const auto &name : report.files) width = std::max(width, name.size());
     out << format("%-*s  %4s  %7s  %7s  %6s  %7s  %7s  %6s  %7s  %-13s\n", static_cast<int>(width), "image", "shot",
                   "EV", "rotated", "r", "white %", "black %", "noise", "resid %", "light right, down %");
-    for (size_t i = 0; i < report.names.size(); i++) {
+    for (size_t i = 0; i < report.files.size(); i++) {
         const auto &q = report.quality[i];
         out << format("%-*s  %4u  %+7.2f  %7g  %6.2f  %7.1f  %7.1f  %6.2f  %7.2f  %+6.1f %+6.1f\n",
-                      static_cast<int>(width), report.names[i].c_str(), report.shots[i], report.ev[i],
+                      static_cast<int>(width), report.files[i].c_str(), report.shots[i], report.ev[i],
                       report.rotated[i], q.radius, 100.0 * q.white_share, 100.0 * q.black_share, q.noise_levels,
                       100.0 * q.residual, 100.0 * q.gradient[0], 100.0 * q.gradient[1]);
     }
@@ -86,7 +86,7 @@ void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
 
 }  // namespace
 
-Json flat_json(const FlatReport &report) {
+Json flat_json(const CardFit &report) {
     const auto &fit = report.fit;
     Json json;
     json["schema"] = json_schema;
@@ -123,7 +123,7 @@ Json flat_json(const FlatReport &report) {
     return json;
 }
 
-void print_flat(const FlatReport &report, std::ostream &out) {
+void print_flat(const CardFit &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_images(report, out);
     print_vignettings(*profile_of(*report.held), out);

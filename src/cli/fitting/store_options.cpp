@@ -12,7 +12,7 @@ Choices<std::optional<uint32_t>> processing_choices() {
             {"corrected", LENSPROF_PROCESSING_CORRECTED}};
 }
 
-void declare_store(Command &command, StoreOptions &o) {
+Keys declare_store(Command &command, StoreOptions &o) {
     command.words(
         "--db", "FILE",
         [&o](const std::string &word) {
@@ -39,6 +39,7 @@ void declare_store(Command &command, StoreOptions &o) {
     keys.choice("processing", o.processing, processing_choices(),
                 "processing of the pictures: raw, jpeg or corrected (falloff corrected in camera)");
     keys.text("style", o.style, "picture style, by the camera's name for it");
+    return keys;
 }
 
 void check_store_options(const StoreOptions &o, bool reads_db, bool writes_other_files) {

@@ -10,7 +10,7 @@
 
 namespace lensprof {
 
-void declare_store(Command &command, StoreOptions &o);
+Keys declare_store(Command &command, StoreOptions &o);
 
 // The choices of --key processing.
 Choices<std::optional<uint32_t>> processing_choices();

@@ -273,6 +273,13 @@ function folderPage(report) {
     panoramas(report), lookedUp, ...closing(report)]);
 }
 
+// A lens: its settings, measured on cards.
+function lensPage(report) {
+  appendPresent(page, [heading(report.title, report.subtitle), verdict(report),
+    section('Settings', table(['setting', 'pictures', 'light in the corner', 'result'], report.settings)),
+    sideBySide(illuminance(report)), ...closing(report)]);
+}
+
 function cameras(report) {
   if (!report.cameras.length) return '';
   return section('Cameras', table(['camera', 'profiles', 'response'], report.cameras.map((camera) =>
@@ -403,5 +410,6 @@ function profilePage(report, ...more) {
 if (data.kind === 'database') databasePage(data);
 else if (data.kind === 'profile') profilePage(data);
 else if (data.kind === 'card') profilePage(data, ...card(data));
+else if (data.kind === 'lens') lensPage(data);
 else if (data.kind === 'folder') folderPage(data);
 else fitPage(data);

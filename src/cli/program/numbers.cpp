@@ -93,10 +93,4 @@ std::vector<std::string> elements(const std::string &list) {
     return words;
 }
 
-void require_count(size_t values, const std::string &option, size_t count, const std::string &singular) {
-    if (values != count)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, option + ": " + counted(values, "value") + " for "
-                                                   + counted(count, singular) + "; give one for each, in their order");
-}
-
 }  // namespace lensprof

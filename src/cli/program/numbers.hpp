@@ -41,7 +41,4 @@ std::vector<std::string> split(const std::string &list, char separator = ',');
 // The same, without empty elements. Throws std::invalid_argument as above.
 std::vector<std::string> elements(const std::string &list);
 
-// Failure (usage) with the option if the number of `values` is not `count`, one per thing (such as "picture").
-void require_count(size_t values, const std::string &option, size_t count, const std::string &singular);
-
 }  // namespace lensprof

@@ -36,7 +36,6 @@ inline constexpr RenamedOption renamed_options[] = {
     {"--sampling", "--fit sampling=balanced|paper"},
     {"--seed", "--fit seed=COUNT"},
     {"--stored", "--fit stored=auto|none|ID"},
-    {"--turned", "--rotation NUMBER,..."},
     {"--white", "--fit white=NUMBER"},
     {"--white-balance", "--fit white-balance=free|fixed"},
     // build

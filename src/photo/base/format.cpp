@@ -3,6 +3,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "photo/base/failure.hpp"
+
 namespace lensprof {
 
 std::string format(const char *pattern, ...) {
@@ -18,6 +20,12 @@ std::string format(const char *pattern, ...) {
 
 std::string counted(size_t count, const std::string &singular, const std::string &plural) {
     return std::to_string(count) + " " + (count == 1 ? singular : plural.empty() ? singular + "s" : plural);
+}
+
+void require_count(size_t values, const std::string &option, size_t count, const std::string &singular) {
+    if (values != count)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, option + ": " + counted(values, "value") + " for "
+                                                   + counted(count, singular) + "; give one for each, in their order");
 }
 
 std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names) {

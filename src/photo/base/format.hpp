@@ -20,6 +20,9 @@ std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::
 // All words, with `separator` between them.
 std::string joined(const std::vector<std::string> &words, const std::string &separator);
 
+// Failure (ARGUMENT) with the option if the number of `values` is not `count`, one per thing (such as "picture").
+void require_count(size_t values, const std::string &option, size_t count, const std::string &singular);
+
 // In single quotes of a shell.
 std::string shell_quoted(const std::string &text);
 

@@ -20,7 +20,8 @@ constexpr double kSameExtension = 0.02;  // focal length over focus distance, wh
 
 bool are_known(double a, double b) { return a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; }
 
-// As far as both keys state it.
+}  // namespace
+
 bool is_same_setting(const lensprof_profile_key &a, const lensprof_profile_key &b) {
     if (*a.lens && *b.lens && std::strcmp(a.lens, b.lens) != 0) return false;
     if (are_known(a.aperture, b.aperture) && std::fabs(2.0 * std::log2(a.aperture / b.aperture)) > kSameStop)
@@ -30,6 +31,8 @@ bool is_same_setting(const lensprof_profile_key &a, const lensprof_profile_key &
     const auto extension = [](const lensprof_profile_key &key) { return 1e-3 * key.focal_mm / key.distance_m; };
     return !are_known(a.distance_m, b.distance_m) || std::fabs(extension(a) - extension(b)) < kSameExtension;
 }
+
+namespace {
 
 // Crops at other places of a file are circles of other lenses.
 bool is_same_crop(const lensprof_pto_image &a, const lensprof_pto_image &b) {

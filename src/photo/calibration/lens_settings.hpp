@@ -11,6 +11,10 @@
 
 namespace lensprof {
 
+// Whether lens, focal length, aperture and focus of two keys are the same, as far as both state them and within the
+// rounding of EXIF.
+bool is_same_setting(const lensprof_profile_key &a, const lensprof_profile_key &b);
+
 struct LensSettings {
     std::vector<uint32_t> of_image;  // setting and camera per image
     std::vector<uint32_t> first;     // per setting, the image with the most complete data

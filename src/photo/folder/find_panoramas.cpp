@@ -76,11 +76,15 @@ Groups register_groups(const FolderOptions &o, const std::vector<const InputPict
     if (files.empty()) return groups;
     const Registration found = register_pictures(files, metadata, o.one_lens, events);
     for (const auto &[number, reason] : found.unreadable) groups.unreadable[files[number]] = reason;
-    for (const CopiedPicture &picture : found.copies)
-        groups.copies[files[picture.copy]] =
-            files[picture.copy] + ": a copy of " + all[picture.original]->name + picture.how;
+    for (const CopiedPicture &picture : found.copies) {
+        const std::string &file = files[picture.copy];
+        if (is_of_even_light(file))  // all alike
+            groups.unjoined[file] = file + ": " + no_overlap_of(file);
+        else
+            groups.copies[file] = file + ": a copy of " + all[picture.original]->name + picture.how;
+    }
     for (const uint32_t number : found.isolated)
-        groups.unjoined[files[number]] = files[number] + ": no overlap with another picture found";
+        groups.unjoined[files[number]] = files[number] + ": " + no_overlap_of(files[number]);
     for (const uint32_t number : found.other_camera)
         groups.unjoined[files[number]] = files[number] + ": overlaps others, but "
                                          + (o.one_lens ? "it is the only camera raw file among them, or the only "

@@ -11,6 +11,7 @@
 #include "photo/base/lap.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
+#include "photo/pictures/even_light.hpp"
 #include "photo/pictures/other_parts.hpp"
 
 namespace lensprof {
@@ -107,6 +108,20 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
 
 }  // namespace
 
+bool is_of_even_light(const std::string &file) {
+    try {
+        return shows_even_light(file);
+    } catch (const Failure &) {
+        return false;
+    }
+}
+
+std::string no_overlap_of(const std::string &file) {
+    return std::string("no overlap with another picture found")
+           + (is_of_even_light(file) ? ": it shows an even light, as pictures of a white card do" + advice("card")
+                                     : std::string());
+}
+
 bool is_picture_argument(const std::string &word) { return is_folder(word) || is_picture_name(word); }
 
 // Whether a picture in a folder is marked as an output of lensprof.
@@ -162,6 +177,11 @@ Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events) 
         scene.left_out.emplace_back(names[number], reason);
         events.warn({}, reason + "; left out");
     }
+    if (found.scenes.empty() && std::all_of(files.begin(), files.end(), is_of_even_light))
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                      label + ": the pictures show an even light, as those of a white card do: no overlap can be found"
+                          + advice("card"),
+                      LENSPROF_REASON_FEW_PAIRS);
     for (const CopiedPicture &picture : found.copies)
         leave_out({picture.copy}, names, "a copy of " + names[picture.original] + picture.how, scene.left_out, events);
     if (found.unreadable.size() == files.size())

@@ -36,6 +36,8 @@ Scene scene_of_pictures(const Photographs &list, bool one_lens, Events &events);
 inline std::string no_overlap_within_camera() {
     return "no two pictures of its camera, size or processing overlap" + advice("one_lens");
 }
+std::string no_overlap_of(const std::string &file);
+bool is_of_even_light(const std::string &file);  // false if it cannot be read any more
 inline std::string linked_by_other_camera() {
     return "only pictures of another camera, size or processing connect it to the others" + advice("one_lens");
 }

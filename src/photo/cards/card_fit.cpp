@@ -1,0 +1,106 @@
+#include "photo/cards/card_fit.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "photo/base/lap.hpp"
+#include "photo/calibration/fit.hpp"
+#include "photo/pictures/orientation.hpp"
+#include "photo/pictures/rotated_profile.hpp"
+#include "photo/report/falloff.hpp"
+
+namespace lensprof {
+namespace {
+
+// JPEG rounds colours over blocks of 16 pixels, which averaging does not remove: no falloff per channel from JPEG.
+void handle_lossy_pictures(const CardOptions &o, CardInput &input, Events &events) {
+    for (size_t i = 0; i < input.pictures.size(); i++) {
+        if (!input.pictures[i].traits.is_lossy) continue;
+        if (o.falloff_curves == 0) input.options.vignettings = 1;
+        const bool is_jpeg = input.pictures[i].traits.format == FileFormat::jpeg;
+        events.warn(input.files[i],
+                    std::string(is_jpeg ? "JPEG" : "its lossy compression")
+                        + " rounds grey values and colours over blocks of pixels; the error of the falloff may exceed "
+                          "the stated one by half a grey level of the card. Use raw files, or 16 bit TIFF or PNG");
+        return;
+    }
+}
+
+// What is known before the fit.
+CardFit begun(const CardInput &input) {
+    CardFit fit;
+    fit.files = input.files;
+    fit.response = input.response;
+    fit.key = input.key;
+    for (const auto &image : input.images) {
+        fit.shots.push_back(image.shot);
+        fit.ev.push_back(image.ev);
+        fit.rotated.push_back(image.rotation_deg);
+    }
+    fit.quality.resize(input.images.size());
+    lensprof_flat_result_init(&fit.fit);
+    return fit;
+}
+
+// The profile in the frame of the sensor.
+std::shared_ptr<lensprof_profile> sensor_profile(const CardInput &input, const lensprof_flat &flat, Events &events) {
+    std::shared_ptr<lensprof_profile> profile = profile_of(flat);
+    profile->key = input.key;
+    const lensprof_flat_image &frame = input.images.front();
+    const uint16_t turn = sensor_orientation(frame.width, frame.height, input.pictures.front().traits.orientation);
+    if (!turn)
+        events.note(input.files.front(),
+                    "no orientation states which way this portrait picture was rotated: the profile "
+                    "is stored with its centre in the middle of the frame, and without what differs "
+                    "between opposite sides; give the pictures as the camera wrote them");
+    turn_profile_to_sensor(turn, *profile);
+    return profile;
+}
+
+}  // namespace
+
+CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
+    auto clock = std::chrono::steady_clock::now();
+    read_cards(o, input, events);
+    events.clear();
+    handle_lossy_pictures(o, input, events);
+    stop_if_cancelled();
+    CardFit found = begun(input);
+    found.load_s = lap(clock);
+    input.options.progress = on_fit_progress;
+    input.options.progress_user = &events;
+    lensprof_error error{};
+    lensprof_flat *flat = nullptr;
+    const auto count = static_cast<uint32_t>(input.images.size());
+    const lensprof_status status =
+        lensprof_fit_flat(&input.options, input.images.data(), count, nullptr, 0, &flat, &error);
+    found.held = {flat, lensprof_flat_destroy};
+    events.clear();
+    check_named(status, input.files.size() == 1 ? input.files[0] : input.files[0] + " and the others", error,
+                LENSPROF_ITEM_IMAGE, input.files);
+    check(lensprof_flat_get(flat, &found.fit, &error), "fit", &error);
+    for (uint32_t i = 0; i < count; i++) {
+        lensprof_flat_image_quality_init(&found.quality[i]);
+        check(lensprof_flat_image_at(flat, i, &found.quality[i], &error), "fit", &error);
+    }
+    found.solve_s = lap(clock);
+    found.verdict = verdict_of(flat);
+    name_images(found.files, found.verdict);
+    name_shots(found.files, found.shots, found.verdict);
+    found.profile = sensor_profile(input, *flat, events);
+    return found;
+}
+
+CardFit failed_fit(const CardInput &input, const Failure &failure) {
+    CardFit found = begun(input);
+    found.fit.vignettings = 1;
+    found.fit.corner_sigma = NAN;
+    found.verdict.refuse(LENSPROF_REASON_FLAT_FEW_CELLS, failure.what());
+    return found;
+}
+
+void store_fit(const StoreOptions &o, CardFit &fit) {
+    fit.profile_id = store_profile(o, *fit.profile, {"flat", fit.files.front(), fit.fit.usable != 0});
+}
+
+}  // namespace lensprof

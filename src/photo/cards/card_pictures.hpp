@@ -1,0 +1,53 @@
+// Pictures of a white card or another even light, at one setting of a lens: the input of a fit of its falloff.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lensprof/flat.h>
+
+#include "photo/calibration/profile_store.hpp"
+#include "photo/pictures/picture.hpp"
+
+namespace lensprof {
+
+// How cards are measured. Vectors per picture, shot or card are empty, or as long as the pictures require.
+struct CardOptions {
+    StoreOptions store;
+    std::vector<std::array<double, 4>> cards;  // x, y, width and height, px of the frame
+    std::vector<uint32_t> shots;
+    std::vector<double> ev, rotation_deg;
+    uint32_t falloff_curves = 0, light = LENSPROF_FLAT_LIGHT_AUTO, grid = LENSPROF_FLAT_GRID_AUTO;
+    bool free_center = true, linear = false, several = false, find_card = false, own_light = false,
+         turned = false;          // the camera was rotated between the shots, as the orientation of EXIF states
+    int64_t profile = 0;          // whose response the pictures have; 0: none
+    std::optional<double> gamma;  // of the response x^(1/gamma)
+    double ev_sigma = 0.02, black = 2.0 / 255.0, white = 250.0 / 255.0;
+    uint32_t max_side = 1600;
+    uint32_t threads = 0;  // of one fit; 0: all cores
+};
+
+// All inputs of the library call, and the memory they refer to.
+struct CardInput {
+    std::vector<std::string> files;
+    std::vector<Picture> pictures;
+    std::vector<std::vector<uint8_t>> masks;  // per picture; empty = the whole picture
+    std::vector<lensprof_flat_image> images;
+    std::vector<lensprof_response> response;  // one or three
+    lensprof_profile_key key;                 // from EXIF of the first picture
+    lensprof_flat_options options;
+};
+
+constexpr uint32_t least_card_side = 64;  // px
+
+// Determines everything that needs no pixels: shots, exposures, rotations, response and key. `metadata`: of the files.
+// Failure if something is missing, and for counts that do not match the number of pictures.
+CardInput prepare_cards(const CardOptions &o, const std::vector<std::string> &files,
+                        std::vector<PictureMetadata> metadata, Events &events);
+
+// Reads the pictures and completes images and options.
+void read_cards(const CardOptions &o, CardInput &input, Events &events);
+
+}  // namespace lensprof

@@ -1,0 +1,180 @@
+#include "photo/cards/card_settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "photo/base/format.hpp"
+#include "photo/base/parallel.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/calibration/lens_settings.hpp"
+#include "photo/cards/card_names.hpp"
+#include "photo/pictures/named_pictures.hpp"
+#include "photo/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+// What the names state and EXIF does not.
+void complete_by_names(const std::string &file, lensprof_profile_key &key) {
+    const lensprof_profile_key named = setting_of_names(file);
+    if (!*key.lens) set_text(key.lens, sizeof key.lens, named.lens);
+    if (key.focal_mm == LENSPROF_UNKNOWN) key.focal_mm = named.focal_mm;
+    if (key.aperture == LENSPROF_UNKNOWN) key.aperture = named.aperture;
+    if (key.distance_m == LENSPROF_UNKNOWN) key.distance_m = named.distance_m;
+}
+
+void replace_by_options(const StoreOptions &o, lensprof_profile_key &key) {
+    if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
+    if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
+    if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
+    if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
+    if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
+}
+
+struct Read {
+    std::optional<CardPicture> picture;
+    std::string failure;
+};
+
+std::vector<Read> read_all(const std::vector<NamedPicture> &named, const CardOptions &o, SettingTable *table,
+                           Events &events) {
+    std::vector<Read> read(named.size());
+    for_each_parallel(static_cast<uint32_t>(named.size()), "reading EXIF", events, [&](uint32_t i) {
+        try {
+            read[i].picture = CardPicture{named[i].file, read_metadata(named[i].file), i};
+        } catch (const Failure &failure) {
+            if (!is_of_input(failure)) throw;
+            read[i].failure = failure.what();
+        }
+    });
+    for (Read &one : read) {
+        if (!one.picture) continue;
+        lensprof_profile_key &key = one.picture->metadata.key;
+        complete_by_names(one.picture->file, key);
+        if (table) table->apply(one.picture->file, key);
+        replace_by_options(o.store, key);
+    }
+    return read;
+}
+
+bool states_setting(const lensprof_profile_key &key) {
+    return key.focal_mm != LENSPROF_UNKNOWN && key.aperture != LENSPROF_UNKNOWN;
+}
+
+// Unknown distances are taken as far; all far ones are alike, near ones within the rounding of EXIF.
+bool is_same_distance(double a, double b) {
+    constexpr double far_m = 9.0, rounding = 0.1;
+    const auto is_far = [](double distance) { return distance == LENSPROF_UNKNOWN || distance >= far_m; };
+    return is_far(a) || is_far(b) ? is_far(a) && is_far(b) : std::fabs(std::log(a / b)) < rounding;
+}
+
+// What only one of them states separates them, too.
+bool is_same(const lensprof_profile_key &a, const lensprof_profile_key &b) {
+    const auto state_alike = [](double x, double y) { return (x == LENSPROF_UNKNOWN) == (y == LENSPROF_UNKNOWN); };
+    return std::strcmp(a.camera_model, b.camera_model) == 0 && !*a.lens == !*b.lens
+           && state_alike(a.focal_mm, b.focal_mm) && state_alike(a.aperture, b.aperture) && is_same_setting(a, b)
+           && is_same_distance(a.distance_m, b.distance_m);
+}
+
+auto rank_of(const lensprof_profile_key &key) {
+    return std::make_tuple(std::string(key.camera_model), std::string(key.lens), key.focal_mm, key.aperture,
+                           key.distance_m);
+}
+
+std::vector<CardSetting> grouped(const std::vector<CardPicture> &pictures) {
+    std::vector<CardSetting> settings;
+    for (const CardPicture &picture : pictures) {
+        const lensprof_profile_key &key = picture.metadata.key;
+        const auto same = std::find_if(settings.begin(), settings.end(),
+                                       [&](const CardSetting &setting) { return is_same(setting.key, key); });
+        if (same != settings.end())
+            same->pictures.push_back(picture);
+        else
+            settings.push_back({key, {picture}, describe_setting(key, picture.file)});
+    }
+    std::stable_sort(settings.begin(), settings.end(),
+                     [](const CardSetting &a, const CardSetting &b) { return rank_of(a.key) < rank_of(b.key); });
+    return settings;
+}
+
+// Files with the same bytes as an earlier one.
+class Copies {
+public:
+    // The earlier file, unless both were named: then both are wanted; empty without one. Failure.
+    std::string earlier(const NamedPicture &named) {
+        const auto [found, is_new] =
+            files_.emplace(std::make_pair(file_bytes(named.file), digest_of(named.file)), &named);
+        return is_new || !(named.in_folder || found->second->in_folder) ? std::string() : found->second->file;
+    }
+
+private:
+    std::map<std::pair<uint64_t, std::string>, const NamedPicture *> files_;
+};
+
+std::string reason_to_leave_out(const NamedPicture &named, const Read &read, Copies &copies) {
+    if (!read.picture) return read.failure;
+    try {
+        if (const std::string first = copies.earlier(named); !first.empty()) return named.file + ": a copy of " + first;
+    } catch (const Failure &failure) {  // not there any more
+        return failure.what();
+    }
+    if (named.in_folder && !read.picture->metadata.corrected_by.empty())
+        return named.file + ": falloff corrected " + read.picture->metadata.corrected_by
+               + ": it shows what is left of it; turn the correction off, or give raw files without it";
+    return {};
+}
+
+// Of several settings, none has pictures of unknown ones.
+void leave_out_unknown(CardSettings &settings) {
+    if (settings.list.size() < 2) return;
+    const auto unknown = std::stable_partition(settings.list.begin(), settings.list.end(),
+                                               [](const CardSetting &s) { return states_setting(s.key); });
+    if (unknown == settings.list.begin()) return;  // all of them: no picture states its setting
+    for (auto setting = unknown; setting != settings.list.end(); ++setting)
+        for (const CardPicture &picture : setting->pictures)
+            settings.left_out.push_back({picture.file, picture.file
+                                                           + ": neither EXIF nor its name states focal length and "
+                                                             "aperture; name it LENS--24mm--2.8, or give a table"});
+    settings.list.erase(unknown, settings.list.end());
+}
+
+}  // namespace
+
+CardSettings card_settings(const std::vector<std::string> &names, const CardOptions &o, SettingTable *table,
+                           Events &events) {
+    CardSettings settings;
+    std::vector<std::string> other_files;
+    std::vector<UnlistedFolder> unlisted;
+    const std::vector<NamedPicture> named = named_pictures(names, "", other_files, &unlisted);
+    for (const std::string &line : other_files) events.warn("", line);
+    for (const UnlistedFolder &folder : unlisted) settings.left_out.push_back({folder.folder, folder.reason});
+    settings.given = named.size();
+    std::vector<CardPicture> pictures;
+    const std::vector<Read> read = read_all(named, o, table, events);
+    events.clear();
+    Copies copies;
+    for (size_t i = 0; i < named.size(); i++) {
+        settings.has_folders |= named[i].in_folder;
+        const std::string reason = reason_to_leave_out(named[i], read[i], copies);
+        if (reason.empty())
+            pictures.push_back(*read[i].picture);
+        else
+            settings.left_out.push_back({named[i].file, reason});
+    }
+    if (pictures.empty()) {
+        const LeftOutCard &first = settings.left_out.front();
+        throw Failure(LENSPROF_ERROR_READ, settings.left_out.size() == 1
+                                               ? first.reason
+                                               : "none of the " + counted(settings.left_out.size(), "picture")
+                                                     + " can be used; the first: " + first.reason);
+    }
+    settings.list = grouped(pictures);
+    leave_out_unknown(settings);
+    return settings;
+}
+
+}  // namespace lensprof

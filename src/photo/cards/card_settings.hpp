@@ -1,0 +1,43 @@
+// Which pictures of cards are of which lens setting.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "photo/cards/card_pictures.hpp"
+#include "photo/cards/setting_table.hpp"
+
+namespace lensprof {
+
+struct CardPicture {
+    std::string file;
+    PictureMetadata metadata;  // its key completed by names and table
+    size_t index = 0;          // of the pictures given, of which lists of options have a value each
+};
+
+// Pictures of one camera, lens, focal length, aperture and distance.
+struct CardSetting {
+    lensprof_profile_key key{};  // of the first picture
+    std::vector<CardPicture> pictures;
+    std::string label;  // "24 mm, f/2.8"
+};
+
+struct LeftOutCard {
+    std::string file, reason;
+};
+
+struct CardSettings {
+    std::vector<CardSetting> list;  // by camera, lens, focal length, aperture and distance
+    std::vector<LeftOutCard> left_out;
+    size_t given = 0;  // pictures
+    bool has_folders = false;
+};
+
+// Finds the settings of pictures and folders of them: by EXIF, completed by names, replaced by `table` (NULL: none) and
+// by what `o` states for all. Left out, with the reason: files that cannot be read; of folders,
+// copies of other pictures and those whose falloff the camera corrected; and, of several settings, pictures that state
+// neither focal length nor aperture. Failure if nothing is left.
+CardSettings card_settings(const std::vector<std::string> &names, const CardOptions &o, SettingTable *table,
+                           Events &events);
+
+}  // namespace lensprof

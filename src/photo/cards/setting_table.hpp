@@ -1,0 +1,35 @@
+// Settings of pictures in a table: a CSV file with a header.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <lensprof/profile.h>
+
+namespace lensprof {
+
+// Columns: file, and any of maker, camera, lens, focal (mm), aperture, distance (m, or inf); separated by commas,
+// semicolons or tabs; empty cells state nothing. `file` is the name of a picture, or its path from the end, and may
+// have
+// * and ?; the first row that fits a picture counts.
+class SettingTable {
+public:
+    // Failure (READ) that names the line.
+    explicit SettingTable(const std::string &path);
+
+    // Replaces in `key` what the table states about a picture.
+    void apply(const std::string &file, lensprof_profile_key &key);
+
+    // Rows that no picture has used: their `file`.
+    std::vector<std::string> unused() const;
+
+private:
+    struct Row {
+        std::string file;
+        lensprof_profile_key key;
+        bool is_used = false;
+    };
+    std::vector<Row> rows_;
+};
+
+}  // namespace lensprof

@@ -1,0 +1,354 @@
+// `lensprof flat` of a folder: settings by EXIF, names and a table, a result for each, the lens as one file.
+#include "cli_runs.hpp"
+
+#include "photo/base/format.hpp"
+#include "photo/base/library.hpp"
+#include "photo/cards/card_names.hpp"
+#include "photo/cards/lens_cards.hpp"
+#include "photo/cards/setting_table.hpp"
+#include "photo/pictures/picture.hpp"
+#include "photo/registration/registration.hpp"
+
+namespace {
+
+using namespace cli_runs;
+
+constexpr uint32_t width = 240, height = 160;
+
+struct Card {
+    double focal_mm = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN;
+    const char *camera = "Box 1", *lens = "EF24-70mm f/2.8";
+    double k1 = -0.4, texture = 0.0;
+    uint64_t seed = 7;
+    bool clipped = false;
+    double light = 0.0;  // brighter in the middle: exp(-light r^2)
+};
+
+std::string shoot(const std::string &name, const Card &card) {
+    Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    const lensprof_vignetting falloff{{card.k1, 0.05, -0.02}, {0.0, 0.0}};
+    uint64_t random = card.seed;
+    auto *at = reinterpret_cast<uint16_t *>(picture.pixels.data());
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            const double r2 = lensprof_vignetting_r2(&falloff, width, height, x, y, nullptr);
+            double light = (card.clipped ? 1.3 : 0.5) * lensprof_vignetting_eval(&falloff, r2, nullptr);
+            light *= std::exp(-card.light * r2);
+            light *= 1.0 + card.texture * std::sin(0.35 * x) * std::sin(0.3 * y);
+            for (uint32_t c = 0; c < 3; c++)
+                *at++ = static_cast<uint16_t>(
+                    std::lround(65535.0 * std::clamp(light + 0.002 * lp_normal(&random), 0.0, 1.0)));
+        }
+    PictureMetadata metadata = unknown_metadata();
+    lensprof_profile_key &key = metadata.key;
+    set_text(key.camera_model, sizeof key.camera_model, card.camera);
+    set_text(key.lens, sizeof key.lens, card.lens);
+    key.focal_mm = card.focal_mm, key.aperture = card.aperture;
+    metadata.f_number = card.aperture;
+    WriteOptions options;
+    options.metadata = &metadata;
+    const std::string path = in_folder(name);
+    fs::create_directories(fs::path(path).parent_path());
+    write_picture(path, picture, options);
+    return path;
+}
+
+constexpr double focals[] = {24.0, 70.0}, apertures[] = {2.8, 5.6, 11.0};
+
+double k1_of(double focal, double aperture) { return -0.5 * std::sqrt(24.0 / focal) * std::sqrt(2.8 / aperture); }
+
+// Two pictures of each of six settings.
+std::string make_lens(const std::string &name) {
+    for (const double focal : focals)
+        for (const double aperture : apertures)
+            for (uint64_t n = 0; n < 2; n++) {
+                Card card{focal, aperture};
+                card.k1 = k1_of(focal, aperture), card.seed = 11 + n;
+                shoot(format("%s/%g_%g_%d.tif", name.c_str(), focal, aperture, static_cast<int>(n)), card);
+            }
+    return in_folder(name);
+}
+
+Words flat_of(const Words &inputs, const Words &more = {}) {
+    return Words{"flat"} + inputs + Words{"--linear", "--no-store"} + more;
+}
+
+// Every setting is measured alone, and stored; the numbers do not depend on how the pictures are given.
+void test_a_folder(void **) {
+    const std::string lens = make_lens("lens"), db = in_folder("lens.db");
+    const Json json = json_of({"flat", lens, "--linear", "--db", db, "--json"});
+    assert_int_equal(json["settings"].size(), 6);
+    size_t n = 0;
+    for (const double focal : focals)
+        for (const double aperture : apertures) {
+            const Json &setting = json["settings"][n++];
+            assert_true(setting["key"]["focal_mm"] == focal && setting["key"]["aperture"] == aperture);
+            assert_true(setting["usable"] == true && setting["files"].size() == 2
+                        && setting["result"]["profile"].is_number());
+            const double corner = 1.0 + k1_of(focal, aperture) + 0.05 - 0.02;
+            assert_float_equal(setting["corner"].get<double>(), corner, 0.005);
+        }
+    assert_true(json["left_out"].empty() && json["lens_file"].is_null());
+    assert_int_equal(json_of({"profile", "list", "--json", "--db", db})["profiles"].size(), 6);
+    const Json alone =
+        json_of(flat_of({lens + "/24_2.8_0.tif", lens + "/24_2.8_1.tif"}, {"--json", "--fit", "own-light=yes"}));
+    assert_true(alone["vignetting"] == json["settings"][0]["result"]["vignetting"]);
+    const std::string table = must_exit(done, flat_of({lens}));
+    assert_true(contains(table, "24 mm, f/2.8") && contains(table, "good") && !contains(table, "take it again"));
+}
+
+void test_the_same_for_any_number_of_threads(void **) {
+    CardOptions o;
+    o.linear = true, o.store.no_store = true;
+    NoticeList events;
+    const CardSettings settings = card_settings({make_lens("threads")}, o, nullptr, events);
+    const auto one = measure_settings(o, settings, 1, events), four = measure_settings(o, settings, 4, events);
+    assert_int_equal(one.size(), 6);
+    for (size_t i = 0; i < one.size(); i++)
+        assert_memory_equal(&one[i].fit->fit.vignetting, &four[i].fit->fit.vignetting,
+                            sizeof one[i].fit->fit.vignetting);
+}
+
+// The lens as a file, and a table.
+void test_outputs(void **) {
+    const std::string lens = make_lens("outputs"), xml = in_folder("lens.xml"), csv = in_folder("lens.csv"),
+                      page = in_folder("lens.html");
+    must_exit(done, flat_of({lens}, {"-o", xml, "-o", csv, "--report", page, "--key", "crop-factor=1"}));
+    const std::string text = text_of(xml);
+    assert_true(contains(text, "<lensdatabase") && contains(text, "24-70mm f/2.8</model>"));
+    assert_true(contains(text, "focal=\"24\" aperture=\"2.8\" distance=\"10\" k1=\"-0.")
+                && contains(text, "distance=\"1000\""));
+    assert_int_equal(text.find("<lens>"), text.rfind("<lens>"));
+    const std::string rows = text_of(csv);
+    assert_int_equal(std::count(rows.begin(), rows.end(), '\n'), 7);
+    assert_true(contains(rows, "Box 1,EF24-70mm f/2.8,24,2.8,,2,yes,"));
+    assert_true(contains(text_of(page), "\"kind\":\"lens\""));
+    must_exit(done, {"profile", "import", xml, "--db", in_folder("back.db")});
+    const Disk before = disk();
+    assert_refused(usage, flat_of({lens}, {"-o", lens + "/24_2.8_0.tif"}), {"24_2.8_0.tif", ".xml"});
+    assert_refused(usage, flat_of({lens}, {"-o", in_folder("x.xml"), "--report", in_folder("x.xml")}), {"x.xml"});
+    assert_refused(usage, flat_of({lens}, {"-o", in_folder("x.xml")}), {"x.xml", "crop factor", "--key crop-factor"});
+    assert_refused(usage, flat_of({lens}, {"--bundle", in_folder("same.zip"), "-o", in_folder("same.zip")}),
+                   {"same.zip"});
+    save_text(in_folder("own.csv"), "file,lens\n24*,A\n");
+    assert_refused(usage, flat_of({lens}, {"-o", in_folder("own.csv"), "--key", "table=" + in_folder("own.csv")}),
+                   {"own.csv", "overwritten"});
+    assert_true(text_of(in_folder("own.csv")) == "file,lens\n24*,A\n");
+    fs::remove(in_folder("own.csv"));
+    assert_refused(usage, flat_of({lens}, {"--card", "0,0,9,9", "--card", "0,0,9,9"}), {"2 values for 12 pictures"});
+    shoot("outputs/other.tif", Card{24.0, 2.8, "Box 2"});
+    assert_refused(usage, flat_of({lens}, {"-o", in_folder("two.xml"), "--key", "crop-factor=1"}),
+                   {"holds one lens", "Box 2"});
+    fs::remove(lens + "/other.tif");
+    assert_true(disk() == before);
+}
+
+// What is bad, and what to do; the others are measured.
+void test_bad_cards(void **) {
+    const std::string lens = make_lens("bad");
+    Card bad{35.0, 4.0};
+    bad.clipped = true;
+    shoot("bad/clipped.tif", bad);
+    bad.clipped = false, bad.texture = 0.1, bad.aperture = 8.0;
+    shoot("bad/textured.tif", bad);
+    save_text(lens + "/broken.tif", "no picture");
+    fs::copy_file(lens + "/24_2.8_0.tif", lens + "/copy.tif");
+    shoot("bad/unknown.tif", Card{});
+    const Json json = json_of(flat_of({lens}, {"--json"}), not_usable);
+    std::map<std::string, bool> usable;
+    for (const Json &setting : json["settings"]) usable[setting["label"]] = setting["usable"];
+    assert_int_equal(usable.size(), 8);
+    assert_false(usable["35 mm, f/4"] || usable["35 mm, f/8"]);
+    assert_true(usable["24 mm, f/2.8"] && usable["70 mm, f/11"]);
+    std::string reasons;
+    for (const Json &card : json["left_out"]) reasons += card["reason"].get<std::string>() + "\n";
+    assert_int_equal(json["left_out"].size(), 3);
+    assert_true(contains(reasons, "broken.tif") && contains(reasons, "copy.tif: a copy of")
+                && contains(reasons, "unknown.tif"));
+    const Outcome printed = run_words(flat_of({lens}));
+    assert_int_equal(printed.code, not_usable);
+    assert_true(contains(printed.out, "take it again") && contains(printed.out, "left out  3 of 17 pictures"));
+    fs::create_directories(in_folder("empty"));
+    assert_refused(usage, flat_of({in_folder("empty")}), {"folder without pictures"});
+    save_text(in_folder("empty/a.tif"), "no picture");
+    assert_refused(unreadable, flat_of({in_folder("empty")}), {"a.tif"});
+}
+
+// A list of options has a value per picture given.
+void test_lists_are_of_all_pictures(void **) {
+    const std::string lens = make_lens("lists");
+    const Words files = {lens + "/24_2.8_0.tif", lens + "/24_5.6_0.tif", lens + "/24_2.8_1.tif",
+                         lens + "/24_5.6_1.tif"};
+    const Json json = json_of(flat_of(files, {"--json", "--rotation", "0,0,90,180"}));
+    assert_true(json["settings"][0]["result"]["images"][1]["rotation_deg"] == 90.0);
+    assert_true(json["settings"][1]["result"]["images"][1]["rotation_deg"] == 180.0);
+}
+
+void test_settings_of_names(void **) {
+    const auto of = [](const char *path) { return setting_of_names(path); };
+    lensprof_profile_key key = of("x/vignetting_10/Canon_EF_24-70mm_f__2.8L--024mm--2.8_IMG_1.CR2");
+    assert_string_equal(key.lens, "Canon EF 24-70mm f/2.8L");
+    assert_true(key.focal_mm == 24.0 && key.aperture == 2.8 && key.distance_m == 10.0);
+    key = of("vignetting/Lens--35mm--2.8.CR2");
+    assert_true(key.focal_mm == 35.0 && std::isinf(key.distance_m));
+    key = of("cards/50mm/f4/0.5m/IMG_0012.dng");
+    assert_true(key.focal_mm == 50.0 && key.aperture == 4.0 && key.distance_m == 0.5 && !*key.lens);
+    key = of("EF 50mm f1.4/f8_2.tif");  // the folder has the name of a lens
+    assert_true(key.focal_mm == LENSPROF_UNKNOWN && key.aperture == 8.0);
+    key = of("holiday 2023/DSC_24-70.jpg");
+    assert_true(key.focal_mm == LENSPROF_UNKNOWN && key.aperture == LENSPROF_UNKNOWN);
+    key = of("Lens--0mm--2.8.CR2");
+    assert_true(key.focal_mm == LENSPROF_UNKNOWN);
+}
+
+// Pictures without EXIF have the settings of their names, or of a table.
+void test_names_and_table(void **) {
+    Card card;
+    card.camera = card.lens = "";
+    for (const double aperture : apertures) {
+        card.aperture = LENSPROF_UNKNOWN, card.k1 = k1_of(24.0, aperture);
+        shoot(format("named/Zoom_A--24mm--%g.tif", aperture), card);
+        shoot(format("plain/c%g.tif", aperture), card);
+    }
+    const Json named = json_of(flat_of({in_folder("named")}, {"--json"}));
+    assert_int_equal(named["settings"].size(), 3);
+    assert_true(named["settings"][2]["key"]["lens"] == "Zoom A" && named["settings"][2]["key"]["aperture"] == 11.0);
+    save_text(in_folder("table.csv"), "aperture;file;lens;focal\n2,8;c2.8.tif;Zoom B;24\n");
+    assert_refused(unreadable, flat_of({in_folder("plain")}, {"--key", "table=" + in_folder("table.csv")}),
+                   {"table.csv: line 2", "'2,8'", "aperture"});
+    save_text(in_folder("table.csv"),
+              "aperture,file,lens,focal\n2.8,c2.8.tif,\"Zoom \"\"B\"\"\",24\n5.6,plain/c5*,B,24\n"
+              "11,c11.tif,B,24\n8,c8.tif,B,24\n");
+    const Outcome table =
+        run_words(flat_of({in_folder("plain")}, {"--json", "--key", "table=" + in_folder("table.csv")}));
+    assert_int_equal(table.code, done);
+    assert_true(contains(table.err, "no picture has the name c8.tif"));
+    const Json json = parsed(table.out);
+    assert_int_equal(json["settings"].size(), 3);
+    assert_true(json["settings"][2]["key"]["lens"] == "Zoom \"B\"");
+    for (const char *bad :
+         {"", "lens,focal\nB,24\n", "file,size\na,1\n", "file,focal\na\n", "file,focal\na,-5\n", "file,focal\na,0x10\n",
+          "file,focal\na,1e300\n", "file,file\na,b\n", "file,lens\na,\"B\n"}) {
+        save_text(in_folder("table.csv"), bad);
+        assert_refused(unreadable, flat_of({in_folder("plain")}, {"--key", "table=" + in_folder("table.csv")}),
+                       {"table.csv: line"});
+    }
+}
+
+// Overlapping pictures show that the light was brighter in the middle, and by how much.
+void test_light_is_checked(void **) {
+    must_exit(done, {"simulate", "-o", in_folder("photographs"), "--exif", "--vignetting", "-0.4,0.05,-0.02",
+                     "--images", "6", "--size", "480x360"});
+    const PictureMetadata photograph = read_metadata(in_folder("photographs/img000.png"));
+    Card card{photograph.key.focal_mm, photograph.key.aperture, photograph.key.camera_model, photograph.key.lens};
+    const double corner = 0.63;
+    for (const double light : {0.0, 0.25}) {
+        card.light = light;
+        const std::string file = shoot(format("light/%g.tif", light), card),
+                          db = in_folder(format("light%g.db", light));
+        const Json json = json_of({"flat", file, "--linear", "--db", db, "--check", in_folder("photographs"), "-o",
+                                   in_folder("light.xml"), "--key", "crop-factor=1", "--json"});
+        const Json &setting = json["settings"][0];
+        assert_int_equal(json["light"]["removed_from"], light > 0.0);
+        assert_int_equal(json["light"]["rings"].size(), 5);
+        const double sigma = setting["corner_sigma"];
+        assert_true(std::fabs(setting["corner"].get<double>() - corner) < 0.01 + 2.0 * sigma && sigma < 0.05);
+        assert_int_equal(json_of({"profile", "list", "--json", "--db", db})["profiles"].size(), 1);
+    }
+    assert_refused(not_usable,
+                   flat_of({in_folder("light/0.tif")}, {"--check", in_folder("photographs"), "--aperture", "16"}),
+                   {"no good setting of the cards"});
+}
+
+// Rendered pictures have the response of their camera, if a database has it.
+void test_response_of_the_camera(void **) {
+    const std::string file = shoot("rendered/a.tif", Card{24.0, 2.8}), db = in_folder("responses.db");
+    assert_refused(usage, {"flat", file, "--db", db, "--no-store"}, {"a.tif", "no database has the response"});
+    Words flat = {"flat", file, "--db", db, "--fit", "gamma=2.2", "--focal", "50"};
+    must_exit(done, flat);  // stores a profile of the camera with this response
+    const Outcome found = run_words({"flat", file, "--db", db, "--json"});
+    assert_int_equal(found.code, done);
+    assert_true(contains(found.err, "that of the camera in the database"));
+    flat.resize(flat.size() - 2);
+    assert_true(parsed(found.out)["vignetting"] == json_of(flat + Words{"--json"})["vignetting"]);
+}
+
+// By EXIF's orientation.
+void test_turned(void **) {
+    const std::vector<std::string> files = {shoot("turned/a.tif", Card{24.0, 2.8}),
+                                            shoot("turned/b.tif", Card{24.0, 2.8})};
+    assert_refused(usage, flat_of({files[0], files[1]}, {"--turned"}), {"a.tif", "--rotation"});
+    assert_refused(usage, flat_of({files[0], files[1]}, {"--turned", "--rotation", "0,90"}),
+                   {"--turned and --rotation"});
+    CardOptions o;
+    o.linear = o.turned = o.store.no_store = true;
+    std::vector<PictureMetadata> metadata = {read_metadata(files[0]), read_metadata(files[1])};
+    NoticeList events;
+    for (const auto &[orientation, rotation] : {std::pair(6, 90.0), std::pair(3, 180.0), std::pair(8, 270.0)}) {
+        metadata[1].orientation = static_cast<uint16_t>(orientation);
+        const CardInput input = prepare_cards(o, files, metadata, events);
+        assert_true(input.images[0].rotation_deg == 0.0 && input.images[1].rotation_deg == rotation);
+    }
+}
+
+// An archive with the same bytes each time.
+void test_bundle(void **) {
+    const std::string lens = make_lens("bundled"), zip = in_folder("lens.zip");
+    const Words words = flat_of({lens}, {"--bundle", zip, "--key", "crop-factor=1"});
+    must_exit(done, words);
+    const Bytes first = load(zip);
+    const std::string text(first.begin(), first.end());
+    for (const char *name : {"report.html", "lens.json", "lens.csv", "lens.xml", "pictures/24_2.8_0.jpg"})
+        assert_true(contains(text, name));
+    must_exit(done, words);
+    assert_true(load(zip) == first);
+    assert_refused(usage, flat_of({lens}, {"--bundle", in_folder("lens.tar")}), {"lens.tar", ".zip"});
+}
+
+// A folder of cards has no overlaps to find; ordinary pictures are not cards.
+void test_cards_and_photographs(void **) {
+    const std::string lens = make_lens("cards");
+    must_exit(done, {"simulate", "-o", in_folder("scene2"), "--exif", "--images", "3"});
+    assert_refused(not_usable, flat_of({in_folder("scene2")}), {});
+    assert_true(contains(run_words(flat_of({in_folder("scene2")})).out, "do not show an even light"));
+    if (can_register()) {
+        const Outcome found = run_words({"build", lens, "--no-store"});
+        assert_true(found.code != done && contains(found.err, "lensprof flat"));
+    }
+}
+
+// The settings that predictions need, and no others.
+void test_missing_settings(void **) {
+    const std::string lens = make_lens("missing");
+    fs::remove(lens + "/70_2.8_0.tif"), fs::remove(lens + "/70_2.8_1.tif");
+    const Json json = json_of(flat_of({lens}, {"--json"}));
+    bool is_wide_open_missing = false;
+    for (const Json &setting : json["missing"]) {
+        is_wide_open_missing |= setting["focal_mm"] == 70.0 && setting["aperture"] == 2.8;
+        for (const double aperture : apertures)
+            assert_false(setting["focal_mm"] == 24.0 && setting["aperture"] == aperture);
+    }
+    assert_true(is_wide_open_missing);
+    assert_true(contains(must_exit(done, flat_of({lens})), "missing   "));
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_a_folder),
+        CLI_TEST(test_the_same_for_any_number_of_threads),
+        CLI_TEST(test_outputs),
+        CLI_TEST(test_bad_cards),
+        CLI_TEST(test_lists_are_of_all_pictures),
+        CLI_TEST(test_settings_of_names),
+        CLI_TEST(test_names_and_table),
+        CLI_TEST(test_missing_settings),
+        CLI_TEST(test_light_is_checked),
+        CLI_TEST(test_response_of_the_camera),
+        CLI_TEST(test_turned),
+        CLI_TEST(test_bundle),
+        CLI_TEST(test_cards_and_photographs),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
