@@ -282,11 +282,11 @@ void test_turned(void **) {
                    {"--turned and --rotation"});
     CardOptions o;
     o.linear = o.turned = o.store.no_store = true;
-    std::vector<PictureMetadata> metadata = {read_metadata(files[0]), read_metadata(files[1])};
+    std::vector<CardPicture> pictures = {{files[0], read_metadata(files[0])}, {files[1], read_metadata(files[1])}};
     NoticeList events;
     for (const auto &[orientation, rotation] : {std::pair(6, 90.0), std::pair(3, 180.0), std::pair(8, 270.0)}) {
-        metadata[1].orientation = static_cast<uint16_t>(orientation);
-        const CardInput input = prepare_cards(o, files, metadata, events);
+        pictures[1].metadata.orientation = static_cast<uint16_t>(orientation);
+        const CardInput input = prepare_cards(o, pictures, events);
         assert_true(input.images[0].rotation_deg == 0.0 && input.images[1].rotation_deg == rotation);
     }
 }

@@ -154,13 +154,7 @@ CardSettings settings_of(const FlatCommand &o, Events &events) {
 
 CardFit fit_or_report_failure(const FlatCommand &o, const CardSetting &setting, Streams &streams) {
     Progress progress(streams, o.progress);
-    std::vector<std::string> files;
-    std::vector<PictureMetadata> metadata;
-    for (const CardPicture &picture : setting.pictures) {
-        files.push_back(picture.file);
-        metadata.push_back(picture.metadata);
-    }
-    CardInput input = prepare_cards(o, files, metadata, progress);
+    CardInput input = prepare_cards(o, setting.pictures, progress);
     check_report(o.report, o.files, o.store);
     check_store(o.store);
     try {

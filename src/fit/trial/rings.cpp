@@ -102,8 +102,8 @@ public:
     // Of the nodes: by the scatter between areas or between links, per direction the larger one.
     RingMatrix covariance(const RingMatrix &means, RingVector &sigma) const {
         const Eigen::MatrixXd inverse = normal_.ldlt().solve(Eigen::MatrixXd::Identity(unknowns_, unknowns_));
-        const Eigen::MatrixXd by_cell = sandwich(inverse, cell_count_, [](const Difference &d) { return d.cell; });
-        const Eigen::MatrixXd by_link = sandwich(inverse, link_count_, [](const Difference &d) { return d.link; });
+        const Eigen::MatrixXd by_cell = sandwich(inverse, cell_of_.size(), [](const Difference &d) { return d.cell; });
+        const Eigen::MatrixXd by_link = sandwich(inverse, link_of_.size(), [](const Difference &d) { return d.link; });
         const RingMatrix cells = means * by_cell.topLeftCorner<kRings, kRings>() * means.transpose();
         const RingMatrix links = means * by_link.topLeftCorner<kRings, kRings>() * means.transpose();
         for (int k = 0; k < kRings; k++) sigma[k] = std::sqrt(std::max(cells(k, k), links(k, k)));
@@ -119,7 +119,6 @@ private:
             r2[side] = r2_of(pairs.images[pair.image[side]], pair.xy[side][0], pair.xy[side][1]);
         const RingVector nodes = node_weights(r2[first]) - node_weights(r2[second]);
         const size_t of_link = index_of(link_of_, link), of_cell = index_of(cell_of_, cell_at(pairs, pair, first));
-        link_count_ = link_of_.size(), cell_count_ = cell_of_.size();
         bool is_used = false;
         for (uint32_t c = 0; c < pairs.channels; c++) {
             const IrradianceDifference d = evaluator_.difference(pair, c);
@@ -214,9 +213,9 @@ private:
         solution_ = normal_.ldlt().solve(right);
         for (size_t g = 0; g < offsets_.size(); g++)
             offsets_[g] = mean[g] - means.row(static_cast<Eigen::Index>(g)).dot(solution_);
+        off_.resize(count);
         for (size_t i = 0; i < count; i++) {  // rows_ has the means taken out
             const Difference &d = differences_[i];
-            off_.resize(count);
             off_[i] = d.y - mean[d.offset] - rows_.row(static_cast<Eigen::Index>(i)).dot(solution_);
         }
     }
@@ -246,7 +245,6 @@ private:
     std::map<std::pair<uint32_t, uint32_t>, size_t> link_of_;
     std::map<std::pair<size_t, uint32_t>, size_t> offset_of_;
     std::map<Cell, size_t> cell_of_;
-    size_t link_count_ = 0, cell_count_ = 0;
     std::array<size_t, kRings> ends_{};
     std::vector<double> offsets_, weights_, off_;
     Eigen::MatrixXd rows_, normal_;

@@ -1,5 +1,6 @@
 #include "photo/base/databases.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -46,6 +47,12 @@ std::vector<std::string> databases_of(const std::vector<std::string> &named) {
     if (path_exists(user_database) || installed_file.empty()) files.push_back(user_database);
     if (!installed_file.empty() && !is_same_file(user_database, installed_file)) files.push_back(installed_file);
     return files;
+}
+
+std::vector<std::string> existing(std::vector<std::string> databases) {
+    const auto is_missing = [](const std::string &file) { return !path_exists(file); };
+    databases.erase(std::remove_if(databases.begin(), databases.end(), is_missing), databases.end());
+    return databases;
 }
 
 Databases::Databases(const std::vector<std::string> &files) {

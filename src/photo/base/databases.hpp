@@ -15,6 +15,9 @@ std::string installed_database();
 // The databases named by the user; by default the user's own database and the installed one, if they exist.
 std::vector<std::string> databases_of(const std::vector<std::string> &named);
 
+// Those of them that exist.
+std::vector<std::string> existing(std::vector<std::string> databases);
+
 // Opens databases for reading. The files must exist.
 class Databases {
 public:

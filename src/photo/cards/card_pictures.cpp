@@ -105,9 +105,7 @@ bool are_linear(const CardOptions &o, const std::vector<PictureMetadata> &metada
 // The response that the databases have for the camera of a rendered picture. Failure without one.
 std::vector<lensprof_response> stored_response(const StoreOptions &o, const PictureMetadata &metadata,
                                                const std::string &file, Events &events) {
-    std::vector<std::string> files = databases_of(o.dbs);
-    files.erase(std::remove_if(files.begin(), files.end(), [](const std::string &db) { return !path_exists(db); }),
-                files.end());
+    const std::vector<std::string> files = existing(databases_of(o.dbs));
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     options.response_alone = 1;
@@ -194,8 +192,10 @@ uint32_t common_channels(const std::vector<std::string> &files, const std::vecto
 
 }  // namespace
 
-CardInput prepare_cards(const CardOptions &o, const std::vector<std::string> &files,
-                        std::vector<PictureMetadata> metadata, Events &events) {
+CardInput prepare_cards(const CardOptions &o, const std::vector<CardPicture> &pictures, Events &events) {
+    std::vector<std::string> files;
+    std::vector<PictureMetadata> metadata;
+    for (const CardPicture &picture : pictures) files.push_back(picture.file), metadata.push_back(picture.metadata);
     CardInput input;
     lensprof_flat_options_init(&input.options);
     require_one_kind(files);

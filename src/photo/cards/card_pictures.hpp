@@ -29,6 +29,12 @@ struct CardOptions {
     uint32_t threads = 0;  // of one fit; 0: all cores
 };
 
+struct CardPicture {
+    std::string file;
+    PictureMetadata metadata;  // its key completed by names and table
+    size_t index = 0;          // of the pictures given, of which lists of options have a value each
+};
+
 // All inputs of the library call, and the memory they refer to.
 struct CardInput {
     std::vector<std::string> files;
@@ -42,10 +48,9 @@ struct CardInput {
 
 constexpr uint32_t least_card_side = 64;  // px
 
-// Determines everything that needs no pixels: shots, exposures, rotations, response and key. `metadata`: of the files.
-// Failure if something is missing, and for counts that do not match the number of pictures.
-CardInput prepare_cards(const CardOptions &o, const std::vector<std::string> &files,
-                        std::vector<PictureMetadata> metadata, Events &events);
+// Determines everything that needs no pixels: shots, exposures, rotations, response and key. Failure if something is
+// missing, and for counts that do not match the number of pictures.
+CardInput prepare_cards(const CardOptions &o, const std::vector<CardPicture> &pictures, Events &events);
 
 // Reads the pictures and completes images and options.
 void read_cards(const CardOptions &o, CardInput &input, Events &events);

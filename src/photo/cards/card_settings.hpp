@@ -9,12 +9,6 @@
 
 namespace lensprof {
 
-struct CardPicture {
-    std::string file;
-    PictureMetadata metadata;  // its key completed by names and table
-    size_t index = 0;          // of the pictures given, of which lists of options have a value each
-};
-
 // Pictures of one camera, lens, focal length, aperture and distance.
 struct CardSetting {
     lensprof_profile_key key{};  // of the first picture

@@ -30,23 +30,20 @@ CardOptions options_of(const CardOptions &o, const CardSetting &setting, size_t 
 }
 
 void measure(const CardOptions &o, MeasuredSetting &setting) {
-    std::vector<std::string> files;
-    std::vector<PictureMetadata> metadata;
-    for (const CardPicture &picture : setting.of.pictures) {
-        files.push_back(picture.file);
-        metadata.push_back(picture.metadata);
-    }
+    const std::vector<CardPicture> &pictures = setting.of.pictures;
     const lensprof_profile_key &key = setting.of.key;
-    if (files.size() > 1 && (key.focal_mm == LENSPROF_UNKNOWN || key.aperture == LENSPROF_UNKNOWN))
+    if (pictures.size() > 1 && (key.focal_mm == LENSPROF_UNKNOWN || key.aperture == LENSPROF_UNKNOWN))
         setting.notices.note("", "focal length or aperture are unknown: the pictures are taken for one setting");
     try {
-        if (files.size() > LENSPROF_FLAT_IMAGES)
-            throw Failure(LENSPROF_ERROR_NOT_USABLE, counted(files.size(), "picture") + " of one setting; give at most "
+        if (pictures.size() > LENSPROF_FLAT_IMAGES)
+            throw Failure(LENSPROF_ERROR_NOT_USABLE, counted(pictures.size(), "picture")
+                                                         + " of one setting; give at most "
                                                          + std::to_string(LENSPROF_FLAT_IMAGES));
-        CardInput input = prepare_cards(o, files, metadata, setting.notices);
+        CardInput input = prepare_cards(o, pictures, setting.notices);
         setting.fit = fit_cards(o, input, setting.notices);
+        const auto is_even = [](const CardPicture &picture) { return shows_even_light(picture.file); };
         if (!setting.fit->fit.usable)
-            setting.refusal = std::any_of(files.begin(), files.end(), shows_even_light)
+            setting.refusal = std::any_of(pictures.begin(), pictures.end(), is_even)
                                   ? setting.fit->verdict.headline()
                                   : "the pictures do not show an even light" + advice("photographs");
     } catch (const Failure &failure) {

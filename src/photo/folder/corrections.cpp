@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "photo/base/databases.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/output_file.hpp"
 #include "photo/base/paths.hpp"
@@ -102,11 +103,7 @@ CorrectedPictures plan_corrections(const FolderOptions &o, const Inputs &inputs,
     Reasons reasons = panoramas.unjoined;
     for (const Panorama &panorama : panoramas.list) plan_panorama(panorama, corrected, reasons);
     ModelOptions options;
-    options.dbs = o.store.dbs;
-    if (!options.dbs.empty())  // created when the first profile is stored
-        options.dbs.erase(std::remove_if(options.dbs.begin(), options.dbs.end(),
-                                         [](const std::string &db) { return !path_exists(db); }),
-                          options.dbs.end());
+    options.dbs = existing(o.store.dbs);  // one is created when the first profile is stored
     const PictureModels models(options, o.store.dbs.empty() || !options.dbs.empty());
     CorrectedPictures pictures;
     for (const InputPicture &picture : inputs.pictures) {
