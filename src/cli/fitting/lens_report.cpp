@@ -144,6 +144,19 @@ std::string csv_number(double value) {
     return value == LENSPROF_UNKNOWN || std::isnan(value) ? "" : format("%.6g", value);
 }
 
+Json light_json(const LensCards &cards) {
+    if (!cards.light) return {};
+    Json rings = Json::array();
+    for (uint32_t ring = 0; ring < cards.light->rings; ring++)
+        rings.push_back({{"radius", cards.light->ring_end[ring]},
+                         {"ev", cards.light->ring_ev[ring]},
+                         {"sigma_ev", cards.light->ring_sigma_ev[ring]}});
+    return {{"setting", cards.settings[cards.light->setting].of.label},
+            {"pictures", cards.light->pictures},
+            {"rings", rings},
+            {"removed_from", cards.light_removed}};
+}
+
 }  // namespace
 
 size_t LensCards::good() const {
@@ -170,17 +183,18 @@ void check_lens_output(const std::string &output, const StoreOptions &store, con
                                                        + setting.pictures.front().file
                                                        + " does not state; give it with --lens");
         titles.insert(lens_title(setting.key));
-        const CardPicture &first = setting.pictures.front();
-        StoreOptions unstored = store;
-        unstored.no_store = true;
-        if (override_key(setting.key, first.metadata.size, unstored, first.file).crop_factor == LENSPROF_UNKNOWN)
-            throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": needs the crop factor of the camera, which neither EXIF nor a "
-                                                            "database states; give it with --key crop-factor=NUMBER");
     }
     if (titles.size() > 1)
         throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": holds one lens on one camera, but the pictures are of "
                                                    + joined({titles.begin(), titles.end()}, "; ")
                                                    + ": give each its own run, or omit -o");
+    const CardSetting &any = settings.list.front();  // of the one camera
+    StoreOptions unstored = store;
+    unstored.no_store = true;
+    const CardPicture &first = any.pictures.front();
+    if (override_key(any.key, first.metadata.size, unstored, first.file).crop_factor == LENSPROF_UNKNOWN)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": needs the crop factor of the camera, which neither EXIF nor a "
+                                                        "database states; give it with --key crop-factor=NUMBER");
 }
 
 std::string lens_csv(const LensCards &cards) {
@@ -214,18 +228,7 @@ std::string lensfun_text(const LensFileSource &source, LensCards &cards) {
     if (profiles.empty()) return {};
     LensFileCost cost;
     const std::string text = lens_file_text(profiles, source.databases, source.into, cost, names);
-    cards.lens_file_notes.clear();
-    for (size_t i = 0; i < names.size(); i++)
-        if (cost.ev[i] > largest_lens_file_cost_ev)
-            cards.lens_file_notes.push_back(
-                names[i]
-                + format(": the file holds one falloff about the middle: the corners differ by up to %.2f EV from "
-                         "the profile",
-                         cost.ev[i]));
-    for (const std::string &camera : cost.unknown_cameras)
-        cards.lens_file_notes.push_back((camera.empty() ? "the camera" : camera)
-                                        + " is not in the table of cameras: its mount is unknown; change <mount> in the "
-                                          "file");
+    cards.lens_file_notes = notes_of(cost, names);
     return text;
 }
 
@@ -261,19 +264,6 @@ void print_lens(const LensCards &cards, const std::string &database, std::ostrea
     if (!cards.lens_file.empty())
         out << "written   " << cards.lens_file << ": " << counted(cards.good(), "setting") << "\n";
     print_left_out(cards, out);
-}
-
-static Json light_json(const LensCards &cards) {
-    if (!cards.light) return {};
-    Json rings = Json::array();
-    for (uint32_t ring = 0; ring < cards.light->rings; ring++)
-        rings.push_back({{"radius", cards.light->ring_end[ring]},
-                         {"ev", cards.light->ring_ev[ring]},
-                         {"sigma_ev", cards.light->ring_sigma_ev[ring]}});
-    return {{"setting", cards.settings[cards.light->setting].of.label},
-            {"pictures", cards.light->pictures},
-            {"rings", rings},
-            {"removed_from", cards.light_removed}};
 }
 
 Json lens_json(const LensCards &cards) {

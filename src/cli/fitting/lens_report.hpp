@@ -27,8 +27,7 @@ struct LensCards {
     size_t good() const;
 };
 
-constexpr double largest_lens_file_cost_ev = 0.02;  // not worth a note
-constexpr double largest_prediction_error = 0.05;   // of the corner's illuminance
+constexpr double largest_prediction_error = 0.05;  // of the corner's illuminance
 
 // "24 pictures of 6 settings".
 std::string counted_settings(const CardSettings &settings);

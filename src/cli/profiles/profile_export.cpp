@@ -25,8 +25,6 @@
 namespace lensprof {
 namespace {
 
-constexpr double noted_cost_ev = 0.02;  // of a format that cannot hold all of a falloff
-
 struct ExportOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
@@ -141,16 +139,6 @@ void export_split(const ExportOptions &o, const ForeignRule &rule, const std::ve
                streams.out);
 }
 
-void note_costs(const LensFileCost &cost, const std::vector<std::string> &names, Streams &streams) {
-    for (const std::string &camera : cost.unknown_cameras)
-        note(streams, (camera.empty() ? "camera unknown" : camera + ": not in the table of cameras")
-                          + std::string("; mount and maker are taken from the names of the lenses, or Generic"));
-    for (size_t i = 0; i < cost.ev.size(); i++)
-        if (cost.ev[i] > noted_cost_ev)
-            note(streams, names[i] + ": written about the middle of the frame as one curve, which is off by up to "
-                              + format("%.2f EV in a corner", cost.ev[i]));
-}
-
 void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
                     Streams &streams) {
     std::vector<const lensprof_profile *> profiles;
@@ -166,7 +154,7 @@ void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::
         LensFileCost cost;
         const std::string text = lens_file_text(profiles, o.dbs, o.into, cost, names);
         write_file(o.output, text.data(), text.size());
-        note_costs(cost, names, streams);
+        for (const std::string &about : notes_of(cost, names)) note(streams, about);
         result["cost_ev"] = cost.ev;
     } else {
         write_foreign(rule, o.output, o.foreign, profiles, names);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "photo/base/databases.hpp"
+#include "photo/base/format.hpp"
 #include "photo/base/input_file.hpp"
 #include "photo/base/paths.hpp"
 
@@ -38,6 +39,19 @@ bool find_camera(const Databases &databases, const CameraName &name, lensprof_ca
 }
 
 }  // namespace
+
+std::vector<std::string> notes_of(const LensFileCost &cost, const std::vector<std::string> &names) {
+    constexpr double noted_cost_ev = 0.02;  // below it nobody sees the difference
+    std::vector<std::string> notes;
+    for (const std::string &camera : cost.unknown_cameras)
+        notes.push_back((camera.empty() ? "camera unknown" : camera + ": not in the table of cameras")
+                        + std::string("; mount and maker are taken from the names of the lenses, or Generic"));
+    for (size_t i = 0; i < cost.ev.size(); i++)
+        if (cost.ev[i] > noted_cost_ev)
+            notes.push_back(names[i] + ": written about the middle of the frame as one curve, which is off by up to "
+                            + format("%.2f EV in a corner", cost.ev[i]));
+    return notes;
+}
 
 // A camera after another: each is added to the text with those before it.
 std::string lens_file_text(const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &dbs,

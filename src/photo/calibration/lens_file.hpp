@@ -14,6 +14,9 @@ struct LensFileCost {
     std::vector<std::string> unknown_cameras;  // not in the table of cameras: mount and crop factor by name and profile
 };
 
+// What a user should know of it: cameras that are unknown, and costs that can be seen. `names`: of the profiles.
+std::vector<std::string> notes_of(const LensFileCost &cost, const std::vector<std::string> &names);
+
 // The text of a Lensfun database: that of the file `into` with the profiles added, or a new one where that is empty.
 // Cameras are looked up in `dbs`, by default the user's own database, and in the installed one. `names` are those of
 // the profiles in a Failure.
