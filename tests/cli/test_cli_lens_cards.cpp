@@ -308,7 +308,7 @@ void test_bundle(void **) {
 // A folder of cards has no overlaps to find; ordinary pictures are not cards.
 void test_cards_and_photographs(void **) {
     const std::string lens = make_lens("cards");
-    must_exit(done, {"simulate", "-o", in_folder("scene2"), "--exif", "--images", "3"});
+    must_exit(done, {"simulate", "-o", in_folder("scene2"), "--exif", "--images", "3", "--size", "320x240"});
     assert_refused(not_usable, flat_of({in_folder("scene2")}), {});
     assert_true(contains(run_words(flat_of({in_folder("scene2")})).out, "do not show an even light"));
     if (can_register()) {
