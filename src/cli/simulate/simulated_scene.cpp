@@ -56,26 +56,33 @@ double SimulatedScene::nearness(double longitude, double latitude) const {
 }
 
 void SimulatedScene::landscape(const Ray &ray, double rgb[3]) const {
-    const double longitude = ray.longitude, latitude = ray.latitude, *d = ray.d;
-    double horizon = 0.06 * fractal(d, 4.0, 3);
-    double above = horizon - latitude;  // positive: sky
-    double day = smooth(std::fmin(std::fmax(above / 0.02 + 0.5, 0.0), 1.0));
+    const double above = 0.06 * fractal(ray.d, 4.0, 3) - ray.latitude;  // the horizon; positive: sky
+    const double day = smooth(std::fmin(std::fmax(above / 0.02 + 0.5, 0.0), 1.0));
+    double sky[3] = {0.0, 0.0, 0.0}, ground[3] = {0.0, 0.0, 0.0};
+    if (day > 0.0) clouds(ray, above, sky);
+    if (day < 1.0) fields(ray, ground);
+    for (uint32_t c = 0; c < 3; c++) rgb[c] = std::fmax(mix(ground[c], sky[c], day), 1e-3);
+}
 
-    double height = std::fmin(std::fmax(above, 0.0), 1.2), cloud = std::fmax(0.0, fractal(d, 3.0, 5) + 0.05);
-    double sky[3] = {0.55 - 0.36 * height + 0.9 * cloud, 0.62 - 0.30 * height + 0.85 * cloud,
-                     0.75 - 0.15 * height + 0.75 * cloud};
+void SimulatedScene::clouds(const Ray &ray, double above, double rgb[3]) const {
+    const double height = std::fmin(std::fmax(above, 0.0), 1.2), cloud = std::fmax(0.0, fractal(ray.d, 3.0, 5) + 0.05);
+    rgb[0] = 0.55 - 0.36 * height + 0.9 * cloud;
+    rgb[1] = 0.62 - 0.30 * height + 0.85 * cloud;
+    rgb[2] = 0.75 - 0.15 * height + 0.75 * cloud;
+}
 
-    // Fields and walls: patches of one colour each, with soft borders and some texture.
-    double u = longitude * 9.0 + 0.3 * fractal(d, 6.0, 2), v = latitude * 14.0, fu = std::floor(u), fv = std::floor(v);
-    double edge = std::fmin(std::fmin(u - fu, 1.0 - (u - fu)), std::fmin(v - fv, 1.0 - (v - fv)));
-    double border = smooth(std::fmin(edge / 0.06, 1.0)), texture = std::exp(0.9 * fractal(d, 25.0, 4));
+// Fields and walls: patches of one colour each, with soft borders and some texture.
+void SimulatedScene::fields(const Ray &ray, double rgb[3]) const {
+    const double u = ray.longitude * 9.0 + 0.3 * fractal(ray.d, 6.0, 2), v = ray.latitude * 14.0;
+    const double fu = std::floor(u), fv = std::floor(v);
+    const double edge = std::fmin(std::fmin(u - fu, 1.0 - (u - fu)), std::fmin(v - fv, 1.0 - (v - fv)));
+    const double border = smooth(std::fmin(edge / 0.06, 1.0)), texture = std::exp(0.9 * fractal(ray.d, 25.0, 4));
+    const auto cell_u = static_cast<uint32_t>(static_cast<int32_t>(fu)),
+               cell_v = static_cast<uint32_t>(static_cast<int32_t>(fv));
+    const double brightness = std::exp(-3.6 + 3.4 * unit(hash(cell_u, cell_v, 7, seed_)));
     for (uint32_t c = 0; c < 3; c++) {
-        auto cell_u = static_cast<uint32_t>(static_cast<int32_t>(fu)),
-             cell_v = static_cast<uint32_t>(static_cast<int32_t>(fv));
-        double brightness = std::exp(-3.6 + 3.4 * unit(hash(cell_u, cell_v, 7, seed_)));
-        double tint = std::exp(0.9 * (unit(hash(cell_u, cell_v, 11 + c, seed_)) - 0.5));
-        double ground = mix(0.05, brightness * tint, border) * texture;
-        rgb[c] = std::fmax(mix(ground, sky[c], day), 1e-3);
+        const double tint = std::exp(0.9 * (unit(hash(cell_u, cell_v, 11 + c, seed_)) - 0.5));
+        rgb[c] = mix(0.05, brightness * tint, border) * texture;
     }
 }
 

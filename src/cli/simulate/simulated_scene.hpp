@@ -44,6 +44,8 @@ private:
     double noise(double x, double y, double z, uint32_t octave) const;
     double draw(double u, double v, uint32_t what) const;  // a number 0..1 per cell of a lattice
     void landscape(const Ray &ray, double rgb[3]) const;
+    void clouds(const Ray &ray, double above, double rgb[3]) const;  // `above`: radians above the horizon
+    void fields(const Ray &ray, double rgb[3]) const;
     void sky(const Ray &ray, double rgb[3]) const;
     void wall(const Ray &ray, double rgb[3]) const;
     void foliage(const Ray &ray, double rgb[3]) const;
