@@ -15,6 +15,9 @@ endif()
 target_include_directories(lensprof_settings INTERFACE ${lensprof_include})
 # Contraction is off so that results do not depend on the instruction set.
 target_compile_options(lensprof_settings INTERFACE -Wall -Wextra -Wshadow -Wpointer-arith -ffp-contract=off)
+# GCC collects its garbage at 1 GB of it, and not at 128 MB: a tenth less time for the largest sources.
+target_compile_options(lensprof_settings INTERFACE
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1000000>)
 if(LENSPROF_WERROR)
   target_compile_options(lensprof_settings INTERFACE -Werror)
 endif()
@@ -25,14 +28,17 @@ if(LENSPROF_SANITIZE)
     $<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize=null,alignment,object-size,vptr>
     # clang's check of calls through pointers needs its C++ runtime in C programs, too.
     $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-fno-sanitize=function>)
+  # A function with more than 30 accesses to memory checks them in calls: the same checks, a tenth less compile time.
+  target_compile_options(lensprof_settings INTERFACE
+    "$<$<COMPILE_LANG_AND_ID:CXX,Clang>:SHELL:-mllvm -asan-instrumentation-with-call-threshold=30>")
   # As GCC does: what measures memory asks for it.
   target_compile_definitions(lensprof_settings INTERFACE $<$<C_COMPILER_ID:Clang>:__SANITIZE_ADDRESS__=1>)
   target_link_options(lensprof_settings INTERFACE -fsanitize=address,undefined)
 endif()
 # The build type of the preset `sanitize`. -O1: with -O2 the compiler takes three times as long, longer than all tests.
-# -g1: lines, which is what reports show.
+# -g1: lines, which is what reports show. For C++ they take a tenth of the compile time: CXXFLAGS=-g1 adds them.
 set(CMAKE_C_FLAGS_SANITIZE "-O1 -g1 -DNDEBUG")
-set(CMAKE_CXX_FLAGS_SANITIZE "-O1 -g1 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_SANITIZE "-O1 -DNDEBUG")
 
 # The compiler's cache, if there is one. `CCACHE_DISABLE=1 make` or -DCMAKE_CXX_COMPILER_LAUNCHER= does without.
 find_program(LENSPROF_CCACHE ccache)
