@@ -26,12 +26,8 @@ std::string two_cameras() { return in_folder("pair"); }
 // Pictures of one scene, alternating between two cameras with different response and falloff.
 int make_pictures(void **state) {
     if (make_folder(state) != 0) return -1;
-    const Words same{"--images",     std::to_string(kImages),
-                     "--seed",       "12",
-                     "--exif",       "--set",
-                     "overlap=0.72", "--set",
-                     "noise=1",      "--set",
-                     "mean-ev=-1",   "--set",
+    const Words same{"--images", std::to_string(kImages), "--seed", "12",      "--size", "400x300",    "--exif",
+                     "--set",    "overlap=0.72",          "--set",  "noise=1", "--set",  "mean-ev=-1", "--set",
                      "jitter=1"};
     must_exit(
         done,

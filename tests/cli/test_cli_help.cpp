@@ -57,7 +57,7 @@ void test_keys_are_explained(void **) {
 }
 
 // Each earlier name is answered by the commands that have its new form, and by at least one.
-void test_earlier_names(void **) {
+void test_each_earlier_name(void **) {
     const std::vector<Words> commands = all_commands();
     for (const lensprof::RenamedOption &renamed : lensprof::renamed_options) {
         const std::string answer = std::string(renamed.before) + " is now " + renamed.now + "; see `lensprof ";
@@ -71,6 +71,9 @@ void test_earlier_names(void **) {
         }
         if (!answers) fail_msg("%s: no command answers %s", renamed.before, answer.c_str());
     }
+}
+
+void test_earlier_names_of_other_commands(void **) {
     assert_refused(usage, {"build", "x.pto", "--huber=3"}, {"--huber is now --fit huber=NUMBER", "build --help-all`"});
     assert_refused(usage, {"flat", "x.tif", "--modes", "3"}, {"--modes: no such option"});  // flat never had it
     assert_refused(usage, {"simulate", "--blob", "x"}, {"--blob: no such option"});
@@ -121,8 +124,13 @@ void test_commas_in_values(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_everyday_help_is_short), CLI_TEST(test_all_help_has_a_limit), CLI_TEST(test_keys_are_explained),
-        CLI_TEST(test_earlier_names),          CLI_TEST(test_wrong_keys),           CLI_TEST(test_commas_in_values),
+        CLI_TEST(test_everyday_help_is_short),
+        CLI_TEST(test_all_help_has_a_limit),
+        CLI_TEST(test_keys_are_explained),
+        CLI_TEST(test_each_earlier_name),
+        CLI_TEST(test_earlier_names_of_other_commands),
+        CLI_TEST(test_wrong_keys),
+        CLI_TEST(test_commas_in_values),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

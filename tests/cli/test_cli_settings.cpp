@@ -13,6 +13,7 @@ using namespace cli_runs;
 constexpr double kOpen = 2.8, kStopped = 8.0, kHfovDeg = 50.0;
 const std::vector<double> kOpenFalloff{-0.55, 0.15, -0.12}, kStoppedFalloff{-0.12, 0.02, -0.03};
 const Words quietly{"--no-store", "--fit", "stored=none", "--json"};
+const Words six{"--images", "6", "--size", "400x300", "--seed", "5", "--exif", "--set", "noise=1"};
 
 std::string numbered(size_t i) { return "img00" + std::to_string(i) + ".png"; }
 
@@ -26,8 +27,7 @@ void state_aperture(const std::string &file, double f_number) {
 
 // Pictures of one scene, alternating between two apertures.
 std::string two_apertures(const char *overlap = "0.4") {
-    const Words same =
-        Words{"--images", "6", "--seed", "5", "--exif", "--set", std::string("overlap=") + overlap, "--set", "noise=1"};
+    const Words same = six + Words{"--set", std::string("overlap=") + overlap};
     render("open", Words{"--vignetting=-0.55,0.15,-0.12"} + same);
     render("stopped", Words{"--vignetting=-0.12,0.02,-0.03"} + same);
     for (size_t i = 1; i < 6; i += 2) {
@@ -106,8 +106,7 @@ void test_project_with_both(void **) {
         assert_int_equal(count, 2);
     }
     // A picture without falloff, from the same scene.
-    must_exit(done, {"simulate", "-o", work("none"), "--vignetting=0,0,0", "--images", "6", "--seed", "5", "--exif",
-                     "--set", "overlap=0.4,noise=1"});
+    render("none", Words{"--vignetting=0,0,0", "--set", "overlap=0.4"} + six);
     must_exit(done, {"apply", "--pto", out, "--set", "exposure=keep", "-o", work("even")});
     for (size_t i = 0; i < 2; i++) {
         const Picture even = read_picture(work("even/" + numbered(i))),
@@ -184,8 +183,7 @@ void turn_picture(const std::string &pto, size_t number, uint16_t turn, bool is_
 
 // Six pictures whose falloff has its centre far from the middle.
 std::string off_centre() {
-    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0.1,-0.06",
-                     "--images", "6", "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
+    render("open", Words{"--vignetting=-0.55,0.15,-0.12", "--set=center=0.1,-0.06", "--set", "overlap=0.5"} + six);
     return work("open/pano.pto");
 }
 
@@ -202,8 +200,7 @@ void test_turned_frames(void **) {
     assert_true(falloff_error(json["vignetting"]["k"][0], kOpenFalloff) < 0.01);
     assert_true(centre_error(json["vignetting"]["center"], 0.1, -0.06) < 0.01);
     // Read again, each picture has the falloff as it is in its own frame.
-    must_exit(done, {"simulate", "-o", work("none"), "--vignetting=0,0,0", "--images", "6", "--seed", "5", "--exif",
-                     "--set", "overlap=0.5,noise=1"});
+    render("none", Words{"--vignetting=0,0,0", "--set", "overlap=0.5"} + six);
     must_exit(done, {"apply", "--pto", out, "--set", "exposure=keep", "-o", work("even")});
     for (const size_t i : {0, 1, 3}) {
         const Picture even = read_picture(work("even/" + numbered(i))),
@@ -256,8 +253,7 @@ void test_turned_profile(void **) {
 
 // Frames whose turn is not stated share the falloff around the middle.
 void test_frames_turned_either_way(void **) {
-    must_exit(done, {"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12", "--set=center=0,0", "--images",
-                     "6", "--seed", "5", "--exif", "--set", "overlap=0.5,noise=1"});
+    render("open", Words{"--vignetting=-0.55,0.15,-0.12", "--set=center=0,0", "--set", "overlap=0.5"} + six);
     const std::string pto = work("open/pano.pto");
     for (const size_t i : {1, 3, 4}) turn_picture(pto, i, i == 3 ? 8 : 6, false);
     const Outcome run = run_words(Words{"build", pto} + quietly);
@@ -286,7 +282,7 @@ void test_a_setting_that_is_not_shown(void **) {
     std::string text = text_of(pto);
     for (size_t i = 1; i < 6; i += 2) {
         const size_t name = text.find("n\"" + numbered(i));
-        text.insert(name, "S200,440,150,330 ");
+        text.insert(name, "S100,220,75,165 ");
     }
     save_text(pto, text);
     const Outcome run = run_words({"build", pto, "--db", db, "--json"});

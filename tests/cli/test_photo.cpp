@@ -79,7 +79,13 @@ std::string photos(const std::string &name = "") { return in_folder("photos" + (
 
 int make_photos(void **state) {
     if (make_folder(state)) return 1;
-    return run_words({"simulate", "-o", photos()}).code;
+    return run_words({"simulate", "-o", photos(), "--size", "400x300"}).code;
+}
+
+// That of the rendered pictures with default options, made once.
+lensprof_calibration *of_photos() {
+    static const Held<lensprof_calibration> made = calibrated(open_scene(photos()).get());
+    return made.get();
 }
 
 // One scene, by build and by C: the same exposures, errors, response and falloff, to the last digit.
@@ -206,15 +212,15 @@ void test_scene(void **) {
 
 // Results that are saved are read again, and copies by them are those of the fit.
 void test_saved(void **) {
-    const auto calibration = calibrated(open_scene(photos()).get());
+    lensprof_calibration *calibration = of_photos();
     lensprof_error error{};
     for (const char *name : {"exposures.json", "result.pto", "profile.json", "pcalib.txt"})
-        must_be_ok(lensprof_calibration_save(calibration.get(), work(name).c_str(), &error), error);
+        must_be_ok(lensprof_calibration_save(calibration, work(name).c_str(), &error), error);
     assert_status(LENSPROF_ERROR_ARGUMENT, "would be overwritten", [&](lensprof_error *why) {
-        return lensprof_calibration_save(calibration.get(), photos("img001.png").c_str(), why);
+        return lensprof_calibration_save(calibration, photos("img001.png").c_str(), why);
     });
     assert_status(LENSPROF_ERROR_ARGUMENT, "not that of a format", [&](lensprof_error *why) {
-        return lensprof_calibration_save(calibration.get(), work("result.xyz").c_str(), why);
+        return lensprof_calibration_save(calibration, work("result.xyz").c_str(), why);
     });
     lensprof_calibration *opened = nullptr;
     must_be_ok(lensprof_calibration_open(work("exposures.json").c_str(), nullptr, &opened, &error), error);
@@ -222,14 +228,14 @@ void test_saved(void **) {
     const std::string source = photos("img002.png"), target = work("a.png"), other = work("b.png");
     const lensprof_copy copy = {source.c_str(), target.c_str()}, by_file = {source.c_str(), other.c_str()};
     uint32_t written = 0;
-    must_be_ok(lensprof_correct_files(calibration.get(), &copy, 1, nullptr, nullptr, &written, &error), error);
+    must_be_ok(lensprof_correct_files(calibration, &copy, 1, nullptr, nullptr, &written, &error), error);
     assert_int_equal(written, 1);
     must_be_ok(lensprof_correct_files(opened, &by_file, 1, nullptr, nullptr, nullptr, &error), error);
     const Picture a = read_picture(target), b = read_picture(other);
     assert_true(a.pixels == b.pixels);
     assert_true(a.pixels != read_picture(source).pixels);
     assert_null(lensprof_calibration_get_fit(opened));
-    const lensprof_calibration_info info = info_of(opened), whole = info_of(calibration.get());
+    const lensprof_calibration_info info = info_of(opened), whole = info_of(calibration);
     assert_int_equal(info.images, whole.images);
     assert_true(info.equalizes && whole.equalizes && whole.usable && !info.usable);
     assert_int_equal(info.profiles + info.findings, 0);
@@ -237,9 +243,9 @@ void test_saved(void **) {
 
 // The copies of `apply`, with the options that it has.
 void test_options_as_apply(void **) {
-    const auto calibration = calibrated(open_scene(photos()).get());
+    lensprof_calibration *calibration = of_photos();
     lensprof_error error{};
-    must_be_ok(lensprof_calibration_save(calibration.get(), work("exposures.json").c_str(), &error), error);
+    must_be_ok(lensprof_calibration_save(calibration, work("exposures.json").c_str(), &error), error);
     const std::string source = photos("img002.png"), target = work("copy.png");
     const lensprof_copy copy = {source.c_str(), target.c_str()};
     lensprof_correct_options options;
@@ -247,7 +253,7 @@ void test_options_as_apply(void **) {
     options.gain_cap = 1.05, options.strength = 0.9, options.dither = 1;
     const auto written = [&](const std::string &set) {
         options.overwrite = 1;
-        must_be_ok(lensprof_correct_files(calibration.get(), &copy, 1, &options, nullptr, nullptr, &error), error);
+        must_be_ok(lensprof_correct_files(calibration, &copy, 1, &options, nullptr, nullptr, &error), error);
         must_exit(done, {"apply", "--model", work("exposures.json"), "-o", work("applied"), "--overwrite", "--encoding",
                          "dither=yes", "--set", set});
         assert_true(read_picture(target).pixels == read_picture(work("applied/img002.png")).pixels);
@@ -257,23 +263,23 @@ void test_options_as_apply(void **) {
     written("simulate=yes");
     options.simulate = 0, options.gain_cap = 0.5;
     assert_status(LENSPROF_ERROR_ARGUMENT, "gain_cap", [&](auto *why) {
-        return lensprof_correct_files(calibration.get(), &copy, 1, &options, nullptr, nullptr, why);
+        return lensprof_correct_files(calibration, &copy, 1, &options, nullptr, nullptr, why);
     });
 }
 
 void test_profiles(void **) {
-    const auto calibration = calibrated(open_scene(photos()).get());
-    assert_int_equal(info_of(calibration.get()).profiles, 1);
+    lensprof_calibration *calibration = of_photos();
+    assert_int_equal(info_of(calibration).profiles, 1);
     lensprof_profile profile;
     lensprof_profile_init(&profile);
     lensprof_error error{};
-    must_be_ok(lensprof_calibration_profile_at(calibration.get(), 0, &profile, &error), error);
+    must_be_ok(lensprof_calibration_profile_at(calibration, 0, &profile, &error), error);
     assert_true(profile.vignetting[0].k[0] < 0.0);
     assert_true(profile.covariance_size > 0);
     const bool is_named = *profile.key.camera_model || *profile.key.lens;
     const std::string db = work("photo.db");
     uint32_t stored = 0;
-    const lensprof_status status = lensprof_calibration_store(calibration.get(), db.c_str(), &stored, &error);
+    const lensprof_status status = lensprof_calibration_store(calibration, db.c_str(), &stored, &error);
     assert_int_equal(status, is_named ? LENSPROF_OK : LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(fs::exists(db), is_named);
 }
@@ -401,13 +407,13 @@ void test_bad_scenes(void **) {
 
 // Nothing is written if one of the pictures cannot be corrected.
 void test_bad_copies(void **) {
-    const auto calibration = calibrated(open_scene(photos()).get());
+    lensprof_calibration *calibration = of_photos();
     fs::copy_file(photos("img000.png"), work("stranger.png"));
     const std::string good = photos("img000.png"), stranger = work("stranger.png"), to_a = work("to_a.png"),
                       to_b = work("to_b.png");
     const auto refused = [&](lensprof_status status, const char *part, std::initializer_list<lensprof_copy> copies) {
         assert_status(status, part, [&](lensprof_error *why) {
-            return lensprof_correct_files(calibration.get(), copies.begin(), uint32_t(copies.size()), nullptr, nullptr,
+            return lensprof_correct_files(calibration, copies.begin(), uint32_t(copies.size()), nullptr, nullptr,
                                           nullptr, why);
         });
         assert_false(fs::exists(to_a) || fs::exists(to_b));
@@ -424,7 +430,7 @@ void test_bad_copies(void **) {
     const std::string other = photos("img001.png");
     const lensprof_copy over = {good.c_str(), other.c_str()};
     assert_status(LENSPROF_ERROR_ARGUMENT, "img001.png", [&](auto *why) {
-        return lensprof_correct_files(calibration.get(), &over, 1, &overwriting, nullptr, nullptr, why);
+        return lensprof_correct_files(calibration, &over, 1, &overwriting, nullptr, nullptr, why);
     });
     assert_true(load(other) == before);
     lensprof_correct_options options;

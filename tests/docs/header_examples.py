@@ -51,8 +51,8 @@ def faults_of(name, example, variables, include, library, cc):
         libraries = [str(library)]
         if name == "photo.h":  # of the folder "holiday"
             libraries.insert(0, str(library.parent / "liblensprof-photo.so"))
-            subprocess.run([library.parent / "lensprof", "simulate", "-o", "holiday"], cwd=folder, check=True,
-                           stdout=subprocess.DEVNULL)
+            subprocess.run([library.parent / "lensprof", "simulate", "-o", "holiday", "--size", "400x300"], cwd=folder,
+                           check=True, stdout=subprocess.DEVNULL)
         built = subprocess.run(
             [cc, "-std=c11", "-Wall", "-Wextra", "-Werror", f"-I{include}", f"-I{HERE}", "example.c", "-o", "example",
              *libraries, "-lm", f"-Wl,-rpath,{library.parent}"],

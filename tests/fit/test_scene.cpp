@@ -192,7 +192,7 @@ void test_exposures_alone_are_the_result(void **) {
 
 void test_two_visits_are_refused(void **) {
     for (const double log_change : {0.0, 0.3}) {
-        Scene scene;
+        Scene scene(42, 1200);
         scene.change_light(5, log_change);
         const FitRun run = run_fit(scene, scene.options());
         const lensprof_finding *groups = run.with(LENSPROF_REASON_IMAGE_GROUPS);
@@ -209,7 +209,7 @@ void test_two_visits_are_refused(void **) {
 
 // If no views of both groups are as close as others, their difference may be one of the sides they show.
 void test_distant_views_are_not_two_visits(void **) {
-    Scene scene;
+    Scene scene(42, 1200);
     scene.change_light(5, 0.3);
     for (const lensprof_pair &pair : scene.pairs)
         scene.distances.push_back((pair.image[0] >= 5) != (pair.image[1] >= 5) ? 2.0 : 1.0);

@@ -84,7 +84,7 @@ fi
 if quiet "$CC" -std=c99 -Wall -Wextra -Werror $(pkg-config --cflags lensprof-photo) "$source_dir/examples/photo.c" \
     -o "$work/photo" $(pkg-config --libs lensprof-photo); then
     mkdir "$work/copies"
-    quiet "$prefix/bin/lensprof" simulate -o "$work/scene"
+    quiet "$prefix/bin/lensprof" simulate -o "$work/scene" --size 400x300
     rm -f "$work/scene"/*.pto "$work/scene"/*.json
     LD_LIBRARY_PATH=$lib_dir "$work/photo" "$work/scene" "$work/copies" || wrong "photo through pkg-config does not run"
     [ "$(ls "$work/copies" | wc -l)" = "$(ls "$work/scene"/*.png | wc -l)" ] || wrong "photo does not write every copy"

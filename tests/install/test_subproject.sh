@@ -1,9 +1,10 @@
 #!/bin/bash
-# lensprof inside another project, static; then installed from there, and used by find_package.
-# usage: test_subproject.sh SOURCE_DIR C_COMPILER CXX_COMPILER
+# lensprof inside another project, static; then installed from there, and used by find_package. Objects of C++, whose compilation
+# takes minutes, are those of BUILD_DIR.
+# usage: test_subproject.sh SOURCE_DIR BUILD_DIR C_COMPILER CXX_COMPILER
 set -euo pipefail
-source_dir=$1
-export CC=$2 CXX=$3
+source_dir=$1 build_dir=$2
+export CC=$3 CXX=$4
 here=$source_dir/tests/install
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -14,7 +15,8 @@ wrong() { echo "WRONG: $*"; failures=$((failures + 1)); }
 quiet() { "$@" > "$work/log" 2>&1 || { tail -30 "$work/log"; wrong "$*"; return 1; }; }
 
 version=$(sed -n 's/^#define LENSPROF_VERSION_\(MAJOR\|MINOR\|PATCH\) //p' "$source_dir/include/lensprof/base.h" | paste -sd.)
-quiet cmake -S "$here/consumer_subproject" -B "$work/build" -DLENSPROF="$source_dir" -DCMAKE_CXX_FLAGS=-O0
+quiet cmake -S "$here/consumer_subproject" -B "$work/build" -DLENSPROF="$source_dir" \
+    -DCMAKE_CXX_COMPILER_LAUNCHER="$here/reuse_object.sh;$build_dir;$work/build/lensprof"
 quiet cmake --build "$work/build" -j 2
 [ "$("$work/build/consumer_c")" = "lensprof $version from C" ] || wrong "consumer_c"
 "$work/build/fit_pairs" | grep -q "usable: yes" || wrong "fit_pairs"

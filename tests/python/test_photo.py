@@ -1,4 +1,5 @@
 """The photograph library from Python: pictures, scenes, calibrations, corrected copies."""
+import functools
 import json
 import os
 import pathlib
@@ -22,15 +23,29 @@ def run(*words):
     return subprocess.run([PROGRAM, *map(str, words)], check=True, capture_output=True, text=True).stdout
 
 
+@functools.cache
+def rendered(*options):
+    """A folder of six pictures, rendered once with these options."""
+    folder = tempfile.mkdtemp()
+    unittest.addModuleCleanup(shutil.rmtree, folder)
+    run("simulate", "-o", folder, "--size", "400x300", *options)
+    for other in [*pathlib.Path(folder).glob("*.pto"), *pathlib.Path(folder).glob("*.json")]:
+        other.unlink()
+    return pathlib.Path(folder)
+
+
+@functools.cache
+def calibrated():
+    """The calibration of these pictures with default options, made once; a test must not close it."""
+    return lp.calibrate(rendered())
+
+
 class WithScene(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls._folder = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls._folder.name)
-        cls.photos = cls.folder / "photos"
-        run("simulate", "-o", cls.photos)
-        for other in [*cls.photos.glob("*.pto"), *cls.photos.glob("*.json")]:
-            other.unlink()
+        cls.photos = rendered()
         cls.files = sorted(cls.photos.glob("*.png"))
 
     @classmethod
@@ -47,7 +62,7 @@ class WithScene(unittest.TestCase):
 class TestPictures(WithScene):
     def test_read_and_write(self):
         picture = lp.read_picture(self.files[0])
-        self.assertEqual(picture.pixels.shape, (600, 800, 3))
+        self.assertEqual(picture.pixels.shape, (300, 400, 3))
         self.assertEqual(picture.metadata.key.lens, "Simulated Lens")
         np.testing.assert_array_equal(lp.read_picture(self.files[0].read_bytes()).pixels, picture.pixels)
         self.assertLess(lp.read_picture(self.files[0], max_side=100).pixels.shape[1], 300)
@@ -102,7 +117,7 @@ class TestPictures(WithScene):
 class TestCalibration(WithScene):
     def test_as_build(self):
         built = json.loads(run("build", self.photos, "--no-store", "--json"))
-        calibration = lp.calibrate(self.photos)
+        calibration = calibrated()
         self.assertTrue(calibration.usable and calibration.equalizes)
         self.assertEqual(list(calibration.exposures["name"]), [file.name for file in self.files])
         self.assertEqual(list(calibration.exposures["ev"]), [image["ev"] for image in built["images"]])
@@ -128,7 +143,7 @@ class TestCalibration(WithScene):
 
     def test_scene(self):
         scene = lp.Scene.open([self.files[0], self.files[1], self.files[2]])
-        self.assertEqual([image.camera.width for image in scene.images], [800] * 3)
+        self.assertEqual([image.camera.width for image in scene.images], [400] * 3)
         self.assertEqual((scene.left_out, len(scene.matches), scene.is_reconstruction), ({}, 0, False))
         self.assertGreaterEqual(len(scene.links), len(scene.images) - 1)
         self.assertTrue((scene.links["image"][:, 0] < scene.links["image"][:, 1]).all() and scene.links["fits_cameras"].all())
@@ -217,7 +232,7 @@ class TestCalibration(WithScene):
             lp.Calibration.read(self.folder / "exposures-deep.json")
 
     def test_saved_and_corrected(self):
-        calibration = lp.calibrate(self.photos)
+        calibration = calibrated()
         for name in ("exposures.json", "result.pto", "profile.json", "pcalib.txt"):
             calibration.save(self.folder / name)
         read = lp.Calibration.read(self.folder / "exposures.json")
@@ -247,7 +262,7 @@ class TestCalibration(WithScene):
             import matplotlib  # noqa: F401
         except ImportError:
             self.skipTest("no matplotlib")
-        figure = lp.calibrate(self.photos).plot()
+        figure = calibrated().plot()
         figure.savefig(self.folder / "profile.png")
         self.assertEqual(len(figure.axes), 2)
 
@@ -265,12 +280,11 @@ class TestCalibration(WithScene):
 
     def test_arrays_with_exposures(self):
         """Arrays with what the EXIF of files states have the result of the files; the order is that of the arrays."""
-        photos = self.folder / "exif"
-        run("simulate", "-o", photos, "--exif")
+        photos = rendered("--exif")
         pictures = [lp.read_picture(file) for file in sorted(photos.glob("*.png"), reverse=True)]
         names = [file.stem for file in sorted(photos.glob("*.png"), reverse=True)]
         metadata = [picture.metadata for picture in pictures]
-        options = {"use_stored": False, "max_side": 400}
+        options = {"use_stored": False}
 
         def by_name(calibration):
             rows = calibration.exposures[np.argsort(calibration.exposures["name"])]
