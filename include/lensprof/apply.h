@@ -18,6 +18,8 @@
  *   correct:  B' = f( g(B) / (M e w) * e' w' )                 Goldman & Chen 2005, equation 16
  *   simulate: B' = f( g(B) * M e w / (e' w') )                 the inverse, up to clipping
  *
+ * B = (sample - black) / (white - black), and back for B', if levels are given.
+ *
  * M: the falloff, times the gain grid if there is one. e, w: exposure and white balance of the picture; e', w': the
  * wanted ones.
  * A plan is prepared once per picture, in memory that the caller provides, and then applied to any tile. The kernels
@@ -131,12 +133,18 @@ typedef struct lensprof_apply_options {
     uint32_t reserved2;                       /* 0 */
     uint32_t chroma;                          /* 1: correct only the colour of the falloff; 0: all of it. See below */
     uint32_t reserved3;                       /* 0 */
+    const lensprof_levels *levels;            /* of the input; NULL = none; read during plan init only */
+    const lensprof_levels *output_levels; /* of the output; `levels` again: black is put back; NULL: the output is B' */
 } lensprof_apply_options;
 
 /* chroma: M of a channel is replaced by M / Y, where Y = 0.2126 M_red + 0.7152 M_green + 0.0722 M_blue is the luminance
  * that falls on this place of a neutral scene, by the weights of ITU-R BT.709. Neutral grey becomes neutral and keeps
  * its linear luminance exactly; a colour changes it by at most max |M / Y - 1| of the channels. gain_cap limits Y / M.
- * A model whose channels have one falloff, grey pixels too, keep theirs. */
+ * A model whose channels have one falloff, grey pixels too, keep theirs.
+ *
+ * Levels: a linear response then counts as linear encoding, which is not clipped at black, so that noise about black
+ * keeps its mean. Integer output is clipped at the white level of the output. Integer plans (fixed.h) are UNSUPPORTED
+ * with levels. */
 
 /* Correct, encoded input and output, u8 RGB in and out, exposures 0 EV, strength 1. The rest is zero; the caller must
  * set it. */
@@ -145,8 +153,10 @@ static inline void lensprof_apply_options_init(lensprof_apply_options *options) 
     lensprof_apply_options_init_sized(options, sizeof *options);
 }
 
-/* Uses the model of a profile: responses, vignettings and gain grid point into *profile, which must not change until
- * the plan is made; the blob is cleared. All other options stay. Errors: ARGUMENT; STRUCT_SIZE of either. */
+/* Uses the model of a profile: responses, vignettings, gain grid and levels (of input and output)
+ * point into *profile, which must not change until the plan is made; the blob is cleared. All other options stay.
+ * Errors: ARGUMENT; STRUCT_SIZE of either; UNSUPPORTED if the profile has levels and options of an older version have
+ * no room for them. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *options,
                                                                                   const lensprof_profile *profile);
 

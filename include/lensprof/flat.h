@@ -54,7 +54,8 @@ typedef struct lensprof_flat_image {
     lensprof_image view;      /* the frame, reduced or not; in layouts with alpha, alpha below half = excluded */
     const uint8_t *mask;      /* one byte per view pixel, 0 = not the card; NULL = all of it is card */
     ptrdiff_t mask_row_bytes; /* magnitude at least the width of the view, may be negative; unused without a mask */
-    double black, white;      /* samples outside [black, white] in any channel are not used; 0..1 */
+    double black, white; /* grey values outside [black, white] in any channel are not used; 0..1. With levels in the
+                            options: of B, not of the samples */
     double ev; /* known exposure, log2 of t, EV up to a common offset. Only differences matter: within a shot and, for
                   a card at several places, between shots */
     double rotation_deg; /* rotation of the camera about its axis, degrees clockwise seen from the back of the camera;
@@ -102,10 +103,19 @@ typedef struct lensprof_flat_options {
     lensprof_vignetting vignetting;    /* values of fixed parameters */
     lensprof_progress progress;        /* or NULL; the fraction never decreases */
     void *progress_user;
+    lensprof_levels levels; /* of the samples of all pictures; all 0 = none */
+    double black_sigma; /* standard error of the black level, share of white less black, 0..0.2; 0 = exact. Otherwise
+                           what the level leaves is estimated, if the responses are linear: see below */
 } lensprof_flat_options;
 
+/* black_sigma: an offset b that was not subtracted makes the falloff too weak, and one picture does not show it.
+ * Pictures of one pattern of light F at different levels a do: the exposures of a shot, whose times need not be exact,
+ * and shots at one angle. B_n(x) = b + a_n F(x) is fitted to them per channel, with b = 0 +- black_sigma before; with
+ * own_light, ln a_n is a plane. b is subtracted, and is in the levels of result and profile. Without such pictures it
+ * stays 0. */
+
 /* 3 channels, everything free, curves, light and grid AUTO, frame-filling shots with a common light, linear response,
- * 0.02 EV, prior weight 1, threads on all cores. */
+ * 0.02 EV, prior weight 1, threads on all cores, no levels, black exact. */
 LENSPROF_API void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t size);
 static inline void lensprof_flat_options_init(lensprof_flat_options *options) {
     lensprof_flat_options_init_sized(options, sizeof *options);
@@ -182,6 +192,12 @@ typedef struct lensprof_flat_result {
     double light_ev;    /* largest change of the falloff in a corner if the light were stated to be even (PLANE was
                            chosen) or a plane (EVEN was chosen), EV; 0 if the light was not chosen by the data */
     double polynomial_error; /* largest relative error of M without the grid, where the falloff is not a polynomial */
+    lensprof_levels levels;  /* of the options, with the offset that was found */
+    double black_offset;     /* of it: share of white less black, of the channel in which it is largest; 0 if none */
+    double black_sigma;      /* standard error of the black level after the fit, of the channel with the largest */
+    double black_ev;         /* change of the falloff in the corner if the black level is off by this, EV */
+    uint32_t black_shown;    /* 1: the pictures determine the black level better than the options do */
+    uint32_t reserved;       /* 0 */
 } lensprof_flat_result;
 
 /* An empty result. */

@@ -15,6 +15,8 @@
  *   L  scene radiance             M  vignetting (attenuation), M = 1 at the centre
  *   e  exposure factor 2^ev       w  white balance factor of the channel, green = 1
  *
+ * A sample of a picture is B itself or, with levels, black + (white - black) B.
+ *
  * Only the core implements the equations of the model. No heap, no I/O.
  * Threads: all functions are pure; any thread may call them on any data. */
 #ifndef LENSPROF_MODEL_H
@@ -165,6 +167,21 @@ LENSPROF_API double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint
 /* The same for `count` pixels, bit for bit: xy[2 * count] holds x, y of each. Nothing can fail. */
 LENSPROF_API void lensprof_gain_grid_eval_many(const lensprof_gain_grid *grid, uint32_t width, uint32_t height,
                                                const double *xy, size_t count, uint32_t channel, double *attenuations);
+
+/* Samples without light and at saturation, as shares of full scale (255, 65535 or 1.0): B = (sample - black) / (white -
+ * black). 12 bit sensor data with a pedestal of 256 in 16 bit samples have 256/65535 and 4095/65535. All 0 = none: B is
+ * the sample. Frozen value struct. */
+typedef struct lensprof_levels {
+    double black[3]; /* red, green, blue; grey uses green. -0.5..1; below 0 if too much was subtracted already */
+    double white;    /* more than each black by at least 0.001, and at most 1; 0 = 1 */
+} lensprof_levels;
+
+/* LENSPROF_OK if the numbers are within these ranges. Error: ARGUMENT. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_levels_validate(const lensprof_levels *levels);
+
+/* B of a sample (0..1) in channel 0, 1 or 2, and back: neither is clipped. */
+LENSPROF_API double lensprof_levels_to_value(const lensprof_levels *levels, uint32_t channel, double sample);
+LENSPROF_API double lensprof_levels_to_sample(const lensprof_levels *levels, uint32_t channel, double value);
 
 /* Exposure and white balance of one picture. Frozen value struct. */
 typedef struct lensprof_exposure {

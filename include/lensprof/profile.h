@@ -122,9 +122,10 @@ typedef struct lensprof_profile {
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid; /* multiplied by the vignetting; 0 x 0 = no grid */
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* n x n, row major, in its first n*n */
+    lensprof_levels levels; /* of the samples of pictures to which the profile applies; all 0 = none */
 } lensprof_profile;
 
-/* Empty key, linear response, no falloff, no gain grid, no covariance, provenance unknown. */
+/* Empty key, linear response, no falloff, no gain grid, no covariance, no levels, provenance unknown. */
 LENSPROF_API void lensprof_profile_init_sized(lensprof_profile *profile, size_t size);
 static inline void lensprof_profile_init(lensprof_profile *profile) {
     lensprof_profile_init_sized(profile, sizeof *profile);
@@ -135,8 +136,8 @@ static inline void lensprof_profile_init(lensprof_profile *profile) {
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_copy(lensprof_profile *to,
                                                                      const lensprof_profile *from);
 
-/* LENSPROF_OK if struct_size, key, provenance, responses, vignettings (which share one centre), gain grid and
- * covariance (finite, symmetric, non-negative diagonal) are valid. */
+/* LENSPROF_OK if struct_size, key, provenance, responses, vignettings (which share one centre), gain grid,
+ * covariance (finite, symmetric, non-negative diagonal) and levels are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
 
 /* Relative illuminance at pixel (x, y), which may be fractional, of a frame of width x height pixels, in channel 0, 1
@@ -166,7 +167,8 @@ typedef enum lensprof_pack {
  * responses (samples in single precision), vignettings and gain grid; and the provenance without source, doubt, prior,
  * forced and gamma_sigma. Size: 132 bytes and the texts for a linear response, 4 kB more per curve of samples. The same
  * profile gives the same bytes on every machine. `flags`: lensprof_pack, 0 = none. data[capacity] and *count (bytes) as
- * in base.h. Errors: those of lensprof_profile_validate; ARGUMENT for unknown flags. */
+ * in base.h. Errors: those of lensprof_profile_validate; ARGUMENT for unknown flags; UNSUPPORTED for levels, which
+ * blobs do not hold. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
                                                                      void *data, size_t capacity, size_t *count);
 

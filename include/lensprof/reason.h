@@ -88,7 +88,8 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FLAT_DUST = 512,            /* spots; standard error of the falloff in the corner */
     LENSPROF_REASON_FLAT_EDGE = 513,            /* radius, half diagonals; share of the frame beyond it */
     LENSPROF_REASON_FLAT_ONE_LIGHT = 514,
-    LENSPROF_REASON_FLAT_NEEDS_GRID = 515, /* relative error of k1..k3 without the gain grid */
+    LENSPROF_REASON_FLAT_NEEDS_GRID = 515,  /* relative error of k1..k3 without the gain grid */
+    LENSPROF_REASON_FLAT_BLACK_LEVEL = 516, /* note: standard error of black; change of the falloff in the corner, EV */
 
     /* Lookups of profiles; from 651 on, the profile was found. */
     LENSPROF_REASON_LOOKUP_NO_LENS = 601,

@@ -1,5 +1,6 @@
 /* Profiles to blobs and back (docs/blob.md). */
 #include "core/blob.h"
+#include "core/levels.h"
 #include "core/profile.h"
 
 /* ---- writing ---- */
@@ -111,6 +112,8 @@ lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t 
     if (!profile || (!data && capacity) || flags & ~(uint32_t)LENSPROF_PACK_COVARIANCE) return LENSPROF_ERROR_ARGUMENT;
     const lensprof_status status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) return status;
+    const lensprof_levels levels = lp_profile_levels(profile);
+    if (lp_has_levels(&levels)) return LENSPROF_ERROR_UNSUPPORTED;
     const uint32_t covariance = flags & LENSPROF_PACK_COVARIANCE ? profile->covariance_size : 0;
     const size_t bytes = bytes_of(profile, covariance);
     if (count) *count = bytes;

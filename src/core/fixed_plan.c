@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/fail.h"
+#include "core/levels.h"
+#include "core/plan.h"
 
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
@@ -110,6 +112,8 @@ static lensprof_status validate(const lensprof_apply_options *given, lensprof_ap
         || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED,
                        "integers take U8 and U16 to the same, no planes, grid or dither");
+    if (LP_HAS_LEVELS && (o->levels || o->output_levels))
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take levels");
     if (o->chroma) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take chroma");
     if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, LP_INPUT) && is_linear(o, m, LP_OUTPUT)))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U16 through a linear response only");

@@ -6,6 +6,7 @@
 
 #include "core/exposure.h"
 #include "core/fail.h"
+#include "core/levels.h"
 #include "core/plan.h"
 #include "core/profile.h"
 #include "core/response.h"
@@ -33,6 +34,11 @@ lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *optio
     options->grid = profile->grid.columns ? &profile->grid : NULL;
     options->blob = NULL;
     options->blob_bytes = 0;
+    const lensprof_levels levels = lp_profile_levels(profile);
+    if (options->struct_size >= LP_END_OF(lensprof_apply_options, output_levels))
+        options->levels = options->output_levels = lp_has_levels(&levels) ? &profile->levels : NULL;
+    else if (lp_has_levels(&levels))
+        return LENSPROF_ERROR_UNSUPPORTED;
     return LENSPROF_OK;
 }
 
@@ -83,9 +89,20 @@ lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
     return status;
 }
 
+const lensprof_levels *lp_levels_of(const lensprof_apply_options *o, enum lp_end end) {
+    static const lensprof_levels none;
+    const lensprof_levels *levels = end == LP_INPUT ? o->levels : o->output_levels;
+    return levels ? levels : &none;
+}
+
+/* Otherwise channels need tables of their own. */
+static inline int has_one_black(const lensprof_levels *levels) {
+    return levels->black[0] == levels->black[1] && levels->black[2] == levels->black[1];
+}
+
 uint32_t lp_curves(const lensprof_apply_options *o, const lp_model *m) {
     if (lensprof_layout_channels(o->source_layout) == 1) return 1;
-    return m->responses == 3 || m->outputs == 3 ? 3 : 1;
+    return m->responses == 3 || m->outputs == 3 || (LP_HAS_LEVELS && !has_one_black(lp_levels_of(o, LP_INPUT))) ? 3 : 1;
 }
 
 const struct lp_model_response *lp_response(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
@@ -134,7 +151,7 @@ static lensprof_status validate_curves(const lensprof_apply_options *o, lensprof
 static lensprof_status validate_structs(const lensprof_apply_options *o, lensprof_error *error) {
     if (!o->response || !o->vignetting || (o->responses != 1 && o->responses != 3)
         || (o->vignettings != 1 && o->vignettings != 3))
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "no model: 1 or 3 curves of each, or a blob");
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "no model: 1 or 3 curves each, or a blob");
     return validate_curves(o, error);
 }
 
@@ -160,16 +177,22 @@ static lensprof_status validate_exposures(const lensprof_apply_options *o, lensp
 static lensprof_status validate_options(const lensprof_apply_options *o, lensprof_error *error) {
     if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
         || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE)
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "direction, encoding or saturated is unknown");
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "unknown direction, encoding or saturated");
     if (!lensprof_sample_type_bytes(o->source_sample) || !lensprof_sample_type_bytes(o->target_sample)
         || !lensprof_layout_samples(o->source_layout))
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "a sample type or the layout is unknown");
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "unknown sample type or layout");
     if (!(o->strength >= 0.0 && o->strength <= 1.0)
         || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)) || o->dither > 1
-        || o->chroma > LP_HAS_CHROMA || o->reserved || o->reserved2 || o->reserved3)
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength, gain_cap, dither, chroma or reserved is wrong");
+        || o->chroma > LP_HAS_CHROMA || (!LP_HAS_LEVELS && (o->levels || o->output_levels)) || o->reserved
+        || o->reserved2 || o->reserved3)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength, gain_cap, dither, chroma or levels");
     if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
         return lp_fail(error, LENSPROF_ERROR_SIZE, "frame size is 0, or over 2^20");
+#if LP_HAS_LEVELS
+    if (lensprof_levels_validate(lp_levels_of(o, LP_INPUT)) != LENSPROF_OK
+        || lensprof_levels_validate(lp_levels_of(o, LP_OUTPUT)) != LENSPROF_OK)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "levels: black is not below white");
+#endif
     const lensprof_status status = validate_exposures(o, error);
     return status == LENSPROF_OK && !o->blob ? validate_structs(o, error) : status;
 }

@@ -31,6 +31,9 @@ uint32_t lp_curves(const lensprof_apply_options *options, const lp_model *model)
 const struct lp_model_response *lp_response(const lensprof_apply_options *options, const lp_model *model,
                                             enum lp_end end, uint32_t curve);
 
+/* Levels of the input or output, which may be none. */
+const lensprof_levels *lp_levels_of(const lensprof_apply_options *options, enum lp_end end);
+
 /* Whether a response is a power of light (including the first power) rather than a table. */
 static inline int lp_is_power(const struct lp_model_response *response) {
     return response->kind == LENSPROF_RESPONSE_LINEAR || response->kind == LENSPROF_RESPONSE_GAMMA;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/fail.h"
+#include "core/levels.h"
 #include "core/plan_curves.h"
 
 static size_t nodes_of(const lp_model *m) { return (size_t)m->channels * m->rows * m->columns; }
@@ -42,11 +43,42 @@ static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o)
     lp_layout_sites(plan->layout, plan->channel_of_sample, plan->site);
 }
 
-/* White in the linear numbers of a kernel: without a curve in between, codes stay codes. */
-static double white_of(uint32_t sample, uint32_t curve) {
-    if (curve != LP_CURVE_NONE) return 1.0;
+static double full_scale_of(uint32_t sample) {
     return sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
 }
+
+/* White less black in the linear numbers of a kernel: without a curve in between, codes stay codes. */
+static double white_of(const lensprof_plan *plan, const lensprof_apply_options *o, enum lp_end end, uint32_t channel) {
+    if ((end == LP_INPUT ? plan->decode : plan->encode) != LP_CURVE_NONE) return 1.0;
+    const double full = full_scale_of(end == LP_INPUT ? o->source_sample : o->target_sample);
+    return LP_HAS_LEVELS ? full * lp_level_span(lp_levels_of(o, end), channel) : full;
+}
+
+#if LP_HAS_LEVELS
+static void prepare_levels(lensprof_plan *plan, const lensprof_apply_options *o) {
+    const lensprof_levels *in = lp_levels_of(o, LP_INPUT), *out = lp_levels_of(o, LP_OUTPUT);
+    struct lp_plan_levels *l = &plan->levels;
+    const double in_scale = full_scale_of(plan->source_sample), out_scale = full_scale_of(plan->target_sample);
+    const int is_in_code = plan->decode == LP_CURVE_NONE, is_out_code = plan->encode == LP_CURVE_NONE;
+    if (lp_has_levels(in) && !plan->inverse) l->steps |= LP_LEVELS_IN;
+    if (lp_has_levels(out)) l->steps |= LP_LEVELS_OUT;
+    l->largest_code = (float)(out_scale * lp_white_level(out));
+    l->are_one = 1;
+    float least = 0.0f;
+    for (uint32_t row = 0; row < LP_CHANNELS; row++) {
+        const uint32_t c = plan->channels == 1 ? 1 : row; /* grey is treated as green */
+        l->black_code[row] = (float)(in_scale * in->black[c]);
+        l->code_span[row] = (float)(in_scale * lp_level_span(in, c));
+        l->black_in[row] = is_in_code ? l->black_code[row] : (float)in->black[c];
+        l->per_span_in[row] = is_in_code ? 1.0f : (float)(1.0 / lp_level_span(in, c));
+        l->black_out[row] = (float)(is_out_code ? out_scale * out->black[c] : out->black[c]);
+        l->span_out[row] = is_out_code ? 1.0f : (float)lp_level_span(out, c);
+        if (l->black_in[row] != l->black_in[0] || l->black_out[row] != l->black_out[0]) l->are_one = 0;
+        if (row == 0 || l->black_code[row] < least) least = l->black_code[row];
+    }
+    l->near_white = least + 0.89f * (float)(in_scale * lp_white_level(in) - (double)least);
+}
+#endif
 
 /* Falloff and factor of a channel. The gain is factor / M, or M / factor to simulate. */
 static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m, uint32_t channel) {
@@ -56,8 +88,8 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     double scale = plan->columns ? 1.0 : o->strength;
     for (int n = 0; n < 3; n++) plan->k[row][n] = (float)(k[n] * (scale *= per_rho2));
     const double units =
-        (plan->encode == LP_CURVE_TABLE ? LENSPROF_RESPONSE_SAMPLES - 1 : white_of(o->target_sample, plan->encode))
-        / white_of(o->source_sample, plan->decode);
+        (plan->encode == LP_CURVE_TABLE ? LENSPROF_RESPONSE_SAMPLES - 1 : white_of(plan, o, LP_OUTPUT, channel))
+        / white_of(plan, o, LP_INPUT, channel);
     const double ratio = lp_exposure_ratio(o, channel);
     plan->factor[row] = (float)(plan->simulate ? ratio / units : ratio * units);
     plan->times[row] = 1.0f;
@@ -130,6 +162,9 @@ lensprof_status lensprof_plan_init(void *memory, size_t size, const lensprof_app
                           && options->output == LENSPROF_ENCODING_RESPONSE;
     float *tables = (float *)(void *)(plan + 1);
     tables = lp_prepare_curves(plan, options, &model, tables);
+#if LP_HAS_LEVELS
+    prepare_levels(plan, options);
+#endif
     prepare_grid(plan, &model, tables);
     prepare_gains(plan, options, &model);
     *result = plan;

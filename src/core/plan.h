@@ -15,6 +15,19 @@
 #define LP_HAS_CHROMA 1
 #endif
 
+/* -DLENSPROF_NO_LEVELS leaves out black and white levels. */
+#ifdef LENSPROF_NO_LEVELS
+#define LP_HAS_LEVELS 0
+#else
+#define LP_HAS_LEVELS 1
+#endif
+
+/* What the kernels do with the levels of a plan. */
+enum lp_level_step {
+    LP_LEVELS_IN = 1, /* subtract black from samples, and scale them; not if the table of codes includes it */
+    LP_LEVELS_OUT = 2 /* scale values, and add black */
+};
+
 /* How codes or values become irradiance, and how irradiance becomes a value 0..1 again. */
 enum lp_curve {
     LP_CURVE_NONE,  /* linear; codes are in units of their own, which the plan's factors include */
@@ -29,6 +42,19 @@ enum lp_curve {
 typedef void lp_row_kernel(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3],
                            uint32_t x, uint32_t y, uint32_t count, int stream);
 
+#if LP_HAS_LEVELS
+/* Of the input, value = (number - black_in) per_span_in; of the output, number = value span_out + black_out. Numbers
+ * are codes if there is no curve, which is then in the factor: the spans are 1. */
+struct lp_plan_levels {
+    uint32_t steps;   /* lp_level_step, or 0 */
+    uint32_t are_one; /* all channels have the same black */
+    float black_in[LP_CHANNELS], per_span_in[LP_CHANNELS], black_out[LP_CHANNELS], span_out[LP_CHANNELS];
+    float black_code[LP_CHANNELS], code_span[LP_CHANNELS]; /* code of black, and of white less black */
+    float near_white;                                      /* a code below which no sample is nearly saturated */
+    float largest_code;                                    /* integer output is clipped there: the code of white */
+};
+#endif
+
 struct lensprof_plan {
     lp_row_kernel *row;
     uint32_t source_sample, target_sample, layout;
@@ -42,12 +68,15 @@ struct lensprof_plan {
     uint32_t curves;    /* 1 or 3 */
     uint8_t site[2][2]; /* channel by row and column parity, of mosaics */
     uint8_t channel_of_sample[4];
-    int32_t center_px[2];        /* of the falloff: whole pixels, */
-    float center_part[2];        /* and the rest, -1/2..1/2, which single precision holds better */
-    float k[LP_CHANNELS][3];     /* 1 + k1 r2 + ..., r2 in px^2 */
-    float least, strength;       /* of the attenuation, after the gain cap; of the grid's part */
-    float factor[LP_CHANNELS];   /* target over source exposure, and the units of linear codes */
-    float times[LP_CHANNELS];    /* the same if the gain is otherwise that of all channels; else 1 */
+    int32_t center_px[2];      /* of the falloff: whole pixels, */
+    float center_part[2];      /* and the rest, -1/2..1/2, which single precision holds better */
+    float k[LP_CHANNELS][3];   /* 1 + k1 r2 + ..., r2 in px^2 */
+    float least, strength;     /* of the attenuation, after the gain cap; of the grid's part */
+    float factor[LP_CHANNELS]; /* target over source exposure, and the units of linear codes */
+    float times[LP_CHANNELS];  /* the same if the gain is otherwise that of all channels; else 1 */
+#if LP_HAS_LEVELS
+    struct lp_plan_levels levels;
+#endif
     float exponent[LP_CHANNELS]; /* of the response, for LP_CURVE_POWER and _MIXED; else 0 */
     float inverse_exponent[LP_CHANNELS];
     uint32_t columns, rows;          /* of the gain grid; 0 = none */
@@ -59,6 +88,16 @@ struct lensprof_plan {
     const uint16_t *start;           /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
     int32_t step; /* the first step from there up the samples is this, then half of it, ...; 0 if a cell has <= 2 */
 };
+
+/* What the kernels do with the levels. */
+static inline uint32_t lp_level_steps(const lensprof_plan *plan) {
+#if LP_HAS_LEVELS
+    return plan->levels.steps;
+#else
+    (void)plan;
+    return 0;
+#endif
+}
 
 /* The kernels. Each gives the same bytes. */
 lp_row_kernel lp_row_scalar, lp_row_sse41, lp_row_avx2, lp_row_avx512, lp_row_neon;

@@ -4,9 +4,15 @@
 
 #include <string.h>
 
+#include "core/levels.h"
 #include "core/response.h"
 
-/* The common kind of curve of all channels, for input or output. */
+static int has_levels(const lensprof_apply_options *o) {
+    return LP_HAS_LEVELS && (lp_has_levels(lp_levels_of(o, LP_INPUT)) || lp_has_levels(lp_levels_of(o, LP_OUTPUT)));
+}
+
+/* The common kind of curve of all channels, for input or output. With levels, a linear response does not clip: noise
+ * about black keeps its mean. */
 static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     uint32_t kind = LP_CURVE_NONE;
     for (uint32_t c = 0; c < lp_curves(o, m); c++) {
@@ -17,7 +23,7 @@ static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m, enum
         kind = c && curve_kind != kind ? (uint32_t)LP_CURVE_MIXED : curve_kind;
         if (kind == LP_CURVE_MIXED) break;
     }
-    return kind;
+    return kind == LP_CURVE_CLIP && has_levels(o) ? (uint32_t)LP_CURVE_NONE : kind;
 }
 
 static int is_integer(uint32_t sample) { return sample == LENSPROF_SAMPLE_U8 || sample == LENSPROF_SAMPLE_U16; }
@@ -27,7 +33,7 @@ static uint32_t decode_of(const lensprof_apply_options *o, const lp_model *m) {
     uint32_t kind = o->input == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o, m, LP_INPUT);
     if (!is_integer(o->source_sample)) return kind;
     if (kind == LP_CURVE_CLIP) return LP_CURVE_NONE;
-    if (kind == LP_CURVE_POWER && o->source_sample == LENSPROF_SAMPLE_U16) return kind;
+    if (kind == LP_CURVE_POWER && o->source_sample == LENSPROF_SAMPLE_U16 && !has_levels(o)) return kind;
     return kind == LP_CURVE_NONE ? kind : (uint32_t)LP_CURVE_TABLE;
 }
 
@@ -57,22 +63,27 @@ static size_t samples_of(const lensprof_apply_options *o, const lp_model *m, siz
     return is_asked ? LENSPROF_RESPONSE_SAMPLES : 0;
 }
 
+/* The grey value of a code, 0..1. */
+static double grey_of(const lensprof_levels *levels, uint32_t channel, double sample) {
+    if (!LP_HAS_LEVELS || !lp_has_levels(levels)) return sample;
+    const double value = lensprof_levels_to_value(levels, channel, sample);
+    return value < 0.0 ? 0.0 : value > 1.0 ? 1.0 : value;
+}
+
 /* g of every code. The place among the response's samples rises with the code. */
-static void fill_inverse(const struct lp_model_response *response, size_t codes, float *inverse) {
-    const double last = (double)(codes - 1);
-    inverse[0] = 0.0f;
-    for (size_t code = 1; lp_is_power(response) && code < codes; code++)
-        inverse[code] = (float)lp_curve_power((double)code / last, response->gamma, NULL);
-    if (lp_is_power(response)) return;
-    double below = 0.0, above = lp_model_sample(response, 1);
+static void fill_inverse(const struct lp_model_response *response, const lensprof_levels *levels, uint32_t channel,
+                         size_t codes, float *inverse) {
+    double below = 0.0, above = lp_is_power(response) ? 1.0 : lp_model_sample(response, 1);
     uint32_t j = 0;
-    for (size_t code = 1; code < codes; code++) {
-        const double b = (double)code / last;
+    for (size_t code = 0; code < codes; code++) {
+        const double b = grey_of(levels, channel, (double)code / (double)(codes - 1));
         for (; above < b && j + 2 < LENSPROF_RESPONSE_SAMPLES; j++) {
             below = above;
             above = lp_model_sample(response, j + 2);
         }
-        inverse[code] = (float)lp_curve_between(below, above, b, j);
+        inverse[code] = (float)(!(b > 0.0)              ? 0.0
+                                : lp_is_power(response) ? lp_curve_power(b, response->gamma, NULL)
+                                                        : lp_curve_between(below, above, b, j));
     }
 }
 
@@ -108,7 +119,9 @@ float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, c
         const struct lp_model_response *in = lp_response(o, m, LP_INPUT, c), *out = lp_response(o, m, LP_OUTPUT, c);
         plan->exponent[c] = lp_is_power(out) ? (float)(1.0 / out->gamma) : 0.0f;
         plan->inverse_exponent[c] = lp_is_power(in) ? (float)in->gamma : 0.0f;
-        if (codes) fill_inverse(in, codes, inverse + c * codes);
+        if (codes)
+            fill_inverse(in, LP_HAS_LEVELS ? lp_levels_of(o, LP_INPUT) : NULL, plan->channels == 1 ? 1 : c, codes,
+                         inverse + c * codes);
         float *to = memory + c * forward; /* f of the output, then that of the input if it has another table */
         const struct lp_model_response *response = out;
         for (size_t left = forward, end = 0; end < 2; end++) { /* not read if there is an exponent */

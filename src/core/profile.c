@@ -152,5 +152,7 @@ lensprof_status lensprof_profile_validate(const lensprof_profile *profile) {
         status = validate_falloff(&profile->vignetting[c], &profile->vignetting[0]);
     if (status == LENSPROF_OK) status = lensprof_gain_grid_validate(&profile->grid);
     if (status == LENSPROF_OK) status = validate_covariance(profile->covariance, profile->covariance_size);
-    return status;
+    if (status != LENSPROF_OK) return status;
+    const lensprof_levels levels = lp_profile_levels(profile);
+    return lensprof_levels_validate(&levels);
 }

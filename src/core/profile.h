@@ -14,6 +14,13 @@ extern "C" {
  * missing; read them through a function here, which knows their default. */
 #define LP_FIRST_PROFILE LP_END_OF(lensprof_profile, covariance)
 
+/* The levels of a profile; none if it has no such member. */
+static inline lensprof_levels lp_profile_levels(const lensprof_profile *profile) {
+    lensprof_levels levels = {{0.0, 0.0, 0.0}, 0.0};
+    if (profile->struct_size >= LP_END_OF(lensprof_profile, levels)) levels = profile->levels;
+    return levels;
+}
+
 /* Whether the doubt of a provenance concerns the response alone (LENSPROF_DOUBT_RESPONSE). */
 int lp_provenance_doubts_response(const lensprof_provenance *provenance);
 

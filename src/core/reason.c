@@ -69,6 +69,7 @@ static const reason_row rows[] = {
     ROW(FLAT_DUST, "flat_dust", "spots of dust were left out"),
     ROW(FLAT_EDGE, "flat_edge", "the image circle, or something in front of the lens, ends within the frame"),
     ROW(FLAT_ONE_LIGHT, "flat_one_light", "a light that is brighter in the middle looks like falloff"),
+    ROW(FLAT_BLACK_LEVEL, "flat_black_level", "the falloff in the corners depends on the black level"),
     ROW(FLAT_NEEDS_GRID, "flat_needs_grid", "the falloff is not a polynomial in r^2: k1..k3 alone do not describe it"),
     ROW(LOOKUP_NO_LENS, "lookup_no_lens", "no profile of a lens with this name; list the profiles to see the names"),
     ROW(LOOKUP_NO_CAMERA, "lookup_no_camera", "no profile of this camera; list the profiles to see the cameras"),

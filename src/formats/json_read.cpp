@@ -94,6 +94,14 @@ void read_grid(const JsonValue &object, lensprof_gain_grid &grid) {
     check(lensprof_gain_grid_validate(&grid), object, "not a valid gain grid");
 }
 
+void read_levels(const JsonValue &object, lensprof_levels &levels) {
+    const std::vector<double> black = object.required("black").numbers(3, 3);
+    std::copy(black.begin(), black.end(), levels.black);
+    if (const JsonValue white = object["white"]) levels.white = white.number_within(0.0, 1.0);
+    if (levels.white == 1.0) levels.white = 0.0;
+    check(lensprof_levels_validate(&levels), object, "black is not below white");
+}
+
 void read_responses(const JsonValue &object, lensprof_profile &profile) {
     const JsonValue values = object["values"], curves = object["curves"];
     profile.responses = values ? count_of_curves(values) : curves ? count_of_curves(curves) : 1;
@@ -174,6 +182,7 @@ void read_profile(const JsonValue &object, const char *source, lensprof_profile 
     read_key(object.required("key"), profile.key);
     profile.vignettings = read_vignetting(object.required("vignetting"), profile.vignetting);
     if (const JsonValue grid = object["gain_grid"]) read_grid(grid, profile.grid);
+    if (const JsonValue levels = object["levels"]) read_levels(levels, profile.levels);
     if (const JsonValue response = object["response"]) read_responses(response, profile);
     if (const JsonValue covariance = object["covariance"]) read_covariance(covariance, profile);
     if (const JsonValue provenance = object["provenance"])

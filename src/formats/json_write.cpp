@@ -4,6 +4,8 @@
 
 #include "formats/each_format.h"
 
+#include "core/levels.h"
+#include "core/profile.h"
 #include "formats/json.hpp"
 
 namespace lensprof {
@@ -50,6 +52,19 @@ void write_grid(JsonWriter &json, const lensprof_gain_grid &grid) {
         json.close(']');
     }
     json.close(']');
+    json.close('}');
+}
+
+// Only if there are any.
+void write_levels(JsonWriter &json, const lensprof_profile &profile) {
+    const lensprof_levels levels = lp_profile_levels(&profile);
+    if (!lp_has_levels(&levels)) return;
+    json.name("levels");
+    json.open('{');
+    json.name("black");
+    json.numbers(levels.black, 3);
+    json.name("white");
+    json.number(lp_white_level(&levels));
     json.close('}');
 }
 
@@ -200,6 +215,7 @@ void write_profile(JsonWriter &json, const lensprof_profile &profile) {
     write_key(json, profile.key);
     write_vignetting(json, profile.vignetting, profile.vignettings);
     write_grid(json, profile.grid);
+    write_levels(json, profile);
     write_response(json, profile);
     write_covariance(json, profile);
     write_provenance(json, profile.provenance);

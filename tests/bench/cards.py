@@ -14,8 +14,8 @@ import numpy as np
 import tools
 from flat import falloff, write_png
 
-GOOD = ("even", "sloped", "turned", "dusty")
-BAD = ("textured", "scene", "shadow", "clipped", "steep", "wrong exposures", "wrong turns", "light changed", "partial",
+GOOD = ("even", "sloped", "turned", "dusty", "deep", "pedestal")
+BAD = ("pedestal alone", "textured", "scene", "shadow", "clipped", "steep", "wrong exposures", "wrong turns", "light changed", "partial",
        "wrong response")
 COUNT_GOOD, COUNT_BAD, QUICK = 50, 20, 3  # cards per kind
 HARM = 0.02  # of M
@@ -66,6 +66,28 @@ def dusty(r, card):
             "border": pick(r, (0.0, 0.0, 0.0, 0.005))}
 
 
+def deep(r, card):
+    """Three to five stops at the corner, by the law of the cosine."""
+    return {**single(r, card, 0.0, 0.02), "cosine": True, "k": [r.uniform(0.03, 0.12) - 1.0, 0.0, 0.0],
+            "coding": dict(CODINGS[0]), "stated_gamma": 1.0, "noise": 0.3, "level": r.uniform(0.6, 0.8)}
+
+
+def pedestal(r, card):
+    """A black level that nobody stated, at two exposures: of one shot, or of shots by hand."""
+    evs = [r.uniform(-2.0, -1.0), 0.0]
+    card = {**single(r, card, 0.0, 0.03), "coding": dict(CODINGS[0]), "stated_gamma": 1.0, "black": r.uniform(0.01, 0.07),
+            "evs": evs, "stated_evs": [evs[0] + r.gauss(0.0, 0.05), 0.0]}
+    if r.random() < 0.5:
+        return card
+    return {**card, "turns": [0, 0], "stated_turns": [0, 0], "evs": [0.0], "stated_evs": None,
+            "drift": [1.0, 2.0**evs[0]], "gradients": card["gradients"] * 2}
+
+
+def pedestal_alone(r, card):
+    return {**pedestal(r, card), "black": r.uniform(0.03, 0.07), "evs": [0.0], "stated_evs": None, "turns": [0],
+            "stated_turns": [0], "drift": [1.0], "gradients": [[r.uniform(0.0, 0.03), r.uniform(0.0, 360.0)]]}
+
+
 def steep(r, card):
     return turned(r, card, 0.6, 1.2) if r.random() < 0.3 else single(r, card, 0.3, 0.8)
 
@@ -105,7 +127,8 @@ def wrong_response(r, card):
     return {"coding": {"form": "png16", "gamma": true}, "stated_gamma": stated}
 
 
-DRAWS = {"even": lambda r, card: {}, "sloped": single, "turned": turned, "dusty": dusty,
+DRAWS = {"even": lambda r, card: {}, "deep": deep, "pedestal": pedestal, "pedestal alone": pedestal_alone,
+         "sloped": single, "turned": turned, "dusty": dusty,
          "textured": lambda r, card: {"texture": [r.uniform(0.02, 0.08), r.uniform(2.0, 25.0)]},
          "scene": lambda r, card: {"cosine": False, "evs": [0.0], "scene": pick(r, SCENES)},
          "shadow": shadow, "clipped": lambda r, card: {"evs": [0.0], "white": r.uniform(0.05, 0.4)}, "steep": steep,
@@ -180,6 +203,7 @@ def write_pictures(card, folder):
             values = np.clip(level * 2.0**ev * light[:, :, None] * card["balance"], 0.0, 1.0)
             noise = np.random.default_rng([card["seed"], shot, exposure]).standard_normal(values.shape)
             values = values**(1.0 / coding["gamma"]) + card["noise"] / 255.0 * np.sqrt(values) * noise
+            values = card.get("black", 0.0) + (1.0 - card.get("black", 0.0)) * values
             names.append(folder / ("%d_%d.%s" % (shot, exposure, "jpg" if coding["form"] == "jpeg" else "png")))
             if coding["form"] == "jpeg":
                 import cv2
@@ -241,6 +265,8 @@ def measure(card, tune, keep):
     record = {**card, **{key: data[key] for key in ("usable", "findings", "passed")}}
     record["reason"] = severe[0] if severe else ""
     record["error"], record["frame_error"] = errors(card, data)
+    if card["kind"] == "deep":
+        record["error"] = record["frame_error"]  # k1..k3 alone do not hold such a falloff
     off = 1.0 + sum(data["vignetting"]["k"][0]) - true_falloff(card, 1.0)
     record.update(residual=data["residual"], z=off / data["corner_sigma"] if data["corner_sigma"] else None)
     if not keep:

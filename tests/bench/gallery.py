@@ -39,7 +39,7 @@ PROJECTS = {  # by the name of the folder; other projects have no expectation
     "pier": Expected(equalizes=True, beside_hugin=0.2),
 }
 BRACKETS = {  # options, and the expected result
-    "memorial": (["--fit", "black=20"], Expected(usable=True)),  # pure blue borders: nothing in red and green
+    "memorial": (["--fit", "ignore-below=20"], Expected(usable=True)),  # pure blue borders: nothing in red and green
     "frobisher": ([], Expected(usable=True)),
 }
 PICTURES = {".jpg", ".jpeg", ".png", ".tif", ".tiff"}

@@ -378,7 +378,7 @@ class Cards(unittest.TestCase):
 
         report_on, tune, quick = drawn(False, False), drawn(False, True), drawn(True, False)
         self.assertEqual(report_on, drawn(False, False))
-        self.assertEqual(len(report_on), 4 * 50 + 10 * 20)
+        self.assertEqual(len(report_on), 6 * 50 + 11 * 20)
         self.assertEqual(report_on.keys(), tune.keys())
         self.assertFalse([name for name in tune if tune[name] == report_on[name]])
         self.assertEqual(quick, {name: report_on[name] for name in quick})

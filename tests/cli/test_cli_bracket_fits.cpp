@@ -183,7 +183,8 @@ void test_black_that_is_not_0(void **) {
     like.response = [&](double x) { return std::max(film(x), 20.0 / 255.0); };
     const std::vector<double> evs = {3.0, 1.5, 0.0, -1.5, -3.0, -12.0};
     const Words files = shots(evs, like);
-    const Outcome outcome = run_words(bracket(files, no_store + Words{"--fit", "black=24", "--ev", list_of(evs)}));
+    const Outcome outcome =
+        run_words(bracket(files, no_store + Words{"--fit", "ignore-below=24", "--ev", list_of(evs)}));
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, files[5]) && contains(outcome.err, "left out"));
     const Json json = parsed(outcome.out);

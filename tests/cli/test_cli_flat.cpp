@@ -17,9 +17,11 @@ const lensprof_vignetting lens{{-0.42, 0.10, -0.05}, {0.03, -0.02}};
 struct Card {
     double ev = 0.0, rotation_deg = 0.0, slant = 0.08, texture = 0.0, gamma = 1.0;
     uint32_t layout = LENSPROF_LAYOUT_RGB;
-    double left = 0.0, right = 1.0;  // part of the width covered by the card
-    bool told = false;               // EXIF has exposure and camera
-    Bytes icc;                       // colour profile
+    double left = 0.0, right = 1.0;   // part of the width covered by the card
+    bool told = false;                // EXIF has exposure and camera
+    Bytes icc;                        // colour profile
+    double black = 0.0, white = 1.0;  // samples without light and at saturation
+    bool dark = false;                // the lens is covered
 };
 
 std::string shoot(const std::string &name, const Card &card) {
@@ -40,9 +42,11 @@ std::string shoot(const std::string &name, const Card &card) {
                 0.4 * std::exp2(card.ev) * m * std::exp(card.slant * (std::cos(turn) * dx - std::sin(turn) * dy));
             light *= 1.0 + card.texture * std::sin(0.35 * x) * std::sin(0.3 * y);
             if (x < card.left * width || x >= card.right * width) light *= 0.1;
+            if (card.dark) light = 0.0;
             for (uint32_t c = 0; c < samples; c++) {
                 double grey = lensprof_response_eval(&response, light, nullptr) + 0.003 * lp_normal(&random);
-                *at++ = static_cast<uint16_t>(std::lround(65535.0 * std::min(std::max(grey, 0.0), 1.0)));
+                const double value = card.black + (card.white - card.black) * grey;
+                *at++ = static_cast<uint16_t>(std::lround(65535.0 * std::min(std::max(value, 0.0), card.white)));
             }
         }
     PictureMetadata metadata = unknown_metadata();
@@ -56,6 +60,12 @@ std::string shoot(const std::string &name, const Card &card) {
     const std::string path = in_folder(name);
     write_picture(path, picture, options);
     return path;
+}
+
+std::string shoot_grey(const std::string &name) {
+    Card card;
+    card.layout = LENSPROF_LAYOUT_GREY, card.dark = true;
+    return shoot(name, card);
 }
 
 Words flat(const Words &words) { return Words{"flat"} + words; }
@@ -147,6 +157,92 @@ std::string stand_up(const std::string &file, const std::string &name) {
             std::copy_n(from + 3 * ((height - 1 - x) * width + y), 3, to + 3 * (y * height + x));
     write_picture(in_folder(name), standing, {});
     return in_folder(name);
+}
+
+// Adds a tag with a number to the directory of a TIFF.
+void state_level(const std::string &file, uint16_t tag, uint32_t value) {
+    TIFF *tiff = TIFFOpen(file.c_str(), "r+");
+    assert_non_null(tiff);
+    float level = static_cast<float>(value);
+    uint32_t white = value;
+    assert_int_equal(
+        tag == TIFFTAG_BLACKLEVEL ? TIFFSetField(tiff, tag, 1, &level) : TIFFSetField(tiff, tag, 1, &white), 1);
+    assert_int_equal(TIFFRewriteDirectory(tiff), 1);
+    TIFFClose(tiff);
+}
+
+// The black level is stated, that of dark frames, or that which two exposures show; applied, the card is even, and
+// black is where it was.
+void test_the_black_level(void **) {
+    Card card;
+    card.slant = 0.0, card.black = 256.0 / 65535.0, card.white = 4095.0 / 65535.0;
+    const std::string bright = shoot("pedestal.tif", card);
+    card.ev = -1.3;
+    const std::string dim = shoot("dim.tif", card);
+    card.dark = true;
+    const std::string dark = shoot("dark.tif", card), again = shoot("dark2.tif", card);
+    const Words common = {"--linear", "--fit", "white-level=4095,center=fixed,light=even", "--json"};
+    const auto measured = [&](const Words &words) { return json_of(flat(words) + common + Words{"--no-store"}); };
+
+    const Json open = measured({bright});
+    assert_true(corner_error(open) > 0.03);
+    assert_true(contains(open.dump(), "flat_black_level"));
+    assert_true(open["levels"]["black_ev"].get<double>() > 0.02);
+    for (const Words &words : {Words{bright, "--black", "256"}, Words{bright, "--black", "0.390631%"},
+                               Words{bright, "--black", "256:256:256"}, Words{bright, "--dark", dark, "--dark", again},
+                               Words{bright, dim}, Words{bright, dim, "--shots", "1,1", "--ev", "0,-1.3"}}) {
+        const Json json = measured(words);
+        assert_close(corner_error(json), 0.0, 0.003);
+        for (const Json &black : json["levels"]["black"]) assert_close(65535.0 * black.get<double>(), 256.0, 3.0);
+        assert_close(json["levels"]["white"].get<double>(), 4095.0 / 65535.0, 1e-12);
+        assert_int_equal(json["levels"]["from_pictures"].get<bool>(), words.size() > 1 && words[1] == dim);
+    }
+
+    state_level(bright, 50714, 256);  // BlackLevel and WhiteLevel, as multispectral cameras write them
+    state_level(bright, 50717, 4095);
+    const Json of_file = json_of(flat({bright, "--linear", "--json", "--no-store"}));
+    assert_close(corner_error(of_file), 0.0, 0.004);
+    assert_close(of_file["levels"]["white"].get<double>(), 4095.0 / 65535.0, 1e-12);
+
+    const Words db = {"--db", in_folder("black.db")}, setting = {"--camera", "Box", "--lens", "Box lens"};
+    must_exit(done, flat({bright, dim}) + common + setting + db);
+    assert_true(contains(must_exit(done, Words{"profile", "show", "1"} + db), "levels    black 0.39"));
+    const Words apply = Words{"apply", bright, "--profile", "1", "--key", "processing=raw"} + db;
+    must_exit(done, apply + Words{"-o", in_folder("levelled")});
+    const Picture result = read_picture(in_folder("levelled/pedestal.tif"));
+    const auto mean = [&](uint32_t left, uint32_t top) {
+        double sum = 0.0;
+        for (uint32_t i = 0; i < 256; i++)
+            sum += reinterpret_cast<const uint16_t *>(
+                result.pixels.data())[3 * ((top + i / 16) * width + left + i % 16) + 1];
+        return sum / 256.0;
+    };
+    const double middle = mean(width / 2 - 8, height / 2 - 8);
+    assert_close(middle, 256.0 + 0.4 * 3839.0, 8.0);
+    assert_close(mean(0, 0), middle, 12.0);
+    must_exit(done, apply + Words{"--set", "black=0,white=100%", "-o", in_folder("unlevelled")});
+    assert_true(evenness(in_folder("unlevelled/pedestal.tif")) > 1.05);
+
+    const struct {
+        int code;
+        Words words;
+        const char *named;
+    } wrong[] = {
+        {usage, {bright, "--black", "0.0078"}, "ignore-below=0.0078"},
+        {usage, {bright, "--black", "70000"}, "--black"},
+        {usage, {bright, "--black", "1:2"}, "RED:GREEN:BLUE"},
+        {usage, {bright, "--black", "5000"}, "not below its white level"},
+        {usage, {bright, "--black", "256", "--dark", dark}, "exclude each other"},
+        {not_usable, {bright, "--dark", dim}, "dim.tif: is not dark"},
+        {usage, {bright, "--dark", shoot_grey("grey_dark.tif")}, "grey_dark.tif"},
+        {unreadable, {bright, "--dark", in_folder("none.tif")}, "none.tif"},
+        {usage, {bright, "--fit", "white-level=0"}, "white level"},
+    };
+    for (const auto &one : wrong)
+        assert_refused(one.code, flat(one.words) + Words{"--linear", "--no-store"}, {one.named});
+    assert_refused(usage, apply + Words{"--set", "black=80%,white=4095", "-o", in_folder("never")},
+                   {"pedestal.tif", "not below its white level"});
+    assert_false(std::filesystem::exists(in_folder("never/pedestal.tif")));
 }
 
 // A profile is stored in the frame of the sensor, which is wider than high: of a card that was rotated either way, what
@@ -295,13 +391,13 @@ void test_refused(void **) {
         {usage, Words{grey, "--fit", "falloff-curves=3"} + good, {"grey"}},
         {unreadable, Words{path, in_folder("wide.png")} + good, {"wide.png", "400 x 90"}},
         {usage, Words{path, other, path} + good, {"card.tif", "twice"}},
-        {usage, Words{path, "--fit", "black=0.9,white=0.5"} + good, {"--fit black"}},
+        {usage, Words{path, "--fit", "ignore-below=0.9,ignore-above=0.5"} + good, {"--fit ignore-below"}},
         {usage, Words{path, "--fit", "max-side=10"} + good, {"--fit max-side"}},
         {usage, Words{path, "--no-store"} + good, {"--no-store"}},
         {unreadable, Words{in_folder("nothing.tif")} + good, {"nothing.tif"}},
         {unreadable, Words{text} + good, {"text.tif"}},
         {not_usable, Words{in_folder("tiny.png")} + good, {"tiny.png"}},
-        {not_usable, Words{path, "--fit", "white=0.02"} + good, {"black and white"}},
+        {not_usable, Words{path, "--fit", "ignore-above=0.02"} + good, {"black and white"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", text}, {"text.tif"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", in_folder("no/such.db")}, {"no/such.db"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", "/proc/lensprof/p.db"}, {"/proc/lensprof"}},
@@ -323,6 +419,7 @@ int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_rotated_shots_are_measured_and_stored),
         CLI_TEST(test_the_card_is_corrected),
+        CLI_TEST(test_the_black_level),
         CLI_TEST(test_portrait_cards),
         CLI_TEST(test_exposures_come_from_exif_or_the_command_line),
         CLI_TEST(test_a_card_at_several_places),

@@ -33,7 +33,7 @@ SHOWN_FOLDER = "/home/you/tutorial"  # shown on pages instead of the folder in w
 SKIPPED = 77
 BLOCK = re.compile(r"(?:^<!-- *(?P<note>[^\n]*?) *-->\n)?^```(?P<language>\w+)(?P<more>[^\n]*)\n(?P<text>.*?)^```$",
                    re.MULTILINE | re.DOTALL)
-HEXADECIMAL = re.compile(r"\b(?=\w*\d)(?=\w*[a-f])[0-9a-f]{4,}\b")
+HEXADECIMAL = re.compile(r"\b(?:(?=\w*\d)(?=\w*[a-f])[0-9a-f]{4,}|[0-9a-f]{8})\b")
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?=(?P<seconds> s\b)?)")
 
 

@@ -62,7 +62,8 @@ struct FlatPictures {
     double level = 0.5;               // light at the centre at 0 EV
     double noise = 0.004;             // standard deviation, in grey values
     uint64_t seed = 1;
-    Defect defect;  // may be empty
+    Defect defect;             // may be empty
+    lensprof_levels levels{};  // of the samples
     std::vector<std::unique_ptr<std::vector<uint8_t>>> data;
     std::vector<lensprof_flat_image> images;
 
@@ -118,7 +119,9 @@ struct FlatPictures {
                 for (uint32_t c = 0; c < channels; c++, at += bytes) {
                     double irradiance = light(x, y, c, rotation_deg) * std::exp2(ev);
                     random = random * 6364136223846793005ull + 1442695040888963407ull;
-                    put(at, lensprof_response_eval(&response, irradiance, nullptr) + noise * normals[random >> 48]);
+                    const double grey =
+                        lensprof_response_eval(&response, irradiance, nullptr) + noise * normals[random >> 48];
+                    put(at, lensprof_levels_to_sample(&levels, c, grey));
                 }
         lensprof_flat_image image;
         lensprof_flat_image_init(&image);

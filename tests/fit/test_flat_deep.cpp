@@ -12,6 +12,19 @@ static std::function<double(double)> law_of_the_cosine(double corner) {
     return [=](double r) { return std::pow(1.0 + (1.0 / std::sqrt(corner) - 1.0) * r * r, -2.0); };
 }
 
+// The profile of a fit can be stored.
+static void assert_valid_profile(const FlatPictures &p) {
+    const lensprof_flat_options o = p.options();
+    lensprof_flat *flat = nullptr;
+    lensprof_profile profile;
+    lensprof_profile_init(&profile);
+    assert_ok(
+        lensprof_fit_flat(&o, p.images.data(), static_cast<uint32_t>(p.images.size()), nullptr, 0, &flat, nullptr));
+    assert_ok(lensprof_flat_profile(flat, &profile, nullptr));
+    lensprof_flat_destroy(flat);
+    assert_ok(lensprof_profile_validate(&profile));
+}
+
 static void up_to_six_stops_are_measured(void **) {
     const struct {
         uint32_t sample;
@@ -41,6 +54,7 @@ static void up_to_six_stops_are_measured(void **) {
         assert_true(r->corner_sigma > 0.0 && r->corner_sigma < 0.01);
         assert_close(largest_error(*r, p), 0.0, card.worst);
         for (const auto &v : r->vignetting) assert_ok(lensprof_vignetting_validate(&v));
+        assert_valid_profile(p);
         assert_ok(lensprof_gain_grid_validate(&r->gain_grid));
     }
 }

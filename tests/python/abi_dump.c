@@ -34,6 +34,9 @@ static void print_structs(void) {
     FIELD(lensprof_gain_grid, channels);
     FIELD(lensprof_gain_grid, reserved);
     FIELD(lensprof_gain_grid, attenuation);
+    STRUCT(lensprof_levels);
+    FIELD(lensprof_levels, black);
+    FIELD(lensprof_levels, white);
     STRUCT(lensprof_exposure);
     FIELD(lensprof_exposure, ev);
     FIELD(lensprof_exposure, white_balance);
@@ -88,6 +91,7 @@ static void print_structs(void) {
     FIELD(lensprof_profile, vignetting);
     FIELD(lensprof_profile, grid);
     FIELD(lensprof_profile, covariance);
+    FIELD(lensprof_profile, levels);
     STRUCT(lensprof_image);
     FIELD(lensprof_image, data);
     FIELD(lensprof_image, row_bytes);
@@ -131,6 +135,8 @@ static void print_structs(void) {
     FIELD(lensprof_apply_options, reserved2);
     FIELD(lensprof_apply_options, chroma);
     FIELD(lensprof_apply_options, reserved3);
+    FIELD(lensprof_apply_options, levels);
+    FIELD(lensprof_apply_options, output_levels);
     STRUCT(lensprof_exposure_settings);
     FIELD(lensprof_exposure_settings, time_s);
     FIELD(lensprof_exposure_settings, f_number);
@@ -394,6 +400,8 @@ static void print_structs(void) {
     FIELD(lensprof_flat_options, vignetting);
     FIELD(lensprof_flat_options, progress);
     FIELD(lensprof_flat_options, progress_user);
+    FIELD(lensprof_flat_options, levels);
+    FIELD(lensprof_flat_options, black_sigma);
     STRUCT(lensprof_flat_image_quality);
     FIELD(lensprof_flat_image_quality, struct_size);
     FIELD(lensprof_flat_image_quality, cells);
@@ -445,6 +453,12 @@ static void print_structs(void) {
     FIELD(lensprof_flat_result, edge_share);
     FIELD(lensprof_flat_result, light_ev);
     FIELD(lensprof_flat_result, polynomial_error);
+    FIELD(lensprof_flat_result, levels);
+    FIELD(lensprof_flat_result, black_offset);
+    FIELD(lensprof_flat_result, black_sigma);
+    FIELD(lensprof_flat_result, black_ev);
+    FIELD(lensprof_flat_result, black_shown);
+    FIELD(lensprof_flat_result, reserved);
     STRUCT(lensprof_pto_image);
     FIELD(lensprof_pto_image, struct_size);
     FIELD(lensprof_pto_image, response_type);
@@ -953,6 +967,7 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_FLAT_EDGE);
     VALUE(LENSPROF_REASON_FLAT_ONE_LIGHT);
     VALUE(LENSPROF_REASON_FLAT_NEEDS_GRID);
+    VALUE(LENSPROF_REASON_FLAT_BLACK_LEVEL);
     VALUE(LENSPROF_REASON_LOOKUP_NO_LENS);
     VALUE(LENSPROF_REASON_LOOKUP_NO_CAMERA);
     VALUE(LENSPROF_REASON_LOOKUP_OTHER_PROCESSING);

@@ -111,6 +111,9 @@ static void test_impossible_keys_and_provenance(void **state) {
 
 static void test_impossible_curves(void **state) {
     static const char *const cases[][2] = {
+        {"UPDATE profiles SET black_red = 0.99, white_level = 0.5 WHERE id = 1", "LENSPROF_ERROR_ARGUMENT"},
+        {"UPDATE profiles SET black_green = -0.6 WHERE id = 1", "LENSPROF_ERROR_ARGUMENT"},
+        {"UPDATE profiles SET white_level = 1.5 WHERE id = 1", "LENSPROF_ERROR_ARGUMENT"},
         {"UPDATE profiles SET response_curves = 2 WHERE id = 1", "responses"},
         {"UPDATE profiles SET response_curves = 0 WHERE id = 1", "response_curves"},
         {"UPDATE profiles SET vignetting_curves = 3 WHERE id = 1", "count of vignettings"},

@@ -220,8 +220,8 @@ static void test_long_list(void **state) {
             " INSERT INTO profiles SELECT i, camera_maker, camera_model, lens, i, aperture, distance_m,"
             " processing, method, software, source, created_unix_s, images, pairs, heldout_rms,"
             " inlier_share, response_curves, vignetting_curves, covariance_size, covariance, 0,"
-            " unit, crop_factor, doubt, lens_name, color_temperature_k, prior_id, forced, style, gamma_sigma"
-            " FROM profiles, n");
+            " unit, crop_factor, doubt, lens_name, color_temperature_k, prior_id, forced, style, gamma_sigma,"
+            " black_red, black_green, black_blue, white_level FROM profiles, n");
     assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
     assert_int_equal(found, COUNT);
     for (int i = 0; i < COUNT; i++) assert_close(rows[i].key.focal_mm, i + 1.0, 0.0);

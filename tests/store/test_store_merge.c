@@ -123,7 +123,7 @@ static void test_older_layouts_are_read_as_they_are(void **state) {
         unlink(path);
         unlink(here->path);
         if (layout == 1) lensprof_gain_grid_init(&sample[0].grid);
-        lose_newest(&sample[0]);
+        lose_newer(&sample[0], layout);
         make_layout(path, layout, sample, 1);
         unsigned char *bytes = read_file(path, &size);
         open_pair(here, "old.db", LENSPROF_STORE_READ, &store, &other);

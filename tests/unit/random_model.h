@@ -15,6 +15,7 @@ typedef struct model {
     lensprof_response response[3], output[3];
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid;
+    lensprof_levels levels[2]; /* of input and output */
     lensprof_apply_options options;
 } model;
 
@@ -75,9 +76,18 @@ static void random_model(model *m, uint64_t *random) {
     }
 }
 
-/* The formula of apply.h for a value of a channel at a pixel. */
-static double reference(const model *m, double value, uint32_t c, uint32_t x, uint32_t y) {
+static int has_levels(const model *m) { return m->options.levels || m->options.output_levels; }
+
+static int are_linear(const lensprof_response *responses, uint32_t count) {
+    for (uint32_t c = 0; c < count; c++)
+        if (responses[c].kind != LENSPROF_RESPONSE_LINEAR) return 0;
+    return 1;
+}
+
+/* The formula of apply.h for a sample of a channel at a pixel. */
+static double reference(const model *m, double sample, uint32_t c, uint32_t x, uint32_t y) {
     const lensprof_apply_options *o = &m->options;
+    const double value = o->levels ? lensprof_levels_to_value(o->levels, c, sample) : sample;
     const lensprof_response *r = &m->response[o->responses == 3 ? c : 0];
     const lensprof_response *out = o->output_responses ? &m->output[o->output_responses == 3 ? c : 0] : r;
     const lensprof_vignetting *v = &m->vignetting[o->vignettings == 3 ? c : 0];
@@ -88,9 +98,16 @@ static double reference(const model *m, double value, uint32_t c, uint32_t x, ui
     if (o->gain_cap > 0.0) falloff = fmax(falloff, 1.0 / o->gain_cap);
     double ratio =
         (exp2(o->target.ev) * o->target.white_balance[c]) / (exp2(o->source.ev) * o->source.white_balance[c]);
-    double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
+    const int any = has_levels(m);
+    const int linear_in = o->input == LENSPROF_ENCODING_LINEAR || (any && are_linear(m->response, o->responses));
+    const int linear_out = o->output == LENSPROF_ENCODING_LINEAR
+                           || (any
+                               && (o->output_responses ? are_linear(m->output, o->output_responses)
+                                                       : are_linear(m->response, o->responses)));
+    double light = linear_in ? value : lensprof_response_invert(r, value, NULL);
     light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
-    return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(out, light, NULL);
+    light = linear_out ? light : lensprof_response_eval(out, light, NULL);
+    return o->output_levels ? lensprof_levels_to_sample(o->output_levels, c, light) : light;
 }
 
 #endif

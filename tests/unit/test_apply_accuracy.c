@@ -1,6 +1,6 @@
 /* Apply compared with a reference in double precision over random profiles. 8 bit: within one level, and nearly always
  * identical. 16 bit: within one level. Float: within four units in the last place if both sides are linear, and within
- * a twentieth of a 16 bit level through responses. */
+ * a twentieth of a 16 bit level through responses and with levels. */
 #include "unit/random_model.h"
 
 enum {
@@ -9,6 +9,25 @@ enum {
     H = MODEL_HEIGHT,
     PIXELS = 900
 };
+
+/* Levels of a sensor, of one pedestal or one per channel. */
+static void random_levels(lensprof_levels *levels, uint64_t *random) {
+    const double black = 0.2 * lp_random(random) - 0.05;
+    const int is_one = lp_random(random) < 0.5;
+    for (int c = 0; c < 3; c++) levels->black[c] = is_one ? black : black + 0.1 * lp_random(random);
+    levels->white = lp_random(random) < 0.3 ? 0.0 : 0.5 + 0.5 * lp_random(random);
+}
+
+static void random_levels_of_model(model *m, uint64_t *random) {
+    for (int end = 0; end < 2; end++) random_levels(&m->levels[end], random);
+    m->options.levels = lp_random(random) < 0.8 ? &m->levels[0] : NULL;
+    m->options.output_levels = lp_random(random) < 0.7 ? m->options.levels : &m->levels[1];
+}
+
+/* Change of a result by the rounding of a sample near 1 and of black to single precision. */
+static double reach_of_rounding(const model *m, double value, uint32_t c, uint32_t x, uint32_t y) {
+    return fabs(reference(m, value + 6e-8, c, x, y) - reference(m, value - 6e-8, c, x, y));
+}
 
 /* Difference from the reference for pixels of a few rows: the largest, and the share of identical samples. */
 static double worst_error(const model *m, uint32_t sample, uint64_t *random, double *same) {
@@ -43,10 +62,15 @@ static double worst_error(const model *m, uint32_t sample, uint64_t *random, dou
         if (sample == LENSPROF_SAMPLE_F32) {
             float nearest = (float)wanted;
             const double last_place = (double)nextafterf(nearest, 1e30f) - (double)nearest;
-            const int is_linear = m->options.output == LENSPROF_ENCODING_LINEAR;
+            const int is_linear = m->options.input == LENSPROF_ENCODING_LINEAR
+                                  && m->options.output == LENSPROF_ENCODING_LINEAR && !has_levels(m);
             error = fabs((double)out.f32[i] - wanted) / (is_linear ? last_place : 1.0 / 65535.0);
+            if (has_levels(m)) /* a difference of single numbers, which a steep curve enlarges near black */
+                error = fmax(0.0, error - 65535.0 * reach_of_rounding(m, value, i % 3, x0 + i / 3, y));
         } else {
-            wanted = floor(unit * fmin(fmax(wanted, 0.0), 1.0) + 0.5);
+            const lensprof_levels *out_levels = m->options.output_levels;
+            const double white = out_levels && out_levels->white > 0.0 ? out_levels->white : 1.0;
+            wanted = floor(unit * fmin(fmax(wanted, 0.0), white) + 0.5);
             error = fabs((sample == LENSPROF_SAMPLE_U8 ? out.u8[i] : out.u16[i]) - wanted);
         }
         *same += error == 0.0;
@@ -62,6 +86,11 @@ typedef void (*encoder)(model *m, uint64_t *random);
 static void as_drawn(model *m, uint64_t *random) {
     m->options.input = lp_random(random) < 0.3;
     m->options.output = lp_random(random) < 0.3;
+}
+
+static void with_levels(model *m, uint64_t *random) {
+    as_drawn(m, random);
+    while (!has_levels(m)) random_levels_of_model(m, random);
 }
 
 static void linear(model *m, uint64_t *random) {
@@ -88,9 +117,9 @@ static double worst_of_profiles(uint32_t sample, uint64_t random, encoder encode
     return worst;
 }
 
-static void check_levels(uint32_t sample, double smallest_share) {
+static void check_codes(uint32_t sample, encoder encode, double smallest_share) {
     double same;
-    const double worst = worst_of_profiles(sample, 17, as_drawn, &same);
+    const double worst = worst_of_profiles(sample, 17, encode, &same);
     print_message("worst %.0f level, %.4f %% identical\n", worst, 100.0 * same);
     assert_true(worst <= 1.0);
     assert_true(same >= smallest_share);
@@ -98,12 +127,14 @@ static void check_levels(uint32_t sample, double smallest_share) {
 
 static void test_8_bit(void **state) {
     (void)state;
-    check_levels(LENSPROF_SAMPLE_U8, 0.999);
+    check_codes(LENSPROF_SAMPLE_U8, as_drawn, 0.999);
+    check_codes(LENSPROF_SAMPLE_U8, with_levels, 0.999);
 }
 
 static void test_16_bit(void **state) {
     (void)state;
-    check_levels(LENSPROF_SAMPLE_U16, 0.95);
+    check_codes(LENSPROF_SAMPLE_U16, as_drawn, 0.95);
+    check_codes(LENSPROF_SAMPLE_U16, with_levels, 0.95);
 }
 
 static void test_linear_float(void **state) {
@@ -122,12 +153,21 @@ static void test_float_through_responses(void **state) {
     assert_true(worst <= 0.05);
 }
 
+static void test_float_with_levels(void **state) {
+    (void)state;
+    double same;
+    const double worst = worst_of_profiles(LENSPROF_SAMPLE_F32, 37, with_levels, &same);
+    print_message("worst %.3f levels of 16 bit\n", worst);
+    assert_true(worst <= 0.05);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_8_bit),
         cmocka_unit_test(test_16_bit),
         cmocka_unit_test(test_linear_float),
         cmocka_unit_test(test_float_through_responses),
+        cmocka_unit_test(test_float_with_levels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

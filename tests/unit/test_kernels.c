@@ -36,6 +36,7 @@ typedef struct model {
     lensprof_response response[3], output[3];
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid;
+    lensprof_levels levels[2]; /* of input and output */
     lensprof_apply_options options;
 } model;
 
@@ -91,6 +92,13 @@ static void make_model(model *m, uint64_t seed) {
             m->grid.attenuation[i] = (float)(0.6 + 0.8 * lp_random(&random));
         o->grid = &m->grid;
     }
+    for (uint32_t end = 0; end < 2; end++) {
+        const double black = 0.2 * lp_random(&random) - 0.05;
+        for (int c = 0; c < 3; c++) m->levels[end].black[c] = kinds % 2 ? black : black + 0.1 * lp_random(&random);
+        m->levels[end].white = lp_random(&random) < 0.3 ? 0.0 : 0.5 + 0.5 * lp_random(&random);
+    }
+    if (lp_random(&random) < 0.3) o->levels = &m->levels[0];
+    if (lp_random(&random) < 0.3) o->output_levels = lp_random(&random) < 0.5 ? o->levels : &m->levels[1];
     if (lp_random(&random) < 0.7) return;
     o->output_responses = lp_random(&random) < 0.5 ? 1 : 3;
     o->output_response = m->output;

@@ -232,6 +232,7 @@ class Reason(IntEnum):
     FLAT_EDGE = 513
     FLAT_ONE_LIGHT = 514
     FLAT_NEEDS_GRID = 515
+    FLAT_BLACK_LEVEL = 516
     LOOKUP_NO_LENS = 601
     LOOKUP_NO_CAMERA = 602
     LOOKUP_OTHER_PROCESSING = 603
@@ -525,6 +526,13 @@ class GainGrid(Structure):
     ]
 
 
+class Levels(Structure):
+    _fields_ = [
+        ("black", c_double * 3),
+        ("white", c_double),
+    ]
+
+
 class Exposure(Structure):
     _fields_ = [
         ("ev", c_double),
@@ -596,6 +604,7 @@ class Profile(Structure):
         ("vignetting", Vignetting * 3),
         ("grid", GainGrid),
         ("covariance", c_double * 1296),
+        ("levels", Levels),
     ]
 
 
@@ -651,6 +660,8 @@ class ApplyOptions(Structure):
         ("reserved2", c_uint32),
         ("chroma", c_uint32),
         ("reserved3", c_uint32),
+        ("levels", POINTER(Levels)),
+        ("output_levels", POINTER(Levels)),
     ]
 
 
@@ -1014,6 +1025,8 @@ class FlatOptions(Structure):
         ("vignetting", Vignetting),
         ("progress", Progress),
         ("progress_user", c_void_p),
+        ("levels", Levels),
+        ("black_sigma", c_double),
     ]
 
 
@@ -1081,6 +1094,12 @@ class FlatResult(Structure):
         ("edge_share", c_double),
         ("light_ev", c_double),
         ("polynomial_error", c_double),
+        ("levels", Levels),
+        ("black_offset", c_double),
+        ("black_sigma", c_double),
+        ("black_ev", c_double),
+        ("black_shown", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -1643,6 +1662,7 @@ STRUCTS = {
     "lensprof_response": Response,
     "lensprof_vignetting": Vignetting,
     "lensprof_gain_grid": GainGrid,
+    "lensprof_levels": Levels,
     "lensprof_exposure": Exposure,
     "lensprof_profile_key": ProfileKey,
     "lensprof_camera_model": CameraModel,
@@ -1813,6 +1833,9 @@ FUNCTIONS = {
     "lensprof_gain_grid_eval": (c_double, [POINTER(GainGrid), c_uint32, c_uint32, c_double, c_double, c_uint32]),
     "lensprof_gain_grid_eval_many": (None, [POINTER(GainGrid), c_uint32, c_uint32, POINTER(c_double), c_size_t,
                                             c_uint32, POINTER(c_double)]),
+    "lensprof_levels_validate": (c_int, [POINTER(Levels)]),
+    "lensprof_levels_to_value": (c_double, [POINTER(Levels), c_uint32, c_double]),
+    "lensprof_levels_to_sample": (c_double, [POINTER(Levels), c_uint32, c_double]),
     "lensprof_exposure_init": (None, [POINTER(Exposure)]),
     "lensprof_exposure_validate": (c_int, [POINTER(Exposure)]),
     "lensprof_exposure_mean": (None, [POINTER(Exposure), c_size_t, POINTER(Exposure)]),

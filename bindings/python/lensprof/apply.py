@@ -16,7 +16,7 @@ from ._abi import Direction, Encoding, Layout, SampleType, Saturated
 from ._library import check, lib
 from ._struct import Bytes, Count, Enumerated, Flag, Nested, OptionalReference, Referenced, Struct, default, integer
 from ._types import Pixels
-from .model import Exposure, GainGrid, Response, Vignetting
+from .model import Exposure, GainGrid, Levels, Response, Vignetting
 from .profile import Profile
 
 
@@ -44,7 +44,8 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     or None. strength: 0..1 of the falloff. gain_cap: the largest gain for the falloff, 1..1e6, or 0. dither: dither
     instead of rounding, for uint8 output. blob: a result of Profile.pack, instead of response, vignetting and grid, or
     None. chroma: correct only the colour of the falloff, luminance stays. output_response: one response or three that
-    encode the output instead; None = those of the model.
+    encode the output instead; None = those of the model. levels: of the input, or None; output_levels: of the output,
+    the same to put black back.
     """
 
     direction: Enumerated[Direction] = Enumerated(Direction)
@@ -71,14 +72,18 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     output_response: Referenced[Response] = Referenced(Response, "output_responses", optional=True)
     output_responses = Count("assign output_response")
     chroma: Flag = Flag()
+    levels: OptionalReference[Levels] = OptionalReference(Levels)
+    output_levels: OptionalReference[Levels] = OptionalReference(Levels)
 
     def set_profile(self, profile: Profile) -> None:
-        """Sets response, vignetting and grid from a copy of the profile, replacing previous values."""
+        """Sets response, vignetting, grid and levels from a copy of the profile, replacing previous values."""
         own = Profile._copy_of(byref(profile))
         check(lib.lensprof_apply_options_set_profile(byref(self), byref(own)), "not a profile")
         shown: Any = _abi.Profile.from_buffer(own)
         vars(self).update(_response=shown.response[:own.responses], _vignetting=shown.vignetting[:own.vignettings],
-                          _grid=[shown.grid] if shown.grid.columns else (), _blob=None)
+                          _grid=[shown.grid] if shown.grid.columns else (), _blob=None,
+                          _levels=[shown.levels] if self.levels is not None else (),
+                          _output_levels=[shown.levels] if self.levels is not None else ())
 
 
 class Plan:

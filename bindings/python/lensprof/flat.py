@@ -14,7 +14,7 @@ from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
 from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, default, integer
 from ._types import Pixels, Records
-from .model import GainGrid, Response, Vignetting
+from .model import GainGrid, Levels, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
 from .reason import WithFindings
 
@@ -61,6 +61,8 @@ class FlatOptions(WithProgress, _abi.FlatOptions):
     brightness; find_card: find the card in the frame. grid: FlatGrid. ev_sigma: standard error of an exposure, EV
     (several). prior_weight: 0 = none. response: () = linear, otherwise one or three. vignetting: values of fixed
     parameters. threads: maximum number, 0 = one per core; does not affect the result. progress: as in FitOptions.
+    levels: of the samples. black_sigma: standard error of the black level, 0 = exact; otherwise pictures of one light
+    at different levels determine what it leaves.
     """
 
     channels: int = default
@@ -77,6 +79,8 @@ class FlatOptions(WithProgress, _abi.FlatOptions):
     prior_weight: float = default
     response: Referenced[Response] = Referenced(Response, "responses")
     vignetting: Nested[Vignetting] = Nested(Vignetting)
+    levels: Nested[Levels] = Nested(Levels)
+    black_sigma: float = default
 
 
 class FlatResult(WithFindings, Struct, _abi.FlatResult):
@@ -88,7 +92,10 @@ class FlatResult(WithFindings, Struct, _abi.FlatResult):
     radius: largest r of a cell used. noise, residual, texture, frame_residual, shot_residual, grid_residual: of a cell.
     corner: M times grid in the corners, or along the edge if there is one; corner_sigma: its standard error. edge_radius,
     edge_share: where the image circle ends, half diagonals (0: with the frame), and the share of the frame beyond it.
-    light_ev: change in a corner for another model of the light, EV. polynomial_error: largest, of M without the grid. gain_grid: what the polynomial leaves. covariance: n x n as in Profile.
+    light_ev: change in a corner for another model of the light, EV. polynomial_error: largest, of M without the
+    grid. levels: those of the options with the offset found; black_offset, black_sigma: it and its error; black_ev:
+    what that changes in a corner, EV; black_shown: the pictures determine it. gain_grid: what the polynomial leaves.
+    covariance: n x n as in Profile.
     image_quality: what every picture gave, FLAT_QUALITY_DTYPE.
     """
 
@@ -115,6 +122,11 @@ class FlatResult(WithFindings, Struct, _abi.FlatResult):
     edge_share: float = default
     light_ev: float = default
     polynomial_error: float = default
+    levels: Nested[Levels] = Nested(Levels)
+    black_offset: float = default
+    black_sigma: float = default
+    black_ev: float = default
+    black_shown: Flag = Flag()
     grid_residual: float = default
     covariance_size: int = default
     covariance: Covariance = Covariance()

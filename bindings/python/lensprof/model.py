@@ -293,6 +293,29 @@ class GainGrid(Value, _abi.GainGrid):
         return _given(results)
 
 
+class Levels(Value, _abi.Levels):
+    """Samples without light and at saturation, as shares of full scale: grey value = (sample - black) / (white -
+    black). By default none: the grey value is the sample.
+
+    black: of red, green and blue, -0.5..1; grey pictures use green. white: 0 = 1, full scale.
+    """
+
+    black: Vector = Vector()
+    white: float = default
+
+    def validate(self) -> None:
+        """Raises lensprof.Error unless black lies below white."""
+        check(lib.lensprof_levels_validate(byref(self)), f"{self}: black must lie below white, white at most 1")
+
+    def to_value(self, sample: float, channel: int = 1) -> float:
+        """The grey value of a sample (0..1), not clipped."""
+        return float(lib.lensprof_levels_to_value(byref(self), integer(channel, "channel"), sample))
+
+    def to_sample(self, value: float, channel: int = 1) -> float:
+        """The reverse."""
+        return float(lib.lensprof_levels_to_sample(byref(self), integer(channel, "channel"), value))
+
+
 class Exposure(Value, _abi.Exposure):
     """Exposure and white balance of one picture; 0 EV and 1, 1, 1 by default.
 

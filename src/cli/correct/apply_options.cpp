@@ -1,6 +1,7 @@
 #include "cli/correct/apply_options.hpp"
 
 #include "cli/correct/model_options.hpp"
+#include "cli/program/level_words.hpp"
 #include "photo/base/failure.hpp"
 
 namespace lensprof {
@@ -16,6 +17,13 @@ static void declare_keys(Command &command, ApplyOptions &o) {
     keys.number("strength", o.kind.strength, {0.0, 1.0}, "share of the falloff to correct, 0 to 1; default 1");
     keys.number("gain-cap", o.kind.gain_cap, {1.0, 1e6},
                 "maximum gain of the falloff correction, 1 or more, to limit noise in the corners; default unlimited");
+    keys.word(
+        "black", "LEVEL", [&o](const std::string &word) { o.kind.levels.black = black_levels_of(word); },
+        "sample without light, which is subtracted before and put back after, instead of the profile's: a value such "
+        "as 256, a percentage such as 6%, or RED:GREEN:BLUE");
+    keys.word(
+        "white", "LEVEL", [&o](const std::string &word) { o.kind.levels.white = white_level_of(word); },
+        "sample at saturation, at which outputs are clipped; a value such as 4095, or a percentage");
     declare_model_keys(keys, o.model);
     keys.flag("simulate", o.kind.simulate, "add the falloff instead of correcting it");
     Keys encoding = command.keys("--encoding", "how the outputs are written");

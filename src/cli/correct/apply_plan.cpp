@@ -31,7 +31,7 @@ namespace {
 bool becomes_dng(const ApplyOptions &o, const std::string &raw) {
     const CorrectionKind &kind = o.kind;
     const bool is_plain = !kind.linear && !kind.simulate && !kind.chroma && kind.strength == 1.0 && kind.gain_cap == 0.0
-                          && o.project().empty() && o.sheet.empty();
+                          && !kind.levels.any() && o.project().empty() && o.sheet.empty();
     if (o.raw_output == RawOutput::dng && raw != "DNG")
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--encoding raw=dng: needs DNG files, but one is a " + raw
                                                    + "; convert it to DNG first, or omit the option");
@@ -179,6 +179,9 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
         job.model_name = std::filesystem::path(o.project()).filename().string();
         if (!source.scene->document) named = name_below(source.scene->names[image]);
     }
+    if (o.kind.levels.any())
+        job.levels =
+            std::make_shared<lensprof_levels>(levels_of(o.kind.levels, read_header(picture.file), picture.file));
     job.target = target_name(o, picture, named);
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);

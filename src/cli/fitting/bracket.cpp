@@ -46,7 +46,7 @@ void declare_bracket_fit(Command &command, BracketOptions &o) {
                 "white balance of the pictures: free (default: estimated per picture) or fixed (the same in all)");
     keys.text("reference", o.reference,
               "picture (number or name) whose exposure is 0 EV; default the first usable one");
-    keys.number("black", o.black, {0.0, 200.0},
+    keys.number("ignore-below", o.black, {0.0, 200.0},
                 "ignore grey values up to this, levels of 255, if black is not 0, as in scanned film; default 0");
     declare_sampling(keys, o.pixels, "10000 per picture");
 }
@@ -165,7 +165,7 @@ Verdict bracket_verdict(const Fitted &fitted, const std::vector<uint32_t> &membe
         case LENSPROF_REASON_FEW_INLIERS:
         case LENSPROF_REASON_IMAGE_DISAGREES:
         case LENSPROF_REASON_IMAGE_INCONSISTENT:
-            finding.text += "; use --fit black=NUMBER to exclude grey values of a raised black level";
+            finding.text += "; use --fit ignore-below=NUMBER to exclude grey values of a raised black level";
             break;
         default: break;
         }

@@ -10,6 +10,7 @@
 #include "cli/fitting/lens_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/exit_code.hpp"
+#include "cli/program/level_words.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
 #include "cli/program/options.hpp"
@@ -25,7 +26,7 @@ namespace {
 struct FlatCommand : CardOptions {
     std::vector<std::string> files;
     std::string report, bundle, into, table;  // files; empty: none
-    std::vector<std::string> outputs, check;
+    std::vector<std::string> outputs, check, dark_files;
     bool json = false, progress = false;
 };
 
@@ -60,8 +61,11 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
         {{"auto", LENSPROF_FLAT_GRID_AUTO}, {"none", LENSPROF_FLAT_GRID_NONE}, {"always", LENSPROF_FLAT_GRID_ALWAYS}},
         "gain grid for what k1..k3 leave: auto (default: if 0.3 % or more remain, or for a deep falloff), none or "
         "always");
-    keys.number("black", o.black, {0.0, 1.0}, "ignore grey values below this, 0 to 1; default 2/255");
-    keys.number("white", o.white, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
+    keys.number("ignore-below", o.ignore_below, {0.0, 1.0}, "ignore grey values below this, 0 to 1; default 2/255");
+    keys.number("ignore-above", o.ignore_above, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
+    keys.word(
+        "white-level", "LEVEL", [&o](const std::string &word) { o.levels.white = white_level_of(word); },
+        "sample at saturation, as a value such as 4095 or a percentage; default full scale");
     declare_max_side(keys, o.max_side);
 }
 
@@ -96,6 +100,13 @@ void declare(Command &command, FlatCommand &o) {
                   "shot number per picture, such as 1,1,1,2,2,2: exposures of one shot are merged; default one shot "
                   "per picture");
     expert.numbers("--ev", o.ev, any_number, "exposure per picture, EV, separated by commas; default from EXIF");
+    expert.word(
+        "--black", "LEVEL", [&o](const std::string &word) { o.levels.black = black_levels_of(word); },
+        "sample without light, which is subtracted: a value such as 256, a percentage such as 6%, or "
+        "RED:GREEN:BLUE; default 0, or what exposures of one card show");
+    expert.words(
+        "--dark", "FILE", [&o](const std::string &word) { o.dark_files.push_back(word); },
+        "picture with the lens covered, which gives the black level; repeat for several");
     expert.flag("--several", o.several,
                 "the pictures show one card at several places of the frame, with constant brightness");
     expert.words(
@@ -127,8 +138,11 @@ void check_options(const FlatCommand &o) {
         for (size_t j = 0; j < i; j++)
             if (is_same_file(o.files[i], o.files[j]))
                 throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": given twice; give it once");
-    if (!(o.black < o.white))
-        throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit black: must be less than white; give a smaller value");
+    if (!(o.ignore_below < o.ignore_above))
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      "--fit ignore-below: must be less than ignore-above; give a smaller value");
+    if (!o.dark_files.empty() && !o.levels.black.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--black and --dark exclude each other; give one of them");
     if (o.max_side != 0 && o.max_side < least_card_side)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--fit max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
@@ -193,6 +207,7 @@ int run_one(const FlatCommand &o, const CardSetting &setting, Streams &streams) 
 // No output may replace an input, the database or another output.
 void check_outputs(const FlatCommand &o, const CardSettings &settings) {
     std::vector<std::string> reserved = o.check;
+    reserved.insert(reserved.end(), o.dark_files.begin(), o.dark_files.end());
     if (!o.table.empty()) reserved.push_back(o.table);
     for (const CardSetting &setting : settings.list)
         for (const CardPicture &picture : setting.pictures) reserved.push_back(picture.file);
@@ -251,10 +266,11 @@ int run_lens(const FlatCommand &o, const CardSettings &settings, Streams &stream
     return static_cast<int>(lens_exit_code(cards));
 }
 
-int run(const FlatCommand &o, Streams &streams) {
+int run(FlatCommand o, Streams &streams) {
     check_options(o);
     Progress events(streams, o.progress);
     const CardSettings settings = settings_of(o, events);
+    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, events);
     const bool is_one = settings.list.size() == 1 && !settings.has_folders && settings.left_out.empty();
     if (is_one && o.outputs.empty() && o.bundle.empty() && o.check.empty())
         return run_one(o, settings.list.front(), streams);

@@ -74,6 +74,30 @@ void print_images(const CardFit &report, std::ostream &out) {
     }
 }
 
+Json levels_json(const lensprof_flat_result &fit) {
+    const double *black = fit.levels.black;
+    return {{"black", {black[0], black[1], black[2]}},
+            {"white", fit.levels.white > 0.0 ? fit.levels.white : 1.0},
+            {"offset", fit.black_offset},
+            {"black_sigma", fit.black_sigma},
+            {"black_ev", fit.black_ev},
+            {"from_pictures", fit.black_shown != 0}};
+}
+
+// Nothing for black that is 0 and not uncertain.
+void print_levels(const lensprof_flat_result &fit, std::ostream &out) {
+    const double *black = fit.levels.black;
+    if (black[0] == 0.0 && black[1] == 0.0 && black[2] == 0.0 && fit.black_sigma == 0.0) return;
+    out << format("black     %.3f %% of full scale", 100.0 * black[1]);
+    if (black[0] != black[1] || black[2] != black[1])
+        out << format(" (red %.3f, blue %.3f)", 100.0 * black[0], 100.0 * black[2]);
+    if (fit.black_sigma > 0.0) out << format(" +- %.3f", 100.0 * fit.black_sigma);
+    out << (fit.black_shown         ? ", as the pictures show"
+            : fit.black_sigma > 0.0 ? ", which the pictures do not show"
+                                    : ", as stated");
+    out << format("; its error changes the corner by %.3f EV\n", fit.black_ev);
+}
+
 void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
     if (!fit.spots) return;
     out << format("dust      %u spots excluded:", fit.spots);
@@ -113,6 +137,7 @@ Json flat_json(const CardFit &report) {
     json["edge"] = fit.edge_radius > 0.0 ? Json{{"radius", fit.edge_radius}, {"share", fit.edge_share}} : Json();
     json["light_ev"] = fit.light_ev;
     json["polynomial_error"] = fit.polynomial_error;
+    json["levels"] = levels_json(fit);
     json["spot_count"] = fit.spots;
     json["spots"] = spots_json(fit);
     json["gain_grid"] = grid_json(fit.gain_grid);
@@ -143,6 +168,7 @@ void print_flat(const CardFit &report, std::ostream &out) {
         out << format("grid      %u x %u nodes for what k1..k3 leave: %.2f %% remain\n", fit.gain_grid.columns,
                       fit.gain_grid.rows, 100.0 * fit.grid_residual);
     }
+    print_levels(fit, out);
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!fit.usable) out << "NOT USABLE: " << report.verdict.headline() << "\n";

@@ -9,7 +9,7 @@ struct RenamedOption {
 
 inline constexpr RenamedOption renamed_options[] = {
     // build, bracket, align and flat
-    {"--black", "--fit black=NUMBER"},
+    {"--black", "--fit ignore-below=NUMBER"},
     {"--camera-kind", "--fit camera-kind=KIND"},
     {"--center", "--fit center=free|fixed"},
     {"--compare", "--fit truth=FILE"},
@@ -36,7 +36,7 @@ inline constexpr RenamedOption renamed_options[] = {
     {"--sampling", "--fit sampling=balanced|paper"},
     {"--seed", "--fit seed=COUNT"},
     {"--stored", "--fit stored=auto|none|ID"},
-    {"--white", "--fit white=NUMBER"},
+    {"--white", "--fit ignore-above=NUMBER"},
     {"--white-balance", "--fit white-balance=free|fixed"},
     // build
     {"--exposures-out", "--write exposures=FILE"},

@@ -19,6 +19,14 @@ void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
                   double(*range.second));
 }
 
+void print_levels(const lensprof_levels &levels, std::ostream &out) {
+    const double *black = levels.black;
+    if (black[0] == 0.0 && black[1] == 0.0 && black[2] == 0.0 && levels.white == 0.0) return;
+    out << format("levels    black %.4g, %.4g, %.4g %% (red, green, blue), white %.4g %% of full scale\n",
+                  100.0 * black[0], 100.0 * black[1], 100.0 * black[2],
+                  levels.white > 0.0 ? 100.0 * levels.white : 100.0);
+}
+
 }  // namespace
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
@@ -30,6 +38,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     if (*profile.key.style) out << "style     " << profile.key.style << "\n";
     print_vignettings(profile, out);
     print_gain_grid(profile.grid, out);
+    print_levels(profile.levels, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method");
     if (p.prior_id) out << ", with profile " << p.prior_id << " as its prior";

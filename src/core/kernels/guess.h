@@ -21,7 +21,8 @@ static inline void fetch_ahead(const float *values, uint32_t ahead) {
 /* Float values through one table in both directions, as in values_to_light in tables.h. */
 static int is_guessable(const lensprof_plan *plan) {
     return plan->source_sample == LENSPROF_SAMPLE_F32 && plan->target_sample == LENSPROF_SAMPLE_F32 && plan->curves == 1
-           && plan->decode == LP_CURVE_TABLE && plan->encode == LP_CURVE_TABLE && plan->step == 0;
+           && !lp_level_steps(plan) && plan->decode == LP_CURVE_TABLE && plan->encode == LP_CURVE_TABLE
+           && plan->step == 0;
 }
 
 /* Parabolas through g at both ends and in the middle of every cell: place = guess[0] + t (guess[1] + t guess[2]) for

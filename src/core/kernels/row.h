@@ -19,16 +19,39 @@ static inline float ramp(float value, float low) {
     return t * t * (3.0f - 2.0f * t);
 }
 
+/* 0 without light and 1 at white. */
+static inline float value_of_code(const lensprof_plan *plan, float code, uint32_t channel, float unit) {
+#if LP_HAS_LEVELS
+    (void)unit;
+    return (code - plan->levels.black_code[channel]) / plan->levels.code_span[channel];
+#else
+    (void)plan, (void)channel;
+    return code / unit;
+#endif
+}
+
+/* A code below which no sample is nearly saturated. */
+static inline float near_white_code(const lensprof_plan *plan, float unit) {
+#if LP_HAS_LEVELS
+    (void)unit;
+    return plan->levels.near_white;
+#else
+    (void)plan;
+    return 0.89f * unit;
+#endif
+}
+
 /* Gains of red, green and blue, in s->factor. Towards white they gradually approach the largest gain, as the
  * brightest channel nears saturation (from 0.9 on) and the darkest one follows (from 0.6 on), so that a clipped
- * cloud does not take on a bright colour. The strip's light still holds codes, with white at `unit`; channels are
- * `pitch` apart, pixels `step`. */
-static void approach_white(strip *s, uint32_t count, uint32_t pitch, uint32_t step, float unit) {
+ * cloud does not take on a bright colour. The strip's light still holds codes; channels are `pitch` apart, pixels
+ * `step`. */
+static void approach_white(const lensprof_plan *plan, strip *s, uint32_t count, uint32_t pitch, uint32_t step,
+                           float unit) {
     for (uint32_t i = 0; i < count; i++) {
         const float *value = s->light + i * step;
         float *gain = s->factor + i * step, brightest = 0.0f, darkest = 1.0f, largest = 0.0f;
         for (uint32_t c = 0; c < 3; c++) {
-            float sample = value[c * pitch] / unit;
+            float sample = value_of_code(plan, value[c * pitch], pitch > 1 ? c : plan->channel_of_sample[c], unit);
             if (sample > brightest) brightest = sample;
             if (!(sample > darkest)) darkest = sample;
             if (gain[c * pitch] > largest) largest = gain[c * pitch];
@@ -55,7 +78,31 @@ static void find_rounding(const lensprof_plan *plan, uint32_t x, uint32_t y, str
                 ((float)dither_matrix[y & 7][(x + i / plan->samples) & 7] + 0.5f) * (1.0f / 64.0f);
 }
 
+/* ---- levels ---- */
+
+#if LP_HAS_LEVELS
+/* A plan's numbers of the channels of samples. */
+ALWAYS_INLINE lane_f of_channels(const strip *s, const float *numbers, uint32_t at) {
+    return f_gather(numbers, i_load(s->channel + at));
+}
+
+static void subtract_black(const lensprof_plan *plan, const run *r, strip *s) {
+    for (uint32_t i = r->at; i < r->at + r->count; i += LANES)
+        f_store(s->light + i, f_mul(f_sub(f_load(s->light + i), of_channels(s, plan->levels.black_in, i)),
+                                    of_channels(s, plan->levels.per_span_in, i)));
+}
+
+static void add_black(const lensprof_plan *plan, const run *r, strip *s) {
+    for (uint32_t i = r->at; i < r->at + r->count; i += LANES)
+        f_store(s->light + i, f_add(f_mul(f_load(s->light + i), of_channels(s, plan->levels.span_out, i)),
+                                    of_channels(s, plan->levels.black_out, i)));
+}
+#endif
+
 static void decode(const lensprof_plan *plan, const run *r, strip *s) {
+#if LP_HAS_LEVELS
+    if (lp_level_steps(plan) & LP_LEVELS_IN) subtract_black(plan, r, s);
+#endif
     switch (plan->decode) {
     case LP_CURVE_NONE: break;
     case LP_CURVE_CLIP: through_curve(plan, s, LP_CURVE_CLIP, 1, r->at, r->count); break;
@@ -80,6 +127,9 @@ static void encode(const lensprof_plan *plan, const run *r, strip *s) {
     case LP_CURVE_POWER: through_curve(plan, s, LP_CURVE_POWER, 0, r->at, r->count); break;
     default: through_curve(plan, s, LP_CURVE_MIXED, 0, r->at, r->count); break;
     }
+#if LP_HAS_LEVELS
+    if (lp_level_steps(plan) & LP_LEVELS_OUT) add_black(plan, r, s);
+#endif
 }
 
 static void load_run(const lensprof_plan *plan, const run *r, strip *s) {
@@ -103,17 +153,24 @@ static void store_run(const lensprof_plan *plan, const run *r, const strip *s) {
 #if LANES > 1
 /* The usual cases in one pass, or by tables in stages: samples of one type in and out, through one curve in both
  * directions. The steps are those of load_run, decode, encode and store_run, and so are the bytes. */
-ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, uint32_t at,
-                             const uint8_t *from) {
+ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, int has_levels,
+                             uint32_t at, const uint8_t *from) {
     const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
     lane_f light = load_values(sample, from);
+    (void)has_levels;
+#if LP_HAS_LEVELS
+    if (has_levels) { /* linear, and the spans are 1 */
+        light = f_mul(f_sub(light, f_set(plan->levels.black_in[0])), f_load(s->factor + at));
+        return f_add(light, f_set(plan->levels.black_out[0]));
+    }
+#endif
     if (curve != LP_CURVE_NONE) light = curve_value(plan, s, curve, 1, is_light, at, f_mul(light, code_scale(plan)));
     light = f_mul(light, f_load(s->factor + at));
     return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, is_light, at, light);
 }
 
-ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample,
-                            uint32_t curve) {
+ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample, uint32_t curve,
+                            int has_levels) {
     lensprof_plan local_plan = *shared; /* which no store can change */
     const lensprof_plan *plan = &local_plan;
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
@@ -121,28 +178,47 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
     uint32_t i = 0;
     local_plan.curves = 1, local_plan.dither = 0, local_plan.encode = curve;
     for (; i + LANES <= r->count; i += LANES) {
-        const lane_f light = through(plan, s, sample, curve, r->at + i, r->from + i * bytes);
+        const lane_f light = through(plan, s, sample, curve, has_levels, r->at + i, r->from + i * bytes);
         store_vector(plan, sample, is_inside, s, r->at + i, light, r->to + i * bytes);
     }
     if (i < r->count) {
         float buffer[2][LANES] = {{0.0f}, {0.0f}};
         uint8_t *in = (uint8_t *)buffer[0], *out = (uint8_t *)buffer[1];
         memcpy(in, r->from + i * bytes, (r->count - i) * bytes);
-        store_vector(plan, sample, is_inside, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out);
+        const lane_f light = through(plan, s, sample, curve, has_levels, r->at + i, in);
+        store_vector(plan, sample, is_inside, s, r->at + i, light, out);
         memcpy(r->to + i * bytes, out, (r->count - i) * bytes);
     }
 }
+
+#if LP_HAS_LEVELS
+/* False if it is not the usual case of linear samples: black that all channels share, subtracted and added. */
+static int do_one_pass_of_levels(const lensprof_plan *plan, const run *r, strip *s) {
+    if (plan->decode != LP_CURVE_NONE || !plan->levels.are_one) return 0;
+    switch (plan->source_sample) {
+    case LENSPROF_SAMPLE_U8: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_NONE, 1); return 1;
+    case LENSPROF_SAMPLE_U16: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_NONE, 1); return 1;
+    case LENSPROF_SAMPLE_F32: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE, 1); return 1;
+    default: return 0;
+    }
+}
+#endif
 
 /* False if it is not one of the usual cases. */
 static int do_one_pass(const lensprof_plan *plan, const run *r, strip *s) {
     if (plan->source_sample != plan->target_sample || plan->decode != plan->encode || plan->dither
         || (plan->curves == 3 && plan->decode != LP_CURVE_NONE))
         return 0;
+#if LP_HAS_LEVELS
+    if (plan->levels.steps) return do_one_pass_of_levels(plan, r, s);
+#endif
     switch (8 * plan->source_sample + plan->decode) {
-    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_NONE); return 1;
-    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_NONE); return 1;
-    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_POWER: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_POWER); return 1;
-    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE); return 1;
+    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_NONE, 0); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_NONE, 0); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_POWER:
+        one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_POWER, 0);
+        return 1;
+    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE, 0); return 1;
     case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE:
     case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE:
     case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_TABLE:
@@ -215,9 +291,10 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
     int near_white = 0;
     if (has_alpha) take_alpha(plan, runs[0].from, count, s);
     for (uint32_t p = 0; p < planes && plan->neutral_white; p++)
-        near_white |= largest_of(plan, &runs[p]) > 0.89f * unit;
+        near_white |= largest_of(plan, &runs[p]) > near_white_code(plan, unit);
     for (uint32_t p = 0; p < planes && near_white; p++) load_run(plan, &runs[p], s);
-    if (near_white) approach_white(s, count, planes == 3 ? STRIP + LANES : 1, planes == 3 ? 1 : plan->samples, unit);
+    if (near_white)
+        approach_white(plan, s, count, planes == 3 ? STRIP + LANES : 1, planes == 3 ? 1 : plan->samples, unit);
     for (uint32_t p = 0; p < planes; p++) {
         run r = runs[p];
 #if CAN_STREAM
@@ -241,7 +318,7 @@ void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8
     const float dy = (float)((int32_t)y - plan->center_px[1]) - plan->center_part[1];
     ALIGNED_TO_VECTORS strip s;
     if (plan->columns) blend_rows(plan, y, &s);
-    if (plan->curves == 3) find_channels(plan, x, y, &s);
+    if (plan->curves == 3 || lp_level_steps(plan)) find_channels(plan, x, y, &s);
     if (plan->dither) find_rounding(plan, x, y, &s);
 #ifdef IN_TABLE
     s.is_guessed = count >= LEAST_GUESSED && is_guessable(plan);

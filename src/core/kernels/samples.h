@@ -83,6 +83,17 @@ static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uin
 
 /* ---- light to samples ---- */
 
+/* Integer output is clipped at white. */
+static inline float largest_code(const lensprof_plan *plan, float unit) {
+#if LP_HAS_LEVELS
+    (void)unit;
+    return plan->levels.largest_code;
+#else
+    (void)plan;
+    return unit;
+#endif
+}
+
 /* Stores one vector as samples at p. `at`: its place on the strip. `is_inside`: all within black and white. */
 ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int is_inside, const strip *s, uint32_t at,
                                 lane_f light, uint8_t *p) {
@@ -103,7 +114,7 @@ ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int 
     const lane_f codes = plan->encode == LP_CURVE_NONE ? light : f_mul(light, f_set(unit));
     const lane_f half = plan->dither ? f_load(s->rounding + at) : f_set(0.5f);
     const lane_f up = f_add(is_inside ? codes : f_max(codes, f_set(0.0f)), half);
-    const lane_i code = i_of_f(is_inside ? up : f_min(up, f_set(unit + 0.5f)));
+    const lane_i code = i_of_f(is_inside ? up : f_min(up, f_set(largest_code(plan, unit) + 0.5f)));
     if (sample == LENSPROF_SAMPLE_U8)
         i_store_u8(p, code);
     else

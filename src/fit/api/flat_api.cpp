@@ -43,6 +43,8 @@ const char *broken_option(const lensprof_flat_options &o) {
         {o.responses == 1 || o.responses == 3, "responses must be 1 or 3"},
         {o.ev_sigma >= 1e-3 && o.ev_sigma <= 1.0, "ev_sigma must be 0.001..1 EV"},
         {o.prior_weight >= 0.0 && o.prior_weight <= 1e6, "prior_weight must be 0..1000000"},
+        {lensprof_levels_validate(&o.levels) == LENSPROF_OK, "levels must have black below white"},
+        {o.black_sigma >= 0.0 && o.black_sigma <= 0.2, "black_sigma must be 0..0.2"},
         {!o.reserved, "reserved must be 0"},
     };
     return first_broken(rules);
@@ -227,6 +229,7 @@ lensprof_status lensprof_flat_profile(const lensprof_flat *flat, lensprof_profil
         target.responses = flat->responses;
         std::copy_n(flat->response, flat->responses, target.response);
         target.grid = flat->result->gain_grid;
+        target.levels = flat->result->levels;
         target.provenance.pairs = flat->result->cells;
     };
     return change_given_profile(profile, change, error);

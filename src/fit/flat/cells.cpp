@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/levels.h"
 #include "fit/base/constants.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/quantile.hpp"
@@ -89,7 +90,8 @@ std::vector<int> borders(int cells, uint32_t frame, uint32_t view, uint32_t redu
 
 class RowOfCells {
 public:
-    RowOfCells(const View &view, const CellGrid &grid, int row) : image_(view.image()) {
+    RowOfCells(const View &view, const lensprof_levels &levels, const CellGrid &grid, int row)
+        : image_(view.image()), levels_(levels) {
         across_ = borders(grid.columns, grid.width, image_.view.width, image_.reduction);
         std::vector<int> down = borders(grid.rows, grid.height, image_.view.height, image_.reduction);
         top_ = down[static_cast<size_t>(row)], bottom_ = down[static_cast<size_t>(row) + 1];
@@ -99,6 +101,7 @@ public:
         allowed_.resize(width * rows);
         for (size_t v = 0; v < rows; v++)
             view.row(top_ + static_cast<int>(v), &values_[3 * width * v], &allowed_[width * v]);
+        if (lp_has_levels(&levels_)) take_levels();
     }
 
     void measure(int column, int channels, Cell &cell) {
@@ -107,7 +110,7 @@ public:
         cell.pixels = static_cast<uint32_t>(cell_values_[0].size());
         if (cell.pixels < 4 || cell.pixels < kSmallestPart * expected_) return;
         double limit = kLargestBeyond * cell.pixels;
-        const float step = quantum(image_.view.sample);
+        const float step = quantum(image_.view.sample) / static_cast<float>(lp_level_span(&levels_, 1));
         cell.state = static_cast<double>(white) > limit   ? CellState::white
                      : static_cast<double>(black) > limit ? CellState::black
                                                           : CellState::used;
@@ -120,6 +123,16 @@ public:
     }
 
 private:
+    // Samples to grey values. A grey picture has three equal channels, with the levels of green.
+    void take_levels() {
+        const bool is_grey = lensprof_layout_channels(image_.view.layout) == 1;
+        for (size_t i = 0; i < values_.size(); i++) {
+            const auto channel = static_cast<uint32_t>(is_grey ? 1 : i % 3);
+            const auto sample = static_cast<double>(values_[i]);
+            values_[i] = static_cast<float>(lensprof_levels_to_value(&levels_, channel, sample));
+        }
+    }
+
     void gather(int column, int channels, size_t &white, size_t &black, Cell &cell) {
         for (auto &values : cell_values_) values.clear();
         for (auto &differences : differences_) differences.clear();
@@ -149,6 +162,7 @@ private:
     }
 
     const lensprof_sample_image &image_;
+    const lensprof_levels &levels_;
     std::vector<int> across_;
     int top_ = 0, bottom_ = 0;
     double expected_ = 0.0;
@@ -225,7 +239,7 @@ bool measure_cells(const lensprof_flat_options &options, const lensprof_flat_ima
     auto work = [&](uint32_t k) {
         View view(samples[k / rows]);
         int row = static_cast<int>(k % rows);
-        RowOfCells cells(view, grid, row);
+        RowOfCells cells(view, options.levels, grid, row);
         for (int column = 0; column < grid.columns; column++)
             cells.measure(column, channels, pictures[k / rows].cells[static_cast<size_t>(row * grid.columns + column)]);
     };

@@ -220,11 +220,12 @@ void leave_out_surround(FlatFit &fit) {
 }
 
 void take_pictures(FlatFit &fit) {
-    if (!measure_cells(fit.options, fit.images, fit.count, fit.grid, fit.pictures)) throw Cancelled();
+    if (!measure_cells(fit.options, fit.images.data(), fit.count, fit.grid, fit.pictures)) throw Cancelled();
     Responses responses(fit.options);
-    fit.shots = group_shots(fit.images, fit.count);
+    fit.shots = group_shots(fit.images.data(), fit.count);
+    subtract_offset(fit);
     for (Shot &shot : fit.shots) {
-        merge_exposures(fit.options, fit.images, fit.pictures, responses, shot);
+        merge_exposures(fit.options, fit.images.data(), fit.pictures, responses, shot);
         mark_card(fit.grid, fit.options.find_card != 0, static_cast<int>(fit.options.channels), shot);
     }
     if (!fit.options.find_card && !fit.options.several) leave_out_surround(fit);
@@ -258,7 +259,7 @@ bool solve_all(FlatFit &fit, FlatResult &result) {
 
 bool fit_flat(const lensprof_flat_options &options, const lensprof_flat_image *images, uint32_t count,
               FlatResult &result) {
-    FlatFit fit{{}, options, images, count, make_cell_grid(images, count)};
+    FlatFit fit{{}, options, {images, images + count}, count, make_cell_grid(images, count)};
     fit.light = options.several ? LENSPROF_FLAT_LIGHT_EVEN : LENSPROF_FLAT_LIGHT_PLANE;
     if (options.light != LENSPROF_FLAT_LIGHT_AUTO) fit.light = options.light;
     report(options, 0.0);

@@ -24,6 +24,12 @@ struct FlatEdge {
     std::vector<bool> outside;  // per cell
 };
 
+// What the stated black level leaves, per channel: share of white less black.
+struct FlatOffset {
+    std::array<double, 3> value{}, sigma{};
+    bool is_shown = false;  // the pictures determine it better than the options do
+};
+
 // One light and falloff, fitted.
 struct FlatSolution {
     FlatProblem problem;
@@ -46,13 +52,14 @@ double data_reach(const CellGrid &grid, const FlatSolution &solution);
 // All data of one call; the solution is the last one.
 struct FlatFit : FlatSolution {
     const lensprof_flat_options &options;
-    const lensprof_flat_image *images;
+    std::vector<lensprof_flat_image> images;  // with their limits
     uint32_t count;
     CellGrid grid;
     std::vector<CellPicture> pictures{};
     std::vector<Shot> shots{};
     std::vector<std::vector<bool>> left_out{};  // per shot: cells with dust
     FlatEdge edge{};
+    FlatOffset offset{};
     uint32_t light = LENSPROF_FLAT_LIGHT_PLANE;  // the model in use
     std::optional<FlatSolution> other{};         // if the light was chosen: the fit with the one not chosen,
     double light_ev = 0.0;                       // and its largest difference in a corner
@@ -66,6 +73,9 @@ bool fit_flat(const lensprof_flat_options &options, const lensprof_flat_image *i
 // Relative residual E / P - 1 of every cell of a shot and channel, less that of the gain grid (may be NULL); NaN for
 // cells without a residual. With `dust`, includes the cells that are left out.
 std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, const lensprof_gain_grid *gain, bool dust);
+
+// Estimates the offset from pictures of one pattern of light at different levels, and subtracts it from their cells.
+void subtract_offset(FlatFit &fit);
 
 // Looks for a dark surround in a shot, such as the corners outside of an image circle.
 FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot);

@@ -98,7 +98,9 @@ void hold_falloff(FlatFit &fit) {
         }
         held.curve[static_cast<size_t>(curve)] = v;
     }
-    if (fit.covariance.size()) held.covariance = map * fit.covariance * map.transpose();
+    if (!fit.covariance.size()) return;
+    const Eigen::MatrixXd product = map * fit.covariance * map.transpose();
+    held.covariance = 0.5 * (product + product.transpose());  // symmetric to the bit
 }
 
 double held_ratio(const FlatFit &fit, int channel, double x, double y) {

@@ -82,6 +82,7 @@ uint32_t state_of(const FlatFit &fit, const FlatResult &r) {
     if (is_sloped && fit.problem.model.angles() < kTellingAngles) state |= kFewAngles;
     if ((is_sloped || fit.other) && !r.separated && (fit.options.free & LENSPROF_FREE_CENTER)) state |= kCenterByPrior;
     if (!fit.options.several && fit.problem.model.angles() == 1) state |= kOneAngle;
+    if (r.black_shown) state |= kBlackShown;
     if (fit.other) state |= is_even ? kEvenChosen : kPlaneChosen;
     return state;
 }
@@ -215,6 +216,15 @@ Measured edge(const JudgedFlat &judged) {
 }
 
 Measured one_light(const JudgedFlat &) { return {1.0, 0, {}}; }
+
+Measured black_error(const JudgedFlat &judged) {
+    return of_values(judged.r.black_ev, judged.r.black_sigma, judged.r.black_ev);
+}
+
+Measured black_offset(const JudgedFlat &judged) {
+    const FlatResult &r = judged.r;
+    return of_values(std::abs(r.black_offset) / r.black_sigma, r.black_offset, r.black_sigma);
+}
 
 Measured polynomial_error(const JudgedFlat &judged) { return of_value(judged.r.polynomial_error); }
 

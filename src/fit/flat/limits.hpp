@@ -42,6 +42,9 @@ constexpr double kWrongEv = 0.3, kDoubtfulEv = 0.1;
 
 constexpr double kNotPolynomial = 0.01;  // of M: what a corrected picture shows
 
+constexpr double kUncertainEv = 0.02;  // of the corner, by the error of the black level: below what pictures show
+constexpr double kClearOffset = 3.0;   // standard errors
+
 constexpr double kSteepest = 0.05, kFlattest = 20.0;  // d ln E / d ln B; of cameras .2 to 10
 constexpr double kFewInliers = 0.5;
 constexpr double kFarCenter = 0.1;  // half diagonals, as for pairs. Cards 0/10, 0/11, 0/11

@@ -160,6 +160,39 @@ double continued_error(const FlatFit &fit) {
     return std::min(kContinued * std::abs(change), kMostContinued);
 }
 
+// The brightest grey value that counts: in each shot, mean over the channels and shots.
+double brightest_grey(const FlatFit &fit) {
+    Mean mean;
+    for (const Shot &shot : fit.shots)
+        for (size_t c = 0; c < fit.options.channels; c++) {
+            double brightest = 0.0;
+            for (const uint32_t i : shot.images)
+                for (const Cell &cell : fit.pictures[i].cells)
+                    if (cell.state == CellState::used)
+                        brightest = std::max(brightest, static_cast<double>(cell.value[c]));
+            mean.add(brightest);
+        }
+    return mean.value();
+}
+
+// The levels with the offset found, and what an error of them means: d ln(corner) = (1 / B_middle - 1 / B_corner) db.
+void describe_levels(const FlatFit &fit, FlatResult &r) {
+    const FlatOffset &offset = fit.offset;
+    r.levels = fit.options.levels;
+    for (size_t c = 0; c < 3; c++) {
+        if (offset.value[c] != 0.0)
+            r.levels.black[c] =
+                lensprof_levels_to_sample(&fit.options.levels, static_cast<uint32_t>(c), offset.value[c]);
+        if (std::abs(offset.value[c]) > std::abs(r.black_offset)) r.black_offset = offset.value[c];
+        r.black_sigma = std::max(r.black_sigma, offset.sigma[c]);
+    }
+    r.black_shown = offset.is_shown;
+    const double brightest = brightest_grey(fit);
+    if (brightest > 0.0 && r.corner > 0.0)
+        r.black_ev = r.black_sigma * std::abs(1.0 / r.corner - 1.0) / brightest / std::log(2.0);
+    if (r.black_shown) r.corner_sigma = std::hypot(r.corner_sigma, r.corner * r.black_ev * std::log(2.0));
+}
+
 // M times grid where the corner is: mean of the channels over the directions in which it is in the frame.
 double corner_of(const FlatFit &fit, const FlatResult &r) {
     const double w = fit.grid.width - 1.0, h = fit.grid.height - 1.0;
@@ -233,7 +266,8 @@ void describe_images(const FlatFit &fit, FlatResult &r) {
         q.residual = std::sqrt(square.value());
         auto gradient = light_gradient(fit.problem.model, fit.estimate.u, static_cast<int>(s));
         std::copy(gradient.begin(), gradient.end(), q.gradient);
-        std::vector<double> ev_residuals = exposure_residuals(fit.options, fit.images, fit.pictures, responses, shot);
+        std::vector<double> ev_residuals =
+            exposure_residuals(fit.options, fit.images.data(), fit.pictures, responses, shot);
         for (size_t i = 0; i < shot.images.size(); i++) {
             q.ev_residual = ev_residuals[i];
             describe_picture(fit, shot, shot.images[i], q);
@@ -309,6 +343,7 @@ void describe_flat(const FlatFit &fit, FlatResult &r) {
         const double left = corner_misfit(fit, r.gain_grid.columns ? &r.gain_grid : nullptr);
         r.corner_sigma = std::hypot(r.corner_sigma, r.corner * std::sqrt(left), r.corner * continued_error(fit));
     }
+    describe_levels(fit, r);
     describe_images(fit, r);
 }
 

@@ -20,7 +20,8 @@ enum FlatState : uint32_t {
     kFewAngles = 64,  // of shots: they do not separate the light from a lens that is not radial
     kOneAngle = 128,  // one light and one angle
     kEvenChosen = 256,
-    kPlaneChosen = 512
+    kPlaneChosen = 512,
+    kBlackShown = 1024  // by the pictures
 };
 
 struct JudgedFlat {
@@ -61,6 +62,8 @@ Measured spots(const JudgedFlat &judged);
 Measured edge(const JudgedFlat &judged);
 Measured one_light(const JudgedFlat &judged);
 Measured polynomial_error(const JudgedFlat &judged);
+Measured black_error(const JudgedFlat &judged);
+Measured black_offset(const JudgedFlat &judged);
 
 }  // namespace measure
 
@@ -108,6 +111,8 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, kNotes,   kCenterByPrior|kEvenChosen,  measure::center_by_prior,   Side::above, 0.0,                              Wording::less},
     {LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, kNotes,   kCenterByPrior,        measure::center_by_prior,         Side::above, 0.0,                              Wording::held},
     {LENSPROF_REASON_FLAT_DUST,            kNotes,   kOfAll,                measure::spots,                   Side::above, 0.0,                              Wording::usual},
+    {LENSPROF_REASON_FLAT_BLACK_LEVEL,     kNotes,   kOfAll,                measure::black_error,             Side::above, flat_limits::kUncertainEv,        Wording::usual},
+    {LENSPROF_REASON_FLAT_BLACK_LEVEL,     kNotes,   kBlackShown,           measure::black_offset,            Side::above, flat_limits::kClearOffset,        Wording::weak},
     {LENSPROF_REASON_FLAT_ONE_LIGHT,       kNotes,   kOneAngle,             measure::one_light,               Side::above, 0.0,                              Wording::usual},
 };
 // clang-format on

@@ -9,7 +9,9 @@
 #include <lensprof/flat.h>
 
 #include "photo/calibration/profile_store.hpp"
+#include "photo/cards/dark_frames.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/pictures/stated_levels.hpp"
 
 namespace lensprof {
 
@@ -24,7 +26,10 @@ struct CardOptions {
          turned = false;          // the camera was rotated between the shots, as the orientation of EXIF states
     int64_t profile = 0;          // whose response the pictures have; 0: none
     std::optional<double> gamma;  // of the response x^(1/gamma)
-    double ev_sigma = 0.02, black = 2.0 / 255.0, white = 250.0 / 255.0;
+    double ev_sigma = 0.02;
+    double ignore_below = 2.0 / 255.0, ignore_above = 250.0 / 255.0;  // grey values, 0..1
+    StatedLevels levels;                                              // of the samples
+    std::optional<DarkLevel> dark;                                    // instead of a stated black level
     uint32_t max_side = 1600;
     uint32_t threads = 0;  // of one fit; 0: all cores
 };
@@ -42,6 +47,7 @@ struct CardInput {
     std::vector<std::vector<uint8_t>> masks;  // per picture; empty = the whole picture
     std::vector<lensprof_flat_image> images;
     std::vector<lensprof_response> response;  // one or three
+    StatedLevels levels;                      // that the first picture states
     lensprof_profile_key key;                 // from EXIF of the first picture
     lensprof_flat_options options;
 };

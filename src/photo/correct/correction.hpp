@@ -13,6 +13,7 @@
 #include "photo/correct/lookup_report.hpp"
 #include "photo/pictures/metadata.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/pictures/stated_levels.hpp"
 #include "photo/report/report.hpp"
 
 namespace lensprof {
@@ -40,6 +41,7 @@ struct Correction {
                                                         // keep
     std::string note;                                   // note to print; empty = none
     std::string command;                                // `apply` with what corrects it; empty = that of the user
+    std::shared_ptr<const lensprof_levels> levels;      // of the samples, instead of the model's; NULL: those
     std::vector<CropCorrection> crops;                  // what is corrected; the rest is only encoded. Empty = all
     bool copies_dng = false;  // the target is a copy of the source with the falloff as an opcode, pixels unchanged
 };
@@ -50,6 +52,7 @@ struct CorrectionKind {
     double strength = 1.0;  // of the falloff correction; as in lensprof_apply_options
     double gain_cap = 0.0;
     bool chroma = false;
+    StatedLevels levels;  // of the pictures, instead of the model's; without any: those
     bool dither = false;
     bool overwrite = false;   // replace even outputs of other pictures
     uint32_t threads = 0;     // 0 = all cores

@@ -1,5 +1,6 @@
 #include "photo/pictures/exif_sensor.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "photo/pictures/exif_tags.hpp"
@@ -68,6 +69,22 @@ void read_sensor(const Exif &exif, bool is_raw, PictureMetadata &metadata) {
     if (!is_raw) size.shown_diagonal = shown_diagonal(stated, size);  // raw files have margins
     const double crop_factor = read_crop_factor(exif, metadata.key.focal_mm, stated, size);
     metadata.key.crop_factor = size.of_part(crop_factor);
+}
+
+// Of a repeating pattern (BlackLevelRepeatDim), the mean counts.
+void read_levels(const Exif &exif, PictureMetadata &metadata) {
+    constexpr size_t largest_pattern = 64;
+    const ExifField *black = exif.find(exif_tags::black_level);
+    double sum = 0.0;
+    size_t count = 0;
+    for (; black && count < std::min<size_t>(black->count, largest_pattern); count++)
+        sum += number_of(black, exif.order, count);
+    if (count > 0 && std::isfinite(sum) && sum >= 0.0) {
+        const double mean = sum / static_cast<double>(count);
+        metadata.black_level = {mean, mean, mean};
+        for (size_t c = 0; c < 3 && count == 3; c++) (*metadata.black_level)[c] = number_of(black, exif.order, c);
+    }
+    metadata.white_level = in_range(read_number(exif, {exif_tags::white_level}), 65536.0);
 }
 
 }  // namespace lensprof

@@ -9,4 +9,7 @@ namespace lensprof {
 // Fills size.shown_diagonal and the crop factor of the key, from the focal length of the key and the size in pixels.
 void read_sensor(const Exif &exif, bool is_raw, PictureMetadata &metadata);
 
+// Fills black_level and white_level.
+void read_levels(const Exif &exif, PictureMetadata &metadata);
+
 }  // namespace lensprof

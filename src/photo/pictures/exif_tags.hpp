@@ -14,8 +14,9 @@ constexpr ExifTag subfile_type = image(254), image_width = image(256), image_len
                   bits_per_sample = image(258), make = image(271), model = image(272), orientation = image(274),
                   x_resolution = image(282), software = image(305), sample_format = image(339), xmp = image(700),
                   iptc = image(33723), photoshop = image(34377), colour_profile = image(34675),
-                  dng_version = image(50706), camera_serial_number = image(50735), dng_private_data = image(50740),
-                  opcode_list_2 = image(51009), opcode_list_3 = image(51022);
+                  dng_version = image(50706), black_level = image(50714), white_level = image(50717),
+                  camera_serial_number = image(50735), dng_private_data = image(50740), opcode_list_2 = image(51009),
+                  opcode_list_3 = image(51022);
 constexpr ExifTag exposure_time = photo(0x829a), f_number = photo(0x829d), exposure_program = photo(0x8822),
                   iso_speed_ratings = photo(0x8827), sensitivity_type = photo(0x8830),
                   output_sensitivity = photo(0x8831), exposure_index = photo(0x8832), iso_speed = photo(0x8833),

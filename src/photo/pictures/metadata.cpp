@@ -124,6 +124,7 @@ PictureMetadata read_metadata(const std::string &path) {
     metadata.key.distance_m = read_distance(exif, notes.distance_m);
     metadata.size = {blocks.width, blocks.height};
     read_sensor(exif, is_raw, metadata);
+    if (!is_raw) read_levels(exif, metadata);
     read_processing(blocks, is_raw, metadata);
     metadata.is_of_camera = blocks.is_of_camera && !is_of_converter(exif, xmp);
     metadata.mark = correction_mark_of(xmp);

@@ -3,6 +3,7 @@
 // Threads: any function may run in several threads concurrently.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -61,6 +62,11 @@ struct PictureMetadata {
     // lensprof_settings_ev of the three: larger means a brighter rendering of the same scene. Set only if all are
     // known.
     std::optional<double> exif_ev;
+
+    // Samples without light (red, green, blue) and at saturation, as the tags BlackLevel and WhiteLevel of DNG state
+    // them; not of raw files, whose levels are applied when they are read.
+    std::optional<std::array<double, 3>> black_level;
+    std::optional<double> white_level;
 
     std::string captured;  // EXIF's DateTimeOriginal with its fraction of a second; empty if either is missing
 

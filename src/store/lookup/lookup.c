@@ -126,6 +126,13 @@ static void set_falloff(const work *w, lensprof_profile *profile) {
     lensprof_gain_grid_init(&profile->grid);
 }
 
+/* Levels belong to the sensor: those of another camera do not apply. */
+static void set_levels(const work *w, lensprof_profile *profile) {
+    for (int i = 0; i < LENSPROF_LOOKUP_REASONS; i++)
+        if (w->lookup.reason_code[i] == LENSPROF_REASON_LOOKUP_ON_OTHER_CAMERA)
+            memset(&profile->levels, 0, sizeof profile->levels);
+}
+
 static void set_response(const work *w, lensprof_profile *profile) {
     lensprof_response linear;
     if (w->response.responses < 3) lensprof_response_set_linear(&linear);
@@ -153,6 +160,7 @@ static lensprof_status compose(work *w, lensprof_error *error) {
     set_sigma(w);
     profile->key = w->falloff.key;
     set_response(w, profile);
+    set_levels(w, profile);
     set_falloff(w, profile);
     set_covariance(w, profile);
     set_provenance(w, profile);

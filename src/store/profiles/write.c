@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "core/profile.h"
 #include "store/names/names.h"
 
 #define SAME_CURVE 1e-9 /* of the grey range; far below what a picture can show */
@@ -35,6 +36,16 @@ static lensprof_status check_profile(lensprof_store *store, const lensprof_profi
                                  "the table of a response is not the curve that its kind and numbers describe",
                                  "make it with lensprof_response_set_...", error);
     return LENSPROF_OK;
+}
+
+static void bind_levels(lp_store_binder *binder, lensprof_levels levels) {
+    const double numbers[4] = {levels.black[0], levels.black[1], levels.black[2], levels.white};
+    for (int i = 0; i < 4; i++) {
+        if (numbers[i] != 0.0)
+            lp_bind_real(binder, numbers[i]);
+        else
+            lp_bind_null(binder);
+    }
 }
 
 void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name) {
@@ -81,6 +92,7 @@ void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *prof
         lp_bind_real(binder, provenance->gamma_sigma);
     else
         lp_bind_null(binder);
+    bind_levels(binder, lp_profile_levels(profile));
 }
 
 /* With AUTOINCREMENT no id is used twice: where a row has or had the last one, no row can follow, and an INSERT would
@@ -105,8 +117,8 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
         "INSERT INTO profiles (camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing,"
         " method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
         " response_curves, vignetting_curves, covariance_size, covariance, gain_grids, unit, crop_factor, doubt, lens_name,"
-        " color_temperature_k, prior_id, forced, style, gamma_sigma)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        " color_temperature_k, prior_id, forced, style, gamma_sigma, black_red, black_green, black_blue, white_level)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     char lens_name[LP_NAME_BYTES]; /* bound as it is: until the statement has run */
