@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge install abi abi-baseline abi-headers lint format docs docs-update gallery clean
+.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge bench-fields install abi abi-baseline abi-headers lint format docs docs-update gallery clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -79,6 +79,11 @@ SEQUENCES ?= 60
 bench-knowledge: build ## measure what prior knowledge of camera and lens gains (SEQUENCES=N)
 	@cmake/install-packages.sh packages-test.txt
 	tests/bench/run.sh --only knowledge --sequences $(SEQUENCES)
+
+bench-fields: build ## measure one shading of many pictures compared with BaSiC (basicpy of PyPI, in build/basicpy: 6 GB)
+	test -x build/basicpy/bin/python || python3 -m venv build/basicpy
+	build/basicpy/bin/pip install -q basicpy==2.0.0 scipy
+	LENSPROF_LIBRARY=build/liblensprof.so PYTHONPATH=bindings/python build/basicpy/bin/python -B tests/bench/fields.py
 
 install: deps ## install under PREFIX (default /usr/local), with the database of `make profiles` where that was made
 	cmake --preset release -DLENSPROF_TESTS=OFF >/dev/null

@@ -193,8 +193,8 @@ typedef struct lensprof_flat_result {
                            chosen) or a plane (EVEN was chosen), EV; 0 if the light was not chosen by the data */
     double polynomial_error; /* largest relative error of M without the grid, where the falloff is not a polynomial */
     lensprof_levels levels;  /* of the options, with the offset that was found */
-    double black_offset;     /* of it: share of white less black, of the channel in which it is largest; 0 if none */
-    double black_sigma;      /* standard error of the black level after the fit, of the channel with the largest */
+    double black_offset;     /* of it: share of full scale, of the channel in which it is largest; 0 if none */
+    double black_sigma;      /* standard error of the black level after the fit, share of full scale */
     double black_ev;         /* change of the falloff in the corner if the black level is off by this, EV */
     uint32_t black_shown;    /* 1: the pictures determine the black level better than the options do */
     uint32_t reserved;       /* 0 */

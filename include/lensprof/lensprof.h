@@ -13,6 +13,7 @@
 #include "base.h"
 #include "exposure_settings.h"
 #include "exposures.h"
+#include "fields.h"
 #include "fit.h"
 #include "fixed.h"
 #include "flat.h"

@@ -91,6 +91,17 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_FLAT_NEEDS_GRID = 515,  /* relative error of k1..k3 without the gain grid */
     LENSPROF_REASON_FLAT_BLACK_LEVEL = 516, /* note: standard error of black; change of the falloff in the corner, EV */
 
+    /* Fields: pictures of different scenes under one shading. */
+    LENSPROF_REASON_FIELDS_FEW = 521,       /* pictures that differ; pictures needed */
+    LENSPROF_REASON_FIELDS_REPEATED = 522,  /* first image that repeats another one: number of them */
+    LENSPROF_REASON_FIELDS_PATTERN = 523,   /* share of the light; share of the variance of a cell */
+    LENSPROF_REASON_FIELDS_UNCERTAIN = 524, /* standard error of the shading, share */
+    LENSPROF_REASON_FIELDS_OFFSET = 525,
+    LENSPROF_REASON_FIELDS_WHITE = 526,  /* share of the cells; or number of images left out */
+    LENSPROF_REASON_FIELDS_BLACK = 527,  /* number of images left out */
+    LENSPROF_REASON_FIELDS_UNSEEN = 528, /* share of the cells */
+    LENSPROF_REASON_FIELDS_GAIN = 529,
+
     /* Lookups of profiles; from 651 on, the profile was found. */
     LENSPROF_REASON_LOOKUP_NO_LENS = 601,
     LENSPROF_REASON_LOOKUP_NO_CAMERA = 602,

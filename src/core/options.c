@@ -27,6 +27,10 @@ lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *optio
     if (lp_sized_wrong(options, FIRST_OPTIONS, sizeof *options)
         || lp_sized_wrong(profile, LP_FIRST_PROFILE, sizeof *profile))
         return LENSPROF_ERROR_STRUCT_SIZE;
+    const lensprof_levels levels = lp_profile_levels(profile);
+    const int has_levels = lp_has_levels(&levels);
+    const int has_room = options->struct_size >= LP_END_OF(lensprof_apply_options, output_levels);
+    if (has_levels && !has_room) return LENSPROF_ERROR_UNSUPPORTED;
     options->responses = profile->responses;
     options->vignettings = profile->vignettings;
     options->response = profile->response;
@@ -34,11 +38,7 @@ lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *optio
     options->grid = profile->grid.columns ? &profile->grid : NULL;
     options->blob = NULL;
     options->blob_bytes = 0;
-    const lensprof_levels levels = lp_profile_levels(profile);
-    if (options->struct_size >= LP_END_OF(lensprof_apply_options, output_levels))
-        options->levels = options->output_levels = lp_has_levels(&levels) ? &profile->levels : NULL;
-    else if (lp_has_levels(&levels))
-        return LENSPROF_ERROR_UNSUPPORTED;
+    if (has_room) options->levels = options->output_levels = has_levels ? &profile->levels : NULL;
     return LENSPROF_OK;
 }
 

@@ -204,6 +204,12 @@ void test_the_black_level(void **) {
     assert_close(corner_error(of_file), 0.0, 0.004);
     assert_close(of_file["levels"]["white"].get<double>(), 4095.0 / 65535.0, 1e-12);
 
+    state_level(bright, 50714, 5000);  // above white: not plausible
+    const Outcome odd = run_words(flat({bright, "--linear", "--no-store"}));
+    assert_int_equal(odd.code, done);
+    assert_true(contains(odd.err, "BlackLevel"));
+    state_level(bright, 50714, 256);
+
     const Words db = {"--db", in_folder("black.db")}, setting = {"--camera", "Box", "--lens", "Box lens"};
     must_exit(done, flat({bright, dim}) + common + setting + db);
     assert_true(contains(must_exit(done, Words{"profile", "show", "1"} + db), "levels    black 0.39"));
@@ -222,6 +228,8 @@ void test_the_black_level(void **) {
     assert_close(mean(0, 0), middle, 12.0);
     must_exit(done, apply + Words{"--set", "black=0,white=100%", "-o", in_folder("unlevelled")});
     assert_true(evenness(in_folder("unlevelled/pedestal.tif")) > 1.05);
+    must_exit(done, apply + Words{"--set", "white=65535", "-o", in_folder("white")});  // black stays the profile's
+    assert_close(evenness(in_folder("white/pedestal.tif")), 1.0, 0.01);
 
     const struct {
         int code;
@@ -231,7 +239,7 @@ void test_the_black_level(void **) {
         {usage, {bright, "--black", "0.0078"}, "ignore-below=0.0078"},
         {usage, {bright, "--black", "70000"}, "--black"},
         {usage, {bright, "--black", "1:2"}, "RED:GREEN:BLUE"},
-        {usage, {bright, "--black", "5000"}, "not below its white level"},
+        {usage, {bright, "--black", "5000", "--fit", "white-level=4095"}, "not below its white level"},
         {usage, {bright, "--black", "256", "--dark", dark}, "exclude each other"},
         {not_usable, {bright, "--dark", dim}, "dim.tif: is not dark"},
         {usage, {bright, "--dark", shoot_grey("grey_dark.tif")}, "grey_dark.tif"},

@@ -499,7 +499,7 @@ void test_known_kinds(void **) {
         {bytes_of("\x1a\x45\xdf\xa3") + bytes_of("....\x42\x82\x88matroska"), "a video (MKV)"},
         {bytes_of("\x1a\x45\xdf\xa3") + bytes_of("....\x42\x82\x84webm"), "a video (WebM)"},
         {bytes_of("RIFF") + number(9, 4) + bytes_of("AVI LIST"), "a video (AVI)"},
-        {bytes_of("SIMPLE  =                    T"), "FITS"},
+        {bytes_of("XISF0100") + Bytes(20, 0), "XISF"},
         {bytes_of("GIF89a") + Bytes(20, 1), "GIF"},
         {bytes_of("BM") + number(9999, 4) + Bytes(4, 0) + number(54, 4, false) + number(40, 4, false), "BMP"},
         {bytes_of("P6\n40 30\n255\n") + Bytes(40, 1), "Netpbm"},
@@ -541,7 +541,7 @@ void test_known_kinds_in_folders(void **) {
     for (const char *name : {"/a.mp4", "/sub/b.MP4", "/sub/c.bin"}) save(in + name, clip);
     save(kinds_only + "/d.mp4", clip);
     save(in + "/.hidden.mp4", clip);
-    save(in + "/star.fits", bytes_of("SIMPLE  =                    T"));
+    save(in + "/star.xisf", bytes_of("XISF0100") + Bytes(20, 0));
     save_text(in + "/notes.txt", "P");
     save_text(in + "/one.xmp", "<x:xmpmeta>"), save_text(in + "/pano.pto", "p f2\n"), save_text(in + "/thumbs.db", "");
     save(in + "/song.m4a", number(24, 4) + bytes_of("ftypM4A ") + number(0, 4));
@@ -554,7 +554,7 @@ void test_known_kinds_in_folders(void **) {
         const std::string said = run_words(words).err;
         for (const std::string line : {"/a.mp4 and 2 more: left out: a video (MP4), which lensprof does not read; make "
                                        "frames of it first, for example with `ffmpeg -i ",
-                                       "/star.fits: left out: a FITS file, which lensprof does not read; convert it"})
+                                       "/star.xisf: left out: an XISF file, which lensprof does not read; convert it"})
             if (!contains(said, "warning: " + in + line)) fail_msg("%s: %s", words[0].c_str(), said.c_str());
         for (const char *silent : {"hidden", "notes", "xmp", "pto", "thumbs", "song", "zip"})
             if (contains(said, silent)) fail_msg("%s: %s", words[0].c_str(), said.c_str());

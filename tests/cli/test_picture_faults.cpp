@@ -197,7 +197,8 @@ void test_not_pictures(void **) {
     save(in_folder("raw.cr2"), {'I', 'I', '*', 0, 16, 0, 0, 0, 'C', 'R', 2, 0, 0, 0, 0, 0});
     const auto read = [](const char *name) { return [name] { read_picture(in_folder(name)); }; };
     assert_failure(LENSPROF_ERROR_READ, "empty.png: cannot read: file is truncated", read("empty.png"));
-    assert_failure(LENSPROF_ERROR_READ, "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP or JPEG XL", read("text.jpg"));
+    assert_failure(LENSPROF_ERROR_READ, "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP, JPEG XL or FITS",
+                   read("text.jpg"));
     assert_failure(LENSPROF_ERROR_READ, "camera raw", read("raw.cr2"));
     assert_failure(LENSPROF_ERROR_READ, "no.png: cannot read: No such file", read("no.png"));
     assert_failure(LENSPROF_ERROR_READ, "is a folder", read("."));

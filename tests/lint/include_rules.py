@@ -54,7 +54,7 @@ CPP_OUTSIDE = {
 }
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h", "reason.h"}
-FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "rendering.h", "trial.h"}
+FIT_API = CORE_API | {"sample.h", "exposure_settings.h", "fit.h", "flat.h", "fields.h", "rendering.h", "trial.h"}
 FORMATS_API = FIT_API | {"exposures.h", "hugin.h", "formats.h"}
 STORE_API = CORE_API | {"store.h"}
 PHOTO_API = FIT_API | STORE_API | {"photo.h"}
@@ -95,10 +95,10 @@ LAYERS = {
 # The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
 ROOMS = {
     "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "scene",
-                "sampling", "flat", "rendering", "trial", "api"],
+                "sampling", "flat", "fields", "rendering", "trial", "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "cards", "correct", "folder", "api"],
+    "src/photo": ["base", "pictures", "registration", "reconstruction", "report", "scene", "calibration", "cards", "fields", "correct", "folder", "api"],
     "src/cli": ["program", "report", "page", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
@@ -107,7 +107,7 @@ ROOM_HEADERS = {
     "src/photo/registration": {"Eigen/*", "opencv2/*"},
     "src/photo/reconstruction": {"sqlite3.h"},
     "src/cli/fitting": {"zip.h"},
-    "src/photo/pictures": {"OpenEXR/*", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "jxl/*", "libheif/*", "libraw/*",
+    "src/photo/pictures": {"OpenEXR/*", "cairo.h", "exiv2/*", "fitsio.h", "jerror.h", "jpeglib.h", "jxl/*", "libheif/*", "libraw/*",
                            "png.h", "pugixml.hpp", "tiffio.h", "webp/*", "zlib.h"},
 }
 
@@ -124,6 +124,7 @@ PUBLIC = {
     "exposure_settings.h": CORE_API,
     "fit.h": FIT_API,
     "flat.h": FIT_API,
+    "fields.h": CORE_API,
     "rendering.h": CORE_API,
     "exposures.h": CORE_API,
     "trial.h": FIT_API,

@@ -26,6 +26,7 @@ EMOR_MODES = 25
 GRID_SIDE = 32
 UNKNOWN = -1.0
 COVARIANCE_MAX = 36
+FIELDS_IMAGES = 16384
 SETTINGS_MAX = 64
 CAMERAS_MAX = 64
 MODES_AUTO = 4294967295
@@ -233,6 +234,15 @@ class Reason(IntEnum):
     FLAT_ONE_LIGHT = 514
     FLAT_NEEDS_GRID = 515
     FLAT_BLACK_LEVEL = 516
+    FIELDS_FEW = 521
+    FIELDS_REPEATED = 522
+    FIELDS_PATTERN = 523
+    FIELDS_UNCERTAIN = 524
+    FIELDS_OFFSET = 525
+    FIELDS_WHITE = 526
+    FIELDS_BLACK = 527
+    FIELDS_UNSEEN = 528
+    FIELDS_GAIN = 529
     LOOKUP_NO_LENS = 601
     LOOKUP_NO_CAMERA = 602
     LOOKUP_OTHER_PROCESSING = 603
@@ -753,6 +763,90 @@ class Finding(Structure):
         ("limit", c_double),
         ("item", Item),
         ("text", c_char * 256),
+    ]
+
+
+class Fields(Structure):
+    """Opaque."""
+
+
+class FieldsOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("channels", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("given_offset", c_uint32),
+        ("responses", c_uint32),
+        ("threads", c_uint32),
+        ("reserved", c_uint32),
+        ("offset", c_double * 3),
+        ("white", c_double),
+        ("response", POINTER(Response)),
+        ("progress", Progress),
+        ("progress_user", c_void_p),
+    ]
+
+
+class FieldsImage(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("used", c_uint32),
+        ("same_as", c_uint32),
+        ("reserved", c_uint32),
+        ("level", c_double * 3),
+        ("white_share", c_double),
+        ("pixel_share", c_double),
+    ]
+
+
+class FieldsSmoothness(Structure):
+    _fields_ = [
+        ("order", c_uint32),
+        ("reserved", c_uint32),
+        ("weight", c_double),
+        ("rms", c_double),
+    ]
+
+
+class FieldsChannel(Structure):
+    _fields_ = [
+        ("offset", c_double),
+        ("offset_sigma", c_double),
+        ("offset_found", c_uint32),
+        ("smoothness", c_uint32),
+        ("shading_error", c_double),
+        ("heldout_rms", c_double),
+        ("even_rms", c_double),
+        ("pattern", c_double),
+        ("pattern_share", c_double),
+        ("background_share", c_double),
+        ("background_sigma", c_double),
+        ("iterations", c_uint32),
+        ("converged", c_uint32),
+    ]
+
+
+class FieldsResult(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("usable", c_uint32),
+        ("findings", c_uint32),
+        ("passed", c_uint32),
+        ("images", c_uint32),
+        ("used", c_uint32),
+        ("repeated", c_uint32),
+        ("black", c_uint32),
+        ("white", c_uint32),
+        ("channels", c_uint32),
+        ("columns", c_uint32),
+        ("rows", c_uint32),
+        ("smoothnesses", c_uint32),
+        ("reserved", c_uint32),
+        ("unseen_share", c_double),
+        ("white_share", c_double),
+        ("channel", FieldsChannel * 3),
+        ("shading", GainGrid),
     ]
 
 
@@ -1678,6 +1772,11 @@ STRUCTS = {
     "lensprof_exposures_lens": ExposuresLens,
     "lensprof_exposures_image": ExposuresImage,
     "lensprof_finding": Finding,
+    "lensprof_fields_options": FieldsOptions,
+    "lensprof_fields_image": FieldsImage,
+    "lensprof_fields_smoothness": FieldsSmoothness,
+    "lensprof_fields_channel": FieldsChannel,
+    "lensprof_fields_result": FieldsResult,
     "lensprof_camera": Camera,
     "lensprof_pair": Pair,
     "lensprof_observation": Observation,
@@ -1732,6 +1831,7 @@ STRUCTS = {
 OPAQUE = {
     "lensprof_plan": Plan,
     "lensprof_exposures": Exposures,
+    "lensprof_fields": Fields,
     "lensprof_fit": Fit,
     "lensprof_fixed_plan": FixedPlan,
     "lensprof_flat": Flat,
@@ -1765,6 +1865,9 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     ExposuresLens: ("lensprof_exposures_lens_init_sized", [ExposuresLens]),
     ExposuresImage: ("lensprof_exposures_image_init_sized", [ExposuresImage]),
     Finding: ("lensprof_init_sized", [Finding]),
+    FieldsOptions: ("lensprof_fields_options_init_sized", [FieldsOptions]),
+    FieldsImage: ("lensprof_init_sized", [FieldsImage]),
+    FieldsResult: ("lensprof_init_sized", [FieldsResult]),
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
     FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
@@ -1886,6 +1989,18 @@ FUNCTIONS = {
     # reason.h
     "lensprof_reason_name": (c_char_p, [c_uint32]),
     "lensprof_reason_text": (c_char_p, [c_uint32]),
+    # fields.h
+    "lensprof_fields_options_init_sized": (None, [POINTER(FieldsOptions), c_size_t]),
+    "lensprof_fields_create": (c_int, [POINTER(FieldsOptions), POINTER(POINTER(Fields)), POINTER(ErrorText)]),
+    "lensprof_fields_destroy": (None, [POINTER(Fields)]),
+    "lensprof_fields_add": (c_int, [POINTER(Fields), POINTER(Image), POINTER(c_uint8), c_ssize_t, POINTER(ErrorText)]),
+    "lensprof_fields_fit": (c_int, [POINTER(Fields), POINTER(ErrorText)]),
+    "lensprof_fields_get": (c_int, [POINTER(Fields), POINTER(FieldsResult), POINTER(ErrorText)]),
+    "lensprof_fields_image_at": (c_int, [POINTER(Fields), c_uint32, POINTER(FieldsImage), POINTER(ErrorText)]),
+    "lensprof_fields_smoothness_at": (c_int, [POINTER(Fields), c_uint32, c_uint32, POINTER(FieldsSmoothness),
+                                              POINTER(ErrorText)]),
+    "lensprof_fields_finding_at": (c_int, [POINTER(Fields), c_uint32, POINTER(Finding), POINTER(ErrorText)]),
+    "lensprof_fields_profile": (c_int, [POINTER(Fields), POINTER(Profile), POINTER(ErrorText)]),
     # geometry.h
     "lensprof_camera_validate": (c_int, [POINTER(Camera)]),
     "lensprof_camera_project": (c_int, [POINTER(Camera), c_double, c_double, POINTER(c_double)]),

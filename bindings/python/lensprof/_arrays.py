@@ -55,6 +55,12 @@ FLAT_QUALITY_DTYPE = _dtype(_abi.FlatImageQuality)
 FLAT_SPOT_DTYPE = _dtype(_abi.FlatSpot)
 """Layout of a spot of dust: x, y, radius (px), depth, shots."""
 
+FIELDS_IMAGE_DTYPE = _dtype(_abi.FieldsImage)
+"""Layout of what one picture gave to a fit of fields; see lensprof/fields.h."""
+
+FIELDS_SMOOTHNESS_DTYPE = _dtype(_abi.FieldsSmoothness)
+"""Layout of a smoothness that was tried: order, weight, rms (share of the light)."""
+
 _SAMPLE_TYPES = {np.dtype(np.uint8): SampleType.U8, np.dtype(np.uint16): SampleType.U16,
                  np.dtype(np.float32): SampleType.F32, np.dtype(np.float16): SampleType.F16}
 _LAYOUTS = {1: Layout.GREY, 2: Layout.GREY_ALPHA, 3: Layout.RGB, 4: Layout.RGBA}

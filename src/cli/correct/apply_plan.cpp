@@ -179,9 +179,6 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
         job.model_name = std::filesystem::path(o.project()).filename().string();
         if (!source.scene->document) named = name_below(source.scene->names[image]);
     }
-    if (o.kind.levels.any())
-        job.levels =
-            std::make_shared<lensprof_levels>(levels_of(o.kind.levels, read_header(picture.file), picture.file));
     job.target = target_name(o, picture, named);
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);
@@ -190,6 +187,9 @@ Correction make_job(const ApplyOptions &o, const ApplySource &source, const Name
     for (CropCorrection &crop : job.crops)
         if (!crop.model) crop.model = job.model;
     if (!job.crops.empty()) job.model = without_falloff(*job.crops[0].model);
+    if (o.kind.levels.any())
+        job.levels = std::make_shared<lensprof_levels>(
+            levels_of(o.kind.levels, read_header(picture.file), picture.file, job.model->levels));
     job.copies_dng = is_dng_name(job.target);
     if (job.copies_dng) check_opcodes(o, picture.file);
     return job;

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/fitting/fields.hpp"
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/lens_report.hpp"
 #include "cli/program/commands.hpp"
@@ -28,6 +29,8 @@ struct FlatCommand : CardOptions {
     std::string report, bundle, into, table;  // files; empty: none
     std::vector<std::string> outputs, check, dark_files;
     bool json = false, progress = false;
+    bool fields = false;         // pictures of different scenes, not of a card
+    uint32_t field_channel = 0;  // 0: not given
 };
 
 std::array<double, 4> card_of(const std::string &word) {
@@ -36,6 +39,16 @@ std::array<double, 4> card_of(const std::string &word) {
     std::array<double, 4> card;
     for (size_t i = 0; i < 4; i++) card[i] = number_of(sides[i], {0.0, 1e6});
     return card;
+}
+
+// The reason names the option that --black was in 0.2.
+std::vector<StatedLevel> black_level_or_limit(const std::string &word) {
+    try {
+        return black_levels_of(word);
+    } catch (const std::invalid_argument &reason) {
+        if (word.find_first_not_of("0123456789.") != std::string::npos) throw;
+        throw std::invalid_argument(reason.what() + ("; to ignore dark grey values, use --fit ignore-below=" + word));
+    }
 }
 
 void declare_flat_fit(Command &command, FlatCommand &o) {
@@ -66,6 +79,7 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
     keys.word(
         "white-level", "LEVEL", [&o](const std::string &word) { o.levels.white = white_level_of(word); },
         "sample at saturation, as a value such as 4095 or a percentage; default full scale");
+    keys.count("channel", o.field_channel, 1, 1000, "with --fields: channel of stacks that have several, from 1");
     declare_max_side(keys, o.max_side);
 }
 
@@ -90,6 +104,10 @@ void declare(Command &command, FlatCommand &o) {
                  "write report, numbers, the lens for Lensfun and reduced pictures as one .zip file, for an upload");
     command.file("--report", o.report, "write a report with charts as one .html file");
     Command expert = command.expert();
+    expert.flag(
+        "--fields", o.fields,
+        "the pictures show different scenes under one shading, such as fields of a microscope: find the shading "
+        "that all have in common, and their offset");
     expert.file(
         "--into", o.into,
         "database of Lensfun that the .xml file contains, too: the settings are added to its entry of the lens");
@@ -101,7 +119,7 @@ void declare(Command &command, FlatCommand &o) {
                   "per picture");
     expert.numbers("--ev", o.ev, any_number, "exposure per picture, EV, separated by commas; default from EXIF");
     expert.word(
-        "--black", "LEVEL", [&o](const std::string &word) { o.levels.black = black_levels_of(word); },
+        "--black", "LEVEL", [&o](const std::string &word) { o.levels.black = black_level_or_limit(word); },
         "sample without light, which is subtracted: a value such as 256, a percentage such as 6%, or "
         "RED:GREEN:BLUE; default 0, or what exposures of one card show");
     expert.words(
@@ -266,8 +284,50 @@ int run_lens(const FlatCommand &o, const CardSettings &settings, Streams &stream
     return static_cast<int>(lens_exit_code(cards));
 }
 
+// The first option that is for cards alone; NULL if none is given.
+const char *card_option(const FlatCommand &o) {
+    const CardOptions cards;  // the defaults
+    const std::pair<bool, const char *> given[] = {{!o.rotation_deg.empty(), "--rotation"},
+                                                   {o.turned, "--turned"},
+                                                   {!o.shots.empty(), "--shots"},
+                                                   {!o.ev.empty(), "--ev"},
+                                                   {o.several, "--several"},
+                                                   {o.find_card || !o.cards.empty(), "--card"},
+                                                   {!o.check.empty(), "--check"},
+                                                   {!o.bundle.empty(), "--bundle"},
+                                                   {!o.into.empty(), "--into"},
+                                                   {!o.dark_files.empty(), "--dark"},
+                                                   {!o.table.empty(), "--key table"},
+                                                   {o.levels.white.has_value(), "--fit white-level"},
+                                                   {o.ignore_below != cards.ignore_below, "--fit ignore-below"},
+                                                   {o.ignore_above != cards.ignore_above, "--fit ignore-above"},
+                                                   {o.max_side != cards.max_side, "--fit max-side"},
+                                                   {o.light != cards.light, "--fit light"},
+                                                   {o.own_light, "--fit own-light"},
+                                                   {o.grid != cards.grid, "--fit grid"},
+                                                   {!o.free_center, "--fit center"},
+                                                   {o.falloff_curves != 0, "--fit falloff-curves"}};
+    for (const auto &[is_given, name] : given)
+        if (is_given) return name;
+    return nullptr;
+}
+
+int run_fields(const FlatCommand &o, Streams &streams) {
+    if (const char *name = card_option(o))
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      std::string(name) + ": is for pictures of a card, not for --fields; omit one of them");
+    FieldsCommand command;
+    command.files = o.files, command.outputs = o.outputs, command.report = o.report;
+    command.json = o.json, command.progress = o.progress;
+    command.fit.store = o.store, command.fit.profile = o.profile, command.fit.gamma = o.gamma;
+    command.fit.linear = o.linear, command.fit.black = o.levels.black, command.fit.channel = o.field_channel;
+    return fit_fields_command(command, streams);
+}
+
 int run(FlatCommand o, Streams &streams) {
     check_options(o);
+    if (o.fields) return run_fields(o, streams);
+    if (o.field_channel) throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit channel: is for --fields; give it as well");
     Progress events(streams, o.progress);
     const CardSettings settings = settings_of(o, events);
     if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, events);
@@ -289,8 +349,11 @@ void declare_flat(Command &program) {
     command.footer(
         "Pictures are grouped by camera, lens, focal length, aperture and distance, as EXIF or their names\n"
         "state them, and every setting is measured alone; of several settings, or a folder, a table has a\n"
-        "line for each. Exit code 0: all are good; 4: some must be taken again; 3: files could not be read.");
+        "line for each. Exit code 0: all are good; 4: some must be taken again; 3: files could not be read.\n"
+        "With --fields, pictures of anything, such as fields of a microscope, give the shading that all\n"
+        "have in common; see docs/fields.md.");
     command.example("lensprof flat cards -o lens.xml --report lens.html");
+    command.example("lensprof flat --fields slides --camera Orca --lens \"10x 0.30\" -o shading.tif");
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

@@ -92,9 +92,7 @@ void print_levels(const lensprof_flat_result &fit, std::ostream &out) {
     if (black[0] != black[1] || black[2] != black[1])
         out << format(" (red %.3f, blue %.3f)", 100.0 * black[0], 100.0 * black[2]);
     if (fit.black_sigma > 0.0) out << format(" +- %.3f", 100.0 * fit.black_sigma);
-    out << (fit.black_shown         ? ", as the pictures show"
-            : fit.black_sigma > 0.0 ? ", which the pictures do not show"
-                                    : ", as stated");
+    out << (fit.black_shown ? ", as the pictures show" : "");
     out << format("; its error changes the corner by %.3f EV\n", fit.black_ev);
 }
 

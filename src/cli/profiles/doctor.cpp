@@ -27,6 +27,7 @@ std::vector<Part> optional_parts() {
             {"libheif", "reads HEIC and AVIF", can_read_heif()},
             {"libwebp", "reads WebP", can_read_webp()},
             {"libjxl", "reads JPEG XL", can_read_jxl()},
+            {"cfitsio", "reads FITS", can_read_fits()},
             {"OpenEXR", "writes OpenEXR", can_write_exr()}};
 }
 

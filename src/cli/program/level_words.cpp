@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "cli/program/numbers.hpp"
+#include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {
@@ -14,8 +15,8 @@ StatedLevel level_of(const std::string &word, double least_percent) {
         return {number_of(word.substr(0, word.size() - 1), {least_percent, most_percent}) / 100.0, true};
     const double number = number_of(word, {0.0, most_sample});
     if (number > 0.0 && number < 1.0)
-        throw std::invalid_argument(word + ": neither a value of the samples, such as 256, nor a percentage, such as 6%; "
-                                           "to ignore dark grey values, use --fit ignore-below=" + word);
+        throw std::invalid_argument(word + ": give a value of the samples, such as 256, or a percentage, such as "
+                                    + format("%g%%", 100.0 * number));
     return {number, false};
 }
 

@@ -8,7 +8,7 @@
 namespace lensprof {
 
 // "256", "6%" or "256:250:260" (red, green, blue). Throws std::invalid_argument with the reason: also for a share
-// without a sign, as options of 0.2 had it.
+// without a sign.
 std::vector<StatedLevel> black_levels_of(const std::string &word);
 
 StatedLevel white_level_of(const std::string &word);

@@ -7,6 +7,7 @@ namespace lensprof {
 std::string option_of(const std::string &name) {
     static const std::map<std::string, std::string> options = {
         {"aperture", "--aperture"},
+        {"black", "--black"},
         {"camera", "--camera"},
         {"card", "--card"},
         {"crop_factor", "--key crop-factor=NUMBER"},
@@ -15,6 +16,7 @@ std::string option_of(const std::string &name) {
         {"ev", "--ev"},
         {"exposure_keep", "--set exposure=keep"},
         {"falloff_curves", "--fit falloff-curves"},
+        {"field_channel", "--fit channel"},
         {"focal", "--focal"},
         {"free_all", "--fit free=all"},
         {"gamma", "--fit gamma=G"},

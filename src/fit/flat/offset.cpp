@@ -15,6 +15,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kSteps = 30;
+constexpr double kStill = 1e-6;         // of a level
 constexpr double kConverged = 1e-9;     // of full scale
 constexpr size_t kFullPictures2 = 400;  // square of the pictures of a group from which on some cells suffice
 constexpr double kOutlier2 = 9.0;       // of chi^2 per degree of freedom, from where a cell loses weight
@@ -73,8 +74,8 @@ public:
             const Eigen::VectorXd change = solve_symmetric(normal_, gradient_);
             for (size_t i = 1; i < level_.size(); i++) level_[i] += change[static_cast<Eigen::Index>(i)];
             const double before = offset_;
-            offset_ = std::clamp(offset_ + change[0], -0.5, kLargestShare * darkest_);
-            if (std::abs(offset_ - before) < kConverged) break;
+            offset_ = std::clamp(offset_ + change[0], -0.5, kLargestShare * std::max(darkest_, 0.0));
+            if (std::abs(offset_ - before) < kConverged && change.cwiseAbs().maxCoeff() < kStill) break;
         }
         accumulate();
         return true;
@@ -231,12 +232,13 @@ void subtract_offset(FlatFit &fit) {
     fit.offset.sigma.fill(fit.options.black_sigma);
     for (size_t c = 0; c < channels; c++) {
         OffsetFit offset(fit, groups, c);
-        if (!offset.solve()) return;
-        fit.offset.value[c] = offset.offset(), fit.offset.sigma[c] = offset.sigma();
-        for (CellPicture &picture : fit.pictures) subtract(picture, c, fit.offset.value[c]);
+        if (offset.solve()) fit.offset.value[c] = offset.offset(), fit.offset.sigma[c] = offset.sigma();
     }
     double mean = 0.0;
-    for (size_t c = 0; c < channels; c++) mean += fit.offset.value[c] / static_cast<double>(channels);
+    for (size_t c = 0; c < channels; c++) {
+        mean += fit.offset.value[c] / static_cast<double>(channels);
+        for (CellPicture &picture : fit.pictures) subtract(picture, c, fit.offset.value[c]);
+    }
     for (lensprof_flat_image &image : fit.images)
         image.black = std::max((image.black - mean) / (1.0 - mean), 0.0),
         image.white = (image.white - mean) / (1.0 - mean);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/levels.h"
 #include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/flat/fit.hpp"
@@ -179,17 +180,20 @@ double brightest_grey(const FlatFit &fit) {
 void describe_levels(const FlatFit &fit, FlatResult &r) {
     const FlatOffset &offset = fit.offset;
     r.levels = fit.options.levels;
+    double sigma = 0.0;  // share of white less black, as the light
     for (size_t c = 0; c < 3; c++) {
+        const auto channel = static_cast<uint32_t>(c);
+        const double span = lp_level_span(&fit.options.levels, channel), moved = span * offset.value[c];
         if (offset.value[c] != 0.0)
-            r.levels.black[c] =
-                lensprof_levels_to_sample(&fit.options.levels, static_cast<uint32_t>(c), offset.value[c]);
-        if (std::abs(offset.value[c]) > std::abs(r.black_offset)) r.black_offset = offset.value[c];
-        r.black_sigma = std::max(r.black_sigma, offset.sigma[c]);
+            r.levels.black[c] = lensprof_levels_to_sample(&fit.options.levels, channel, offset.value[c]);
+        if (std::abs(moved) > std::abs(r.black_offset)) r.black_offset = moved;
+        r.black_sigma = std::max(r.black_sigma, span * offset.sigma[c]);
+        sigma = std::max(sigma, offset.sigma[c]);
     }
     r.black_shown = offset.is_shown;
     const double brightest = brightest_grey(fit);
     if (brightest > 0.0 && r.corner > 0.0)
-        r.black_ev = r.black_sigma * std::abs(1.0 / r.corner - 1.0) / brightest / std::log(2.0);
+        r.black_ev = sigma * std::abs(1.0 / r.corner - 1.0) / brightest / std::log(2.0);
     if (r.black_shown) r.corner_sigma = std::hypot(r.corner_sigma, r.corner * r.black_ev * std::log(2.0));
 }
 

@@ -72,7 +72,6 @@ constexpr struct {
     {0, "AT&TFORM"sv, {"a DjVu document", document}},
     {0, "8BPS"sv, {"a Photoshop file (PSD)", layers}},
     {0, "gimp xcf"sv, {"a GIMP file (XCF)", layers}},
-    {0, "SIMPLE  ="sv, {"a FITS file", science}},
     {0, "XISF0100"sv, {"an XISF file", science}},
     {128, "DICM"sv, {"a DICOM file", science}},
     {0, "\x89HDF\r\n\x1a\n"sv, {"an HDF5 file", values_file}},

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "photo/base/format.hpp"
 #include "photo/base/lap.hpp"
 #include "photo/calibration/fit.hpp"
 #include "photo/pictures/orientation.hpp"
@@ -24,6 +25,18 @@ void handle_lossy_pictures(const CardOptions &o, CardInput &input, Events &event
                           "the stated one by half a grey level of the card. Use raw files, or 16 bit TIFF or PNG");
         return;
     }
+}
+
+// No pedestal is below 0: the light changed its form between the exposures, or a program subtracted too much.
+void warn_of_negative_black(const CardInput &input, const lensprof_flat_result &fit, Events &events) {
+    constexpr double clear = 5.0;  // standard errors
+    const bool is_raw = input.pictures.front().traits.format == FileFormat::raw;
+    if (is_raw || !fit.black_shown || fit.black_offset > -clear * fit.black_sigma) return;
+    events.warn(
+        input.files.front(),
+        format("the exposures show a black level of %.2f %%, below 0: a program subtracted too much, or the light "
+               "changed between them; if it is 0, state it with %s",
+               100.0 * fit.levels.black[1], option_name("black").c_str()));
 }
 
 // What is known before the fit.
@@ -84,6 +97,7 @@ CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
         check(lensprof_flat_image_at(flat, i, &found.quality[i], &error), "fit", &error);
     }
     found.solve_s = lap(clock);
+    warn_of_negative_black(input, found.fit, events);
     found.verdict = verdict_of(flat);
     name_images(found.files, found.verdict);
     name_shots(found.files, found.shots, found.verdict);

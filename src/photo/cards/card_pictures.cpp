@@ -221,9 +221,19 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
     if (has_linear_response(input) && is_integer && !levels.white) levels.white = input.levels.white;
     const bool is_of_file = has_linear_response(input) && is_integer && levels.black.empty() && !o.dark;
     if (is_of_file) levels.black = input.levels.black;
-    options.levels = levels_of(levels, first, file);
+    try {
+        options.levels = levels_of(levels, first, file);
+    } catch (const Failure &) {
+        if (levels.black.size() == o.levels.black.size() && levels.white.has_value() == o.levels.white.has_value())
+            throw;
+        events.note(file, "its tags BlackLevel and WhiteLevel do not suit its samples, and are ignored");
+        levels = o.levels;
+        options.levels = levels_of(levels, first, file);
+    }
     if (is_of_file && !levels.black.empty())
         events.note(file, format("its black level of %g is subtracted, as the file states", levels.black[1].number));
+    if (levels.white && !o.levels.white)
+        events.note(file, format("its white level is %g, as the file states", levels.white->number));
     if (o.dark) {
         check_dark(*o.dark, first, file);
         std::copy(o.dark->black.begin(), o.dark->black.end(), options.levels.black);

@@ -3,19 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "fit/base/quantile.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
-#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr uint32_t blocks = 16;        // along each side
-constexpr double largest_dark = 0.25;  // of full scale: no pedestal is as high
+constexpr uint32_t blocks = 16;       // along each side
+constexpr double largest_dark = 0.1;  // of full scale: no pedestal is as high
 // Of the level over the frame: light that falls on it varies by more. Shares of the level, or of full scale near 0.
 constexpr double clear_spread = 0.01, largest_spread = 0.05, least_spread = 0.0001, least_light = 0.0005;
+constexpr double far_sigmas = 4.0, least_reach = 1.5 / 255.0;   // from the median of a block; more than a step of 8 bit
 constexpr double mad_to_sigma = 1.4826, median_error = 1.2533;  // of normal numbers; relative to that of a mean
 
 double sample_at(const Picture &picture, uint32_t x, uint32_t y, uint32_t channel) {
@@ -31,14 +32,22 @@ double sample_at(const Picture &picture, uint32_t x, uint32_t y, uint32_t channe
     }
 }
 
-double block_mean(const Picture &picture, uint32_t block, uint32_t channel) {
+// Mean of the samples of a block near its median: hot pixels are not part of the level.
+std::optional<double> block_mean(const Picture &picture, uint32_t block, uint32_t channel) {
     const uint32_t column = block % blocks, row = block / blocks;
     const uint32_t right = (column + 1) * picture.width / blocks, bottom = (row + 1) * picture.height / blocks;
-    double sum = 0.0, count = 0.0;
+    std::vector<double> values, distances;
     for (uint32_t y = row * picture.height / blocks; y < bottom; y++)
         for (uint32_t x = column * picture.width / blocks; x < right; x++)
-            sum += sample_at(picture, x, y, channel), count += 1.0;
-    return count > 0.0 ? sum / count : 0.0;
+            values.push_back(sample_at(picture, x, y, channel));
+    if (values.empty()) return std::nullopt;  // a frame of few pixels
+    const double center = median(values);
+    for (const double value : values) distances.push_back(std::abs(value - center));
+    const double reach = std::max(far_sigmas * mad_to_sigma * median(distances), least_reach);
+    double sum = 0.0, count = 0.0;
+    for (const double value : values)
+        if (std::abs(value - center) <= reach) sum += value, count += 1.0;
+    return sum / count;
 }
 
 double deviation(std::vector<double> values) {
@@ -73,14 +82,14 @@ DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, E
         if (dark.file.empty()) {
             dark.file = file, dark.form = picture, dark.form.pixels.clear();
             channels = lensprof_layout_channels(picture.layout);
-            dark.iso = read_metadata(file).iso.value_or(0.0);
         }
         if (!is_like(picture, dark.form))
             throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is " + form_of(picture) + ", not " + form_of(dark.form)
                                                        + " as " + dark.file + "; give dark frames of one camera");
         for (uint32_t c = 0; c < channels; c++) {
             std::vector<double> own;
-            for (uint32_t block = 0; block < blocks * blocks; block++) own.push_back(block_mean(picture, block, c));
+            for (uint32_t block = 0; block < blocks * blocks; block++)
+                if (const auto mean = block_mean(picture, block, c)) own.push_back(*mean);
             means[c].insert(means[c].end(), own.begin(), own.end());
             levels[c].push_back(median(own));
             if (!(levels[c].back() <= largest_dark))

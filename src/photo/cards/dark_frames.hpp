@@ -16,7 +16,6 @@ struct DarkLevel {
     std::array<double, 3> black{};  // shares of full scale; those of a grey picture are equal
     double sigma = 0.0;             // standard error of the level, from the scatter of blocks and of frames
     double spread = 0.0;            // standard deviation over the frame: what one level does not describe
-    double iso = 0.0;               // 0: unknown
 };
 
 // Median of the means of blocks, over all frames. Failure names a file that is not dark, or not like the first.

@@ -25,8 +25,10 @@ lensprof_apply_options options_of(const Picture &source, const Correction &job, 
     options.source_layout = source.layout;
     options.target_sample = kind.linear ? static_cast<uint32_t>(LENSPROF_SAMPLE_F32) : source.sample;
     check(lensprof_apply_options_set_profile(&options, job.model.get()), job.source);
+    const bool is_raw = source.traits.format == FileFormat::raw;  // its own levels were applied when it was read
+    if (is_raw) options.levels = nullptr;
     if (job.levels) options.levels = options.output_levels = job.levels.get();
-    if (kind.linear || source.traits.format == FileFormat::raw) options.output_levels = nullptr;  // 0 is black there
+    if (kind.linear || is_raw) options.output_levels = nullptr;  // 0 is black there
     if (job.encoding) options.output_response = job.encoding.get(), options.output_responses = 1;
     options.source = job.exposure;
     options.target = job.target_exposure;

@@ -19,6 +19,7 @@ struct ReadRequest {
     std::string path;
     uint32_t max_side = 0;
     const std::vector<uint8_t> *bytes = nullptr;  // a JPEG in memory; path is its name
+    uint32_t page = 0;                            // ReadOptions::page
 };
 
 // A picture file being read. Nothing is decoded before the first row is requested.
@@ -55,6 +56,7 @@ std::unique_ptr<RowSource> open_raw(const ReadRequest &request, const std::strin
 std::unique_ptr<RowSource> open_heif(const ReadRequest &request, const std::string &kind);
 std::unique_ptr<RowSource> open_webp(const ReadRequest &request);
 std::unique_ptr<RowSource> open_jxl(const ReadRequest &request);
+std::unique_ptr<RowSource> open_fits(const ReadRequest &request);
 
 // A picture file being written.
 class RowSink {

@@ -31,6 +31,10 @@ struct CodedMetadata {
 CodedMetadata webp_metadata(const std::string &path);
 CodedMetadata heif_metadata(const std::string &path, const std::string &kind);
 CodedMetadata jxl_metadata(const std::string &path);
+CodedMetadata fits_metadata(const std::string &path);
+
+// Number of planes: of all images of the file, those with more than two axes included.
+uint32_t fits_planes(const std::string &path);
 
 // What a HEIF file holds in addition to its primary picture, except thumbnails.
 struct HeifParts {

@@ -27,6 +27,7 @@ std::optional<CodedKind> coded_kind(const std::string &path) {
     // ISO/IEC 18181-2: a codestream, or one in a container
     if (start.substr(0, 2) == "\xff\x0a"sv || start.substr(0, 12) == "\0\0\0\x0cJXL \r\n\x87\n"sv)
         return CodedKind{FileFormat::jxl, "JPEG XL"};
+    if (start.substr(0, 9) == "SIMPLE  ="sv) return CodedKind{FileFormat::fits, "FITS"};  // FITS 4.0, 4.4.1
     if (const char *name = heif_brand(start)) return CodedKind{FileFormat::heif, name};
     return std::nullopt;
 }
@@ -37,7 +38,9 @@ std::optional<CodedKind> coded_kind_of_name(const std::string &path) {
         CodedKind kind;
     } ends[] = {{"heic", {FileFormat::heif, "HEIC"}}, {"heif", {FileFormat::heif, "HEIF"}},
                 {"hif", {FileFormat::heif, "HEIF"}},  {"avif", {FileFormat::heif, "AVIF"}},
-                {"webp", {FileFormat::webp, "WebP"}}, {"jxl", {FileFormat::jxl, "JPEG XL"}}};
+                {"webp", {FileFormat::webp, "WebP"}}, {"jxl", {FileFormat::jxl, "JPEG XL"}},
+                {"fits", {FileFormat::fits, "FITS"}}, {"fit", {FileFormat::fits, "FITS"}},
+                {"fts", {FileFormat::fits, "FITS"}}};
     const std::string extension = lowercase_extension(path);
     for (const auto &entry : ends)
         if (extension == entry.end) return entry.kind;

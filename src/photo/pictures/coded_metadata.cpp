@@ -9,6 +9,7 @@ namespace {
 std::string mime_type_of(const CodedKind &kind) {
     if (kind.format == FileFormat::webp) return "image/webp";
     if (kind.format == FileFormat::jxl) return "image/jxl";
+    if (kind.format == FileFormat::fits) return "image/fits";
     const std::string name = kind.name;
     return name == "HEIC" ? "image/heic" : name == "AVIF" ? "image/avif" : "image/heif";
 }
@@ -16,6 +17,7 @@ std::string mime_type_of(const CodedKind &kind) {
 codec::CodedMetadata read_coded(const std::string &path, const CodedKind &kind) {
     if (kind.format == FileFormat::webp) return codec::webp_metadata(path);
     if (kind.format == FileFormat::jxl) return codec::jxl_metadata(path);
+    if (kind.format == FileFormat::fits) return codec::fits_metadata(path);
     return codec::heif_metadata(path, kind.name);
 }
 

@@ -71,7 +71,7 @@ void set_corrected(const std::string &by_others, PictureMetadata &metadata) {
 }
 
 void read_processing(const PictureBlocks &blocks, bool is_raw, PictureMetadata &metadata) {
-    if (is_raw) {
+    if (is_raw || blocks.mime_type == "image/fits") {
         metadata.key.processing = LENSPROF_PROCESSING_RAW;
         return;
     }

@@ -31,8 +31,8 @@ struct PictureSize {
 struct PictureMetadata {
     // Fields that the file does not state are unknown. Texts have no surrounding blanks, are valid UTF-8 and truncated
     // to the field size. Processing is JPEG (a rendered picture of any file format), but RAW for float TIFF, which by
-    // convention holds values proportional to light, for camera raw files, and if the colour profile has a linear tone
-    // curve; CORRECTED if corrected_by is not empty.
+    // convention holds values proportional to light, for camera raw files and FITS, and if the colour profile has a
+    // linear tone curve; CORRECTED if corrected_by is not empty.
     lensprof_profile_key key;
 
     // Unknown whether it is rendered: a 16 bit TIFF without colour profile, as raw converters write linear ones.

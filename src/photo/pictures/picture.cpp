@@ -36,7 +36,7 @@ FileFormat format_of_content(const std::string &path) {
     if (count < 8) codec::fail_damaged(path, count == 0 ? "it is empty" : "it has " + std::to_string(count) + " bytes");
     codec::fail_unsupported(
         path,
-        "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP or JPEG XL picture, nor a camera raw file; convert it "
+        "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP, JPEG XL or FITS picture, nor a camera raw file; convert it "
         "first");
 }
 
@@ -54,6 +54,7 @@ std::unique_ptr<codec::RowSource> open_coded(const codec::ReadRequest &request, 
     switch (kind.format) {
     case FileFormat::webp: return codec::open_webp(request);
     case FileFormat::jxl: return codec::open_jxl(request);
+    case FileFormat::fits: return codec::open_fits(request);
     default: return codec::open_heif(request, kind.name);
     }
 }
@@ -112,7 +113,7 @@ lensprof_target Picture::target() {
 
 Picture read_picture(const std::string &path, const ReadOptions &options) {
     return reading(path, [&] {
-        const auto source = open_source({path, options.max_side, nullptr});
+        const auto source = open_source({path, options.max_side, nullptr, options.page});
         return read_rows(*source);
     });
 }
@@ -131,7 +132,7 @@ Picture read_raw_preview(const std::string &path, const ReadOptions &options) {
 }
 
 Picture read_header(const std::string &path, const ReadOptions &options) {
-    return reading(path, [&] { return open_source({path, options.max_side, nullptr})->header(); });
+    return reading(path, [&] { return open_source({path, options.max_side, nullptr, options.page})->header(); });
 }
 
 PictureReader::PictureReader(const std::string &path)

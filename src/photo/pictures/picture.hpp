@@ -27,7 +27,8 @@ enum class FileFormat {
     exr,   // write only
     heif,  // read only, like the next two: HEIC, AVIF
     webp,
-    jxl
+    jxl,
+    fits
 };
 
 // Properties to keep when a picture is rewritten, other than pixels and metadata. Each writer uses what its format
@@ -99,6 +100,8 @@ struct ReadOptions {
     // way most stored pixels are good. Stored pixel (x, y) covers the frame's pixels from (x, y) * reduction on; up to
     // reduction - 1 columns and rows at the right and lower edge are omitted.
     uint32_t max_side = 0;
+
+    uint32_t page = 0;  // of a TIFF or FITS, from PictureStack::pages; 0 = the first
 };
 
 struct WriteOptions {
@@ -124,17 +127,19 @@ constexpr uint64_t jpeg_memory_bytes = uint64_t(16) << 20;
 // x 2 cells; at full size they are interpolated. HEIC and AVIF (with libheif), WebP (libwebp) and JPEG XL (libjxl)
 // become 8 bit, or 16 if the file has more, of full scale, or 32 bit float (JPEG XL); the primary picture of several,
 // before the file's own rotation and mirroring, which are in traits.orientation. Animations and values of PQ and HLG
-// are Failures.
+// are Failures. FITS (with cfitsio) becomes 8 or 16 bit of full scale if its samples are such integers without BLANK,
+// otherwise 32 bit float, with BSCALE and BZERO applied and NaN for undefined samples; rows in the order of the file.
 Picture read_picture(const std::string &path, const ReadOptions &options = {});
 
 // The same without pixels: sizes (for these options), sample, layout, profile, traits.
 Picture read_header(const std::string &path, const ReadOptions &options = {});
 
-// Whether the program was built with LibRaw, libheif, libwebp, libjxl.
+// Whether the program was built with LibRaw, libheif, libwebp, libjxl, cfitsio.
 bool can_read_raw();
 bool can_read_heif();
 bool can_read_webp();
 bool can_read_jxl();
+bool can_read_fits();
 
 // The largest JPEG embedded in a camera raw file, as a picture. Failure (unreadable) if not found.
 Picture read_raw_preview(const std::string &path, const ReadOptions &options = {});

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "photo/pictures/picture_stack.hpp"
 #include "photo/pictures/tiff_handle.hpp"
 
 namespace lensprof {
@@ -276,6 +277,8 @@ private:
 // m: no memory map, which would crash the process if the file is truncated while being read.
 TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(request.path, "rm") {
     if (!tiff_.handle) fail_damaged(path_, tiff_.message.text);
+    if (request.page && !TIFFSetDirectory(tiff_.handle, request.page))
+        fail_damaged(path_, tiff_.message.text[0] ? tiff_.message.text : "the page cannot be found");
     tiff_.message = TiffMessage();  // errors in tags that are not needed
     check_not_raw(tiff_, request);
     read_sample(tiff_, request, header_);
@@ -290,6 +293,41 @@ TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(
               request);
     check_stored_frame(tiff_, path_, header_, limits_);
 }
+
+// A slice of ImageJ that has no page of its own: it follows the one before it, uncompressed and without a gap.
+class SliceSource final : public RowSource {
+public:
+    SliceSource(const ReadRequest &request, const StackDescription &stack)
+        : path_(request.path), file_(open_for_reading(request.path)) {
+        const TiffSource first({request.path, request.max_side});
+        header_ = first.header();
+        const Tiff tiff(path_, "rm");
+        row_bytes_ = static_cast<size_t>(pixel_bytes(header_) * header_.frame_width);
+        const uint64_t bytes = row_bytes_ * uint64_t(header_.frame_height),
+                       offset = TIFFGetStrileOffset(tiff.handle, 0) + bytes * request.page;
+        is_swapped_ = TIFFIsByteSwapped(tiff.handle) != 0;
+        if (request.page >= stack.images || header_.traits.compression != COMPRESSION_NONE
+            || tiff.field<uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE)
+            fail_unsupported(path_, "is a stack of ImageJ of an unusual kind; save it as single pictures first");
+        if (offset + bytes > tiff.file_bytes()) fail_damaged(path_, "the file ends before this slice");
+        if (fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0)
+            fail_damaged(path_, "cannot find the slice");
+    }
+
+    void read(uint8_t *row) override {
+        if (std::fread(row, 1, row_bytes_, file_.get()) != row_bytes_)
+            fail_damaged(path_, "the file ends in this slice");
+        if (!is_swapped_) return;
+        const size_t bytes = lensprof_sample_type_bytes(header_.sample);
+        for (uint8_t *sample = row; sample < row + row_bytes_; sample += bytes) std::reverse(sample, sample + bytes);
+    }
+
+private:
+    std::string path_;
+    File file_;
+    size_t row_bytes_ = 0;
+    bool is_swapped_ = false;
+};
 
 // Lossless compressions are kept; recompressing with a lossy one would damage the pixels a second time.
 uint16_t compression_to_write(const PictureTraits &traits) {
@@ -394,7 +432,15 @@ void TiffSink::finish() {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_tiff(const ReadRequest &request) { return std::make_unique<TiffSource>(request); }
+std::unique_ptr<RowSource> open_tiff(const ReadRequest &request) {
+    if (request.page) {
+        Tiff tiff(request.path, "rm");
+        const StackDescription stack = tiff.handle ? stack_description(tiff) : StackDescription{};
+        if (stack.images > 1 && TIFFNumberOfDirectories(tiff.handle) == 1)
+            return std::make_unique<SliceSource>(request, stack);
+    }
+    return std::make_unique<TiffSource>(request);
+}
 
 std::unique_ptr<RowSink> create_tiff(const std::string &path, const Picture &header) {
     errno = 0;

@@ -27,8 +27,9 @@ double share_of(const StatedLevel &level, const Picture &picture, const std::str
 
 }  // namespace
 
-lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, const std::string &file) {
-    lensprof_levels levels{};
+lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, const std::string &file,
+                          const lensprof_levels &others) {
+    lensprof_levels levels = others;
     for (size_t c = 0; c < 3 && !stated.black.empty(); c++)
         levels.black[c] = share_of(stated.black[stated.black.size() == 3 ? c : 0], picture, file);
     if (stated.white) levels.white = share_of(*stated.white, picture, file);

@@ -24,6 +24,8 @@ struct StatedLevels {
 
 // The levels of a picture's samples. Failure, which names the file, for values if its samples are not those of the
 // file (raw) or not integers, and for a black level that is not below white.
-lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, const std::string &file);
+// What is not stated is that of `others`.
+lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, const std::string &file,
+                          const lensprof_levels &others = {});
 
 }  // namespace lensprof

@@ -12,7 +12,7 @@ namespace codec {
 
 namespace {
 
-constexpr uint32_t max_pages = 4096, max_children = 256;  // examined
+constexpr uint32_t max_children = 256;  // examined
 constexpr uint32_t thumbnail_max_side = 320;
 
 // TIFF 6.0, tag 254, and Exif 2.32, 4.5.5: the second of two directories is a thumbnail, without a mark of its own.
@@ -63,11 +63,12 @@ std::vector<uint64_t> children_of(const Tiff &tiff) {
 
 }  // namespace
 
-TiffPages tiff_pages(const std::string &path) {
+TiffPages tiff_pages(const std::string &path, uint32_t max_pages) {
     Tiff tiff(path, "rm");
     TiffPages pages;
     if (!tiff.handle) return pages;
     pages.pages = 1;
+    pages.directories = {0};
     pages.has_layers = has_layers(tiff);
     const std::vector<uint64_t> children = children_of(tiff);
     const uint32_t first_side =
@@ -78,10 +79,12 @@ TiffPages tiff_pages(const std::string &path) {
     pages.is_damaged = tiff.failed();
     const bool may_be_exif = directories == 2;
     for (uint32_t i = 1; i < directories; ++i) {
+        const uint32_t before = pages.pages;
         if (TIFFReadDirectory(tiff.handle))
             count(kind_of(tiff, may_be_exif ? first_side : 0), pages);
         else if (!may_be_exif)  // a thumbnail of EXIF states no size
             count(PageKind::page, pages);
+        if (pages.pages > before) pages.directories.push_back(i);
     }
     for (const uint64_t child : children)
         if (TIFFSetSubDirectory(tiff.handle, child)) count(kind_of(tiff, first_side), pages);

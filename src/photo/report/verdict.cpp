@@ -96,6 +96,16 @@ Verdict verdict_of(const lensprof_flat *flat) {
     });
 }
 
+Verdict verdict_of(const lensprof_fields *fields) {
+    lensprof_fields_result result;
+    lensprof_fields_result_init(&result);
+    lensprof_error error{};
+    check(lensprof_fields_get(fields, &result, &error), "fit", &error);
+    return verdict_from(result, [=](uint32_t index, lensprof_finding *finding, lensprof_error *failure) {
+        return lensprof_fields_finding_at(fields, index, finding, failure);
+    });
+}
+
 Verdict verdict_of(const lensprof_rendering *rendering, const lensprof_rendering_result &result) {
     return verdict_from(result, [&](uint32_t i, lensprof_finding *found, lensprof_error *error) {
         return lensprof_rendering_finding_at(rendering, i, found, error);

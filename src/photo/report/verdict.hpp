@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <lensprof/fields.h>
 #include <lensprof/fit.h>
 #include <lensprof/flat.h>
 #include <lensprof/rendering.h>
@@ -52,6 +53,7 @@ struct Verdict {
 // The findings that the library returns; of one lens setting.
 Verdict verdict_of(const lensprof_fit *fit, uint32_t setting = LENSPROF_FIT_REFERENCE);
 Verdict verdict_of(const lensprof_flat *flat);
+Verdict verdict_of(const lensprof_fields *fields);
 Verdict verdict_of(const lensprof_rendering *rendering, const lensprof_rendering_result &result);
 
 // Replaces the numbers of images by their files.

@@ -1,0 +1,110 @@
+#include "fit/fields/heldout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "fit/base/parallel.hpp"
+
+namespace lensprof {
+namespace {
+
+using Sums = Descent::Sums;
+
+constexpr double kSmallestRest = 1e-9;  // of the weight of a cell
+
+Sums total_of(const std::vector<Sums> &groups) {
+    Sums total = groups[0];
+    for (size_t g = 1; g < groups.size(); g++)
+        for (size_t j = 0; j < total.weight.size(); j++)
+            total.weight[j] += groups[g].weight[j], total.weighted[j] += groups[g].weighted[j];
+    return total;
+}
+
+// The surface of all groups but one, at the cells; empty if the rest does not determine it. The cells have their
+// weights in all groups, so that one factorisation serves every group; their values are those of the rest.
+std::vector<double> without(const Sums &total, const Sums &group, const Surface &surface,
+                            const Surface::Solver &solver) {
+    const size_t count = total.weight.size();
+    std::vector<double> value(count), nodes;
+    for (size_t j = 0; j < count; j++) {
+        const double rest = total.weight[j] - group.weight[j];
+        if (rest > kSmallestRest * total.weight[j])
+            value[j] = (total.weighted[j] - group.weighted[j]) / rest;
+        else if (total.weight[j] > 0.0)  // only this group has seen the cell
+            value[j] = total.weighted[j] / total.weight[j];
+    }
+    if (!solver.solve(value, nodes)) return {};
+    return surface.at_cells(nodes);
+}
+
+// Weighted squared distance of a group's cells from a surface, whose level is free.
+double distance(const Sums &group, const std::vector<double> &predicted) {
+    double sum = 0.0, first = 0.0, second = 0.0;
+    for (size_t j = 0; j < predicted.size(); j++) {
+        if (!(group.weight[j] > 0.0)) continue;
+        const double away = group.weighted[j] / group.weight[j] - predicted[j];
+        sum += group.weight[j], first += group.weight[j] * away, second += group.weight[j] * away * away;
+    }
+    return sum > 0.0 ? second - first * first / sum : 0.0;
+}
+
+}  // namespace
+
+Smoothness smoothness_at(size_t index) {
+    return {kSmoothOrders[index / kSmoothWeights], smooth_weight(static_cast<int>(index % kSmoothWeights))};
+}
+
+Heldout hold_out(const Descent &descent, const Surface &surface, size_t groups, uint32_t threads) {
+    const std::vector<Sums> parts = descent.sums(groups);
+    const Sums total = total_of(parts);
+    double weights = 0.0;
+    for (double weight : total.weight) weights += weight;
+    Heldout found;
+    found.rms.assign(kSmoothnesses, INFINITY);
+    for_each_parallel(
+        kSmoothnesses, threads,
+        [&](uint32_t i) {
+            const auto solver = surface.solver(total.weight, smoothness_at(i));
+            double sum = 0.0;
+            for (const Sums &group : parts) {
+                const std::vector<double> predicted = without(total, group, surface, *solver);
+                sum += predicted.empty() ? INFINITY : distance(group, predicted);
+            }
+            found.rms[i] = std::sqrt(sum / weights);
+        },
+        [] { return false; });
+    const auto best = static_cast<size_t>(std::min_element(found.rms.begin(), found.rms.end()) - found.rms.begin());
+    found.best_index = best, found.best = smoothness_at(best), found.best_rms = found.rms[best];
+    const std::vector<double> even(total.weight.size());
+    double sum = 0.0;
+    for (const Sums &group : parts) sum += distance(group, even);
+    found.even_rms = std::sqrt(sum / weights);
+    return found;
+}
+
+double jackknife(const Descent &descent, const Surface &surface, size_t groups) {
+    const std::vector<Sums> parts = descent.sums(groups);
+    const Sums total = total_of(parts);
+    const auto solver = surface.solver(total.weight, descent.smoothness);
+    std::vector<std::vector<double>> all;
+    for (const Sums &group : parts) {
+        std::vector<double> one = without(total, group, surface, *solver);
+        if (one.empty()) return INFINITY;
+        double mean = 0.0;
+        for (double cell : one) mean += cell / static_cast<double>(one.size());
+        for (double &cell : one) cell -= mean;
+        all.push_back(std::move(one));
+    }
+    double variance = 0.0;
+    const auto count = static_cast<double>(groups);
+    for (size_t j = 0; j < total.weight.size(); j++) {
+        double mean = 0.0, square = 0.0;
+        for (const auto &one : all) mean += one[j] / count;
+        for (const auto &one : all) square += (one[j] - mean) * (one[j] - mean);
+        variance += (count - 1.0) / count * square;
+    }
+    return std::sqrt(variance / static_cast<double>(total.weight.size()));
+}
+
+}  // namespace lensprof

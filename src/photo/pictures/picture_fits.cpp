@@ -1,0 +1,165 @@
+// FITS through cfitsio (FITS Standard 4.0). A picture is one plane of the images in the file: its first two axes.
+#include <array>
+#include <cmath>
+
+#include <fitsio.h>
+
+#include "photo/pictures/coded_file.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+namespace {
+
+constexpr int most_axes = 9;
+constexpr uint32_t most_planes = 1u << 20;
+
+// The image of the file that has a plane, and where it is.
+struct Plane {
+    int hdu = 0, axes = 0;
+    std::array<long, most_axes> size{}, first{};  // pixels along the axes; of the first pixel, counted from 1
+};
+
+class FitsFile {
+public:
+    explicit FitsFile(const std::string &path) : path_(path) {
+        fits_open_diskfile(&handle_, path.c_str(), READONLY, &status_);  // a name without cfitsio's filters
+        check();
+    }
+    ~FitsFile() {
+        int ignored = 0;
+        if (handle_) fits_close_file(handle_, &ignored);
+    }
+    FitsFile(const FitsFile &) = delete;
+    FitsFile &operator=(const FitsFile &) = delete;
+
+    // Calls accept(plane, its number) for the planes of all images, the first of them 0, until it returns false.
+    template <class Accept>
+    void each_plane(const Accept &accept) {
+        int hdus = 0;
+        fits_get_num_hdus(handle_, &hdus, &status_);
+        check();
+        uint32_t number = 0;
+        for (int hdu = 1; hdu <= hdus; hdu++) {
+            Plane plane = image_of(hdu);
+            if (plane.axes < 2) continue;
+            uint64_t count = 1;
+            for (int axis = 2; axis < plane.axes; axis++) count *= static_cast<uint64_t>(plane.size[size_t(axis)]);
+            for (uint64_t i = 0; i < count; i++, number++) {
+                if (number >= most_planes) fail_damaged(path_, "more than a million planes");
+                if (!accept(plane, number)) return;
+                next(plane);
+            }
+        }
+    }
+
+    fitsfile *handle() { return handle_; }
+    int &status() { return status_; }
+
+    void check() const {
+        if (!status_) return;
+        char text[FLEN_STATUS] = "";
+        fits_get_errstatus(status_, text);
+        fail_damaged(path_, text);
+    }
+
+private:
+    // Without axes: the part of the file is a table.
+    Plane image_of(int hdu) {
+        int kind = 0, bits = 0;
+        Plane plane;
+        fits_movabs_hdu(handle_, hdu, &kind, &status_);
+        check();
+        if (kind != IMAGE_HDU) return plane;
+        fits_get_img_param(handle_, most_axes, &bits, &plane.axes, plane.size.data(), &status_);
+        check();
+        if (plane.axes > most_axes) fail_unsupported(path_, "has more than 9 axes; save its planes first");
+        for (int axis = 0; axis < plane.axes; axis++)
+            if (plane.size[size_t(axis)] < 1) plane.axes = 0;
+        plane.hdu = hdu, plane.first.fill(1);
+        return plane;
+    }
+
+    static void next(Plane &plane) {
+        for (size_t axis = 2; axis < size_t(plane.axes); axis++) {
+            if (++plane.first[axis] <= plane.size[axis]) return;
+            plane.first[axis] = 1;
+        }
+    }
+
+    std::string path_;
+    fitsfile *handle_ = nullptr;
+    int status_ = 0;
+};
+
+// The sample that holds all values of an image: its integers if they are of 8 or 16 bit, without sign and all defined.
+uint32_t sample_of(FitsFile &file) {
+    int type = 0;
+    fits_get_img_equivtype(file.handle(), &type, &file.status());
+    file.check();
+    long blank = 0;
+    int missing = 0;
+    fits_read_key(file.handle(), TLONG, "BLANK", &blank, nullptr, &missing);
+    if (missing == 0) return LENSPROF_SAMPLE_F32;
+    return type == BYTE_IMG ? LENSPROF_SAMPLE_U8 : type == USHORT_IMG ? LENSPROF_SAMPLE_U16 : LENSPROF_SAMPLE_F32;
+}
+
+class FitsSource final : public RowSource {
+public:
+    explicit FitsSource(const ReadRequest &request) : path_(request.path), file_(request.path) {
+        file_.each_plane([&](const Plane &plane, uint32_t number) {
+            if (number == request.page) plane_ = plane;
+            return number != request.page;
+        });
+        if (plane_.axes == 0) fail_unsupported(path_, "is a FITS file without a picture of this number; give another");
+        if (plane_.size[0] > long(picture_max_side) || plane_.size[1] > long(picture_max_side))
+            fail_damaged(path_, "a side of more than a million pixels");
+        header_.traits.format = FileFormat::fits;
+        header_.sample = sample_of(file_);
+        header_.layout = LENSPROF_LAYOUT_GREY;
+        const auto width = static_cast<uint32_t>(plane_.size[0]), height = static_cast<uint32_t>(plane_.size[1]);
+        set_coded_frame(header_, width, height, request);
+    }
+
+    void read(uint8_t *row) override {
+        float undefined = NAN;
+        const int type = header_.sample == LENSPROF_SAMPLE_U8    ? TBYTE
+                         : header_.sample == LENSPROF_SAMPLE_U16 ? TUSHORT
+                                                                 : TFLOAT;
+        int any = 0;
+        fits_read_pix(file_.handle(), type, plane_.first.data(), plane_.size[0], type == TFLOAT ? &undefined : nullptr,
+                      row, &any, &file_.status());
+        file_.check();
+        plane_.first[1]++;
+    }
+
+private:
+    std::string path_;
+    FitsFile file_;
+    Plane plane_;  // its first pixel is that of the next row
+};
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_fits(const ReadRequest &request) { return std::make_unique<FitsSource>(request); }
+
+CodedMetadata fits_metadata(const std::string &path) {
+    const FitsSource first({path, 0, nullptr, 0});
+    CodedMetadata metadata;
+    metadata.width = first.header().frame_width, metadata.height = first.header().frame_height;
+    return metadata;
+}
+
+uint32_t fits_planes(const std::string &path) {
+    FitsFile file(path);
+    uint32_t planes = 0;
+    file.each_plane([&](const Plane &, uint32_t) { return planes++, true; });
+    return planes;
+}
+
+}  // namespace codec
+
+bool can_read_fits() { return true; }
+
+}  // namespace lensprof
