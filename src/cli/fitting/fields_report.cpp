@@ -64,20 +64,6 @@ Json field_images_json(const FieldFit &found) {
     return images;
 }
 
-// Attenuation as [channel][row][column]; null if there was no fit.
-Json shading_json(const lensprof_gain_grid &grid) {
-    if (!grid.columns) return Json();
-    Json channels = Json::array();
-    const float *row_values = grid.attenuation;
-    for (uint32_t c = 0; c < grid.channels; c++) {
-        Json rows = Json::array();
-        for (uint32_t row = 0; row < grid.rows; row++, row_values += grid.columns)
-            rows.push_back(std::vector<float>(row_values, row_values + grid.columns));
-        channels.push_back(rows);
-    }
-    return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
-}
-
 struct Extremes {
     double low = 1.0, high = 1.0;
 };
@@ -97,23 +83,12 @@ std::string offset_text(const FieldFit &found, const lensprof_fields_channel &ch
     return format(digits, offset) + (found.is_black_given ? ", given" : ", not estimated");
 }
 
-// Grey values of a picture, or of its green channel.
-class GreySamples {
-public:
-    explicit GreySamples(const Picture &picture) : picture_(picture) {}
-
-    double at(uint32_t x, uint32_t y) const {
-        const size_t channel = lensprof_layout_channels(picture_.layout) == 3 ? 1 : 0;
-        const size_t sample = size_t(x) * lensprof_layout_samples(picture_.layout) + channel;
-        const uint8_t *const row = picture_.pixels.data() + y * picture_.row_bytes;
-        if (picture_.sample == LENSPROF_SAMPLE_U8) return row[sample] / 255.0;
-        if (picture_.sample == LENSPROF_SAMPLE_U16) return reinterpret_cast<const uint16_t *>(row)[sample] / 65535.0;
-        return static_cast<double>(reinterpret_cast<const float *>(row)[sample]);
-    }
-
-private:
-    const Picture &picture_;
-};
+// The grey value of a pixel, or of its green channel.
+double grey_at(const Picture &picture, uint32_t x, uint32_t y) {
+    const size_t channel = lensprof_layout_channels(picture.layout) == 3 ? 1 : 0;
+    const size_t sample = size_t(x) * lensprof_layout_samples(picture.layout) + channel;
+    return sample_value(picture.sample, picture.pixels.data() + y * picture.row_bytes, sample);
+}
 
 Picture grey_view(uint32_t width, uint32_t height, const std::vector<double> &values, double white) {
     Picture view;
@@ -129,12 +104,11 @@ Json first_view(const FieldFit &found) {
     ReadOptions read;
     read.max_side = view_side(1), read.page = found.first.page;
     const Picture picture = read_picture(found.first.file, read);
-    const GreySamples samples(picture);
     const uint32_t channel = found.fit.channels == 3 ? 1 : 0;
     std::vector<double> before, after;
     for (uint32_t y = 0; y < picture.height; y++)
         for (uint32_t x = 0; x < picture.width; x++) {
-            const double light = samples.at(x, y) - found.fit.channel[channel].offset;
+            const double light = grey_at(picture, x, y) - found.fit.channel[channel].offset;
             before.push_back(light);
             after.push_back(
                 light / lensprof_gain_grid_eval(&found.fit.shading, picture.width, picture.height, x, y, channel));
@@ -180,7 +154,7 @@ Json fields_json(const FieldFit &found) {
     json["left_out"] = found.left_out;
     json["white_share"] = fit.white_share, json["unseen_share"] = fit.unseen_share;
     json["channels"] = fit.shading.columns ? channels_json(found) : Json::array();
-    json["shading"] = shading_json(fit.shading);
+    json["shading"] = gain_grid_json(fit.shading);
     json["images"] = field_images_json(found);
     json["response"] = response_json(found.response.data(), static_cast<uint32_t>(found.response.size()));
     json["seconds"] = {{"load", found.load_s}, {"solve", found.solve_s}};

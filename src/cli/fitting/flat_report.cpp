@@ -46,20 +46,6 @@ Json spots_json(const lensprof_flat_result &fit) {
     return spots;
 }
 
-// Attenuation as [channel][row][column]; null if not found.
-Json grid_json(const lensprof_gain_grid &grid) {
-    if (!grid.columns) return Json();
-    Json channels = Json::array();
-    const float *row_values = grid.attenuation;
-    for (uint32_t c = 0; c < grid.channels; c++) {
-        Json rows = Json::array();
-        for (uint32_t row = 0; row < grid.rows; row++, row_values += grid.columns)
-            rows.push_back(std::vector<float>(row_values, row_values + grid.columns));
-        channels.push_back(rows);
-    }
-    return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
-}
-
 void print_images(const CardFit &report, std::ostream &out) {
     size_t width = 5;
     for (const auto &name : report.files) width = std::max(width, name.size());
@@ -138,7 +124,7 @@ Json flat_json(const CardFit &report) {
     json["levels"] = levels_json(fit);
     json["spot_count"] = fit.spots;
     json["spots"] = spots_json(fit);
-    json["gain_grid"] = grid_json(fit.gain_grid);
+    json["gain_grid"] = gain_grid_json(fit.gain_grid);
     json["iterations"] = fit.iterations;
     json["covariance"] = covariance_json(fit.covariance, fit.covariance_size);
     json["seconds"] = {{"load", report.load_s}, {"solve", report.solve_s}};

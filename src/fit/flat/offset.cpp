@@ -144,13 +144,19 @@ private:
         return chi2;
     }
 
+    // Of a cell that leaves this chi^2, by the scatter of the last step.
+    double weight_of(const SeenCell &cell, double chi2) const {
+        return std::min(1.0, kOutlier2 * scatter_ * free_of(cell) / std::max(chi2, 1e-300));
+    }
+
+    static double free_of(const SeenCell &cell) { return static_cast<double>(cell.size()) - 1.0; }
+
     // Scatter of the cells in units of their noise, with the weights of the last step; at least 1.
     double scatter() const {
         double sum = 0.0, count = 0.0;
         for (const SeenCell &cell : cells_) {
-            const double free = static_cast<double>(cell.size()) - 1.0, chi2 = chi2_of(cell, light_of(cell).first);
-            const double weight = std::min(1.0, kOutlier2 * scatter_ * free / std::max(chi2, 1e-300));
-            sum += weight * chi2, count += weight * free;
+            const double chi2 = chi2_of(cell, light_of(cell).first), weight = weight_of(cell, chi2);
+            sum += weight * chi2, count += weight * free_of(cell);
         }
         return std::max(sum / std::max(count, 1.0), 1.0);
     }
@@ -169,8 +175,7 @@ private:
     // Column of an unknown: its derivative of every residual, less the part along a / sigma, which F takes.
     void add_normal(const SeenCell &cell) {
         const auto [light, square] = light_of(cell);
-        const double free = static_cast<double>(cell.size()) - 1.0, chi2 = chi2_of(cell, light);
-        const double weight = std::min(1.0, kOutlier2 * scatter_ * free / std::max(chi2, 1e-300)) / scatter_;
+        const double weight = weight_of(cell, chi2_of(cell, light)) / scatter_;
         double along = 0.0;  // of 1 / sigma, the derivative by b
         for (const Seen &one : cell) along += level_of(one) * one.per_sigma * one.per_sigma / square;
         for (const Seen &one : cell) {

@@ -67,6 +67,18 @@ lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata,
     return override_key(key, metadata.size, o, file);
 }
 
+std::vector<lensprof_response> given_response(const StoreOptions &o, std::optional<double> gamma, int64_t profile) {
+    std::vector<lensprof_response> response(1);
+    lensprof_response_set_linear(response.data());
+    if (gamma) check(lensprof_response_set_gamma(response.data(), *gamma), option_name("gamma"));
+    if (!profile) return response;
+    Store store = open_store(o.db, LENSPROF_STORE_READ);
+    auto stored = new_profile();
+    lensprof_error error{};
+    check(lensprof_store_get(store.get(), profile, stored.get(), &error), store_path(o.db), &error);
+    return {stored->response, stored->response + stored->responses};
+}
+
 void check_store(const StoreOptions &o) {
     if (o.no_store) return;
     const std::string file = store_path(o.db);

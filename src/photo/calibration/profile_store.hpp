@@ -38,6 +38,9 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
 lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata, const std::string &file,
                                 Events &events);
 
+// The response that pictures are stated to have: x^(1/gamma), that of a profile of the database (0: none), or linear.
+std::vector<lensprof_response> given_response(const StoreOptions &o, std::optional<double> gamma, int64_t profile);
+
 // Failure (store) before the work is done if the database cannot be used.
 void check_store(const StoreOptions &o);
 

@@ -137,20 +137,6 @@ void note_linear(const PictureMetadata &first, const std::string &file, Events &
                           + advice("linear_pictures"));
 }
 
-std::vector<lensprof_response> response_of(const CardOptions &o) {
-    std::vector<lensprof_response> response(1);
-    lensprof_response_set_linear(response.data());
-    if (o.gamma) check(lensprof_response_set_gamma(response.data(), *o.gamma), option_name("gamma"));
-    if (o.profile) {
-        Store store = open_store(o.store.db, LENSPROF_STORE_READ);
-        auto profile = new_profile();
-        lensprof_error error{};
-        check(lensprof_store_get(store.get(), o.profile, profile.get(), &error), store_path(o.store.db), &error);
-        response.assign(profile->response, profile->response + profile->responses);
-    }
-    return response;
-}
-
 // The card's rectangle as a mask of the stored pixels.
 std::vector<uint8_t> mask_of(const std::array<double, 4> &r, const Picture &picture, const std::string &file) {
     if (!(r[2] > 0 && r[3] > 0) || r[0] + r[2] > picture.frame_width || r[1] + r[3] > picture.frame_height)
@@ -207,6 +193,21 @@ StatedLevels levels_of_file(const PictureMetadata &metadata) {
     return levels;
 }
 
+// Adds what a file states, or notes that it does not suit its samples.
+bool add_levels(const StatedLevels &added, const Picture &first, const std::string &file, lensprof_levels &levels,
+                Events &events) {
+    try {
+        levels = levels_of(added, first, file, levels);
+    } catch (const Failure &) {
+        events.note(file, "its tags BlackLevel and WhiteLevel do not suit its samples, and are ignored");
+        return false;
+    }
+    if (!added.black.empty())
+        events.note(file, format("its black level of %g is subtracted, as the file states", added.black[1].number));
+    if (added.white) events.note(file, format("its white level is %g, as the file states", added.white->number));
+    return true;
+}
+
 // Levels of the samples, and how well they are known: as stated, of dark frames, or as the file states.
 void take_levels(const CardOptions &o, CardInput &input, Events &events) {
     const Picture &first = input.pictures.front();
@@ -216,24 +217,14 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
         if (input.pictures[i].sample != first.sample)
             throw Failure(LENSPROF_ERROR_ARGUMENT, input.files[i] + ": its samples are of another type than those of "
                                                        + file + "; give pictures with the same black level");
-    StatedLevels levels = o.levels;
+    options.levels = levels_of(o.levels, first, file);
     const bool is_integer = first.sample == LENSPROF_SAMPLE_U8 || first.sample == LENSPROF_SAMPLE_U16;
-    if (has_linear_response(input) && is_integer && !levels.white) levels.white = input.levels.white;
-    const bool is_of_file = has_linear_response(input) && is_integer && levels.black.empty() && !o.dark;
-    if (is_of_file) levels.black = input.levels.black;
-    try {
-        options.levels = levels_of(levels, first, file);
-    } catch (const Failure &) {
-        if (levels.black.size() == o.levels.black.size() && levels.white.has_value() == o.levels.white.has_value())
-            throw;
-        events.note(file, "its tags BlackLevel and WhiteLevel do not suit its samples, and are ignored");
-        levels = o.levels;
-        options.levels = levels_of(levels, first, file);
+    StatedLevels added;  // by the file
+    if (has_linear_response(input) && is_integer) {
+        if (o.levels.black.empty() && !o.dark) added.black = input.levels.black;
+        if (!o.levels.white) added.white = input.levels.white;
     }
-    if (is_of_file && !levels.black.empty())
-        events.note(file, format("its black level of %g is subtracted, as the file states", levels.black[1].number));
-    if (levels.white && !o.levels.white)
-        events.note(file, format("its white level is %g, as the file states", levels.white->number));
+    if (added.any() && !add_levels(added, first, file, options.levels, events)) added = {};
     if (o.dark) {
         check_dark(*o.dark, first, file);
         std::copy(o.dark->black.begin(), o.dark->black.end(), options.levels.black);
@@ -241,7 +232,7 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
             throw Failure(LENSPROF_ERROR_ARGUMENT, o.dark->file + ": is not darker than the stated white level");
     }
     if (!has_linear_response(input)) return;
-    const bool is_stated_by_file = first.traits.format == FileFormat::raw || (is_of_file && !levels.black.empty());
+    const bool is_stated_by_file = first.traits.format == FileFormat::raw || !added.black.empty();
     options.black_sigma = o.dark                    ? std::clamp(o.dark->sigma, 1e-6, 0.2)
                           : !o.levels.black.empty() ? 0.0
                           : is_stated_by_file       ? file_black_sigma
@@ -273,7 +264,7 @@ CardInput prepare_cards(const CardOptions &o, const std::vector<CardPicture> &pi
         image.white = o.ignore_above;
         input.images.push_back(image);
     }
-    input.response = response_of(o);
+    input.response = given_response(o.store, o.gamma, o.profile);
     input.levels = levels_of_file(metadata.front());
     if (are_linear(o, metadata)) {
         note_linear(metadata.front(), files.front(), events);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "fit/base/quantile.hpp"
@@ -19,41 +18,30 @@ constexpr double clear_spread = 0.01, largest_spread = 0.05, least_spread = 0.00
 constexpr double far_sigmas = 4.0, least_reach = 1.5 / 255.0;   // from the median of a block; more than a step of 8 bit
 constexpr double mad_to_sigma = 1.4826, median_error = 1.2533;  // of normal numbers; relative to that of a mean
 
-double sample_at(const Picture &picture, uint32_t x, uint32_t y, uint32_t channel) {
-    const uint32_t samples = lensprof_layout_samples(picture.layout);
-    const uint8_t *at = picture.pixels.data() + y * picture.row_bytes
-                        + (static_cast<size_t>(x) * samples + channel) * lensprof_sample_type_bytes(picture.sample);
-    uint16_t word;
-    float value;
-    switch (picture.sample) {
-    case LENSPROF_SAMPLE_U8: return *at / 255.0;
-    case LENSPROF_SAMPLE_U16: return std::memcpy(&word, at, sizeof word), word / 65535.0;
-    default: return std::memcpy(&value, at, sizeof value), static_cast<double>(value);
-    }
+// Standard deviation, from the median distance of the median.
+double deviation(std::vector<double> values) {
+    const double center = median(values);
+    for (double &value : values) value = std::abs(value - center);
+    return mad_to_sigma * median(values);
 }
 
 // Mean of the samples of a block near its median: hot pixels are not part of the level.
 std::optional<double> block_mean(const Picture &picture, uint32_t block, uint32_t channel) {
     const uint32_t column = block % blocks, row = block / blocks;
     const uint32_t right = (column + 1) * picture.width / blocks, bottom = (row + 1) * picture.height / blocks;
-    std::vector<double> values, distances;
+    const size_t samples = lensprof_layout_samples(picture.layout);
+    std::vector<double> values;
     for (uint32_t y = row * picture.height / blocks; y < bottom; y++)
         for (uint32_t x = column * picture.width / blocks; x < right; x++)
-            values.push_back(sample_at(picture, x, y, channel));
+            values.push_back(
+                sample_value(picture.sample, picture.pixels.data() + y * picture.row_bytes, x * samples + channel));
     if (values.empty()) return std::nullopt;  // a frame of few pixels
     const double center = median(values);
-    for (const double value : values) distances.push_back(std::abs(value - center));
-    const double reach = std::max(far_sigmas * mad_to_sigma * median(distances), least_reach);
+    const double reach = std::max(far_sigmas * deviation(values), least_reach);
     double sum = 0.0, count = 0.0;
     for (const double value : values)
         if (std::abs(value - center) <= reach) sum += value, count += 1.0;
     return sum / count;
-}
-
-double deviation(std::vector<double> values) {
-    const double center = median(values);
-    for (double &value : values) value = std::abs(value - center);
-    return mad_to_sigma * median(values);
 }
 
 std::string form_of(const Picture &picture) {

@@ -19,11 +19,7 @@ size_t samples_of_light(const Picture &header, const std::string &file) {
 
 double grey_at(const lensprof_image &rows, uint32_t y, size_t n) {
     const auto *row = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes;
-    switch (rows.sample) {
-    case LENSPROF_SAMPLE_U8: return row[n] / 255.0;
-    case LENSPROF_SAMPLE_U16: return reinterpret_cast<const uint16_t *>(row)[n] / 65535.0;
-    default: return static_cast<double>(reinterpret_cast<const float *>(row)[n]);
-    }
+    return sample_value(rows.sample, row, n);
 }
 
 double largest_grey(const lensprof_image &rows, uint32_t x, uint32_t y) {

@@ -50,18 +50,10 @@ void require_kind(const FieldKind &first, const FieldKind &other) {
                                                    + " ones; give pictures of one kind");
 }
 
-std::vector<lensprof_response> response_of_fields(const FieldOptions &o) {
-    std::vector<lensprof_response> response(1);
-    lensprof_response_set_linear(response.data());
-    if (o.gamma) check(lensprof_response_set_gamma(response.data(), *o.gamma), option_name("gamma"));
-    if (o.profile) {
-        Store store = open_store(o.store.db, LENSPROF_STORE_READ);
-        auto profile = new_profile();
-        lensprof_error error{};
-        check(lensprof_store_get(store.get(), o.profile, profile.get(), &error), store_path(o.store.db), &error);
-        response.assign(profile->response, profile->response + profile->responses);
-    }
-    return response;
+// The stated black level of a channel, 0..1 for integer samples.
+double stated_black(const FieldOptions &o, uint32_t channels, uint32_t c, double full_scale) {
+    const StatedLevel &black = o.black[o.black.size() == 1 ? 0 : channels == 1 ? 1 : c];
+    return black.is_share ? black.number : black.number / full_scale;
 }
 
 using Fields = std::unique_ptr<lensprof_fields, void (*)(lensprof_fields *)>;
@@ -87,17 +79,13 @@ public:
 private:
     void begin(const FieldKind &kind) {
         first_ = kind;
-        const double full_scale = kind.sample == LENSPROF_SAMPLE_U8    ? 255.0
-                                  : kind.sample == LENSPROF_SAMPLE_U16 ? 65535.0
-                                                                       : 1.0;
+        const double full_scale = full_scale_of(kind.sample);
         lensprof_fields_options options;
         lensprof_fields_options_init(&options);
         options.channels = kind.channels, options.width = kind.width, options.height = kind.height;
         options.given_offset = !o_.black.empty();
-        for (size_t c = 0; c < 3 && !o_.black.empty(); c++) {
-            const StatedLevel &black = o_.black[o_.black.size() == 1 ? 0 : kind.channels == 1 ? 1 : c];
-            options.offset[c] = black.is_share ? black.number : black.number / full_scale;
-        }
+        for (uint32_t c = 0; c < 3 && !o_.black.empty(); c++)
+            options.offset[c] = stated_black(o_, kind.channels, c, full_scale);
         if (o_.gamma || o_.profile) options.response = found_.response.data();
         options.responses = static_cast<uint32_t>(found_.response.size());
         options.progress = on_fit_progress, options.progress_user = &events_;
@@ -185,21 +173,11 @@ std::shared_ptr<lensprof_profile> profile_of_fields(const FieldFit &found, const
     return profile;
 }
 
-PictureMetadata metadata_of(const std::string &file) {
-    try {
-        return read_metadata(file);
-    } catch (const Failure &failure) {
-        if (!is_of_input(failure)) throw;
-        return unknown_metadata();
-    }
-}
-
 // Failure if pictures are darker than the black level that was stated.
 void check_black(const FieldOptions &o, const FieldFit &found) {
     for (uint32_t c = 0; c < found.fit.channels && !o.black.empty(); c++) {
-        const StatedLevel &black = o.black[o.black.size() == 1 ? 0 : found.fit.channels == 1 ? 1 : c];
-        const double stated = black.is_share ? black.number * found.full_scale : black.number,
-                     used = found.fit.channel[c].offset * found.full_scale;
+        const double stated = found.full_scale * stated_black(o, found.fit.channels, c, found.full_scale),
+                     used = found.full_scale * found.fit.channel[c].offset;
         if (stated > used + 1e-6 * found.full_scale)
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           found.names.front()
@@ -228,8 +206,8 @@ FieldFit fit_fields_of(const std::vector<std::string> &names, const FieldOptions
     const FieldList list = field_list(names, o.channel, events);
     FieldFit found;
     found.files = list.files, found.left_out = list.left_out;
-    found.response = response_of_fields(o);
-    const PictureMetadata metadata = metadata_of(list.pages.front().file);
+    found.response = given_response(o.store, o.gamma, o.profile);
+    const PictureMetadata &metadata = list.metadata;
     warn_of_truncation(metadata, o.store, list.pages.front().file, events);
     found.key = override_key(metadata.key, metadata.size, o.store, list.pages.front().file);
     FieldReader reader(o, found, events);

@@ -1,11 +1,8 @@
 #include "photo/fields/field_list.hpp"
 
-#include <optional>
-
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
-#include "photo/pictures/metadata.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/picture_stack.hpp"
 
@@ -24,15 +21,19 @@ void check_channel(const std::string &file, const PictureStack &stack, uint32_t 
                              stack.channel_count == 1 ? "" : "s", channel, option_name("field_channel").c_str()));
 }
 
-// Copies that lie next to the pictures have no shading any more.
-void check_not_corrected(const std::string &file) {
-    std::optional<CorrectionMark> mark;
+// Unknown if it cannot be read: reading the pages reports it.
+PictureMetadata metadata_of(const std::string &file) {
     try {
-        mark = read_metadata(file).mark;
+        return read_metadata(file);
     } catch (const Failure &failure) {
-        if (!is_of_input(failure)) throw;  // reading the pages reports it
+        if (!is_of_input(failure)) throw;
+        return unknown_metadata();
     }
-    if (mark && mark->falloff == CorrectionMark::Falloff::removed)
+}
+
+// Copies that lie next to the pictures have no shading any more.
+void check_not_corrected(const std::string &file, const PictureMetadata &metadata) {
+    if (metadata.mark && metadata.mark->falloff == CorrectionMark::Falloff::removed)
         throw Failure(LENSPROF_ERROR_READ, file + ": is a corrected copy; give the original");
 }
 
@@ -60,8 +61,11 @@ FieldList field_list(const std::vector<std::string> &names, uint32_t channel, Ev
     for (const NamedPicture &picture : named_pictures(names, "", list.left_out, &unlisted)) {
         note_instead(picture, events);
         try {
-            check_not_corrected(picture.file);
+            const PictureMetadata metadata = metadata_of(picture.file);
+            check_not_corrected(picture.file, metadata);
+            const bool is_first = list.pages.empty();
             add_pages(picture.file, channel, list);
+            if (is_first) list.metadata = metadata;
         } catch (const Failure &failure) {
             if (failure.group() != LENSPROF_ERROR_READ) throw;
             list.left_out.push_back(failure.what());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "photo/base/events.hpp"
+#include "photo/pictures/metadata.hpp"
 
 namespace lensprof {
 
@@ -19,6 +20,7 @@ struct FieldList {
     std::vector<FieldPage> pages;
     std::vector<std::string> left_out;  // files and pages that cannot be read: messages that name them
     size_t files = 0;                   // with pages
+    PictureMetadata metadata;           // of the first of them
 };
 
 // `names`: files, and folders of them. `channel`: of stacks with several, counted from 1; 0: not given. Failure if a

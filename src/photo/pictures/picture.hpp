@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,6 +90,22 @@ struct Picture {
 // The pixels of a target after they were written.
 inline lensprof_image image_of(const lensprof_target &t) {
     return {t.data, t.row_bytes, t.width, t.height, t.sample, t.layout};
+}
+
+// The largest number of a sample type: 1.0 for float.
+inline double full_scale_of(uint32_t sample) {
+    return sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
+}
+
+// Sample `n` of a row, 0..1.
+inline double sample_value(uint32_t sample, const uint8_t *row, size_t n) {
+    uint16_t code;
+    float value;
+    switch (sample) {
+    case LENSPROF_SAMPLE_U8: return row[n] / 255.0;
+    case LENSPROF_SAMPLE_U16: std::memcpy(&code, row + 2 * n, sizeof code); return code / 65535.0;
+    default: std::memcpy(&value, row + 4 * n, sizeof value); return static_cast<double>(value);
+    }
 }
 
 struct ReadOptions {

@@ -18,7 +18,7 @@ double share_of(const StatedLevel &level, const Picture &picture, const std::str
                           file + ": has float samples, from 0 to 1; give its levels as percentages, such as 6%");
         return 0.0;
     }
-    const double full = picture.sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0;
+    const double full = full_scale_of(picture.sample);
     if (level.number > full)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       file + format(": its samples end at %.0f, below the stated level of %g", full, level.number));

@@ -41,6 +41,19 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
     return json;
 }
 
+Json gain_grid_json(const lensprof_gain_grid &grid) {
+    if (!grid.columns) return Json();
+    Json channels = Json::array();
+    const float *row_values = grid.attenuation;
+    for (uint32_t c = 0; c < grid.channels; c++) {
+        Json rows = Json::array();
+        for (uint32_t row = 0; row < grid.rows; row++, row_values += grid.columns)
+            rows.push_back(std::vector<float>(row_values, row_values + grid.columns));
+        channels.push_back(rows);
+    }
+    return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
+}
+
 const char *gamma_name(uint32_t from) {
     static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile", "falloff", "cameras"};
     return from <= LENSPROF_GAMMA_CAMERAS ? names[from] : "unknown";

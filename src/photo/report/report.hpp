@@ -125,6 +125,7 @@ const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit);
 Json number_or_null(double value);  // null: unknown or not a number
 Json covariance_json(const double *values, uint32_t n);
 Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count);
+Json gain_grid_json(const lensprof_gain_grid &grid);  // attenuation as [channel][row][column]; null without a grid
 Json response_json(const lensprof_response *responses, uint32_t count);
 Json samples_json(const lensprof_response *responses, uint32_t count);  // curve samples for plotting, for any kind
 Json key_json(const lensprof_profile_key &key);
