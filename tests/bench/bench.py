@@ -8,6 +8,7 @@ import time
 
 import cards
 import cases
+import falloff_forms
 import flat
 import gallery
 import radiance
@@ -21,8 +22,8 @@ import static
 import tools
 import verdicts
 
-PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "static", "scale", "speed", "radiance",
-         "knowledge", "photographs", "reconstruction", "real")
+PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "static", "scale", "speed",
+         "radiance", "knowledge", "photographs", "reconstruction", "real")
 
 
 def parse():
@@ -61,8 +62,8 @@ def main():
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize (package hugin-tools) is missing; only lensprof is measured"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
-               "verdicts": {}, "cards": {}, "radiance": {}, "knowledge": [], "photographs": [], "moving": [],
-               "reconstruction": {},
+               "verdicts": {}, "cards": {}, "forms": {}, "radiance": {}, "knowledge": [],
+               "photographs": [], "moving": [], "reconstruction": {},
                "real": [], "brackets": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
@@ -86,6 +87,8 @@ def main():
         results["flat"] = flat.run_all(options.quick, say)
     if "cards" in options.only:
         results["cards"] = cards.run_all(options.quick, options.tune, options.jobs, options.keep, say, options.match)
+    if "forms" in options.only:
+        results["forms"] = falloff_forms.run_all(options.real, options.quick, say)
     if "knowledge" in options.only:
         import knowledge  # needs the library in addition to the program
         results["knowledge"] = knowledge.run_all(options.sequences or (20 if options.quick else 60), options.tune,
