@@ -71,7 +71,8 @@ static inline void lensprof_flat_image_init(lensprof_flat_image *image) {
 
 typedef enum lensprof_flat_light {
     LENSPROF_FLAT_LIGHT_AUTO = 0,     /* PLANE; EVEN for a card at several places, and for shots at one angle that an
-                                         even light and a lens a little off centre describe as well */
+                                         even light and a lens a little off centre describe as well; QUADRATIC for
+                                         shots at several angles that show a curved light */
     LENSPROF_FLAT_LIGHT_EVEN = 1,     /* the light is even: all asymmetry is due to the centre of the lens */
     LENSPROF_FLAT_LIGHT_PLANE = 2,    /* the logarithm of the light is a plane over the scene, one per channel */
     LENSPROF_FLAT_LIGHT_QUADRATIC = 3 /* PLANE plus the two second-order terms that no falloff has: x^2 - y^2 and xy */
@@ -180,12 +181,14 @@ typedef struct lensprof_flat_result {
                               single shot, the light may be uneven instead) */
     double shot_residual;  /* coarser, different in each shot: the light does not follow the model; 0 for one shot */
     double inlier_share;   /* share of cells within 3 sigma */
-    double corner_sigma;   /* standard error of the falloff at r = 1, or at the edge if there is one */
+    double corner_sigma;   /* standard error of the falloff at r = 1, or at `radius` if there is an edge; with what a
+                              curved light and the pattern that is left add, the latter not without a grid */
     double grid_residual;  /* what falloff and grid together leave of frame_residual; 0 without a grid */
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lensprof_gain_grid gain_grid; /* residual of the polynomial: the attenuation is M times this grid, which is 1 at the
                                      centre of M. 0 x 0 if not requested, or if the pictures do not constrain it */
-    double corner;                /* M times grid: mean of the corners and channels; with an edge, the mean along it */
+    double corner;                /* M times grid: mean of the corners and channels; with an edge, mean along
+                                     `radius` */
     double edge_radius; /* where the image circle, or something in front of the lens, ends the data: half diagonals from
                            the middle of the frame; 0 = the data end with the frame */
     double edge_share;  /* share of the frame beyond the edge, which was left out */

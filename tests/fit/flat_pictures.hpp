@@ -59,6 +59,7 @@ struct FlatPictures {
     lensprof_vignetting vignetting[3];
     lensprof_response response;
     double gradient[2] = {0.0, 0.0};  // of the light's logarithm per half diagonal, to the right and down in the scene
+    double bend = 0.0;                // added to that logarithm, per square of its slope
     double level = 0.5;               // light at the centre at 0 EV
     double noise = 0.004;             // standard deviation, in grey values
     uint64_t seed = 1;
@@ -92,7 +93,8 @@ struct FlatPictures {
         double qx = std::cos(turn) * dx - std::sin(turn) * dy, qy = std::sin(turn) * dx + std::cos(turn) * dy;
         double m = lensprof_vignetting_eval(
             &vignetting[channel], lensprof_vignetting_r2(&vignetting[channel], width, height, x, y, nullptr), nullptr);
-        return level * m * std::exp(gradient[0] * qx + gradient[1] * qy) * (defect ? defect(x, y, channel) : 1.0);
+        const double slope = gradient[0] * qx + gradient[1] * qy;
+        return level * m * std::exp(slope + bend * slope * slope) * (defect ? defect(x, y, channel) : 1.0);
     }
 
     void put(uint8_t *at, double value) const {
@@ -189,6 +191,17 @@ inline double largest_error(const lensprof_flat_result &r, const FlatPictures &p
         const double x = (i % 30) * (p.width - 1.0) / 29.0, y = (i / 30) * (p.height - 1.0) / 29.0;
         if (radius_at(p, x, y) > radius) continue;
         worst = std::fmax(worst, std::fabs(found_falloff(r, p, x, y) - p.light(x, y, 1, 0.0) / middle));
+    }
+    return worst;
+}
+
+// The same relative to the light of the place, also between the nodes of a gain grid.
+inline double largest_share(const lensprof_flat_result &r, const FlatPictures &p) {
+    const double middle = p.light(0.5 * (p.width - 1.0), 0.5 * (p.height - 1.0), 1, 0.0);
+    double worst = 0.0;
+    for (uint32_t i = 0; i < 97 * 65; i++) {
+        const double x = (i % 97) * (p.width - 1.0) / 96.0, y = (i / 97) * (p.height - 1.0) / 64.0;
+        worst = std::fmax(worst, std::fabs(found_falloff(r, p, x, y) * middle / p.light(x, y, 1, 0.0) - 1.0));
     }
     return worst;
 }

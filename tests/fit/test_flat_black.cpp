@@ -135,8 +135,8 @@ static void one_level_leaves_the_corner_open(void **) {
         assert_true(r->usable);
         assert_close(finding->value[0], r->black_sigma, 0.0);
         assert_close(finding->value[1], r->black_ev, 0.0);
+        for (const double black : r->levels.black) assert_close(black, 0.0, 0.0);  // noise alone
     }
-    assert_close(one->levels.black[1], 0.0, 0.0);
     // black_ev is what the corner changes by if the level is that much higher.
     lensprof_flat_options o = p.options();
     p.images.pop_back();

@@ -132,20 +132,43 @@ void add_black(const CellGrid &grid, const Shot &shot, std::vector<bool> &outsid
     }
 }
 
-// The circle through the outline; where it is not a circle, the distance of its nearest place from the middle.
-void set_radius(const DarkMap &map, const std::vector<int> &rim, FlatEdge &edge) {
-    const CellGrid &grid = map.grid;
+// A cell's middle, half diagonals from that of the frame.
+std::array<double, 2> place_of(const CellGrid &grid, int cell) {
     const double half = lensprof_half_diagonal(grid.width, grid.height);
+    return {((cell % grid.columns + 0.5) * grid.cell_width() - 0.5 * grid.width) / half,
+            ((cell / grid.columns + 0.5) * grid.cell_height() - 0.5 * grid.height) / half};
+}
+
+// Where the light has fallen to a half, cells inwards from the middle of a dark one: the sum of what is missing.
+double inward_of(const DarkMap &map, int cell) {
+    const int depth = map.cells(kWidth);
+    double missing = -0.5;
+    for (int step = 0; step < depth; step++)
+        missing += 1.0 - std::exp(std::min(map.inward(cell, step) - map.inward(cell, depth), 0.0));
+    return std::isnan(missing) ? 0.5 : missing;
+}
+
+// The circle through the outline; where it is not a circle, one through its nearest place, about the middle.
+Circle outline_of(const DarkMap &map, const std::vector<int> &rim) {
     std::vector<std::array<double, 2>> places;
-    edge.radius = INFINITY;
+    double nearest = INFINITY;
     for (int cell : rim) {
-        const double x = (cell % grid.columns + 0.5) * grid.cell_width() - 0.5 * grid.width;
-        const double y = (cell / grid.columns + 0.5) * grid.cell_height() - 0.5 * grid.height;
-        if (distance_to_border(grid, cell) > 0) places.push_back({x / half, y / half});
-        edge.radius = std::min(edge.radius, std::hypot(x, y) / half);
+        const auto [x, y] = place_of(map.grid, cell);
+        const double far = std::hypot(x, y), part = 1.0 - inward_of(map, cell) * map.side / std::max(far, map.side);
+        if (distance_to_border(map.grid, cell) > 0) places.push_back({part * x, part * y});
+        nearest = std::min(nearest, part * far);
     }
     const std::optional<Circle> circle = circle_through(places, kOffCircle * map.side);
-    if (circle) edge.radius = circle->radius;
+    return circle ? *circle : Circle{{0.0, 0.0}, nearest};
+}
+
+// Also a line of cells along the frame's border that the dark covers in part.
+void leave_out_beyond(const CellGrid &grid, const Circle &circle, double radius, std::vector<bool> &outside) {
+    for (int cell = 0; cell < grid.count(); cell++) {
+        const auto [x, y] = place_of(grid, cell);
+        const bool is_beyond = std::hypot(x - circle.center[0], y - circle.center[1]) > radius;
+        if (is_beyond) outside[static_cast<size_t>(cell)] = true;
+    }
 }
 
 }  // namespace
@@ -156,12 +179,14 @@ FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
     std::vector<int> rim;
     edge.outside = surround(map, rim);
     if (rim.empty()) return edge;
-    set_radius(map, rim, edge);
+    const Circle circle = outline_of(map, rim);
+    edge.radius = circle.radius;
     int soft = 1;
     while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;
     for (int step = 0; step <= soft; step++) grow(grid, edge.outside);
+    edge.inner = edge.radius - (soft + 1) * map.side;
+    leave_out_beyond(grid, circle, edge.inner, edge.outside);
     add_black(grid, shot, edge.outside);
-    edge.inner = edge.radius - (soft + 2) * map.side;
     edge.share = static_cast<double>(std::count(edge.outside.begin(), edge.outside.end(), true)) / grid.count();
     return edge;
 }

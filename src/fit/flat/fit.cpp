@@ -153,6 +153,50 @@ void choose_light(FlatFit &fit, int curves) {
         take(before, fit);
 }
 
+// Shots at several angles separate the light from the lens in its second-order terms, too.
+void choose_curvature(FlatFit &fit, int curves) {
+    const FlatModel &model = fit.problem.model;
+    const bool is_open = fit.options.light == LENSPROF_FLAT_LIGHT_AUTO && model.light_terms == 2 && model.angles() > 1;
+    if (!is_open || !fit.estimate.converged) return;
+    const FlatSolution plane = solution_of(fit);
+    fit.light = LENSPROF_FLAT_LIGHT_QUADRATIC;
+    solve(fit, curves, plane.problem.model.form);
+    const bool is_better = fit.covariance.size() && fit.estimate.converged
+                           && flat_cost(fit.problem, fit.estimate) + kClearlyBetter
+                                  < cost_with_noise_of(fit.estimate, plane.problem, plane.estimate);
+    if (is_better) return;
+    fit.light = LENSPROF_FLAT_LIGHT_PLANE;
+    take(plane, fit);
+}
+
+// M in the middle of a cell over its mean in the cell, by Gauss's rule with two places per direction.
+double middle_over_mean(const FlatFit &fit, int curve, const CellLight &light) {
+    const CellGrid &grid = fit.grid;
+    const lensprof_vignetting v = falloff_of(fit.problem.model, fit.estimate.u, curve);
+    const auto falloff = [&](double x, double y) {
+        const double r2 = lensprof_vignetting_r2(&v, grid.width, grid.height, x, y, nullptr);
+        return falloff_at(fit.problem.model, fit.estimate.u, curve, r2).value;
+    };
+    const double dx = grid.cell_width() / std::sqrt(12.0), dy = grid.cell_height() / std::sqrt(12.0);
+    const double sum = falloff(light.x - dx, light.y - dy) + falloff(light.x + dx, light.y - dy)
+                       + falloff(light.x - dx, light.y + dy) + falloff(light.x + dx, light.y + dy);
+    return 4.0 * falloff(light.x, light.y) / sum;
+}
+
+// The light of a cell is the mean of its pixels. Where M is curved, that is not the one in its middle, with which the
+// model is compared: with the falloff found, replaces the mean by it, and solves again.
+void take_middles(FlatFit &fit) {
+    const FlatModel &model = fit.problem.model;
+    if (!fit.estimate.converged) return;
+    for (Shot &shot : fit.shots)
+        for (CellLight &light : shot.light)
+            for (int c = 0; c < model.channels && light.state == CellState::used; c++)
+                light.value[static_cast<size_t>(c)] *= middle_over_mean(fit, model.curve_of(c), light);
+    collect_cells(fit);
+    refine_flat(fit.problem, fit.estimate);
+    fit.covariance = flat_covariance(fit.problem, fit.estimate);
+}
+
 // Whether the channels' curves differ by more than their errors, and by enough to matter.
 bool curves_differ(const FlatFit &fit) {
     const FlatModel &model = fit.problem.model;
@@ -249,8 +293,10 @@ bool solve_all(FlatFit &fit, FlatResult &result) {
     }
     report(o, 0.9);
     choose_light(fit, curves);
+    choose_curvature(fit, curves);
     choose_form(fit, curves);
     if (o.vignettings == 0 && curves == 3 && !curves_differ(fit)) solve(fit, 1, fit.problem.model.form);
+    take_middles(fit);
     report(o, 0.95);
     return true;
 }

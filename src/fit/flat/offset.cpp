@@ -239,6 +239,12 @@ void subtract_offset(FlatFit &fit) {
         OffsetFit offset(fit, groups, c);
         if (offset.solve()) fit.offset.value[c] = offset.offset(), fit.offset.sigma[c] = offset.sigma();
     }
+    const double largest = *std::max_element(fit.offset.sigma.begin(), fit.offset.sigma.end());
+    fit.offset.is_shown = largest < kShown * fit.options.black_sigma;
+    if (!fit.offset.is_shown) {  // only noise
+        fit.offset.value.fill(0.0), fit.offset.sigma.fill(fit.options.black_sigma);
+        return;
+    }
     double mean = 0.0;
     for (size_t c = 0; c < channels; c++) {
         mean += fit.offset.value[c] / static_cast<double>(channels);
@@ -248,8 +254,6 @@ void subtract_offset(FlatFit &fit) {
         image.black = std::max((image.black - mean) / (1.0 - mean), 0.0),
         image.white = (image.white - mean) / (1.0 - mean);
     if (channels == 1) fit.offset.value.fill(fit.offset.value[0]), fit.offset.sigma.fill(fit.offset.sigma[0]);
-    const double largest = *std::max_element(fit.offset.sigma.begin(), fit.offset.sigma.end());
-    fit.offset.is_shown = largest < kShown * fit.options.black_sigma;
 }
 
 }  // namespace lensprof

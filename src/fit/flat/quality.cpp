@@ -105,10 +105,12 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
 
 constexpr double kNearCorner = 0.85;  // of the r^2 of the corner, from which on the pattern left counts as error there
 
-// Mean square of the coarse residual near the corner, relative to the light, less that of noise.
+// Mean square of the coarse residual near the corner, relative to the light, less that of noise. A pattern that a grid
+// was not to carry is stated by itself.
 double corner_misfit(const FlatFit &fit, const lensprof_gain_grid *gain) {
     const FlatModel &model = fit.problem.model;
     const lensprof_vignetting v = falloff_of(model, fit.estimate.u, 0);
+    if (fit.options.grid == LENSPROF_FLAT_GRID_NONE) return 0.0;
     Mean square, noise;
     for (int s = 0; s < model.shots; s++)
         for (int c = 0; c < model.channels; c++) {
@@ -137,6 +139,17 @@ double corner_sigma(const FlatFit &fit) {
         largest = std::max(largest, by_term.dot(fit.covariance.block(first, first, n, n) * by_term));
     }
     return std::sqrt(largest);
+}
+
+// Error of ln M in the corner from the light: curved along a line, it has as much of a curvature that is the same in
+// all directions, which looks like falloff, as of one that is not. Mean over the shots and channels.
+double curved_light(const FlatFit &fit) {
+    const FlatModel &model = fit.problem.model;
+    Mean curved;
+    for (int s = 0; s < model.shots && model.light_terms == kMaxLightTerms; s++)
+        for (int c = 0; c < model.channels; c++)
+            curved.add(std::hypot(fit.estimate.u[model.light(s, c) + 2], fit.estimate.u[model.light(s, c) + 3]));
+    return curved.value();
 }
 
 // Error of ln M in the corner from what continues it beyond the data, and beyond the first cell that is black.
@@ -343,10 +356,10 @@ void describe_flat(const FlatFit &fit, FlatResult &r) {
         normalise_gain_grid(fit, r.gain_grid);
     }
     r.corner = corner_of(fit, r);
-    if (!fit.held.is_whole) {
-        const double left = corner_misfit(fit, r.gain_grid.columns ? &r.gain_grid : nullptr);
-        r.corner_sigma = std::hypot(r.corner_sigma, r.corner * std::sqrt(left), r.corner * continued_error(fit));
-    }
+    const double left = corner_misfit(fit, r.gain_grid.columns ? &r.gain_grid : nullptr);
+    const double continued = fit.held.is_whole ? 0.0 : continued_error(fit);
+    const double of_light = std::hypot(std::sqrt(left), continued, curved_light(fit));
+    r.corner_sigma = std::hypot(r.corner_sigma, r.corner * of_light);
     describe_levels(fit, r);
     describe_images(fit, r);
 }
