@@ -50,7 +50,7 @@ def curves(records, good, bad, what="sequences", severities=("refusal", "warning
         found = sorted(measures(records, severity).items())
         if not found:
             continue
-        lines += ["", "### Limits of %ss, %ss" % (severity, what), "", READING[severity].format(what=what), "",
+        lines += ["", "### Limits of %ss, %s" % (severity, what), "", READING[severity].format(what=what), "",
                   *header("rule", "limit", *("× %g" % f for f in FACTORS))]
         for (code, limit, above), of in found:
             cells = ["%d / %d" % cell(of, severity, (code, limit), above, factor, good) for factor in FACTORS]

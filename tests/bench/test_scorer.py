@@ -378,7 +378,7 @@ class Cards(unittest.TestCase):
 
         report_on, tune, quick = drawn(False, False), drawn(False, True), drawn(True, False)
         self.assertEqual(report_on, drawn(False, False))
-        self.assertEqual(len(report_on), 6 * 50 + 11 * 20)
+        self.assertEqual(len(report_on), 7 * 50 + 12 * 20)
         self.assertEqual(report_on.keys(), tune.keys())
         self.assertFalse([name for name in tune if tune[name] == report_on[name]])
         self.assertEqual(quick, {name: report_on[name] for name in quick})
@@ -409,18 +409,32 @@ class Cards(unittest.TestCase):
         grid = {"columns": 4, "rows": 3, "attenuation": np.full((3, 3, 4), 1.05).tolist()}
         np.testing.assert_allclose(errors([k], center, grid), [0.0, 0.05], atol=1e-9)
 
-    def test_table(self):
-        def record(kind, error, usable=True, reason=""):
-            return {"kind": kind, "number": 0, "name": kind + " 0", "usable": usable, "reason": reason, "error": error,
-                    "frame_error": 2 * error, "z": 0.5, "findings": [], "passed": []}
+    def test_a_grid_is_interpolated(self):
+        nodes = np.add.outer(np.arange(3.0), 2.0 * np.arange(5.0))  # a plane stays one
+        np.testing.assert_allclose(cards.between(nodes), np.add.outer(np.linspace(0, 2, cards.PLACES[1]),
+                                                                      np.linspace(0, 8, cards.PLACES[0])), atol=1e-12)
 
-        records = [record("even", 0.001), record("even", 0.5, False, "no"), record("partial", 0.01),
-                   record("partial", 0.3), record("partial", 0.2, True, "careful"), record("partial", 0.9, False, "no")]
+    def test_corner(self):
+        card = {**self.CARD, "center": [0.0, 0.0]}
+        self.assertAlmostEqual(cards.true_corner(card, None), flat.falloff(card["k"], (479**2 + 359**2) / 600**2), 12)
+        self.assertAlmostEqual(cards.true_corner(card, 0.7), flat.falloff(card["k"], 0.49), 12)
+
+    def test_table(self):
+        def record(kind, error, usable=True, reason="", found=()):
+            return {"kind": kind, "number": 0, "name": kind + " 0", "usable": usable, "reason": reason, "error": error,
+                    "frame_error": 2 * error, "z": 0.5, "passed": [], "corner": 0.5 + error, "true_corner": 0.5,
+                    "seconds": 0.25, "findings": [{"code": code, "severity": "note", "limit": 0.0, "measured": 1.0}
+                                                  for code in found]}
+
+        records = [record("even", 0.001), record("even", 0.5, False, "no"), record("lamp", 0.005),
+                   record("lamp", 0.3), record("lamp", 0.2, True, "careful"), record("lamp", 0.9, False, "no"),
+                   record("lamp", 0.4, found=["flat_one_light"])]
         lines = card_tables.cards({"tune": False, "skipped": [], "records": records})
-        cells = [[c.strip() for c in line.strip("|").split("|")] for line in lines if line.startswith("| partial |")]
-        self.assertEqual(cells, [["partial", "4", "1", "2", "1", "0.200", "0.300", "0.400", "0.600", *"111", ""]])
+        cells = [[c.strip() for c in line.strip("|").split("|")] for line in lines if line.startswith("| lamp |")]
+        self.assertEqual(cells, [["lamp", "5", "1", "4", "1", "0.50", "0.50", "0.250", "0.400", "0.500", "0.800", "2",
+                                  "1", "", "0.25"]])
         self.assertEqual([line.split("|")[1:3] for line in lines[lines.index("Missed.") + 4:-1]],
-                         [[" even 0 ", " refused "], [" partial 0 ", " accepted without a warning "]])
+                         [[" even 0 ", " refused "], [" lamp 0 ", " harm that nothing names "]])
         self.assertEqual(card_tables.cards({}), [])
 
 
