@@ -102,6 +102,31 @@ void test_linear_is_float(void **) {
     assert_int_equal(read_header(work("png/p0.tif")).sample, LENSPROF_SAMPLE_F32);
 }
 
+// Float pictures may count electrons: what is linear is not clipped at 1.
+void test_counts_are_not_clipped(void **) {
+    fs::create_directories(work("counts"));
+    Picture picture = make_picture(0, LENSPROF_SAMPLE_F32);
+    auto *values = reinterpret_cast<float *>(picture.pixels.data());
+    for (size_t i = 0; i < width * height * 3; ++i) values[i] *= 4000.0f;
+    write_picture(work("counts/a.tif"), picture);
+    auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
+    lensprof_response_set_linear(&p->response[0]);
+    p->key.processing = LENSPROF_PROCESSING_RAW;
+    p->vignetting[0].k[0] = k1, p->vignetting[0].k[1] = k2;
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("counts.db").c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    must_exit(done,
+              {"apply", "--profile", "1", "--db", work("counts.db"), "-o", work("counted"), work("counts/a.tif")});
+    const Picture after = read_picture(work("counted/a.tif"));
+    for (size_t s = 0; s < width * height * 3; ++s) {
+        const double light = value_of(picture, s) / falloff(uint32_t(s / 3 % width), uint32_t(s / 3 / width));
+        assert_close(value_of(after, s), light, 1e-4 * light);
+    }
+}
+
 void test_simulate_undoes_correct(void **) {
     must_exit(done, {"apply", "--pto", make_project(), "--set", "exposure=keep", "-o", work("once")});
     fs::copy(work("in/pano.pto"), work("once/pano.pto"));
@@ -476,13 +501,21 @@ void test_doubts_of_crops(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_output_exposures),        CLI_TEST(test_linear_is_float),
-        CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
-        CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
-        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
-        CLI_TEST(test_contact_sheet),           CLI_TEST(test_two_circles),
-        CLI_TEST(test_doubts_of_crops),         CLI_TEST(test_colour_alone),
-        CLI_TEST(test_strength_cap_and_dither), CLI_TEST(test_folder),
+        CLI_TEST(test_output_exposures),
+        CLI_TEST(test_linear_is_float),
+        CLI_TEST(test_counts_are_not_clipped),
+        CLI_TEST(test_simulate_undoes_correct),
+        CLI_TEST(test_some_pictures_of_a_project),
+        CLI_TEST(test_overlaps_agree_better),
+        CLI_TEST(test_pictures_keep_their_nature),
+        CLI_TEST(test_profile_by_id_or_exif),
+        CLI_TEST(test_gain_grid_of_a_profile),
+        CLI_TEST(test_contact_sheet),
+        CLI_TEST(test_two_circles),
+        CLI_TEST(test_doubts_of_crops),
+        CLI_TEST(test_colour_alone),
+        CLI_TEST(test_strength_cap_and_dither),
+        CLI_TEST(test_folder),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -57,6 +57,7 @@ Picture corrected_whole(const std::string &file, const lensprof_profile &model, 
     lensprof_apply_options options;
     lensprof_apply_options_init(&options);
     options.output = linear ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
+    if (source.sample == LENSPROF_SAMPLE_F32) options.input = options.output = LENSPROF_ENCODING_LINEAR;
     options.frame_width = source.width;
     options.frame_height = source.height;
     options.source_sample = source.sample;

@@ -10,6 +10,21 @@
 
 namespace lensprof {
 
+namespace {
+
+// Linear floating point of which only the falloff is corrected may hold counts, and is not clipped at 1. Where exposure
+// or white balance change, what is white at 1 has to stay so.
+bool holds_counts(const Picture &source, const Correction &job) {
+    const lensprof_profile &model = *job.model;
+    const bool is_linear = std::all_of(model.response, model.response + model.responses,
+                                       [](const lensprof_response &r) { return r.kind == LENSPROF_RESPONSE_LINEAR; });
+    const lensprof_exposure &from = job.exposure, &to = job.target_exposure;
+    return source.sample == LENSPROF_SAMPLE_F32 && is_linear && !job.encoding && from.ev == to.ev
+           && std::equal(from.white_balance, from.white_balance + 3, to.white_balance);
+}
+
+}  // namespace
+
 lensprof_apply_options options_of(const Picture &source, const Correction &job, const CorrectionKind &kind) {
     lensprof_apply_options options;
     lensprof_apply_options_init(&options);
@@ -26,6 +41,7 @@ lensprof_apply_options options_of(const Picture &source, const Correction &job, 
     options.target_sample = kind.linear ? static_cast<uint32_t>(LENSPROF_SAMPLE_F32) : source.sample;
     check(lensprof_apply_options_set_profile(&options, job.model.get()), job.source);
     const bool is_raw = source.traits.format == FileFormat::raw;  // its own levels were applied when it was read
+    if (holds_counts(source, job)) options.input = options.output = LENSPROF_ENCODING_LINEAR;
     if (is_raw) options.levels = nullptr;
     if (job.levels) options.levels = options.output_levels = job.levels.get();
     if (kind.linear || is_raw) options.output_levels = nullptr;  // 0 is black there
