@@ -70,7 +70,7 @@ def fill(store, folder):
         for file in sorted(folder.glob("*.xml")):
             text = file.read_bytes()
             try:
-                found, tests = lensprof.import_profiles(text, file.name), list(halves_of(text))
+                found, tests = lensprof.formats.read_profiles(text, file.name), list(halves_of(text))
             except lensprof.Error as error:
                 sys.exit("lookup.py: %s: %s" % (file, error))
             if len(found) != len(tests):
