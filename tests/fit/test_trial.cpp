@@ -141,6 +141,29 @@ void test_rings(void **) {
     assert_true(found[1].better_than_none && found[2].better_than_none && !found[3].better_than_none);
 }
 
+// The standard errors follow the scatter: small with little noise, larger where pairs of a part of a picture share an
+// error.
+void test_ring_errors(void **) {
+    Simulation simulation = simulated(0.2, 0.0);
+    const lensprof_profile right = profile_of(simulation, 1.0);
+    Outcome clean(2), shaded(2);
+    assert_ok(run(simulation, {&right}, clean));
+    for (lensprof_pair &pair : simulation.pairs)
+        for (int side = 0; side < 2; side++)
+            if (pair.image[side] == 1 && pair.xy[side][0] < 300.0)
+                for (double &value : pair.value[side]) value *= 0.98;
+    assert_ok(run(simulation, {&right}, shaded));
+    const lensprof_trial_candidate &found = clean.candidates[0], &common = shaded.candidates[0];
+    const uint32_t last = found.rings - 1;
+    assert_int_equal(common.rings, found.rings);
+    assert_true(last >= 2 && common.ring_sigma_ev[last] > 2.0 * found.ring_sigma_ev[last]);
+    for (uint32_t k = 1; k <= last; k++) {
+        assert_true(found.ring_sigma_ev[k] < 0.002);
+        assert_true(std::fabs(found.ring_ev[k]) <= 3.0 * found.ring_sigma_ev[k]);
+        assert_true(std::fabs(common.ring_ev[k]) <= 3.0 * common.ring_sigma_ev[k]);
+    }
+}
+
 void test_before_rms(void **) {
     Simulation simulation = simulated(0.0, 0.0);
     for (lensprof_pair &pair : simulation.pairs)
@@ -260,6 +283,7 @@ int main(void) {
         cmocka_unit_test(test_noise),
         cmocka_unit_test(test_raw),
         cmocka_unit_test(test_rings),
+        cmocka_unit_test(test_ring_errors),
         cmocka_unit_test(test_before_rms),
         cmocka_unit_test(test_few_pairs),
         cmocka_unit_test(test_bad_pairs),

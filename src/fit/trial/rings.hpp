@@ -6,7 +6,6 @@
 // which standard deviations are known. d is linear in r^2 between the ends of rings and 0 in the middle.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -15,13 +14,9 @@
 
 #include "fit/trial/residuals.hpp"
 #include "fit/trial/response_error.hpp"
+#include "fit/trial/ring_nodes.hpp"
 
 namespace lensprof {
-
-constexpr int kRings = LENSPROF_TRIAL_RINGS;
-constexpr double kEnds[kRings] = {0.25, 0.5, 0.7, 0.85, 1.0};  // largest r of each, half diagonals
-using RingVector = Eigen::Matrix<double, kRings, 1>;
-using RingMatrix = Eigen::Matrix<double, kRings, kRings>;
 
 // Means over the area of each ring, relative to that of the first, natural logarithm.
 struct RingFalloff {
@@ -32,12 +27,8 @@ struct RingFalloff {
     RingVector area = RingVector::Zero();       // shares of the frame
 };
 
-RingFalloff remaining_falloff(const TrialPairs &pairs, const TrialModel &model, const ResponseError &response);
-
-// What is known of gamma by the known exposures of the images: their slope to `exposures`, ln per image, and its
-// standard error; combined with that of the response.
-void add_known_exposures(const std::vector<lensprof_fit_image> &images, const std::vector<double> &exposures,
-                         ResponseError &response);
+// What is known of the response's gamma by the known exposures of the images is added to `response`.
+RingFalloff remaining_falloff(const TrialPairs &pairs, const TrialModel &model, ResponseError response);
 
 // Whether the frame is clearly flatter with the candidate than without any: mean square over the rings shown.
 bool is_flatter(const RingFalloff &found);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "fit/base/fail.hpp"
-#include "fit/trial/evaluator.hpp"
 #include "fit/trial/residuals.hpp"
 #include "fit/trial/rings.hpp"
 
@@ -92,16 +91,6 @@ std::vector<Candidate> measured(const TrialPairs &pairs, const TrialInput &input
     return candidates;
 }
 
-// Natural logarithms of the exposures in green, or in grey, from all pairs.
-std::vector<double> exposures_with(const TrialPairs &pairs, const TrialModel &model) {
-    const Evaluator evaluator(pairs, model);
-    const uint32_t green = pairs.channels == 3 ? 1 : 0;
-    std::vector<IrradianceDifference> differences;
-    for (const auto *half : {&pairs.train, &pairs.heldout})
-        for (const lensprof_pair &pair : *half) differences.push_back(evaluator.difference(pair, green));
-    return log_exposures(differences, static_cast<uint32_t>(pairs.images.size()));
-}
-
 ResponseError error_of_response(const Candidate &candidate, const std::vector<Candidate> &candidates,
                                 uint32_t camera_kind) {
     const uint32_t other = candidate.found.response_profile;
@@ -116,15 +105,13 @@ ResponseError error_of_response(const Candidate &candidate, const std::vector<Ca
 // The falloff that each candidate leaves.
 void find_rings(const TrialPairs &pairs, const TrialInput &input, std::vector<Candidate> &candidates) {
     for (Candidate &candidate : candidates) {
-        ResponseError error = error_of_response(candidate, candidates, input.camera_kind);
         std::vector<lensprof_response> curves = candidate.responses;
         if (candidate.found.response_from == LENSPROF_TRIAL_RESPONSE_OTHER)
             curves = candidates[candidate.found.response_profile].responses;
         else if (curves.empty())
             curves = {input.typical};
-        const TrialModel model = candidate.with(curves);
-        add_known_exposures(pairs.images, exposures_with(pairs, model), error);
-        candidate.rings = remaining_falloff(pairs, model, error);
+        candidate.rings = remaining_falloff(pairs, candidate.with(curves),
+                                            error_of_response(candidate, candidates, input.camera_kind));
         put_rings(candidate.rings, candidate.found);
     }
 }
