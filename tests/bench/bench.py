@@ -20,9 +20,10 @@ import scale
 import speed
 import static
 import tools
+import trials
 import verdicts
 
-PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "static", "scale", "speed",
+PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "cards", "forms", "trials", "static", "scale", "speed",
          "radiance", "knowledge", "photographs", "reconstruction", "real")
 
 
@@ -32,14 +33,14 @@ def parse():
     p.add_argument("--real", metavar="DIR", help="also real pictures: pano.pto, hugin.pto and brackets below DIR")
     p.add_argument("--only", default=",".join(PARTS), help="parts, separated by commas: " + ", ".join(PARTS))
     p.add_argument("--match", metavar="TEXT", default="",
-                   help="only accuracy cases with TEXT in the name of their row; verdicts, cards: one kind, or one case"
+                   help="only accuracy cases with TEXT in the name of their row; verdicts, cards, trials: one kind, or one case"
                         " such as smooth 17; reconstruction: sets, separated by commas: terrain, room, drone, and real"
                         " ones")
     p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
     p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="parallel cases (accuracy only)")
     p.add_argument("--sequences", type=int, metavar="N", help="sequences of the part knowledge (default 60, quick 20)")
     p.add_argument("--tune", action="store_true",
-                   help="knowledge: the half of the lenses used to choose constants; verdicts, cards: other seeds")
+                   help="knowledge: the half of the lenses used to choose constants; verdicts, cards, trials: other seeds")
     p.add_argument("--keep", action="store_true", help="keep the rendered pictures")
     options = p.parse_args()
     options.only = options.only.split(",")
@@ -62,7 +63,7 @@ def main():
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize (package hugin-tools) is missing; only lensprof is measured"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
-               "verdicts": {}, "cards": {}, "forms": {}, "radiance": {}, "knowledge": [],
+               "verdicts": {}, "cards": {}, "forms": {}, "trials": {}, "radiance": {}, "knowledge": [],
                "photographs": [], "moving": [], "reconstruction": {},
                "real": [], "brackets": [], "skipped": skipped}
     if skipped:
@@ -89,6 +90,8 @@ def main():
         results["cards"] = cards.run_all(options.quick, options.tune, options.jobs, options.keep, say, options.match)
     if "forms" in options.only:
         results["forms"] = falloff_forms.run_all(options.real, options.quick, say)
+    if "trials" in options.only:
+        results["trials"] = trials.run_all(options.quick, options.tune, options.jobs, options.keep, say, options.match)
     if "knowledge" in options.only:
         import knowledge  # needs the library in addition to the program
         results["knowledge"] = knowledge.run_all(options.sequences or (20 if options.quick else 60), options.tune,

@@ -440,6 +440,7 @@ def document(results):
     from card_tables import cards
     from form_tables import forms
     from reconstruction_tables import tables
+    from trial_tables import trials
     from verdict_tables import verdicts
     lines = ["# Benchmark", "", results["machine"], ""]
     if results["skipped"]:
@@ -451,7 +452,7 @@ def document(results):
     lines += accuracy("From pictures", "6 pictures of 800 x 600, 50 degrees wide, 40 % overlap, exposures within 1 EV,"
                       " noise of 2 levels, unless the case states otherwise.", results["pictures"], COSTS)
     lines += targets(results["pictures"]) + refused(results["refusals"]) + verdicts(results["verdicts"])
-    lines += flat(results["flat"]) + cards(results["cards"]) + forms(results["forms"])
+    lines += flat(results["flat"]) + cards(results["cards"]) + forms(results["forms"]) + trials(results["trials"])
     lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
     lines += photographs(results["photographs"]) + moving(results["moving"])

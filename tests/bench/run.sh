@@ -5,7 +5,7 @@
 #   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
 #                      [--sequences N] [--tune]
 #                      PARTS, separated by commas: points, pictures, refusals, verdicts, flat, cards, forms (shading
-#                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), static, scale, speed,
+#                      tables of libcamera-ipa and DIR/shading, projects of DIR/overlaps), trials, static, scale, speed,
 #                      radiance, knowledge, photographs (also of --real DIR), reconstruction (with colmap; also
 #                      DIR/reconstruction), real (pano.pto and hugin.pto below DIR, and folders of DIR/brackets)
 #   tests/bench/run.sh --only reconstruction --match terrain,drone   only these sets: terrain, room, drone, and with
@@ -13,6 +13,7 @@
 #   tests/bench/run.sh --only verdicts --match "smooth 17"   one rendered sequence again, or all of a kind; --keep keeps
 #                      its pictures in build/bench/verdicts
 #   tests/bench/run.sh --only cards --tune --match dusty   likewise rendered cards, pictures in build/bench/cards
+#   tests/bench/run.sh --only trials --tune --match "fitted 17"   likewise sequences to check profiles against
 #   tests/bench/run.sh --self-test      tests the scorer and the references; needs no program; exit 77: NumPy is missing
 #   tests/bench/run.sh --lookup [DIR]   lookups between stored settings compared with Lensfun's rule, also written to
 #                                       build/bench/lookup.md; exit 1: target missed; 77: no NumPy or Lensfun data

@@ -24,6 +24,8 @@ import report
 import scorer
 import seams
 import tools
+import trial_tables
+import trials
 import card_tables
 import cards
 import limit_curves
@@ -367,6 +369,44 @@ class Verdicts(unittest.TestCase):
                          ["refused", "failed", None])
         self.assertEqual([missed("noise", True), missed("noise", True, "careful"), missed("noise", False, "no")],
                          ["accepted", None, None])
+
+
+class Trials(unittest.TestCase):
+    def test_drawing_repeats_and_tuning_has_other_seeds(self):
+        def drawn(quick, tune):
+            return {one.name: str(one) for one in trials.trials(quick, tune)}
+
+        report_on, tune, quick = drawn(False, False), drawn(False, True), drawn(True, False)
+        self.assertEqual(report_on, drawn(False, False))
+        self.assertEqual(len(report_on), 4 * trials.COUNT)
+        self.assertFalse([name for name in tune if tune[name] == report_on[name]])
+        self.assertEqual(quick, {name: report_on[name] for name in quick})
+
+    def test_what_candidates_leave(self):
+        """The true one nothing; the others rise or fall to nearly OFF, whose corner is that of the frame's middle."""
+        one = next(trials.trials(True, False))
+        true, bright, dark = (trials.true_rings(one, 1.0, k) for k in trials.candidates(one, 1.0))
+        np.testing.assert_allclose(true, 0.0, atol=1e-9)
+        np.testing.assert_allclose(bright, -dark, atol=0.01)
+        self.assertTrue((np.diff(bright) > 0.0).all() and 0.5 * trials.OFF < bright[-1] < trials.OFF)
+        self.assertTrue((np.diff(trials.true_rings(one, 1.0, [0.0] * 3)) < 0.0).all())
+
+    def test_exponent_of_a_response(self):
+        self.assertAlmostEqual(trials.exponent(scorer.Gamma(2.0), scorer.Gamma(2.2)), 1.1, 9)
+
+    def test_table(self):
+        def found(corners, ev, truth):
+            return {"corners": corners, "ev": [0.0, ev], "truth": [0.0, truth, 2 * truth], "sigma": [0.0, 0.01], "z": [0.5]}
+
+        record = {"kind": "exact", "number": 3, "refused": False, "candidates": {
+            "true": found("agree", 0.01, 0.0), "too bright": found("too-dark", -0.1, 0.1),
+            "too dark": found("not-shown", -0.1, -0.1), "none": found("too-dark", -0.3, -0.3)}}
+        refused = {"kind": "exact", "number": 4, "refused": True, "candidates": {}}
+        text = "\n".join(trial_tables.trials({"tune": True, "records": [record, refused]}))
+        self.assertIn("| exact | 2 | 1 | 1 | 0 | 0 | 1 | 0 | 1 | 1 | 1 | 0.0100 |", text)
+        self.assertIn("| 100 %, 100 %, 0.50 | – | – | – | 100 %, 100 %, 0.50 |", text)
+        self.assertIn("| exact 3 | too bright | too-dark | +0.100 | -0.100 | 0.010 |", text)
+        self.assertEqual(trial_tables.trials({}), [])
 
 
 class Cards(unittest.TestCase):
