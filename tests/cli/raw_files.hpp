@@ -32,7 +32,10 @@ struct Dng {
     std::string maker = "TestMaker", model = "TestCam 1";
     bool is_dng = true;  // otherwise the same structure without the tags of DNG, as in NEF and PEF
     uint16_t orientation = 1;
-    uint32_t declared = 0;  // width and height in the header instead of the true ones; 0 = the true ones
+    std::string lens;  // with f_number and focal_mm in a directory of EXIF; may be empty
+    double f_number = 0.0, focal_mm = 0.0;
+    std::vector<uint8_t> opcodes;  // OpcodeList3; may be empty
+    uint32_t declared = 0;         // width and height in the header instead of the true ones; 0 = the true ones
 };
 
 // Bits, the highest first.
@@ -170,9 +173,19 @@ inline void add_levels(Directory &directory, const Dng &dng) {
     directory.numbers(50778, 3, {21});
     if (!dng.active.empty()) directory.numbers(50829, 4, dng.active);
     if (!dng.masked.empty()) directory.numbers(50830, 4, dng.masked);
+    if (!dng.opcodes.empty()) directory.add(51022, 7, static_cast<uint32_t>(dng.opcodes.size()), dng.opcodes);
 }
 
-inline Directory directory_of(const Dng &dng, uint32_t pixels_at, uint32_t pixel_bytes) {
+// EXIF 2.32: aperture, focal length and the name of the lens.
+inline Directory exif_of(const Dng &dng) {
+    const auto tenths = [](double value) { return static_cast<uint32_t>(std::lround(10.0 * value)); };
+    Directory d;
+    d.numbers(33437, 5, {tenths(dng.f_number), 10}), d.numbers(37386, 5, {tenths(dng.focal_mm), 10});
+    d.text(42036, dng.lens);
+    return d;
+}
+
+inline Directory directory_of(const Dng &dng, uint32_t pixels_at, uint32_t pixel_bytes, uint32_t exif_at = 0) {
     Directory d;
     const uint32_t width = dng.declared ? dng.declared : dng.width, height = dng.declared ? dng.declared : dng.height;
     d.numbers(254, 4, {0}), d.numbers(256, 4, {width}), d.numbers(257, 4, {height});
@@ -188,23 +201,26 @@ inline Directory directory_of(const Dng &dng, uint32_t pixels_at, uint32_t pixel
         d.numbers(33421, 3, {2, 2});
         d.numbers(33422, 1, {dng.pattern[0], dng.pattern[1], dng.pattern[2], dng.pattern[3]});
     }
+    if (exif_at) d.numbers(34665, 4, {exif_at});
     if (!dng.is_dng) return d;
     d.numbers(50706, 1, {1, 4, 0, 0}), d.numbers(50707, 1, {1, 1, 0, 0}), d.text(50708, "TestMaker " + dng.model);
     add_levels(d, dng);
     return d;
 }
 
-// The directory first, then the pixels.
+// The directory first, then that of EXIF, then the pixels.
 inline Bytes dng_bytes(const Dng &dng) {
     const Bytes pixels = dng.packing == Packing::lossless ? lossless_jpeg(dng)
                          : dng.packing == Packing::bits   ? packed(dng)
                                                           : words_of(dng.values);
     const auto count = static_cast<uint32_t>(pixels.size());
+    const bool has_exif = !dng.lens.empty();
     Bytes file = {'I', 'I', 42, 0, 8, 0, 0, 0};
-    const auto place = static_cast<uint32_t>(8 + directory_of(dng, 0, count).bytes_at(8).size());
-    const Bytes directory = directory_of(dng, place, count).bytes_at(8);
-    file.insert(file.end(), directory.begin(), directory.end());
-    file.insert(file.end(), pixels.begin(), pixels.end());
+    const auto exif_at = static_cast<uint32_t>(8 + directory_of(dng, 0, count, has_exif).bytes_at(8).size());
+    const Bytes exif = has_exif ? exif_of(dng).bytes_at(exif_at) : Bytes();
+    const auto place = exif_at + static_cast<uint32_t>(exif.size());
+    const Bytes directory = directory_of(dng, place, count, has_exif ? exif_at : 0).bytes_at(8);
+    for (const Bytes &part : {directory, exif, pixels}) file.insert(file.end(), part.begin(), part.end());
     return file;
 }
 

@@ -1,5 +1,5 @@
 // `lensprof flat` of a folder: settings by EXIF, names and a table, a result for each, the lens as one file.
-#include "cli_runs.hpp"
+#include "raw_runs.hpp"
 
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
@@ -11,7 +11,7 @@
 
 namespace {
 
-using namespace cli_runs;
+using namespace raw_runs;
 
 constexpr uint32_t width = 240, height = 160;
 
@@ -141,6 +141,71 @@ void test_outputs(void **) {
                    {"holds one lens", "Box 2"});
     fs::remove(lens + "/other.tif");
     assert_true(disk() == before);
+}
+
+// A mosaic of a card as a DNG with EXIF, with a black level of 6 % of the range.
+std::string shoot_raw(const std::string &name, const Card &card, const Bytes &opcodes = {}) {
+    Dng dng;
+    dng.width = width, dng.height = height, dng.white = 16383, dng.black = {1024, 1020, 1028, 1024};
+    dng.maker = "Box", dng.model = "Box 1", dng.lens = card.lens;
+    dng.focal_mm = card.focal_mm, dng.f_number = card.aperture, dng.opcodes = opcodes;
+    const lensprof_vignetting falloff{{card.k1, 0.05, -0.02}, {0.0, 0.0}};
+    const double colour[] = {0.35, 0.5, 0.4};
+    uint64_t random = card.seed;
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            const size_t site = y % 2 * 2 + x % 2;
+            const double r2 = lensprof_vignetting_r2(&falloff, width, height, x, y, nullptr),
+                         light = colour[dng.pattern[site]] * lensprof_vignetting_eval(&falloff, r2, nullptr)
+                                 + 0.002 * lp_normal(&random);
+            dng.values.push_back(
+                static_cast<uint16_t>(std::lround(dng.black[site] + light * (dng.white - dng.black[site]))));
+        }
+    const std::string path = in_folder(name);
+    fs::create_directories(fs::path(path).parent_path());
+    save(path, dng_bytes(dng));
+    return path;
+}
+
+// OpcodeList3 with FixVignetteRadial (DNG 1.7): k0 = 0.5 about the middle.
+Bytes radial_opcode() {
+    Bytes bytes;
+    const auto word = [&](uint64_t value, int size) {
+        for (int i = size - 1; i >= 0; i--) bytes.push_back(static_cast<uint8_t>(value >> 8 * i));
+    };
+    word(1, 4), word(3, 4), word(0x01030000, 4), word(1, 4), word(7 * 8, 4);
+    for (const double number : {0.5, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5}) {
+        uint64_t bits;
+        std::memcpy(&bits, &number, sizeof bits);
+        word(bits, 8);
+    }
+    return bytes;
+}
+
+// The black level that a raw file states is subtracted once. Its opcodes are instructions for its development: the
+// sensor's values show the whole falloff with them as without.
+void test_raw_cards(void **) {
+    needs_libraw();
+    std::map<double, double> k1;
+    for (const double aperture : apertures) {
+        Card card{24.0, aperture};
+        card.k1 = k1[aperture] = k1_of(24.0, aperture);
+        shoot_raw(format("raw/%g.dng", aperture), card, aperture == 5.6 ? radial_opcode() : Bytes());
+    }
+    const std::string xml = in_folder("raw.xml");
+    const Json json = json_of({"flat", in_folder("raw"), "--no-store", "-o", xml, "--key", "crop-factor=1", "--json"});
+    assert_int_equal(json["settings"].size(), 3);
+    assert_true(json["left_out"].empty());
+    for (const Json &setting : json["settings"]) {
+        const Json &key = setting["key"];
+        assert_true(setting["usable"] == true && key["lens"] == "EF24-70mm f/2.8" && key["camera_model"] == "Box 1");
+        assert_true(key["processing"] == "raw");
+        const double corner = 1.0 + k1[key["aperture"].get<double>()] + 0.05 - 0.02;
+        assert_float_equal(setting["corner"].get<double>(), corner, 0.005);
+    }
+    const std::string text = text_of(xml);
+    assert_int_equal(text.find("<lens>"), text.rfind("<lens>"));
+    assert_true(contains(text, "focal=\"24\" aperture=\"5.6\""));
 }
 
 // What is bad, and what to do; the others are measured.
@@ -339,6 +404,7 @@ int main() {
         CLI_TEST(test_a_folder),
         CLI_TEST(test_the_same_for_any_number_of_threads),
         CLI_TEST(test_outputs),
+        CLI_TEST(test_raw_cards),
         CLI_TEST(test_bad_cards),
         CLI_TEST(test_lists_are_of_all_pictures),
         CLI_TEST(test_settings_of_names),
