@@ -33,6 +33,33 @@ Words export_to(const std::string &file, const Words &more = {}) {
     return Words{"profile", "export", "1", "--db", work("p.db"), "-o", file} + more;
 }
 
+// A loss of black and white level is stated, by formats that lose them.
+void test_levels_that_are_lost(void **) {
+    make_db();
+    Json json = show("p.db");
+    json["levels"] = {{"black", {0.004, 0.004, 0.004}}, {"white", 0.0625}};
+    save_text(work("levels.json"), json.dump());
+    must_exit(done, {"profile", "import", work("levels.json"), "--db", work("levels.db")});
+    const Words frame = {"--encoding", "frame=600x400"};
+    const struct {
+        const char *file, *db;
+        Words words;
+        bool is_noted;
+    } cases[] = {
+        {"l.xml", "levels.db", {}, true},      {"l.lcp", "levels.db", {}, true},
+        {"pcalib.txt", "levels.db", {}, true}, {"l.csv", "levels.db", {}, true},
+        {"l.png", "levels.db", frame, true},   {"l.tif", "levels.db", frame, true},
+        {"held.json", "levels.db", {}, false}, {"none.xml", "p.db", {}, false},
+    };
+    for (const auto &one : cases) {
+        const Outcome outcome =
+            run_words(Words{"profile", "export", "1", "--db", work(one.db), "-o", work(one.file)} + one.words);
+        assert_int_equal(outcome.code, done);
+        const bool is_noted = contains(outcome.err, "profile 1: the file does not hold its black and white level");
+        assert_int_equal(is_noted, one.is_noted);
+    }
+}
+
 // Arguments that select a file's format, then what is read back from it.
 void test_round_trips(void **) {
     const Words frame = {"--encoding", "frame=600x400"}, camera = {"--camera", "Other"};
@@ -269,6 +296,7 @@ void test_tuning_files(void **) {
 
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_round_trips),
+                                CLI_TEST(test_levels_that_are_lost),
                                 CLI_TEST(test_dips),
                                 CLI_TEST(test_tuning_files),
                                 CLI_TEST(test_two_files_one_profile),

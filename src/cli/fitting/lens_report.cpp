@@ -229,6 +229,9 @@ std::string lensfun_text(const LensFileSource &source, LensCards &cards) {
     LensFileCost cost;
     const std::string text = lens_file_text(profiles, source.databases, source.into, cost, names);
     cards.lens_file_notes = notes_of(cost, names);
+    for (size_t i = 0; i < profiles.size(); i++)
+        if (const std::string about = note_of_levels(*profiles[i], names[i]); !about.empty())
+            cards.lens_file_notes.push_back(about);
     return text;
 }
 

@@ -94,9 +94,19 @@ void export_blob(const ExportOptions &o, const StoredProfile &stored, Streams &s
     if (o.covariance && !profile.covariance_size) streams.out << "no covariance stored; exported without it\n";
 }
 
+// JSON holds levels; readers of a DNG subtract those that it states before they apply its opcodes.
+void note_levels(const ForeignRule &rule, const std::vector<StoredProfile> &chosen, Streams &streams) {
+    if (rule.format == LENSPROF_FORMAT_JSON || rule.format == LENSPROF_FORMAT_DNG_OPCODES) return;
+    for (const StoredProfile &stored : chosen) {
+        const std::string about = note_of_levels(*stored.profile, "profile " + std::to_string(stored.id));
+        if (!about.empty()) note(streams, about);
+    }
+}
+
 // Reports what a format omits without being refused.
-void note_means(const ForeignRule &rule, const ExportOptions &o, const std::vector<StoredProfile> &chosen,
-                Streams &streams) {
+void note_losses(const ForeignRule &rule, const ExportOptions &o, const std::vector<StoredProfile> &chosen,
+                 Streams &streams) {
+    note_levels(rule, chosen, streams);
     const bool is_mean = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP
                          || (rule.format == LENSPROF_FORMAT_MAP && format_of_name(o.output) == FileFormat::png);
     if (!is_mean) return;
@@ -123,7 +133,7 @@ void export_split(const ExportOptions &o, const ForeignRule &rule, const std::ve
                   Streams &streams) {
     complete_crop_factors(o, rule, chosen);
     const std::vector<SplitFile> files = write_split(rule, o.output, o.foreign, chosen);
-    note_means(rule, o, chosen, streams);
+    note_losses(rule, o, chosen, streams);
     if (!o.json) {
         for (const SplitFile &file : files)
             streams.out << file.path << ": " << counted(file.profiles.size(), "profile") << "\n";
@@ -159,7 +169,7 @@ void export_foreign(const ExportOptions &o, const ForeignRule &rule, const std::
     } else {
         write_foreign(rule, o.output, o.foreign, profiles, names);
     }
-    note_means(rule, o, chosen, streams);
+    note_losses(rule, o, chosen, streams);
     if (o.json)
         print_json(result, streams.out);
     else

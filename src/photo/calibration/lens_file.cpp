@@ -53,6 +53,14 @@ std::vector<std::string> notes_of(const LensFileCost &cost, const std::vector<st
     return notes;
 }
 
+std::string note_of_levels(const lensprof_profile &profile, const std::string &name) {
+    const double *black = profile.levels.black;
+    const bool has_black = std::any_of(black, black + 3, [](double level) { return level != 0.0; });
+    if (!has_black && profile.levels.white == 0.0) return {};
+    return name + ": the file does not hold its black and white level; where it is used, the black level must be "
+                  "subtracted from the pictures, and white be full scale, before they are corrected";
+}
+
 // A camera after another: each is added to the text with those before it.
 std::string lens_file_text(const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &dbs,
                            const std::string &into, LensFileCost &cost, const std::vector<std::string> &names) {
