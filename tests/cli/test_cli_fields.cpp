@@ -264,6 +264,12 @@ void test_refused(void **) {
     const std::string folder = folder_of("few", planes), same = folder_of("same", {planes[0], planes[0], planes[0]});
     const std::string black = folder_of("black", {Plane(size_t(width) * height)}), empty = work("empty");
     std::filesystem::create_directories(empty);
+    std::vector<Plane> shut(4);
+    uint64_t random = 9;
+    for (Plane &plane : shut)
+        for (uint32_t k = 0; k < width * height; k++)
+            plane.push_back(static_cast<uint16_t>(std::lround(pedestal + 3.0 * lp_normal(&random))));
+    const std::string dark = folder_of("dark", shut);
     const std::string sizes = folder_of("sizes", planes), kinds = folder_of("kinds", planes);
     write_picture(sizes + "/9.tif", make_noise(width, height - 8, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY));
     write_picture(kinds + "/8.png", make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB));
@@ -275,6 +281,8 @@ void test_refused(void **) {
         {unreadable, {work("no.tif"), "--no-store"}, {"no.tif"}},
         {not_usable, {same, "--no-store"}, {"same", "fields_few"}},
         {not_usable, {black, "--no-store"}, {"black", "no", "light"}},
+        {not_usable, {dark, "--no-store"}, {"dark", "none of the 4 pictures shows light above its offset"}},
+        {not_usable, {dark, "--no-store", "--black", "118"}, {"dark", "none of the 4 pictures shows light"}},
         {unreadable, {sizes, "--no-store"}, {"9.tif", "96 x 64", "0.tif"}},
         {usage, {kinds, "--no-store"}, {"8.png", "in colour"}},
         {usage, {folder}, {"0.tif", "--camera", "--lens"}},

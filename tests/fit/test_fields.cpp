@@ -373,6 +373,30 @@ void test_refusals(void **) {
     assert_int_equal(lensprof_fields_fit(held.get(), nullptr), LENSPROF_ERROR_NO_SAMPLES);
 }
 
+// A closed shutter: an offset that drifts a little, noise of reading, and that of the pixels, which all pictures share.
+void test_dark_pictures(void **) {
+    const auto status_of = [](double light, const lensprof_fields_options &o) {
+        std::vector<Field> fields(5);
+        uint64_t random = 11;
+        std::vector<double> own;
+        for (size_t i = 0; i < size_t(kWidth) * kHeight; i++) own.push_back(1.5 * lp_normal(&random));
+        for (size_t n = 0; n < fields.size(); n++)
+            for (size_t i = 0; i < own.size(); i++) {
+                const double lit = light * shading(double(i % kWidth), double(i / kWidth));
+                fields[n].pixels.push_back(static_cast<uint16_t>(
+                    std::lround(131.0 + 0.3 * double(n) + lit + own[i] + 3.0 * lp_normal(&random))));
+            }
+        return lensprof_fields_fit(added(fields, o).get(), nullptr);
+    };
+    assert_int_equal(status_of(0.0, options()), LENSPROF_ERROR_NO_SAMPLES);
+    assert_int_equal(status_of(0.0, known_offset()), LENSPROF_ERROR_NO_SAMPLES);
+    assert_int_equal(status_of(20.0, options()), LENSPROF_OK);
+    assert_int_equal(status_of(20.0, known_offset()), LENSPROF_OK);
+    lensprof_fields_options lit = options();  // evenly: with this offset the pictures are far above it
+    lit.given_offset = 1;
+    assert_int_equal(status_of(0.0, lit), LENSPROF_OK);
+}
+
 void test_invalid_arguments(void **) {
     lensprof_fields *made = nullptr;
     lensprof_error error{};
@@ -450,6 +474,7 @@ int main() {
         cmocka_unit_test(test_saturated_at_any_value),
         cmocka_unit_test(test_repeated_and_black_pictures_are_left_out),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_dark_pictures),
         cmocka_unit_test(test_invalid_arguments),
         cmocka_unit_test(test_cancelled),
         cmocka_unit_test(test_force_is_the_slope_of_the_cost),

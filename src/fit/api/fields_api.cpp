@@ -187,9 +187,11 @@ lensprof_status lensprof_fields_fit(lensprof_fields *fields, lensprof_error *err
         clear(error);
         if (!fields) return null_fields(error);
         if (!fit_fields(fields->fit))
-            return fail(LENSPROF_ERROR_NO_SAMPLES, error,
-                        "fields: none of the %zu pictures shows light that is not saturated; check exposure and mask",
-                        fields->fit.pictures.size());
+            return fail(
+                LENSPROF_ERROR_NO_SAMPLES, error,
+                "fields: none of the %zu pictures shows light above its offset that is not saturated; check shutter, "
+                "exposure and mask",
+                fields->fit.pictures.size());
         return LENSPROF_OK;
     });
 }

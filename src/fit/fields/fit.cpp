@@ -6,6 +6,7 @@
 
 #include "fit/base/parallel.hpp"
 #include "fit/base/quantile.hpp"
+#include "fit/fields/dark.hpp"
 #include "fit/fields/heldout.hpp"
 
 namespace lensprof {
@@ -161,7 +162,7 @@ bool fit_fields(FieldsFit &fit) {
     r.columns = static_cast<uint32_t>(fit.grid.columns), r.rows = static_cast<uint32_t>(fit.grid.rows);
     r.smoothnesses = kSmoothnesses;
     const std::vector<uint32_t> used = pictures_used(fit);
-    if (used.empty()) return false;
+    if (used.empty() || are_dark(fit, used)) return false;
     for (auto &heldout : fit.heldout) heldout.assign(kSmoothnesses, NAN);
     if (used.size() >= kFewest) fit_channels(fit, used);
     judge_fields(fit);

@@ -1,0 +1,82 @@
+#include "fit/fields/dark.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/base/quantile.hpp"
+
+namespace lensprof {
+namespace {
+
+// Share of the variance of cells that neighbours have: 1 of noise, with a standard error of 2 % for 64 x 48 cells.
+constexpr double kNoise = 0.9;
+
+// Standard deviations of a pixel: by so much the offsets of dark pictures drift at most, and light that is not more
+// than this is not seen.
+constexpr double kDrift = 3.0;
+
+double median_of(const std::vector<float> &cells) {
+    std::vector<float> values;
+    for (const float value : cells)
+        if (!std::isnan(value)) values.push_back(value);
+    return static_cast<double>(median(values));
+}
+
+// Sum and number of squares.
+struct Squares {
+    double sum = 0.0, count = 0.0;
+    void add(double value) {
+        if (!std::isnan(value)) sum += value * value, count += 1.0;
+    }
+    double mean() const { return count > 0.0 ? sum / count : 0.0; }
+};
+
+double variance_of(const std::vector<double> &cells) {
+    double sum = 0.0, count = 0.0;
+    for (const double value : cells)
+        if (!std::isnan(value)) sum += value, count += 1.0;
+    Squares about_mean;
+    for (const double value : cells) about_mean.add(value - sum / count);
+    return about_mean.mean();
+}
+
+// Half the mean square of the difference of neighbours, over the variance (J. von Neumann, Ann. Math. Stat. 12, 367,
+// 1941): 1 for noise, less for anything that is smooth. In one direction, because the noise of reading may be that of
+// whole rows or columns.
+bool is_noise(const FieldGrid &grid, const std::vector<double> &cells) {
+    Squares across, down;
+    const auto columns = static_cast<size_t>(grid.columns);
+    for (size_t i = 0; i < cells.size(); i++) {
+        if ((i + 1) % columns != 0) across.add(cells[i + 1] - cells[i]);
+        if (i + columns < cells.size()) down.add(cells[i + columns] - cells[i]);
+    }
+    return 0.5 * std::max(across.mean(), down.mean()) >= kNoise * variance_of(cells);
+}
+
+bool is_dark(const FieldsFit &fit, const std::vector<uint32_t> &used, uint32_t channel) {
+    std::vector<double> mean(fit.grid.count(), 0.0);
+    double low = INFINITY, high = -INFINITY, variance = INFINITY;
+    for (const uint32_t i : used) {
+        const std::vector<float> &values = fit.pictures[i].cells.value[channel];
+        const std::vector<double> cells(values.begin(), values.end());
+        if (!is_noise(fit.grid, cells)) return false;
+        const double level = median_of(values);
+        low = std::min(low, level), high = std::max(high, level);
+        variance = std::min(variance, variance_of(cells));
+        for (size_t j = 0; j < mean.size(); j++) mean[j] += static_cast<double>(values[j]) - level;
+    }
+    const double floor = fit.options.given_offset ? fit.options.offset[channel] : low;
+    const double pixels = double(fit.grid.width) * fit.grid.height / static_cast<double>(fit.grid.count());
+    return high - floor <= kDrift * std::sqrt(variance * pixels) && is_noise(fit.grid, mean);
+}
+
+}  // namespace
+
+bool are_dark(const FieldsFit &fit, const std::vector<uint32_t> &used) {
+    if (!is_linear(fit)) return false;
+    for (uint32_t c = 0; c < fit.options.channels; c++)
+        if (!is_dark(fit, used, c)) return false;
+    return true;
+}
+
+}  // namespace lensprof
