@@ -215,6 +215,30 @@ void test_channels_of_stacks(void **) {
     second_channel("ome.tif", tiff_of(planes, ome, false, false));
 }
 
+// Without --fields one picture of a file is used: a note of `flat`, and a refusal of `apply`.
+void test_files_of_several_pictures_are_noted(void **) {
+    const auto planes = scenes(3);
+    const std::string db = work("several.db");
+    must_exit(done, fields({folder_of("single", scenes(4)), "--camera", "Orca", "--lens", "10x", "--black", "120",
+                            "--db", db}));
+    save(work("several.tif"), tiff_of(planes, "", false, false));
+    save(work("slices.tif"), tiff_of(planes, "ImageJ=1.53t\nimages=3\nslices=3\n", true, true));
+    std::vector<std::pair<std::string, std::string>> files = {{"several.tif", "has 3 pages"},
+                                                              {"slices.tif", "is a stack of 3 slices"}};
+    if (can_read_fits()) {
+        save(work("cube.fits"), fits_of(planes, false));
+        files.emplace_back("cube.fits", "has 3 planes");
+    }
+    for (const auto &[name, what] : files) {
+        const Outcome flat = run_words({"flat", work(name), "--linear", "--no-store"});
+        assert_true(contains(flat.err, name + ": " + what + "; only the first is used"));
+        assert_true(contains(flat.err, "`lensprof flat --fields`"));
+        const Outcome apply = run_words({"apply", "--profile", "1", "--db", db, work(name), "-o", work("none.tif")});
+        assert_true(apply.code != done && contains(apply.err, name + ": " + what));
+        assert_false(fs::exists(work("none.tif")));
+    }
+}
+
 // What cannot be read is left out, with a message that names it; the rest is measured.
 void test_damaged_files_are_left_out(void **) {
     const auto planes = scenes(9);
@@ -305,6 +329,7 @@ int main() {
         CLI_TEST(test_a_folder_is_measured_and_corrected),
         CLI_TEST(test_pages_stacks_and_planes),
         CLI_TEST(test_channels_of_stacks),
+        CLI_TEST(test_files_of_several_pictures_are_noted),
         CLI_TEST(test_damaged_files_are_left_out),
         CLI_TEST(test_fits_with_undefined_samples),
         CLI_TEST(test_refused),

@@ -75,6 +75,7 @@ std::string advice_for(const std::string &situation) {
         {"photographs", "; of ordinary pictures that overlap, use `lensprof build` or `lensprof calibrate`"},
         {"prior_alone", " Use --fit stored=none to fit them alone"},
         {"prior_given", ", or --fit stored=none to fit the pictures alone"},
+        {"several_cards", ". If they show different scenes, use `lensprof flat --fields`"},
         {"still_camera",
          "; use `lensprof bracket` for its response, `lensprof align` to match or merge the pictures. "
          "Both need plain exposures, without HDR"},

@@ -249,7 +249,7 @@ CardInput prepare_cards(const CardOptions &o, const std::vector<CardPicture> &pi
     lensprof_flat_options_init(&input.options);
     require_one_kind(files);
     if (o.cards.size() > 1) require_count(o.cards.size(), option_name("card"), files.size(), "picture");
-    note_several(files, events);
+    note_several(files, events, advice("several_cards"));
     input.files = files;
     std::vector<uint32_t> shots = shots_of(o, files.size());
     const std::vector<double> ev = exposures_of(o, files, shots, metadata, events),

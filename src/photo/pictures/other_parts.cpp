@@ -12,6 +12,7 @@
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/file_boxes.hpp"
 #include "photo/pictures/picture_excerpt.hpp"
+#include "photo/pictures/picture_stack.hpp"
 #include "photo/pictures/raw_kind.hpp"
 #include "photo/pictures/tiff_pages.hpp"
 
@@ -24,15 +25,17 @@ enum class Kind {
     tiff,
     png,
     heif,
-    jxl
+    jxl,
+    fits
 };
 
 Kind kind_of(const std::string &path) {
     if (raw_kind(path)) return Kind::other;
     if (const auto coded = coded_kind(path))
-        return coded->format == FileFormat::heif  ? Kind::heif
-               : coded->format == FileFormat::jxl ? Kind::jxl
-                                                  : Kind::other;
+        return coded->format == FileFormat::heif   ? Kind::heif
+               : coded->format == FileFormat::jxl  ? Kind::jxl
+               : coded->format == FileFormat::fits ? Kind::fits
+                                                   : Kind::other;
     const codec::File file = codec::open_for_reading(path);
     std::vector<uint8_t> start;
     if (!codec::read_at(file.get(), 0, 4, start)) return Kind::other;
@@ -69,11 +72,19 @@ uint32_t png_frames(const std::string &path) {
     return 0;
 }
 
+// `what`: before the number of pictures.
+SeveralPictures several_in_stack(const std::string &path, const char *what, const char *pictures) {
+    const size_t count = picture_stack(path).pages.size();
+    if (count < 2) return {};
+    return {format("%s %zu %s", what, count, pictures), "save them as files of their own first, and give these", true};
+}
+
 SeveralPictures several_of_tiff(const std::string &path) {
     const codec::TiffPages found = codec::tiff_pages(path);
+    if (found.pages == 1) return several_in_stack(path, "is a stack of", "slices");  // of ImageJ
     if (found.pages < 2) return {};
     return {format("has %s%u pages", found.has_more ? "more than " : "", found.pages),
-            "split it first, for example with `tiffsplit " + shell_word(path) + " page_`, and give its pages"};
+            "split it first, for example with `tiffsplit " + shell_word(path) + " page_`, and give its pages", true};
 }
 
 SeveralPictures several_of_jpeg(const std::string &path) {
@@ -100,6 +111,7 @@ SeveralPictures several_pictures(const std::string &path) {
     case Kind::jpeg: return several_of_jpeg(path);
     case Kind::tiff: return several_of_tiff(path);
     case Kind::heif: return several_of_heif(path);
+    case Kind::fits: return several_in_stack(path, "has", "planes");
     case Kind::png:
         if (const uint32_t frames = png_frames(path); frames > 1)
             return {format("is an animation of %u frames", frames),
@@ -110,12 +122,13 @@ SeveralPictures several_pictures(const std::string &path) {
     }
 }
 
-void note_several(const std::vector<std::string> &files, Events &events) {
+void note_several(const std::vector<std::string> &files, Events &events, const std::string &stack_advice) {
     for (const std::string &file : files) {
         try {
             const SeveralPictures several = several_pictures(file);
             if (!several.what.empty())
-                events.note(file, several.what + "; only the first is used. To use all, " + several.next_step);
+                events.note(file, several.what + "; only the first is used. To use all, " + several.next_step
+                                      + (several.is_stack ? stack_advice : std::string()));
         } catch (const Failure &failure) {  // reported when it is read
             if (failure.group() == LENSPROF_ERROR_CANCELLED) throw;
         }

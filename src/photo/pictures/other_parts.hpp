@@ -13,12 +13,14 @@ namespace lensprof {
 struct SeveralPictures {
     std::string what;       // "has 40 pages"; empty if there is one picture
     std::string next_step;  // how to split the file
+    bool is_stack = false;  // picture_stack lists them: pages, slices and planes
 };
 
 SeveralPictures several_pictures(const std::string &path);
 
-// Notes which files hold several pictures, of which the first one is used.
-void note_several(const std::vector<std::string> &files, Events &events);
+// Notes which files hold several pictures, of which the first one is used. `stack_advice`: the end of a note on a
+// stack.
+void note_several(const std::vector<std::string> &files, Events &events, const std::string &stack_advice = {});
 
 // Parts that belong to the picture, and what becomes of them in a corrected copy. A JPEG keeps those that stay valid;
 // thumbnails, which no copy has, are not listed.
