@@ -1,6 +1,8 @@
 // `lensprof flat --fields` in process: pictures, pages, stacks and planes of different scenes under a known shading.
 #include "cli_runs.hpp"
 
+#include <lensprof/fields.h>
+
 #include "photo/pictures/picture.hpp"
 
 namespace {
@@ -239,6 +241,26 @@ void test_files_of_several_pictures_are_noted(void **) {
     }
 }
 
+// The limit of pictures is an error, before any is read.
+void test_too_many_pages(void **) {
+    const size_t pages = LENSPROF_FIELDS_IMAGES + 1;
+    Bytes bytes = {'I', 'I', 42, 0, 8, 0, 0, 0};
+    for (size_t page = 0; page < pages; page++) {
+        const uint32_t entries[][2] = {{256, 8}, {257, 8}, {258, 8}, {259, 1}, {262, 1}, {273, 8}, {278, 8}, {279, 64}};
+        const size_t at = bytes.size(), next = at + 2 + 8 * 12;
+        bytes.resize(next + 4);
+        put(bytes, at, 2, 8, false);
+        for (size_t i = 0; i < 8; i++) {
+            const size_t entry = at + 2 + 12 * i;
+            put(bytes, entry, 2, entries[i][0], false), put(bytes, entry + 2, 2, 4, false);
+            put(bytes, entry + 4, 4, 1, false), put(bytes, entry + 8, 4, entries[i][1], false);
+        }
+        put(bytes, next, 4, page + 1 < pages ? bytes.size() : 0, false);
+    }
+    save(work("many.tif"), bytes);
+    assert_refused(usage, fields({work("many.tif"), "--no-store"}), {"many.tif", "more than 16384"});
+}
+
 // What cannot be read is left out, with a message that names it; the rest is measured.
 void test_damaged_files_are_left_out(void **) {
     const auto planes = scenes(9);
@@ -330,6 +352,7 @@ int main() {
         CLI_TEST(test_pages_stacks_and_planes),
         CLI_TEST(test_channels_of_stacks),
         CLI_TEST(test_files_of_several_pictures_are_noted),
+        CLI_TEST(test_too_many_pages),
         CLI_TEST(test_damaged_files_are_left_out),
         CLI_TEST(test_fits_with_undefined_samples),
         CLI_TEST(test_refused),

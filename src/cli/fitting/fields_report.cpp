@@ -102,7 +102,8 @@ Picture grey_view(uint32_t width, uint32_t height, const std::vector<double> &va
 // The first picture without its offset, and without the shading as well. White is what 0.5 % of its pixels exceed.
 Json first_view(const FieldFit &found) {
     ReadOptions read;
-    read.max_side = view_side(1), read.page = found.first.page;
+    read.max_side = view_side(1);
+    read.page = found.first.page, read.page_offset = found.first.offset;
     const Picture picture = read_picture(found.first.file, read);
     const uint32_t channel = found.fit.channels == 3 ? 1 : 0;
     std::vector<double> before, after;

@@ -114,7 +114,7 @@ void read_fields(const FieldList &list, FieldReader &reader, FieldFit &found, Ev
         [&](uint32_t i) {
             try {
                 ReadOptions read;
-                read.page = list.pages[i].page;
+                read.page = list.pages[i].page, read.page_offset = list.pages[i].offset;
                 pictures[i] = read_picture(list.pages[i].file, read);
             } catch (const Failure &failure) {
                 if (failure.group() != LENSPROF_ERROR_READ) throw;

@@ -1,5 +1,7 @@
 #include "photo/fields/field_list.hpp"
 
+#include <lensprof/fields.h>
+
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
@@ -43,8 +45,13 @@ void add_pages(const std::string &file, uint32_t channel, FieldList &list) {
     for (size_t i = 0; i < stack.pages.size(); i++) {
         if (channel && stack.channels[i] != channel - 1) continue;
         const std::string name = stack.pages.size() > 1 ? format("%s, page %zu", file.c_str(), i + 1) : file;
-        list.pages.push_back({file, stack.pages[i], name});
+        list.pages.push_back({file, stack.pages[i], stack.offsets[i], name});
     }
+    if (list.pages.size() > LENSPROF_FIELDS_IMAGES)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      file
+                          + format(": with its pictures there are more than %d; give fewer, such as every tenth",
+                                   LENSPROF_FIELDS_IMAGES));
     list.files++;
     if (stack.is_damaged)
         list.left_out.push_back(file

@@ -12,8 +12,9 @@ namespace lensprof {
 
 struct FieldPage {
     std::string file;
-    uint32_t page = 0;  // ReadOptions::page
-    std::string name;   // of the file, with the number of the page if it has several, counted from 1
+    uint32_t page = 0;    // ReadOptions::page
+    uint64_t offset = 0;  // ReadOptions::page_offset
+    std::string name;     // of the file, with the number of the page if it has several, counted from 1
 };
 
 struct FieldList {
@@ -24,7 +25,8 @@ struct FieldList {
 };
 
 // `names`: files, and folders of them. `channel`: of stacks with several, counted from 1; 0: not given. Failure if a
-// stack has several channels and none is given, or not that one, and if there is no picture.
+// stack has several channels and none is given, or not that one, if there is no picture, and if there are more than
+// LENSPROF_FIELDS_IMAGES.
 FieldList field_list(const std::vector<std::string> &names, uint32_t channel, Events &events);
 
 }  // namespace lensprof

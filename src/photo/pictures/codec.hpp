@@ -20,6 +20,7 @@ struct ReadRequest {
     uint32_t max_side = 0;
     const std::vector<uint8_t> *bytes = nullptr;  // a JPEG in memory; path is its name
     uint32_t page = 0;                            // ReadOptions::page
+    uint64_t page_offset = 0;                     // ReadOptions::page_offset
 };
 
 // A picture file being read. Nothing is decoded before the first row is requested.

@@ -113,7 +113,7 @@ lensprof_target Picture::target() {
 
 Picture read_picture(const std::string &path, const ReadOptions &options) {
     return reading(path, [&] {
-        const auto source = open_source({path, options.max_side, nullptr, options.page});
+        const auto source = open_source({path, options.max_side, nullptr, options.page, options.page_offset});
         return read_rows(*source);
     });
 }
@@ -132,7 +132,9 @@ Picture read_raw_preview(const std::string &path, const ReadOptions &options) {
 }
 
 Picture read_header(const std::string &path, const ReadOptions &options) {
-    return reading(path, [&] { return open_source({path, options.max_side, nullptr, options.page})->header(); });
+    return reading(path, [&] {
+        return open_source({path, options.max_side, nullptr, options.page, options.page_offset})->header();
+    });
 }
 
 PictureReader::PictureReader(const std::string &path)

@@ -118,7 +118,8 @@ struct ReadOptions {
     // reduction - 1 columns and rows at the right and lower edge are omitted.
     uint32_t max_side = 0;
 
-    uint32_t page = 0;  // of a TIFF or FITS, from PictureStack::pages; 0 = the first
+    uint32_t page = 0;         // of a TIFF or FITS, from PictureStack::pages; 0 = the first
+    uint64_t page_offset = 0;  // from PictureStack::offsets: finds a page without those before it; 0 = not known
 };
 
 struct WriteOptions {

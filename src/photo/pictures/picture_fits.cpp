@@ -37,11 +37,8 @@ public:
     // Calls accept(plane, its number) for the planes of all images, the first of them 0, until it returns false.
     template <class Accept>
     void each_plane(const Accept &accept) {
-        int hdus = 0;
-        fits_get_num_hdus(handle_, &hdus, &status_);
-        check();
         uint32_t number = 0;
-        for (int hdu = 1; hdu <= hdus; hdu++) {
+        for (int hdu = 1; move_to(hdu); hdu++) {
             Plane plane = image_of(hdu);
             if (plane.axes < 2) continue;
             uint64_t count = 1;
@@ -65,13 +62,23 @@ public:
     }
 
 private:
-    // Without axes: the part of the file is a table.
-    Plane image_of(int hdu) {
-        int kind = 0, bits = 0;
-        Plane plane;
-        fits_movabs_hdu(handle_, hdu, &kind, &status_);
+    // False after the last part of the file. Parts are counted from 1.
+    bool move_to(int hdu) {
+        fits_movabs_hdu(handle_, hdu, &kind_, &status_);
+        if (status_ && hdu > 1) {
+            status_ = 0;
+            fits_clear_errmsg();
+            return false;
+        }
         check();
-        if (kind != IMAGE_HDU) return plane;
+        return true;
+    }
+
+    // Of the present part. Without axes: it is a table.
+    Plane image_of(int hdu) {
+        int bits = 0;
+        Plane plane;
+        if (kind_ != IMAGE_HDU) return plane;
         fits_get_img_param(handle_, most_axes, &bits, &plane.axes, plane.size.data(), &status_);
         check();
         if (plane.axes > most_axes) fail_unsupported(path_, "has more than 9 axes; save its planes first");
@@ -91,6 +98,7 @@ private:
     std::string path_;
     fitsfile *handle_ = nullptr;
     int status_ = 0;
+    int kind_ = 0;  // of the present part
 };
 
 // The sample that holds all values of an image: its integers if they are of 8 or 16 bit, without sign and all defined.

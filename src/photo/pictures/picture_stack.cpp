@@ -20,7 +20,7 @@ namespace codec {
 
 namespace {
 
-constexpr uint32_t most_images = 1u << 20, most_pages = LENSPROF_FIELDS_IMAGES;
+constexpr uint32_t most_images = 1u << 20, most_pages = LENSPROF_FIELDS_IMAGES + 1;  // one too many is an error
 
 // The number of a line NAME=NUMBER; 0 without it.
 uint32_t number_of_line(const std::string &text, const std::string &name) {
@@ -78,11 +78,12 @@ void add_slices(const Tiff &tiff, uint32_t images, PictureStack &stack) {
 PictureStack stack_of_tiff(const std::string &path) {
     PictureStack stack;
     const TiffPages found = tiff_pages(path, most_pages);
-    stack.pages = found.directories, stack.is_damaged = found.is_damaged;
+    stack.pages = found.directories, stack.offsets = found.offsets, stack.is_damaged = found.is_damaged;
     const Tiff tiff(path, "rm");
     if (!tiff.handle) fail_damaged(path, tiff.message.text);
     const StackDescription description = stack_description(tiff);
     if (stack.pages.size() == 1 && description.images > 1) add_slices(tiff, description.images, stack);
+    stack.offsets.resize(stack.pages.size(), 0);
     stack.channel_count = description.channel_count;
     for (uint32_t i = 0; i < stack.pages.size(); i++)
         stack.channels.push_back(i / description.before_channel % description.channel_count);
@@ -94,13 +95,13 @@ PictureStack stack_of_tiff(const std::string &path) {
 }  // namespace codec
 
 PictureStack picture_stack(const std::string &path) {
-    PictureStack stack{{0}, {0}};
+    PictureStack stack{{0}, {0}, {0}};
     if (raw_kind(path)) return stack;
     if (const auto coded = coded_kind(path)) {
         if (coded->format != FileFormat::fits) return stack;
         const uint32_t planes = codec::fits_planes(path);
         for (uint32_t i = 1; i < planes; i++) stack.pages.push_back(i);
-        stack.channels.assign(stack.pages.size(), 0);
+        stack.offsets.assign(stack.pages.size(), 0), stack.channels.assign(stack.pages.size(), 0);
         return stack;
     }
     const codec::File file = codec::open_for_reading(path);

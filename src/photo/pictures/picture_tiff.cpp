@@ -275,9 +275,10 @@ private:
 };
 
 // m: no memory map, which would crash the process if the file is truncated while being read.
-TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(request.path, "rm") {
+TiffSource::TiffSource(const ReadRequest &request)
+    : path_(request.path), tiff_(request.path, "rm", request.page_offset) {
     if (!tiff_.handle) fail_damaged(path_, tiff_.message.text);
-    if (request.page && !TIFFSetDirectory(tiff_.handle, request.page))
+    if (request.page && !request.page_offset && !TIFFSetDirectory(tiff_.handle, request.page))
         fail_damaged(path_, tiff_.message.text[0] ? tiff_.message.text : "the page cannot be found");
     tiff_.message = TiffMessage();  // errors in tags that are not needed
     check_not_raw(tiff_, request);
@@ -433,7 +434,7 @@ void TiffSink::finish() {
 }  // namespace
 
 std::unique_ptr<RowSource> open_tiff(const ReadRequest &request) {
-    if (request.page) {
+    if (request.page && !request.page_offset) {
         Tiff tiff(request.path, "rm");
         const StackDescription stack = tiff.handle ? stack_description(tiff) : StackDescription{};
         if (stack.images > 1 && TIFFNumberOfDirectories(tiff.handle) == 1)

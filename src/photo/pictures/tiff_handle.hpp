@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <string>
 
 #include <tiffio.h>
@@ -18,10 +19,14 @@ struct TiffMessage {
     int error_number = 0;
 };
 
+class StartedFile;
+
 class Tiff {
 public:
-    Tiff(const std::string &path, const char *mode);  // mode as of TIFFOpen
-    ~Tiff() { close(); }
+    // mode as of TIFFOpen. `directory`: the place of the one to read instead of the first; libtiff would look for it in
+    // all directories of the file (TIFFSetSubDirectory, TIFFSetDirectory). 0 = the first.
+    Tiff(const std::string &path, const char *mode, uint64_t directory = 0);
+    ~Tiff();
     Tiff(const Tiff &) = delete;
     Tiff &operator=(const Tiff &) = delete;
 
@@ -44,6 +49,9 @@ public:
 
     TiffMessage message;
     TIFF *handle = nullptr;
+
+private:
+    std::unique_ptr<StartedFile> file_;
 };
 
 }  // namespace codec

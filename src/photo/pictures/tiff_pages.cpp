@@ -68,7 +68,7 @@ TiffPages tiff_pages(const std::string &path, uint32_t max_pages) {
     TiffPages pages;
     if (!tiff.handle) return pages;
     pages.pages = 1;
-    pages.directories = {0};
+    pages.directories = {0}, pages.offsets = {TIFFCurrentDirOffset(tiff.handle)};
     pages.has_layers = has_layers(tiff);
     const std::vector<uint64_t> children = children_of(tiff);
     const uint32_t first_side =
@@ -84,7 +84,8 @@ TiffPages tiff_pages(const std::string &path, uint32_t max_pages) {
             count(kind_of(tiff, may_be_exif ? first_side : 0), pages);
         else if (!may_be_exif)  // a thumbnail of EXIF states no size
             count(PageKind::page, pages);
-        if (pages.pages > before) pages.directories.push_back(i);
+        if (pages.pages == before) continue;
+        pages.directories.push_back(i), pages.offsets.push_back(TIFFCurrentDirOffset(tiff.handle));
     }
     for (const uint64_t child : children)
         if (TIFFSetSubDirectory(tiff.handle, child)) count(kind_of(tiff, first_side), pages);

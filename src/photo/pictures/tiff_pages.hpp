@@ -11,6 +11,7 @@ namespace codec {
 
 struct TiffPages {
     std::vector<uint32_t> directories;  // that are pages
+    std::vector<uint64_t> offsets;      // of these in the file
     uint32_t pages = 0;     // pictures of their own, the first included; directories that cannot be read count as pages
     bool has_more = false;  // directories beyond max_pages were not examined
     bool has_mask = false;  // a page is the mask of another one
