@@ -91,6 +91,15 @@ static void channels_have_offsets_of_their_own(void **) {
     assert_close(error_of(*r, p), 0.0, 0.004);
 }
 
+static void grey_pictures_have_one(void **) {
+    FlatPictures p = small_card(0.03);
+    p.channels = 1;
+    p.shoot(0), p.shoot(0, -1.5);
+    const auto r = p.fit(open_options(p));
+    assert_int_equal(r->black_shown, 1);
+    assert_close(r->black_offset, 0.03, 0.003);
+}
+
 // Shots of a hand-held camera: each sees the light from another side.
 static void shots_with_a_light_of_their_own_show_it_too(void **) {
     FlatPictures p = small_card(0.05);
@@ -200,6 +209,7 @@ int main() {
         cmocka_unit_test(saturation_is_that_of_the_white_level),
         cmocka_unit_test(two_exposures_show_an_offset),
         cmocka_unit_test(channels_have_offsets_of_their_own),
+        cmocka_unit_test(grey_pictures_have_one),
         cmocka_unit_test(shots_with_a_light_of_their_own_show_it_too),
         cmocka_unit_test(an_offset_adds_to_the_stated_level),
         cmocka_unit_test(one_level_leaves_the_corner_open),

@@ -108,6 +108,20 @@ static void what_lies_outside_the_image_circle_is_left_out(void **) {
     assert_true(whole.fit(whole.options())->edge_radius == 0.0);  // black in the corners, but without an edge
 }
 
+// Something dark at one side shows nothing of the others.
+static void a_dark_strip_leaves_the_rest(void **) {
+    FlatPictures p = small_card();
+    const auto falloff = law_of_the_cosine(0.5);
+    p.set_falloff(0.0, 0.0, falloff);
+    p.defect = [inside = p.defect](double x, double y, uint32_t c) { return x < 60 ? 0.001 : inside(x, y, c); };
+    p.shoot(0);
+    const auto r = p.fit(p.options());
+    assert_true(r->usable);
+    assert_close(r->edge_radius, (239.5 - 60.0) / (0.5 * std::hypot(480, 320)), 0.02);
+    assert_close(r->edge_share, 0.16, 0.03);
+    assert_close(found_falloff(*r, p, 479, 0), falloff(1.0), 0.005);
+}
+
 static void one_light_is_noted(void **) {
     FlatPictures p = small_card();
     p.shoot(0);
@@ -209,6 +223,7 @@ int main(void) {
         cmocka_unit_test(up_to_six_stops_are_measured),
         cmocka_unit_test(without_a_grid_a_deep_falloff_is_warned_of),
         cmocka_unit_test(what_lies_outside_the_image_circle_is_left_out),
+        cmocka_unit_test(a_dark_strip_leaves_the_rest),
         cmocka_unit_test(one_light_is_noted),
         cmocka_unit_test(the_light_is_even_where_that_describes_the_card),
         cmocka_unit_test(a_curved_light_is_part_of_the_error),

@@ -62,8 +62,8 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
                  {"even", LENSPROF_FLAT_LIGHT_EVEN},
                  {"plane", LENSPROF_FLAT_LIGHT_PLANE},
                  {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
-                "model of the light on the card: even, plane, quadratic or auto (default: plane, or even with "
-                "--several or where it fits as well)");
+                "model of the light on the card: even, plane, quadratic or auto (default: plane; even with "
+                "--several or where it fits as well; quadratic where shots at several angles show it)");
     keys.flag("own-light", o.own_light, "estimate the light per shot, instead of one for all shots");
     keys.choice("falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
                 "number of falloff curves: 1, 3 (one per channel) or auto (default: 3 if they clearly differ)");

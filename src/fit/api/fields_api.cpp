@@ -190,7 +190,7 @@ lensprof_status lensprof_fields_fit(lensprof_fields *fields, lensprof_error *err
             return fail(
                 LENSPROF_ERROR_NO_SAMPLES, error,
                 "fields: none of the %zu pictures shows light above its offset that is not saturated; check shutter, "
-                "exposure and mask",
+                "exposure and mask, or state the offset of pictures whose light is even",
                 fields->fit.pictures.size());
         return LENSPROF_OK;
     });

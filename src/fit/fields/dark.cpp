@@ -8,8 +8,9 @@
 namespace lensprof {
 namespace {
 
-// Share of the variance of cells that neighbours have: 1 of noise, with a standard error of 2 % for 64 x 48 cells.
-constexpr double kNoise = 0.9;
+// Share of the variance of cells that neighbours have: 1 of noise, with a standard error of 1 / sqrt(cells), of which
+// this many are allowed.
+constexpr double kNoise = 5.5;
 
 // Standard deviations of a pixel: by so much the offsets of dark pictures drift at most, and light that is not more
 // than this is not seen.
@@ -50,7 +51,8 @@ bool is_noise(const FieldGrid &grid, const std::vector<double> &cells) {
         if ((i + 1) % columns != 0) across.add(cells[i + 1] - cells[i]);
         if (i + columns < cells.size()) down.add(cells[i + columns] - cells[i]);
     }
-    return 0.5 * std::max(across.mean(), down.mean()) >= kNoise * variance_of(cells);
+    const double least = 1.0 - kNoise / std::sqrt(std::max(across.count, 1.0));
+    return 0.5 * std::max(across.mean(), down.mean()) >= least * variance_of(cells);
 }
 
 bool is_dark(const FieldsFit &fit, const std::vector<uint32_t> &used, uint32_t channel) {

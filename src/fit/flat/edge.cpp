@@ -29,13 +29,13 @@ struct DarkMap {
 
     double at(int column, int row) const { return light[static_cast<size_t>(row * grid.columns + column)]; }
 
-    // The light so many cells from a cell towards the middle of the frame.
+    // The light so many cells from a cell towards the middle of the frame, but not beyond it.
     double inward(int cell, int steps) const {
         const int column = cell % grid.columns, row = cell / grid.columns;
         const double across = 0.5 * (grid.columns - 1) - column, down = 0.5 * (grid.rows - 1) - row;
-        const double far = std::max(std::hypot(across, down), 1.0);
-        return at(static_cast<int>(std::lround(column + steps * across / far)),
-                  static_cast<int>(std::lround(row + steps * down / far)));
+        const double far = std::max(std::hypot(across, down), 1.0), part = std::min(steps / far, 1.0);
+        return at(static_cast<int>(column + std::lround(part * across)),
+                  static_cast<int>(row + std::lround(part * down)));
     }
 };
 
@@ -121,15 +121,21 @@ void grow(const CellGrid &grid, std::vector<bool> &cells) {
     }
 }
 
-// Cells with a part in the dark, where it is narrower than a cell.
-void add_black(const CellGrid &grid, const Shot &shot, std::vector<bool> &outside) {
-    std::vector<bool> black(outside.size());
-    for (size_t i = 0; i < black.size(); i++) black[i] = outside[i] || shot.light[i].state == CellState::black;
-    for (const auto &group : connected_cells(grid, black, [](int, int) { return true; })) {
+// Adds the groups of candidates that have a cell outside.
+void join(const CellGrid &grid, std::vector<bool> candidates, std::vector<bool> &outside) {
+    for (size_t i = 0; i < candidates.size(); i++) candidates[i] = candidates[i] || outside[i];
+    for (const auto &group : connected_cells(grid, candidates, [](int, int) { return true; })) {
         const auto is_outside = [&](int cell) { return static_cast<bool>(outside[static_cast<size_t>(cell)]); };
         if (std::none_of(group.begin(), group.end(), is_outside)) continue;
         for (int cell : group) outside[static_cast<size_t>(cell)] = true;
     }
+}
+
+// Cells with a part in the dark, where it is narrower than a cell.
+void add_black(const CellGrid &grid, const Shot &shot, std::vector<bool> &outside) {
+    std::vector<bool> black(outside.size());
+    for (size_t i = 0; i < black.size(); i++) black[i] = shot.light[i].state == CellState::black;
+    join(grid, black, outside);
 }
 
 // A cell's middle, half diagonals from that of the frame.
@@ -148,27 +154,28 @@ double inward_of(const DarkMap &map, int cell) {
     return std::isnan(missing) ? 0.5 : missing;
 }
 
-// The circle through the outline; where it is not a circle, one through its nearest place, about the middle.
-Circle outline_of(const DarkMap &map, const std::vector<int> &rim) {
+// The circle through the outline. Where it is not a circle, nearest is the distance of its nearest place.
+std::optional<Circle> outline_of(const DarkMap &map, const std::vector<int> &rim, double &nearest) {
     std::vector<std::array<double, 2>> places;
-    double nearest = INFINITY;
+    nearest = INFINITY;
     for (int cell : rim) {
         const auto [x, y] = place_of(map.grid, cell);
         const double far = std::hypot(x, y), part = 1.0 - inward_of(map, cell) * map.side / std::max(far, map.side);
         if (distance_to_border(map.grid, cell) > 0) places.push_back({part * x, part * y});
         nearest = std::min(nearest, part * far);
     }
-    const std::optional<Circle> circle = circle_through(places, kOffCircle * map.side);
-    return circle ? *circle : Circle{{0.0, 0.0}, nearest};
+    return circle_through(places, kOffCircle * map.side);
 }
 
-// Also a line of cells along the frame's border that the dark covers in part.
+// Cells beyond a radius of the circle that join what is outside, such as a line of cells along the frame's border that
+// the dark covers in part. An arc shows little of the other side of the frame, which does not join it.
 void leave_out_beyond(const CellGrid &grid, const Circle &circle, double radius, std::vector<bool> &outside) {
+    std::vector<bool> beyond(outside.size());
     for (int cell = 0; cell < grid.count(); cell++) {
         const auto [x, y] = place_of(grid, cell);
-        const bool is_beyond = std::hypot(x - circle.center[0], y - circle.center[1]) > radius;
-        if (is_beyond) outside[static_cast<size_t>(cell)] = true;
+        beyond[static_cast<size_t>(cell)] = std::hypot(x - circle.center[0], y - circle.center[1]) > radius;
     }
+    join(grid, beyond, outside);
 }
 
 }  // namespace
@@ -179,13 +186,13 @@ FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
     std::vector<int> rim;
     edge.outside = surround(map, rim);
     if (rim.empty()) return edge;
-    const Circle circle = outline_of(map, rim);
-    edge.radius = circle.radius;
+    const std::optional<Circle> circle = outline_of(map, rim, edge.radius);
+    if (circle) edge.radius = circle->radius;
     int soft = 1;
     while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;
     for (int step = 0; step <= soft; step++) grow(grid, edge.outside);
     edge.inner = edge.radius - (soft + 1) * map.side;
-    leave_out_beyond(grid, circle, edge.inner, edge.outside);
+    if (circle) leave_out_beyond(grid, *circle, edge.inner, edge.outside);
     add_black(grid, shot, edge.outside);
     edge.share = static_cast<double>(std::count(edge.outside.begin(), edge.outside.end(), true)) / grid.count();
     return edge;

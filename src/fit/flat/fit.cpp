@@ -156,7 +156,8 @@ void choose_light(FlatFit &fit, int curves) {
 // Shots at several angles separate the light from the lens in its second-order terms, too.
 void choose_curvature(FlatFit &fit, int curves) {
     const FlatModel &model = fit.problem.model;
-    const bool is_open = fit.options.light == LENSPROF_FLAT_LIGHT_AUTO && model.light_terms == 2 && model.angles() > 1;
+    const bool is_open = fit.options.light == LENSPROF_FLAT_LIGHT_AUTO && model.light_terms == 2 && model.angles() > 1
+                         && !model.own_light;
     if (!is_open || !fit.estimate.converged) return;
     const FlatSolution plane = solution_of(fit);
     fit.light = LENSPROF_FLAT_LIGHT_QUADRATIC;
@@ -178,9 +179,11 @@ double middle_over_mean(const FlatFit &fit, int curve, const CellLight &light) {
         return falloff_at(fit.problem.model, fit.estimate.u, curve, r2).value;
     };
     const double dx = grid.cell_width() / std::sqrt(12.0), dy = grid.cell_height() / std::sqrt(12.0);
-    const double sum = falloff(light.x - dx, light.y - dy) + falloff(light.x + dx, light.y - dy)
-                       + falloff(light.x - dx, light.y + dy) + falloff(light.x + dx, light.y + dy);
-    return 4.0 * falloff(light.x, light.y) / sum;
+    const double middle = falloff(light.x, light.y);
+    double mean = 0.0;
+    for (const double x : {light.x - dx, light.x + dx})
+        for (const double y : {light.y - dy, light.y + dy}) mean += 0.25 * falloff(x, y);
+    return middle > 0.0 && mean > 0.0 ? middle / mean : 1.0;
 }
 
 // The light of a cell is the mean of its pixels. Where M is curved, that is not the one in its middle, with which the

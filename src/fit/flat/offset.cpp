@@ -239,12 +239,15 @@ void subtract_offset(FlatFit &fit) {
         OffsetFit offset(fit, groups, c);
         if (offset.solve()) fit.offset.value[c] = offset.offset(), fit.offset.sigma[c] = offset.sigma();
     }
-    const double largest = *std::max_element(fit.offset.sigma.begin(), fit.offset.sigma.end());
-    fit.offset.is_shown = largest < kShown * fit.options.black_sigma;
-    if (!fit.offset.is_shown) {  // only noise
-        fit.offset.value.fill(0.0), fit.offset.sigma.fill(fit.options.black_sigma);
-        return;
+    size_t shown = 0;
+    for (size_t c = 0; c < channels; c++) {
+        if (fit.offset.sigma[c] < kShown * fit.options.black_sigma)
+            shown++;
+        else  // only noise
+            fit.offset.value[c] = 0.0, fit.offset.sigma[c] = fit.options.black_sigma;
     }
+    fit.offset.is_shown = shown == channels;
+    if (shown == 0) return;
     double mean = 0.0;
     for (size_t c = 0; c < channels; c++) {
         mean += fit.offset.value[c] / static_cast<double>(channels);

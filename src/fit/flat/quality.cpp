@@ -149,7 +149,7 @@ double curved_light(const FlatFit &fit) {
     for (int s = 0; s < model.shots && model.light_terms == kMaxLightTerms; s++)
         for (int c = 0; c < model.channels; c++)
             curved.add(std::hypot(fit.estimate.u[model.light(s, c) + 2], fit.estimate.u[model.light(s, c) + 3]));
-    return curved.value();
+    return curved.value() * corner_r2(model);
 }
 
 // Error of ln M in the corner from what continues it beyond the data, and beyond the first cell that is black.

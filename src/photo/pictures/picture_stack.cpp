@@ -6,8 +6,6 @@
 
 #include <pugixml.hpp>
 
-#include <lensprof/fields.h>
-
 #include "photo/pictures/coded_file.hpp"
 #include "photo/pictures/coded_kind.hpp"
 #include "photo/pictures/raw_kind.hpp"
@@ -20,7 +18,7 @@ namespace codec {
 
 namespace {
 
-constexpr uint32_t most_images = 1u << 20, most_pages = LENSPROF_FIELDS_IMAGES + 1;  // one too many is an error
+constexpr uint32_t most_images = 1u << 20;  // far more than a fit takes, of one channel, too
 
 // The number of a line NAME=NUMBER; 0 without it.
 uint32_t number_of_line(const std::string &text, const std::string &name) {
@@ -77,7 +75,7 @@ void add_slices(const Tiff &tiff, uint32_t images, PictureStack &stack) {
 
 PictureStack stack_of_tiff(const std::string &path) {
     PictureStack stack;
-    const TiffPages found = tiff_pages(path, most_pages);
+    const TiffPages found = tiff_pages(path, most_images);
     stack.pages = found.directories, stack.offsets = found.offsets, stack.is_damaged = found.is_damaged;
     const Tiff tiff(path, "rm");
     if (!tiff.handle) fail_damaged(path, tiff.message.text);
