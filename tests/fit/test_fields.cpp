@@ -348,6 +348,21 @@ void test_repeated_and_black_pictures_are_left_out(void **) {
     assert_memory_equal(&without->shading, &r->shading, sizeof r->shading);
 }
 
+// A closed shutter among pictures of light.
+void test_a_dark_picture_is_left_out(void **) {
+    auto fields = make(9, {});
+    const auto without = fitted(fields, known_offset());
+    fields.push_back(fields[0]);
+    uint64_t random = 5;
+    const double black = 65535.0 * known_offset().offset[0];
+    for (uint16_t &pixel : fields.back().pixels)
+        pixel = static_cast<uint16_t>(std::lround(std::fmax(black + 3.0 * lp_normal(&random), 0.0)));
+    const auto r = fitted(fields, known_offset());
+    assert_int_equal(r->used, 9);
+    assert_int_equal(r->black, 1);
+    assert_memory_equal(&without->shading, &r->shading, sizeof r->shading);
+}
+
 void test_refusals(void **) {
     const auto refused = [](const std::vector<Field> &fields, uint32_t code) {
         const Held held = added(fields, known_offset());
@@ -473,6 +488,7 @@ int main() {
         cmocka_unit_test(test_excluded_pixels),
         cmocka_unit_test(test_saturated_at_any_value),
         cmocka_unit_test(test_repeated_and_black_pictures_are_left_out),
+        cmocka_unit_test(test_a_dark_picture_is_left_out),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_dark_pictures),
         cmocka_unit_test(test_invalid_arguments),

@@ -55,30 +55,44 @@ bool is_noise(const FieldGrid &grid, const std::vector<double> &cells) {
     return 0.5 * std::max(across.mean(), down.mean()) >= least * variance_of(cells);
 }
 
-bool is_dark(const FieldsFit &fit, const std::vector<uint32_t> &used, uint32_t channel) {
+// Whether a picture shows only noise in a channel, at a level that is not above `floor` by more than noise.
+bool is_at_floor(const FieldsFit &fit, uint32_t picture, uint32_t channel, double floor) {
+    const std::vector<float> &values = fit.pictures[picture].cells.value[channel];
+    const std::vector<double> cells(values.begin(), values.end());
+    const double pixels = double(fit.grid.width) * fit.grid.height / static_cast<double>(fit.grid.count());
+    return is_noise(fit.grid, cells) && median_of(values) - floor <= kDrift * std::sqrt(variance_of(cells) * pixels);
+}
+
+double floor_of(const FieldsFit &fit, const std::vector<uint32_t> &used, uint32_t channel) {
+    if (fit.options.given_offset) return fit.options.offset[channel];
+    double low = INFINITY;
+    for (const uint32_t i : used) low = std::min(low, median_of(fit.pictures[i].cells.value[channel]));
+    return low;
+}
+
+std::vector<double> mean_of(const FieldsFit &fit, const std::vector<uint32_t> &pictures, uint32_t channel) {
     std::vector<double> mean(fit.grid.count(), 0.0);
-    double low = INFINITY, high = -INFINITY, variance = INFINITY;
-    for (const uint32_t i : used) {
+    for (const uint32_t i : pictures) {
         const std::vector<float> &values = fit.pictures[i].cells.value[channel];
-        const std::vector<double> cells(values.begin(), values.end());
-        if (!is_noise(fit.grid, cells)) return false;
         const double level = median_of(values);
-        low = std::min(low, level), high = std::max(high, level);
-        variance = std::min(variance, variance_of(cells));
         for (size_t j = 0; j < mean.size(); j++) mean[j] += static_cast<double>(values[j]) - level;
     }
-    const double floor = fit.options.given_offset ? fit.options.offset[channel] : low;
-    const double pixels = double(fit.grid.width) * fit.grid.height / static_cast<double>(fit.grid.count());
-    return high - floor <= kDrift * std::sqrt(variance * pixels) && is_noise(fit.grid, mean);
+    return mean;
 }
 
 }  // namespace
 
-bool are_dark(const FieldsFit &fit, const std::vector<uint32_t> &used) {
-    if (!is_linear(fit)) return false;
-    for (uint32_t c = 0; c < fit.options.channels; c++)
-        if (!is_dark(fit, used, c)) return false;
-    return true;
+std::vector<uint32_t> dark_pictures(const FieldsFit &fit, const std::vector<uint32_t> &used) {
+    std::vector<uint32_t> dark = is_linear(fit) ? used : std::vector<uint32_t>{};
+    for (uint32_t c = 0; c < fit.options.channels; c++) {
+        const double floor = floor_of(fit, used, c);
+        dark.erase(std::remove_if(dark.begin(), dark.end(),
+                                  [&](uint32_t picture) { return !is_at_floor(fit, picture, c, floor); }),
+                   dark.end());
+    }
+    for (uint32_t c = 0; c < fit.options.channels && !dark.empty(); c++)
+        if (!is_noise(fit.grid, mean_of(fit, dark, c))) dark.clear();
+    return dark;
 }
 
 }  // namespace lensprof

@@ -7,8 +7,8 @@
 
 namespace lensprof {
 
-// Whether linear pictures, of which `used` take part, show nothing but an offset and noise in every channel: neither
-// one of them nor their mean varies over the frame by more than noise, and their levels differ by less than that.
-bool are_dark(const FieldsFit &fit, const std::vector<uint32_t> &used);
+// Those of the linear pictures `used` that show nothing but an offset and noise in every channel: neither one of them
+// nor their mean varies over the frame by more than noise, and they are above the darkest by no more than that.
+std::vector<uint32_t> dark_pictures(const FieldsFit &fit, const std::vector<uint32_t> &used);
 
 }  // namespace lensprof

@@ -78,6 +78,13 @@ std::vector<uint32_t> pictures_used(FieldsFit &fit) {
     return used;
 }
 
+void leave_out_dark(FieldsFit &fit, std::vector<uint32_t> &used) {
+    const std::vector<uint32_t> dark = dark_pictures(fit, used);
+    for (const uint32_t i : dark) fit.pictures[i].used = false;
+    used.erase(std::remove_if(used.begin(), used.end(), [&](uint32_t i) { return !fit.pictures[i].used; }), used.end());
+    fit.result.black += static_cast<uint32_t>(dark.size()), fit.result.used = static_cast<uint32_t>(used.size());
+}
+
 FieldData data_of(const FieldsFit &fit, const std::vector<uint32_t> &used, size_t channel) {
     FieldData data;
     data.pictures = used.size(), data.cells = fit.grid.count();
@@ -161,8 +168,9 @@ bool fit_fields(FieldsFit &fit) {
     r.channels = fit.options.channels;
     r.columns = static_cast<uint32_t>(fit.grid.columns), r.rows = static_cast<uint32_t>(fit.grid.rows);
     r.smoothnesses = kSmoothnesses;
-    const std::vector<uint32_t> used = pictures_used(fit);
-    if (used.empty() || are_dark(fit, used)) return false;
+    std::vector<uint32_t> used = pictures_used(fit);
+    leave_out_dark(fit, used);
+    if (used.empty()) return false;
     for (auto &heldout : fit.heldout) heldout.assign(kSmoothnesses, NAN);
     if (used.size() >= kFewest) fit_channels(fit, used);
     judge_fields(fit);

@@ -173,12 +173,19 @@ std::shared_ptr<lensprof_profile> profile_of_fields(const FieldFit &found, const
     return profile;
 }
 
+constexpr double black_noise = 0.02;  // of the light: cells without light are darker than the black level by noise
+
 // Failure if pictures are darker than the black level that was stated.
 void check_black(const FieldOptions &o, const FieldFit &found) {
     for (uint32_t c = 0; c < found.fit.channels && !o.black.empty(); c++) {
         const double stated = found.full_scale * stated_black(o, found.fit.channels, c, found.full_scale),
                      used = found.full_scale * found.fit.channel[c].offset;
-        if (stated > used + 1e-6 * found.full_scale)
+        std::vector<double> levels;
+        for (const lensprof_fields_image &image : found.images)
+            if (std::isfinite(image.level[c])) levels.push_back(found.full_scale * image.level[c]);
+        std::sort(levels.begin(), levels.end());
+        const double light = levels.empty() ? 0.0 : levels[levels.size() / 2];
+        if (stated > used + 1e-6 * found.full_scale + black_noise * light)
             throw Failure(LENSPROF_ERROR_ARGUMENT,
                           found.names.front()
                               + format(": the pictures are darker than the black level of %g: parts of them lie at %g; "
