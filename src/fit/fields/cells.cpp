@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace lensprof {
 namespace {
@@ -131,6 +132,13 @@ FieldGrid make_field_grid(uint32_t width, uint32_t height) {
     const double side = static_cast<double>(longer) / along;
     const auto cells = [&](uint32_t pixels) { return std::max(1, static_cast<int>(std::lround(pixels / side))); };
     return {width, height, cells(width), cells(height)};
+}
+
+std::vector<float> finite_of(const std::vector<float> &values) {
+    std::vector<float> finite;
+    finite.reserve(values.size());
+    std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](float v) { return !std::isnan(v); });
+    return finite;
 }
 
 FieldCells measure_field(const FieldGrid &grid, const lensprof_sample_image &image, int channels) {

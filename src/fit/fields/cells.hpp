@@ -27,6 +27,9 @@ struct FieldCells {
     double range = 0.0;                       // largest minus smallest value of a pixel
 };
 
+// The values of the cells that have one.
+std::vector<float> finite_of(const std::vector<float> &values);
+
 // Measures a picture. A pixel is left out if mask or alpha exclude it or a sample is not finite; it is saturated if a
 // channel is at or above `white` or at the picture's own end of the range, where integer samples pile up.
 FieldCells measure_field(const FieldGrid &grid, const lensprof_sample_image &image, int channels);

@@ -5,6 +5,7 @@
 
 #include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
+#include "fit/fields/cells.hpp"
 
 namespace lensprof {
 namespace {
@@ -12,13 +13,6 @@ namespace {
 constexpr double kSmallestSigma = 2e-3;  // of a component: error of a cell that is not noise
 constexpr double kBackgroundShare = 0.05;
 constexpr double kTiny = 1e-12;  // density where no component reaches
-
-std::vector<float> finite_of(const std::vector<float> &values) {
-    std::vector<float> finite;
-    finite.reserve(values.size());
-    std::copy_if(values.begin(), values.end(), std::back_inserter(finite), [](float v) { return !std::isnan(v); });
-    return finite;
-}
 
 }  // namespace
 

@@ -17,9 +17,7 @@ constexpr double kNoise = 5.5;
 constexpr double kDrift = 3.0;
 
 double median_of(const std::vector<float> &cells) {
-    std::vector<float> values;
-    for (const float value : cells)
-        if (!std::isnan(value)) values.push_back(value);
+    std::vector<float> values = finite_of(cells);
     return static_cast<double>(median(values));
 }
 

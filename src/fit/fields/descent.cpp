@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/base/quantile.hpp"
+#include "fit/fields/cells.hpp"
 
 namespace lensprof {
 namespace {
@@ -21,9 +22,7 @@ constexpr size_t kSearchCells = 400;
 }  // namespace
 
 Descent::Descent(const FieldData &data, const Surface &surface) : smoothness(kFirst), data_(&data), surface_(&surface) {
-    std::vector<float> values;
-    std::copy_if(data.value.begin(), data.value.end(), std::back_inserter(values),
-                 [](float v) { return !std::isnan(v); });
+    std::vector<float> values = finite_of(data.value);
     const auto low = static_cast<double>(quantile(values, kLowest));
     middle_ = static_cast<double>(median(values));
     floor_ = low - 0.01 * (middle_ - low);

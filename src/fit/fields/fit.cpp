@@ -25,9 +25,7 @@ enum class Kind {
 
 Kind kind_of(const FieldPicture &picture, int channels, size_t cells) {
     for (int c = 0; c < channels; c++) {
-        std::vector<float> values;
-        for (float value : picture.cells.value[static_cast<size_t>(c)])
-            if (!std::isnan(value)) values.push_back(value);
+        std::vector<float> values = finite_of(picture.cells.value[static_cast<size_t>(c)]);
         if (static_cast<double>(values.size()) < kFewestCells * static_cast<double>(cells)) return Kind::white;
         if (!(picture.cells.range > 0.0) || !(quantile(values, 1.0 - kOneStep) > 0.0f)) return Kind::black;
     }
@@ -54,9 +52,7 @@ std::vector<uint32_t> pictures_used(FieldsFit &fit) {
         const Kind kind = kind_of(picture, static_cast<int>(fit.options.channels), fit.grid.count());
         r.black += kind == Kind::black, r.white += kind == Kind::white;
         if (kind != Kind::usable) continue;
-        std::vector<float> values;
-        for (float value : picture.cells.value[0])
-            if (!std::isnan(value)) values.push_back(value);
+        std::vector<float> values = finite_of(picture.cells.value[0]);
         order.emplace_back(median(values), i);
     }
     std::sort(order.begin(), order.end(), [&](const auto &a, const auto &b) {

@@ -19,6 +19,10 @@ struct CellGrid {
     int count() const { return columns * rows; }
     double cell_width() const { return static_cast<double>(width) / columns; }
     double cell_height() const { return static_cast<double>(height) / rows; }
+    // From the upper left edge of the frame, px: 0.5 more than the coordinates of pixels.
+    std::array<double, 2> middle(int cell) const {
+        return {(cell % columns + 0.5) * cell_width(), (cell / columns + 0.5) * cell_height()};
+    }
 };
 
 // About 96 cells along the longer side, and at least eight pixels of the smallest view along a cell.

@@ -141,8 +141,8 @@ void add_black(const CellGrid &grid, const Shot &shot, std::vector<bool> &outsid
 // A cell's middle, half diagonals from that of the frame.
 std::array<double, 2> place_of(const CellGrid &grid, int cell) {
     const double half = lensprof_half_diagonal(grid.width, grid.height);
-    return {((cell % grid.columns + 0.5) * grid.cell_width() - 0.5 * grid.width) / half,
-            ((cell / grid.columns + 0.5) * grid.cell_height() - 0.5 * grid.height) / half};
+    const auto [x, y] = grid.middle(cell);
+    return {(x - 0.5 * grid.width) / half, (y - 0.5 * grid.height) / half};
 }
 
 // Where the light has fallen to a half, cells inwards from the middle of a dark one: the sum of what is missing.

@@ -96,9 +96,8 @@ Measured with_place(const JudgedFlat &judged, const Worst &worst, CellState stat
         for (int i = 0; i < grid.count() && shot.number == worst.shot; i++) {
             const auto cell = static_cast<size_t>(i);
             if (!shot.card[cell] || shot.light[cell].state != state) continue;
-            count += 1.0;
-            x += (i % grid.columns + 0.5) * grid.cell_width() - 0.5 * grid.width;
-            y += (i / grid.columns + 0.5) * grid.cell_height() - 0.5 * grid.height;
+            const auto middle = grid.middle(i);
+            count += 1.0, x += middle[0] - 0.5 * grid.width, y += middle[1] - 0.5 * grid.height;
         }
     const double half = std::max(count, 1.0) * lensprof_half_diagonal(grid.width, grid.height);
     measured.values = {worst.value, x / half, y / half, judged.r.corner_sigma};

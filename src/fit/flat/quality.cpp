@@ -162,11 +162,9 @@ double continued_error(const FlatFit &fit) {
         const double dim = kDim * std::exp(fit.estimate.u[model.level(s, 0)]);  // not part of a dark border
         for (size_t i = 0; i < shot.light.size(); i++) {
             if (!shot.card[i] || shot.light[i].state != CellState::black || shot.light[i].value[0] > dim) continue;
-            const auto column = static_cast<double>(i % static_cast<size_t>(fit.grid.columns)),
-                       row = static_cast<double>(i / static_cast<size_t>(fit.grid.columns));
-            seen = std::min(seen, lensprof_vignetting_r2(&v, fit.grid.width, fit.grid.height,
-                                                         (column + 0.5) * fit.grid.cell_width() - 0.5,
-                                                         (row + 0.5) * fit.grid.cell_height() - 0.5, nullptr));
+            const auto [x, y] = fit.grid.middle(static_cast<int>(i));
+            seen =
+                std::min(seen, lensprof_vignetting_r2(&v, fit.grid.width, fit.grid.height, x - 0.5, y - 0.5, nullptr));
         }
     }
     const double end = continued_falloff(model, fit.estimate.u, 0, seen).value;

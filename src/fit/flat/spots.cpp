@@ -80,9 +80,9 @@ void leave_out(const CellGrid &grid, int cell, std::vector<bool> &left_out) {
 lensprof_flat_spot take_spot(FlatFit &fit, const std::vector<SpotMap> &maps, const std::vector<int> &group) {
     lensprof_flat_spot spot{};
     for (int cell : group) {
-        const int column = cell % fit.grid.columns, row = cell / fit.grid.columns;
-        spot.x += ((column + 0.5) * fit.grid.cell_width() - 0.5) / static_cast<double>(group.size());
-        spot.y += ((row + 0.5) * fit.grid.cell_height() - 0.5) / static_cast<double>(group.size());
+        const auto [x, y] = fit.grid.middle(cell);
+        spot.x += (x - 0.5) / static_cast<double>(group.size());
+        spot.y += (y - 0.5) / static_cast<double>(group.size());
     }
     spot.radius = std::sqrt(static_cast<double>(group.size()) * fit.grid.cell_width() * fit.grid.cell_height() / kPi);
     for (size_t s = 0; s < maps.size(); s++) {
