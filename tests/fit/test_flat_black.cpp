@@ -116,6 +116,24 @@ static void shots_with_a_light_of_their_own_show_it_too(void **) {
 }
 
 // An offset next to a stated level, in the units of the samples.
+// Lights of nearly one level show little: what they show must not make a good card worse.
+static void a_poorly_shown_offset_is_left_alone(void **) {
+    for (const double gradient : {0.02, 0.03, 0.05, 0.08, 0.12}) {
+        FlatPictures p = small_card(0.0);
+        p.sample = LENSPROF_SAMPLE_U16;
+        p.noise = 1.0 / 255.0;
+        p.shoot(0);
+        p.gradient[0] = gradient;
+        p.shoot(1);
+        lensprof_flat_options o = open_options(p);
+        o.own_light = 1;
+        const auto r = p.fit(o);
+        assert_true(r->usable);
+        assert_close(r->corner, corner_of(p), 0.004);
+        if (!r->black_shown) assert_close(r->black_offset, 0.0, 0.0);
+    }
+}
+
 static void an_offset_adds_to_the_stated_level(void **) {
     FlatPictures p = small_card(0.0625);
     p.levels.white = 0.5;
@@ -211,6 +229,7 @@ int main() {
         cmocka_unit_test(channels_have_offsets_of_their_own),
         cmocka_unit_test(grey_pictures_have_one),
         cmocka_unit_test(shots_with_a_light_of_their_own_show_it_too),
+        cmocka_unit_test(a_poorly_shown_offset_is_left_alone),
         cmocka_unit_test(an_offset_adds_to_the_stated_level),
         cmocka_unit_test(one_level_leaves_the_corner_open),
         cmocka_unit_test(encoded_pictures_have_no_offset),

@@ -14,6 +14,7 @@ namespace lensprof {
 struct FlatResult : lensprof_flat_result {
     lensprof_flat_image_quality *image_quality = nullptr;  // per picture
     Findings verdict;
+    double sigma_without_black = 0.0;  // corner_sigma without the error of the black level
 };
 
 // The end of the image circle in the frame, or what covers its corners.

@@ -174,17 +174,18 @@ Measured convergence(const JudgedFlat &judged) {
 
 Measured covariance(const JudgedFlat &judged) { return {double(judged.fit.covariance.size()), 0, {}}; }
 
-// A residual that is not radial makes the polynomial uncertain, but not the product of polynomial and grid.
+// A residual that is not radial makes the polynomial uncertain, but not the product of polynomial and grid. The black
+// level has a note of its own.
 Measured corner_sigma(const JudgedFlat &judged) {
     const FlatResult &r = judged.r;
     if (r.frame_residual >= flat_limits::kNotRadial) return {};
-    return of_value(r.corner_sigma);
+    return of_value(r.sigma_without_black);
 }
 
 Measured corner_sigma_not_radial(const JudgedFlat &judged) {
     const FlatResult &r = judged.r;
     if (r.frame_residual < flat_limits::kNotRadial) return {};
-    return of_values(r.corner_sigma, r.corner_sigma, r.frame_residual);
+    return of_values(r.sigma_without_black, r.sigma_without_black, r.frame_residual);
 }
 
 Measured not_radial(const JudgedFlat &judged) { return of_value(judged.r.frame_residual); }

@@ -10,6 +10,7 @@
 #include "core/levels.h"
 #include "falloff/dense.hpp"
 #include "fit/flat/fit.hpp"
+#include "fit/flat/limits.hpp"
 
 namespace lensprof {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kStill = 1e-6;         // of a level
 constexpr double kConverged = 1e-9;     // of full scale
 constexpr size_t kFullPictures2 = 400;  // square of the pictures of a group from which on some cells suffice
 constexpr double kOutlier2 = 9.0;       // of chi^2 per degree of freedom, from where a cell loses weight
-constexpr double kShown = 0.5;          // of the stated error: less is shown by the pictures
+constexpr double kShown = 0.5;          // of the stated error: an error above it is no news from the pictures
 constexpr double kLargestShare = 0.9;   // of the darkest cell: the rest is light
 
 using Groups = std::vector<std::vector<uint32_t>>;
@@ -83,6 +84,15 @@ public:
 
     double offset() const { return offset_; }
 
+    // Whether the pictures tell more than the stated error did, and enough for the corners: an offset that is neither
+    // clearly present nor known well enough is noise, which would make corners worse.
+    bool is_shown() const {
+        const double error = sigma();
+        const bool is_clear = std::abs(offset_) > flat_limits::kClearOffset * error;
+        const double in_corner = error * (1.0 / std::max(darkest_ - offset_, 1e-6) - 1.0 / (brightest_ - offset_));
+        return error < kShown * sigma_ && (is_clear || in_corner < flat_limits::kLargestCornerSigma);
+    }
+
     // Standard error, from the curvature and the scatter of the cells.
     double sigma() const {
         const Eigen::VectorXd unit = Eigen::VectorXd::Unit(normal_.rows(), 0);
@@ -104,6 +114,7 @@ private:
                             1.0 / std::sqrt(variance),
                             {1.0, (one.x - 0.5 * fit.grid.width) / half, (one.y - 0.5 * fit.grid.height) / half}});
             darkest_ = std::min(darkest_, value);
+            brightest_ = std::max(brightest_, value);
         }
         if (seen.size() > 1) cells_.push_back(std::move(seen));
     }
@@ -204,7 +215,7 @@ private:
     }
 
     int terms_;  // of a level
-    double sigma_, offset_ = 0.0, scatter_ = 1.0, darkest_ = 1.0;
+    double sigma_, offset_ = 0.0, scatter_ = 1.0, darkest_ = 1.0, brightest_ = 0.0;
     std::vector<SeenCell> cells_;
     std::vector<double> level_;  // terms of ln a_n; the first number is that of the offset, and not used
     Eigen::MatrixXd normal_;
@@ -235,16 +246,12 @@ void subtract_offset(FlatFit &fit) {
     const Groups groups = groups_of(fit);
     const size_t channels = fit.options.channels;
     fit.offset.sigma.fill(fit.options.black_sigma);
-    for (size_t c = 0; c < channels; c++) {
-        OffsetFit offset(fit, groups, c);
-        if (offset.solve()) fit.offset.value[c] = offset.offset(), fit.offset.sigma[c] = offset.sigma();
-    }
     size_t shown = 0;
     for (size_t c = 0; c < channels; c++) {
-        if (fit.offset.sigma[c] < kShown * fit.options.black_sigma)
-            shown++;
-        else  // only noise
-            fit.offset.value[c] = 0.0, fit.offset.sigma[c] = fit.options.black_sigma;
+        OffsetFit offset(fit, groups, c);
+        if (!offset.solve() || !offset.is_shown()) continue;
+        fit.offset.value[c] = offset.offset(), fit.offset.sigma[c] = offset.sigma();
+        shown++;
     }
     fit.offset.is_shown = shown == channels;
     if (shown == 0) return;

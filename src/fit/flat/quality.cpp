@@ -205,6 +205,7 @@ void describe_levels(const FlatFit &fit, FlatResult &r) {
     const double brightest = brightest_grey(fit);
     if (brightest > 0.0 && r.corner > 0.0)
         r.black_ev = sigma * std::abs(1.0 / r.corner - 1.0) / brightest / std::log(2.0);
+    r.sigma_without_black = r.corner_sigma;
     if (r.black_shown) r.corner_sigma = std::hypot(r.corner_sigma, r.corner * r.black_ev * std::log(2.0));
 }
 
