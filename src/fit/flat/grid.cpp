@@ -89,7 +89,7 @@ bool fit_channel(const FlatFit &fit, int channel, lensprof_gain_grid &gain) {
     Entries entries;
     double total = 0.0;
     for (const FlatCell &cell : fit.problem.cells) {
-        double p = flat_residual(fit.problem, fit.estimate, cell, channel).prediction.value;
+        const double p = predicted_light(fit.problem, fit.estimate, cell)[static_cast<size_t>(channel)];
         double weight = 1.0 / (cell.variance[static_cast<size_t>(channel)] / (p * p) + kSmallestNoise * kSmallestNoise);
         Bilinear weights = bilinear(gain, fit.grid, cell);
         total += weight;

@@ -5,7 +5,35 @@
 
 namespace lensprof {
 
+namespace {
+
 constexpr double kRotated = 0.5;  // radians
+
+// What all channels share at a place in a shot.
+struct Place {
+    double r2, by_center[2], basis[kMaxLightTerms];
+};
+
+Place place_of(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y) {
+    const CellGrid &grid = model.grid;
+    const lensprof_vignetting v = falloff_of(model, u, 0);
+    const auto [cosine, sine] = model.turn[static_cast<size_t>(shot)];
+    const double half = lensprof_half_diagonal(grid.width, grid.height);
+    const double dx = (x - 0.5 * (grid.width - 1.0)) / half, dy = (y - 0.5 * (grid.height - 1.0)) / half;
+    const double qx = cosine * dx - sine * dy, qy = sine * dx + cosine * dy;
+    Place place{0.0, {}, {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy}};
+    place.r2 = lensprof_vignetting_r2(&v, grid.width, grid.height, x, y, place.by_center);
+    return place;
+}
+
+// Exposure times radiance, without the falloff.
+double light_at(const FlatModel &model, const Eigen::VectorXd &u, int shot, int channel, const Place &place) {
+    double log_light = u[model.level(shot, channel)] + (model.several ? u[model.exposure_error(shot)] : 0.0);
+    for (int j = 0; j < model.light_terms; j++) log_light += u[model.light(shot, channel) + j] * place.basis[j];
+    return std::exp(log_light);
+}
+
+}  // namespace
 
 size_t FlatModel::angles() const {
     std::vector<std::array<double, 2>> apart;
@@ -33,6 +61,12 @@ double power_base(FalloffForm form, double r2, double *slope) {
     const double part = form == FalloffForm::powers ? 1.0 : 1.0 / (1.0 + r2);
     *slope = part * part;
     return r2 * part;
+}
+
+double falloff_value(const FlatModel &model, const Eigen::VectorXd &u, int curve, double r2) {
+    double slope, base = power_base(model.form, r2, &slope), sum = 0.0;
+    for (int n = model.terms() - 1; n >= 0; n--) sum = (sum + u[model.k(curve) + n]) * base;
+    return model.form == FalloffForm::logarithm ? std::exp(sum) : 1.0 + sum;
 }
 
 FalloffAt falloff_at(const FlatModel &model, const Eigen::VectorXd &u, int curve, double r2) {
@@ -71,28 +105,37 @@ FalloffAt continued_falloff(const FlatModel &model, const Eigen::VectorXd &u, in
     return at;
 }
 
-Prediction predict(const FlatModel &model, const Eigen::VectorXd &u, int shot, int channel, double x, double y) {
-    const CellGrid &grid = model.grid;
-    const int curve = model.curve_of(channel), level = model.level(shot, channel);
-    lensprof_vignetting v = falloff_of(model, u, curve);
-    double by_center[2], r2 = lensprof_vignetting_r2(&v, grid.width, grid.height, x, y, by_center);
-    const FalloffAt falloff = falloff_at(model, u, curve, r2);
-    Prediction p;
-    p.falloff = falloff.value;
-    double log_light = u[level] + (model.several ? u[model.exposure_error(shot)] : 0.0);
-    double half = lensprof_half_diagonal(grid.width, grid.height), cosine = model.turn[static_cast<size_t>(shot)][0];
-    double dx = (x - 0.5 * (grid.width - 1.0)) / half, dy = (y - 0.5 * (grid.height - 1.0)) / half;
-    double sine = model.turn[static_cast<size_t>(shot)][1], qx = cosine * dx - sine * dy, qy = sine * dx + cosine * dy;
-    const double basis[kMaxLightTerms] = {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy};
-    for (int j = 0; j < model.light_terms; j++) log_light += u[model.light(shot, channel) + j] * basis[j];
-    const double light = std::exp(log_light);
-    p.value = light * p.falloff;
-    for (int n = 0; n < model.terms(); n++) p.add(model.k(curve) + n, light * falloff.by_term[static_cast<size_t>(n)]);
-    for (int d = 0; d < 2; d++) p.add(model.center() + d, light * falloff.slope * by_center[d]);
-    p.add(level, p.value);
-    if (model.several) p.add(model.exposure_error(shot), p.value);
-    for (int j = 0; j < model.light_terms; j++) p.add(model.light(shot, channel) + j, p.value * basis[j]);
-    return p;
+std::array<double, 3> predicted_light(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y) {
+    const Place place = place_of(model, u, shot, x, y);
+    std::array<double, 3> falloff{}, light{};
+    for (int curve = 0; curve < model.curves; curve++)
+        falloff[static_cast<size_t>(curve)] = falloff_value(model, u, curve, place.r2);
+    for (int c = 0; c < model.channels; c++)
+        light[static_cast<size_t>(c)] =
+            light_at(model, u, shot, c, place) * falloff[static_cast<size_t>(model.curve_of(c))];
+    return light;
+}
+
+std::array<Prediction, 3> predictions(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y) {
+    const Place place = place_of(model, u, shot, x, y);
+    std::array<FalloffAt, 3> falloffs;
+    for (int curve = 0; curve < model.curves; curve++)
+        falloffs[static_cast<size_t>(curve)] = falloff_at(model, u, curve, place.r2);
+    std::array<Prediction, 3> all;
+    for (int c = 0; c < model.channels; c++) {
+        Prediction &p = all[static_cast<size_t>(c)];
+        const int curve = model.curve_of(c);
+        const FalloffAt &falloff = falloffs[static_cast<size_t>(curve)];
+        const double light = light_at(model, u, shot, c, place);
+        p.value = light * falloff.value;
+        for (int n = 0; n < model.terms(); n++)
+            p.add(model.k(curve) + n, light * falloff.by_term[static_cast<size_t>(n)]);
+        for (int d = 0; d < 2; d++) p.add(model.center() + d, light * falloff.slope * place.by_center[d]);
+        p.add(model.level(shot, c), p.value);
+        if (model.several) p.add(model.exposure_error(shot), p.value);
+        for (int j = 0; j < model.light_terms; j++) p.add(model.light(shot, c) + j, p.value * place.basis[j]);
+    }
+    return all;
 }
 
 std::array<double, 2> light_gradient(const FlatModel &model, const Eigen::VectorXd &u, int shot) {

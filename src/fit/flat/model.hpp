@@ -66,13 +66,17 @@ void set_falloff(const FlatModel &model, const lensprof_vignetting &vignetting, 
 double power_base(FalloffForm form, double r2, double *slope);
 
 // M within the data, and continued beyond them.
+double falloff_value(const FlatModel &model, const Eigen::VectorXd &u, int curve, double r2);
 FalloffAt falloff_at(const FlatModel &model, const Eigen::VectorXd &u, int curve, double r2);
 FalloffAt continued_falloff(const FlatModel &model, const Eigen::VectorXd &u, int curve, double r2);
 
-// A prediction and its derivatives by the unknowns it depends on.
+// The light predicted for the channels at a place in a shot.
+std::array<double, 3> predicted_light(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y);
+
+// The same of one channel with its derivatives by the unknowns it depends on, which are the same everywhere in a shot.
 struct Prediction {
     static constexpr int kMaxEntries = kMaxFalloffTerms + 2 + 2 + kMaxLightTerms;
-    double value = 0.0, falloff = 0.0;
+    double value = 0.0;
     int count = 0;
     std::array<int, kMaxEntries> index;
     std::array<double, kMaxEntries> derivative;
@@ -83,7 +87,7 @@ struct Prediction {
     }
 };
 
-Prediction predict(const FlatModel &model, const Eigen::VectorXd &u, int shot, int channel, double x, double y);
+std::array<Prediction, 3> predictions(const FlatModel &model, const Eigen::VectorXd &u, int shot, double x, double y);
 
 // Slope of the logarithm of the light in a shot's frame, to the right and down, per half diagonal: mean of the
 // channels.

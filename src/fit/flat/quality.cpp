@@ -274,10 +274,9 @@ void describe_images(const FlatFit &fit, FlatResult &r) {
             if (cell.shot != static_cast<int>(s)) continue;
             q.cells++;
             q.radius = std::max(q.radius, radius_of(fit, r.vignetting[0], cell));
-            for (int c = 0; c < fit.problem.model.channels; c++) {
-                double p = flat_residual(fit.problem, fit.estimate, cell, c).prediction.value;
-                square.add(std::pow(cell.value[static_cast<size_t>(c)] / p - 1.0, 2));
-            }
+            const auto predicted = predicted_light(fit.problem, fit.estimate, cell);
+            for (size_t c = 0; c < fit.options.channels; c++)
+                square.add(std::pow(cell.value[c] / predicted[c] - 1.0, 2));
         }
         q.residual = std::sqrt(square.value());
         auto gradient = light_gradient(fit.problem.model, fit.estimate.u, static_cast<int>(s));
@@ -301,7 +300,7 @@ std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, cons
         bool left_out = fit.left_out[static_cast<size_t>(shot)][i] && !dust;
         if (shot_data.light[i].state != CellState::used || !shot_data.card[i] || left_out) continue;
         const double x = shot_data.light[i].x, y = shot_data.light[i].y;
-        double p = predict(fit.problem.model, fit.estimate.u, shot, channel, x, y).value;
+        double p = predicted_light(fit.problem.model, fit.estimate.u, shot, x, y)[static_cast<size_t>(channel)];
         if (gain)
             p *= held_ratio(fit, channel, x, y)
                  * lensprof_gain_grid_eval(gain, fit.grid.width, fit.grid.height, x, y, static_cast<uint32_t>(channel));
@@ -313,11 +312,10 @@ std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, cons
 // Mean variance of a cell's noise, relative to its light.
 double noise_variance(const FlatFit &fit) {
     Mean noise;
-    for (const FlatCell &cell : fit.problem.cells)
-        for (int c = 0; c < fit.problem.model.channels; c++) {
-            const double p = flat_residual(fit.problem, fit.estimate, cell, c).prediction.value;
-            noise.add(cell.variance[static_cast<size_t>(c)] / (p * p));
-        }
+    for (const FlatCell &cell : fit.problem.cells) {
+        const auto predicted = predicted_light(fit.problem, fit.estimate, cell);
+        for (size_t c = 0; c < fit.options.channels; c++) noise.add(cell.variance[c] / (predicted[c] * predicted[c]));
+    }
     return noise.value();
 }
 
@@ -329,10 +327,8 @@ void describe_flat(const FlatFit &fit, FlatResult &r) {
     for (const FlatCell &cell : fit.problem.cells) {
         r.radius = std::max(r.radius, radius_of(fit, r.vignetting[0], cell));
         inlier.add(flat_chi2(fit.problem, fit.estimate, cell) < inlier_limit(fit.problem.model.channels));
-        for (int c = 0; c < fit.problem.model.channels; c++) {
-            double p = flat_residual(fit.problem, fit.estimate, cell, c).prediction.value;
-            square.add(std::pow(cell.value[static_cast<size_t>(c)] / p - 1.0, 2));
-        }
+        const auto predicted = predicted_light(fit.problem, fit.estimate, cell);
+        for (size_t c = 0; c < fit.options.channels; c++) square.add(std::pow(cell.value[c] / predicted[c] - 1.0, 2));
     }
     const double noise = noise_variance(fit);
     r.residual = std::sqrt(square.value());

@@ -15,10 +15,11 @@
 namespace lensprof {
 namespace {
 
-constexpr double kCutoff = 4.0;           // of the robust loss, sigmas of a cell's typical size
-constexpr int kRounds = 12;               // of estimating noise and fit in turn
-constexpr double kNoiseTolerance = 1e-3;  // largest change of the noise parameters at convergence
-constexpr DescentLimits kLimits{60, 1e-6, 1e12, 1e-8};
+constexpr double kCutoff = 4.0;                             // of the robust loss, sigmas of a cell's typical size
+constexpr int kRounds = 20;                                 // of estimating noise and fit in turn
+constexpr double kNoiseTolerance = 1e-3;                    // largest change of the noise parameters at convergence
+constexpr DescentLimits kLimits{8, 1e-6, 1e12, 1e-8};       // of a round: with the noise of a poor fit, steps are short
+constexpr DescentLimits kRoughLimits{8, 1e-6, 1e12, 1e-4};  // of the first descent
 constexpr double kSmallestScale = 0.2;
 constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;   // of chi-squared, 1 and 3 degrees of freedom
 constexpr double kInlierSquare = 0.973, kInlierSquare3 = 0.988;  // mean square of the residuals within inlier_limit
@@ -26,11 +27,13 @@ constexpr int kBlocks[] = {4, 8, 16, 32};                        // cells along 
 constexpr double kStartNoise = 0.01;                             // of a cell's light, in the start values
 constexpr double kSmallestPivot = 1e-11;  // of the scaled normal equations: below it, they are singular
 
+double square(double x) { return x * x; }
+
 double cutoff(const FlatProblem &problem) { return kCutoff * kCutoff * problem.model.channels; }
 
 // Standard deviation of a cell's residual.
 double sigma_of(const FlatEstimate &estimate, double variance, double predicted) {
-    return std::sqrt(variance + std::pow(estimate.unevenness * predicted, 2));
+    return std::sqrt(variance + square(estimate.unevenness * predicted));
 }
 
 double prior_objective(const FlatProblem &problem, const Eigen::VectorXd &u) {
@@ -43,64 +46,84 @@ using Sigmas = std::vector<std::array<double, 3>>;
 
 Sigmas all_sigmas(const FlatProblem &problem, const FlatEstimate &estimate) {
     Sigmas sigmas(problem.cells.size());
-    for (size_t i = 0; i < sigmas.size(); i++)
-        for (int c = 0; c < problem.model.channels; c++)
-            sigmas[i][static_cast<size_t>(c)] =
-                estimate.scale * flat_residual(problem, estimate, problem.cells[i], c).sigma;
+    for (size_t i = 0; i < sigmas.size(); i++) {
+        const auto residuals = flat_residuals(problem, estimate, problem.cells[i]);
+        for (size_t c = 0; c < 3; c++) sigmas[i][c] = estimate.scale * residuals[c].sigma;
+    }
     return sigmas;
 }
 
-Prediction predict_cell(const FlatProblem &problem, const Eigen::VectorXd &u, const FlatCell &cell, int channel) {
-    return predict(problem.model, u, cell.shot, channel, cell.x, cell.y);
-}
+size_t channels_of(const FlatProblem &problem) { return static_cast<size_t>(problem.model.channels); }
 
 double objective(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas, double inflation) {
     double sum = 0.0, divisor;
     for (size_t i = 0; i < sigmas.size(); i++) {
+        const FlatCell &cell = problem.cells[i];
+        const auto predicted = predicted_light(problem.model, u, cell.shot, cell.x, cell.y);
         double chi2 = 0.0;
-        for (int c = 0; c < problem.model.channels; c++) {
-            const auto channel = static_cast<size_t>(c);
-            double r = (problem.cells[i].value[channel] - predict_cell(problem, u, problem.cells[i], c).value)
-                       / sigmas[i][channel];
-            chi2 += r * r;
-        }
+        for (size_t c = 0; c < channels_of(problem); c++) chi2 += square((cell.value[c] - predicted[c]) / sigmas[i][c]);
         sum += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
     }
     return sum / inflation + prior_objective(problem, u);
 }
 
+// The normal equations of one channel of a shot: its cells depend on the same unknowns.
+class ChannelEquations {
+public:
+    void add(const Prediction &prediction, double weight, double weighted_residual) {
+        count_ = static_cast<size_t>(prediction.count);
+        index_ = prediction.index;
+        for (size_t a = 0; a < count_; a++) {
+            const double slope = weight * prediction.derivative[a];
+            gradient_[a] += weighted_residual * prediction.derivative[a];
+            for (size_t b = 0; b <= a; b++) hessian_[a][b] += slope * prediction.derivative[b];
+        }
+    }
+
+    void add_to(Eigen::MatrixXd &hessian, Eigen::VectorXd &gradient) const {
+        for (size_t a = 0; a < count_; a++) {
+            gradient[index_[a]] += gradient_[a];
+            for (size_t b = 0; b < a; b++) {
+                hessian(index_[a], index_[b]) += hessian_[a][b];
+                hessian(index_[b], index_[a]) += hessian_[a][b];
+            }
+            hessian(index_[a], index_[a]) += hessian_[a][a];
+        }
+    }
+
+private:
+    static constexpr size_t kMost = Prediction::kMaxEntries;
+    size_t count_ = 0;
+    std::array<int, kMost> index_{};
+    std::array<double, kMost> gradient_{};
+    std::array<std::array<double, kMost>, kMost> hessian_{};
+};
+
 // Restricted to the free unknowns.
 QuadraticModel normal_equations(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas,
                                 double inflation) {
-    const int n = problem.model.unknowns();
-    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    const size_t channels = channels_of(problem);
+    std::vector<ChannelEquations> equations(channels * static_cast<size_t>(problem.model.shots));
     QuadraticModel normal;
     for (size_t i = 0; i < sigmas.size(); i++) {
         const FlatCell &cell = problem.cells[i];
-        std::array<Prediction, 3> p;
+        const auto predicted = predictions(problem.model, u, cell.shot, cell.x, cell.y);
         double residual[3], chi2 = 0.0, divisor;
-        for (int c = 0; c < problem.model.channels; c++) {
-            const auto channel = static_cast<size_t>(c);
-            p[channel] = predict_cell(problem, u, cell, c);
-            residual[c] = (cell.value[channel] - p[channel].value) / sigmas[i][channel];
+        for (size_t c = 0; c < channels; c++) {
+            residual[c] = (cell.value[c] - predicted[c].value) / sigmas[i][c];
             chi2 += residual[c] * residual[c];
         }
         normal.objective += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
-        for (int c = 0; c < problem.model.channels; c++) {
-            const Prediction &prediction = p[static_cast<size_t>(c)];
-            const double sigma = sigmas[i][static_cast<size_t>(c)], weight = 1.0 / (divisor * sigma * sigma);
-            for (size_t a = 0; a < static_cast<size_t>(prediction.count); a++) {
-                gradient[prediction.index[a]] += residual[c] / (divisor * sigma) * prediction.derivative[a];
-                for (size_t b = 0; b <= a; b++)
-                    data(prediction.index[a], prediction.index[b]) +=
-                        weight * prediction.derivative[a] * prediction.derivative[b];
-            }
-        }
+        for (size_t c = 0; c < channels; c++)
+            equations[channels * static_cast<size_t>(cell.shot) + c].add(
+                predicted[c], 1.0 / (divisor * square(sigmas[i][c])), residual[c] / (divisor * sigmas[i][c]));
     }
-    Eigen::MatrixXd full = data + data.transpose();  // an entry is in one triangle only, in either one: both are filled
-    full.diagonal() -= data.diagonal();
-    normal.hessian = full(problem.free, problem.free) / inflation + problem.prior.precision(problem.free, problem.free);
+    const int n = problem.model.unknowns();
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    for (const ChannelEquations &part : equations) part.add_to(hessian, gradient);
+    normal.hessian =
+        hessian(problem.free, problem.free) / inflation + problem.prior.precision(problem.free, problem.free);
     gradient = gradient / inflation + problem.prior.precision * (problem.prior.mean - u);
     normal.gradient = gradient(problem.free);
     normal.objective = normal.objective / inflation + prior_objective(problem, u);
@@ -116,7 +139,7 @@ bool is_falloff(const FlatModel &model, const Eigen::VectorXd &u) {
 }
 
 // Steps until the objective converges, with sigmas held.
-void descend(const FlatProblem &problem, FlatEstimate &estimate) {
+void descend(const FlatProblem &problem, FlatEstimate &estimate, const DescentLimits &limits) {
     const Sigmas sigmas = all_sigmas(problem, estimate);
     const auto moved = [&](const Eigen::VectorXd &change) {
         Eigen::VectorXd next = estimate.u;
@@ -128,7 +151,7 @@ void descend(const FlatProblem &problem, FlatEstimate &estimate) {
         return is_falloff(problem.model, next) ? objective(problem, next, sigmas, estimate.inflation) : INFINITY;
     };
     const Descent descent = levenberg_marquardt(
-        kLimits, [&] { return normal_equations(problem, estimate.u, sigmas, estimate.inflation); }, objective_after,
+        limits, [&] { return normal_equations(problem, estimate.u, sigmas, estimate.inflation); }, objective_after,
         [&](const Eigen::VectorXd &change) { estimate.u = moved(change); });
     estimate.converged = descent.converged;
     estimate.iterations += static_cast<uint32_t>(descent.steps);
@@ -195,21 +218,19 @@ double residual_variance(const FlatProblem &problem, const std::vector<double> &
 
 // Unevenness, scale and inflation from the residuals.
 void measure_noise(const FlatProblem &problem, FlatEstimate &estimate) {
-    const auto channels = static_cast<size_t>(problem.model.channels);
-    std::vector<std::array<double, 3>> predicted(problem.cells.size());
-    for (size_t i = 0; i < predicted.size(); i++)
-        for (size_t c = 0; c < channels; c++)
-            predicted[i][c] = predict_cell(problem, estimate.u, problem.cells[i], static_cast<int>(c)).value;
+    const size_t channels = channels_of(problem), cells = problem.cells.size();
+    std::vector<std::array<double, 3>> predicted(cells);
+    for (size_t i = 0; i < cells; i++) predicted[i] = predicted_light(problem, estimate, problem.cells[i]);
     estimate.unevenness = unevenness(problem, predicted);
-    Scaled residuals{std::vector<std::array<double, 3>>(predicted.size()), std::vector<double>(predicted.size())};
-    for (size_t i = 0; i < predicted.size(); i++)
+    Scaled residuals{std::vector<std::array<double, 3>>(cells), std::vector<double>(cells)};
+    for (size_t i = 0; i < cells; i++)
         for (size_t c = 0; c < channels; c++) {
             const double sigma = sigma_of(estimate, problem.cells[i].variance[c], predicted[i][c]);
             residuals.z[i][c] = (problem.cells[i].value[c] - predicted[i][c]) / sigma;
             residuals.chi2[i] += residuals.z[i][c] * residuals.z[i][c];
         }
     estimate.scale = std::max(std::sqrt(residual_variance(problem, residuals.chi2)), kSmallestScale);
-    for (size_t i = 0; i < predicted.size(); i++) {
+    for (size_t i = 0; i < cells; i++) {
         residuals.chi2[i] /= estimate.scale * estimate.scale;
         for (size_t c = 0; c < channels; c++) residuals.z[i][c] /= estimate.scale;
     }
@@ -282,24 +303,32 @@ Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting
     for (int shot = 0; shot < (model.several ? 1 : model.shots); shot++)
         for (int c = 0; c < model.channels; c++) {
             std::vector<double> values;
+            const int curve = model.curve_of(c);
+            const lensprof_vignetting v = falloff_of(model, u, curve);
             for (const FlatCell &cell : problem.cells)
                 if (model.several || cell.shot == shot) {
-                    double p = predict_cell(problem, u, cell, c).falloff;
-                    values.push_back(std::log(cell.value[static_cast<size_t>(c)] / p));
+                    const double r2 =
+                        lensprof_vignetting_r2(&v, model.grid.width, model.grid.height, cell.x, cell.y, nullptr);
+                    values.push_back(std::log(cell.value[static_cast<size_t>(c)] / falloff_value(model, u, curve, r2)));
                 }
             u[model.level(shot, c)] = median(values);
         }
     return u;
 }
 
-FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell,
-                           int channel) {
-    const auto c = static_cast<size_t>(channel);
-    FlatResidual r;
-    r.prediction = predict_cell(problem, estimate.u, cell, channel);
-    r.sigma = sigma_of(estimate, cell.variance[c], r.prediction.value);
-    r.z = (cell.value[c] - r.prediction.value) / r.sigma;
-    return r;
+std::array<double, 3> predicted_light(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell) {
+    return predicted_light(problem.model, estimate.u, cell.shot, cell.x, cell.y);
+}
+
+std::array<FlatResidual, 3> flat_residuals(const FlatProblem &problem, const FlatEstimate &estimate,
+                                           const FlatCell &cell) {
+    const auto predicted = predicted_light(problem, estimate, cell);
+    std::array<FlatResidual, 3> residuals{};
+    for (size_t c = 0; c < channels_of(problem); c++) {
+        const double sigma = sigma_of(estimate, cell.variance[c], predicted[c]);
+        residuals[c] = {predicted[c], sigma, (cell.value[c] - predicted[c]) / sigma};
+    }
+    return residuals;
 }
 
 double flat_cost(const FlatProblem &problem, const FlatEstimate &estimate) {
@@ -311,11 +340,8 @@ double flat_cost(const FlatProblem &problem, const FlatEstimate &estimate) {
 
 double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell) {
     double sum = 0.0;
-    for (int c = 0; c < problem.model.channels; c++) {
-        double z = flat_residual(problem, estimate, cell, c).z / estimate.scale;
-        sum += z * z;
-    }
-    return sum;
+    for (const FlatResidual &residual : flat_residuals(problem, estimate, cell)) sum += square(residual.z);
+    return sum / square(estimate.scale);
 }
 
 void refine_flat(const FlatProblem &problem, FlatEstimate &estimate) {
@@ -323,9 +349,9 @@ void refine_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     measure_noise(problem, estimate);
     for (int round = 0; round < kRounds; round++) {
         Eigen::Vector3d before = state();
-        descend(problem, estimate);
+        descend(problem, estimate, kLimits);
         measure_noise(problem, estimate);
-        if ((state() - before).norm() < kNoiseTolerance * before.norm()) break;
+        if (estimate.converged && (state() - before).norm() < kNoiseTolerance * before.norm()) break;
     }
 }
 
@@ -338,7 +364,7 @@ void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     held.free.erase(std::remove_if(held.free.begin(), held.free.end(), is_center), held.free.end());
     measure_noise(held, estimate);
     estimate.inflation = 1.0;
-    descend(held, estimate);
+    descend(held, estimate, kRoughLimits);
     refine_flat(problem, estimate);
 }
 

@@ -42,12 +42,15 @@ std::vector<int> free_unknowns(const FlatModel &model, uint32_t free);
 // Start values: k = 0 (or the held values; a logarithm fitted to the cells), even light and the levels of the cells.
 Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting &given);
 
-// Residual of a cell and channel, (E - P) / sigma, and P with its derivatives.
+// P of a cell's channels.
+std::array<double, 3> predicted_light(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);
+
+// P, its sigma and z = (E - P) / sigma.
 struct FlatResidual {
-    Prediction prediction;
-    double z = 0.0, sigma = 1.0;
+    double predicted = 0.0, sigma = 1.0, z = 0.0;
 };
-FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell, int channel);
+std::array<FlatResidual, 3> flat_residuals(const FlatProblem &problem, const FlatEstimate &estimate,
+                                           const FlatCell &cell);
 
 // Sum of squared residuals of a cell, in units of scale^2: chi-squared, one degree of freedom per channel.
 double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);

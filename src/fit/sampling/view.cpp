@@ -51,7 +51,7 @@ struct ByteValues {
 constexpr ByteValues kByteValues;
 
 float grey_value(uint8_t sample) { return kByteValues.value[sample]; }
-float grey_value(uint16_t sample) { return static_cast<float>(sample / 65535.0); }
+float grey_value(uint16_t sample) { return static_cast<float>(sample * (1.0 / 65535.0)); }  // rounds as a quotient does
 float grey_value(float sample) { return sample; }
 
 // The pixels around (u, v), row by row; `offset` has the place of every lane's sample in a pixel.
