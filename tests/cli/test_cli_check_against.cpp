@@ -3,6 +3,8 @@
 
 #include "cli_runs.hpp"
 
+#include "cli/profiles/trial_report.hpp"
+
 using namespace cli_runs;
 
 namespace {
@@ -226,6 +228,34 @@ void test_no_overlap(void **) {
                    {"2 pictures", "no two of the pictures overlap"});
 }
 
+// The residuals of all pairs may prefer a profile whose corners the rings show to be wrong: that is stated.
+void test_rings_contradict_the_residuals(void **) {
+    std::vector<StoredProfile> profiles;
+    for (const int64_t id : {7, 8}) profiles.push_back({id, new_profile()});
+    TrialReport report("profiles.db", "pictures", profiles);
+    report.result.usable = report.result.decided = 1;
+    const struct {
+        double rms, left;
+        uint32_t corners;
+    } found[] = {{1.0, 0.2, LENSPROF_TRIAL_CORNERS_TOO_BRIGHT}, {1.1, 0.01, LENSPROF_TRIAL_CORNERS_AGREE}};
+    for (size_t i = 0; i < 2; i++) {
+        lensprof_trial_candidate &candidate = report.candidates[i];
+        candidate.heldout_rms = found[i].rms, candidate.corners = found[i].corners;
+        candidate.rings = LENSPROF_TRIAL_RINGS;
+        candidate.ring_ev[LENSPROF_TRIAL_RINGS - 1] = found[i].left;
+    }
+    std::ostringstream text;
+    print_trial(report, text);
+    assert_true(contains(text.str(), "best           profile 7\n"));
+    assert_true(contains(text.str(), "overcorrects the corners by +0.20") && contains(text.str(), "profile 8 leaves"));
+    assert_true(trial_json(report)["best_by_rings"] == 8);
+    report.candidates[0].corners = LENSPROF_TRIAL_CORNERS_AGREE;
+    std::ostringstream agreed;
+    print_trial(report, agreed);
+    assert_false(contains(agreed.str(), "by RMS"));
+    assert_true(trial_json(report)["best_by_rings"].is_null());
+}
+
 }  // namespace
 
 int main(void) {
@@ -235,7 +265,7 @@ int main(void) {
         CLI_TEST(test_three_channels),     CLI_TEST(test_linear_pictures),
         CLI_TEST(test_moving_objects),     CLI_TEST(test_none_fits),
         CLI_TEST(test_other_settings),     CLI_TEST(test_refused),
-        CLI_TEST(test_no_overlap),
+        CLI_TEST(test_no_overlap),         CLI_TEST(test_rings_contradict_the_residuals),
     };
     return cmocka_run_group_tests(tests, make_profiles, remove_folder);
 }

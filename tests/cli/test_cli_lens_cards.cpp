@@ -21,23 +21,37 @@ struct Card {
     double k1 = -0.4, texture = 0.0;
     uint64_t seed = 7;
     bool clipped = false;
-    double light = 0.0;  // brighter in the middle: exp(-light r^2)
+    double light = 0.0;   // brighter in the middle: exp(-light r^2)
+    double scene = 0.0;   // contrast of things of 20 px on it
+    double counts = 0.0;  // float samples, of which so many are full scale
+    double black = 0.0;   // without light, share of full scale
 };
 
+// A value per square of 20 px, 0..1.
+double thing_at(uint32_t x, uint32_t y) { return (x / 20 * 7 + y / 20 * 5) % 11 / 10.0; }
+
 std::string shoot(const std::string &name, const Card &card) {
-    Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    const uint32_t sample = card.counts > 0.0 ? LENSPROF_SAMPLE_F32 : LENSPROF_SAMPLE_U16;
+    Picture picture = make_noise(width, height, sample, LENSPROF_LAYOUT_RGB);
     const lensprof_vignetting falloff{{card.k1, 0.05, -0.02}, {0.0, 0.0}};
     uint64_t random = card.seed;
     auto *at = reinterpret_cast<uint16_t *>(picture.pixels.data());
+    auto *count = reinterpret_cast<float *>(picture.pixels.data());
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
             const double r2 = lensprof_vignetting_r2(&falloff, width, height, x, y, nullptr);
             double light = (card.clipped ? 1.3 : 0.5) * lensprof_vignetting_eval(&falloff, r2, nullptr);
             light *= std::exp(-card.light * r2);
             light *= 1.0 + card.texture * std::sin(0.35 * x) * std::sin(0.3 * y);
-            for (uint32_t c = 0; c < 3; c++)
-                *at++ = static_cast<uint16_t>(
-                    std::lround(65535.0 * std::clamp(light + 0.002 * lp_normal(&random), 0.0, 1.0)));
+            light *= 1.0 - card.scene * thing_at(x, y);
+            for (uint32_t c = 0; c < 3; c++) {
+                const double value =
+                    card.black + (1.0 - card.black) * std::clamp(light + 0.002 * lp_normal(&random), 0.0, 1.0);
+                if (card.counts > 0.0)
+                    *count++ = static_cast<float>(card.counts * value);
+                else
+                    *at++ = static_cast<uint16_t>(std::lround(65535.0 * value));
+            }
         }
     PictureMetadata metadata = unknown_metadata();
     lensprof_profile_key &key = metadata.key;
@@ -397,6 +411,154 @@ void test_missing_settings(void **) {
     assert_true(contains(must_exit(done, flat_of({lens})), "missing   "));
 }
 
+// Nominal steps are settings of their own, however small; roundings of one are not, and are named.
+void test_near_settings(void **) {
+    for (const auto &[focal, aperture] : {std::pair(97.0, 1.7), std::pair(97.0, 1.8), std::pair(98.0, 1.8),
+                                          std::pair(50.0, 2.8), std::pair(50.0, 2.83)})
+        shoot(format("near/%g_%g.tif", focal, aperture), Card{focal, aperture});
+    const Outcome found = run_words(flat_of({in_folder("near")}, {"--json"}));
+    assert_int_equal(found.code, done);
+    Words labels;
+    const Json json = parsed(found.out);
+    for (const Json &setting : json["settings"]) labels.push_back(setting["label"]);
+    assert_true(labels == Words({"50 mm, f/2.8", "97 mm, f/1.7", "97 mm, f/1.8", "98 mm, f/1.8"}));
+    assert_true(contains(found.err, "50_2.83.tif states 50 mm, f/2.83: taken as one setting"));
+    assert_false(contains(found.err, "97_"));
+}
+
+std::string reason_of(const Words &files) {
+    const Json json = json_of(flat_of(files, {"--json", "-o", in_folder("odd.csv")}), not_usable);
+    assert_int_equal(json["settings"].size(), 1);
+    return json["settings"][0]["reason"];
+}
+
+// A picture of another lens, or of something else, is named; of two cards that contradict, both are.
+void test_a_foreign_picture(void **) {
+    Words cards;
+    for (uint64_t n = 0; n < 4; n++) {
+        Card card{24.0, 2.8};
+        card.seed = 20 + n;
+        cards.push_back(shoot(format("odd/card%d.tif", static_cast<int>(n)), card));
+    }
+    Card card{24.0, 2.8};
+    card.k1 = -0.2;
+    const std::string other = shoot("odd/b_lens.tif", card);
+    card.k1 = -0.4, card.scene = 0.6;
+    const std::string street = shoot("odd/street.tif", card);
+    for (size_t count : {2, 3, 4}) {
+        const Words some(cards.begin(), cards.begin() + static_cast<std::ptrdiff_t>(count));
+        for (const std::string &foreign : {other, street}) {
+            const std::string reason = reason_of(some + Words{foreign});
+            assert_true(contains(reason, foreign));
+            for (const std::string &own : some) assert_false(contains(reason, own));
+        }
+    }
+    const std::string both = reason_of({cards[0], other});
+    assert_true(contains(both, cards[0]) && contains(both, other));
+    const std::string scene = reason_of({cards[0], street});
+    assert_true(contains(scene, "not of an even light: " + street));
+}
+
+// Float samples above 1 are counts: of a stated number at saturation, they are those of the same card in shares.
+void test_counts(void **) {
+    Card card{24.0, 2.8};
+    card.black = 0.06;
+    for (const double counts : {1.0, 4095.0}) {
+        card.counts = counts;
+        shoot(format("counts/%g.tif", counts), card);
+    }
+    const auto of = [](const std::string &file, const Words &more) {
+        return json_of(Words{"flat", in_folder(file), "--no-store", "--json"} + more)["vignetting"]["k"][0];
+    };
+    const Json shares = of("counts/1.tif", {"--black", "6%"});
+    const Json found = of("counts/4095.tif", {"--black", "245.7", "--fit", "white-level=4095"});
+    for (size_t i = 0; i < 3; i++) assert_float_equal(found[i].get<double>(), shares[i].get<double>(), 1e-4);
+    assert_refused(usage, {"flat", in_folder("counts/4095.tif"), "--no-store"},
+                   {"4095.tif: its float samples reach", "counts", "--fit white-level=LEVEL"});
+    card.clipped = false, card.light = 1e4;  // covered
+    const std::string dark = shoot("counts/dark.tif", card);
+    const Json by_dark = of("counts/4095.tif", {"--dark", dark, "--fit", "white-level=4095"});
+    for (size_t i = 0; i < 3; i++) assert_float_equal(by_dark[i].get<double>(), shares[i].get<double>(), 2e-3);
+    assert_refused(usage, {"flat", in_folder("counts/4095.tif"), "--no-store", "--dark", dark},
+                   {"dark.tif", "counts", "--fit white-level=LEVEL"});
+}
+
+// What Lensfun lacks prevents its file alone, and the option that states it is named.
+void test_what_can_be_written_is(void **) {
+    Card card{LENSPROF_UNKNOWN, 2.8};
+    const std::string file = shoot("lacking/a.tif", card), xml = in_folder("lacking.xml"),
+                      csv = in_folder("lacking.csv"), page = in_folder("lacking.html"), zip = in_folder("lacking.zip");
+    const Words outputs = {"-o", xml, "-o", csv, "--report", page, "--bundle", zip};
+    const struct {
+        Words given, named;
+    } cases[] = {{{"--key", "crop-factor=1"}, {"focal length", "a.tif", "--focal"}},
+                 {{"--focal", "24"}, {"crop factor", "--key crop-factor=NUMBER"}}};
+    for (const auto &one : cases) {
+        for (const std::string &output : {csv, page, zip}) fs::remove(output);
+        const Outcome found = run_words(flat_of({file}, outputs + one.given));
+        assert_int_equal(found.code, not_usable);
+        for (const std::string &name : one.named) assert_true(contains(found.err, name));
+        assert_false(contains(found.err + found.out, "key.focal_mm"));
+        assert_true(!fs::exists(xml) && fs::exists(csv) && fs::exists(page) && fs::exists(zip));
+        assert_true(contains(found.out, "good"));
+        assert_refused(usage, flat_of({file}, Words{"-o", xml} + one.given), Words{xml} + one.named);
+    }
+    must_exit(done, flat_of({file}, outputs + Words{"--focal", "24", "--key", "crop-factor=1"}));
+    assert_true(fs::exists(xml));
+}
+
+// A falloff that k1..k3 do not describe is not good for Lensfun, which has nothing else.
+void test_deep_falloffs_for_lensfun(void **) {
+    Card card{24.0, 2.8};
+    shoot("deep/a.tif", card);
+    card.aperture = 4.0, card.k1 = -0.07, card.light = 2.8;
+    shoot("deep/b.tif", card);
+    const std::string csv = in_folder("deep.csv");
+    const Words words =
+        flat_of({in_folder("deep")}, {"-o", in_folder("deep.xml"), "-o", csv, "--key", "crop-factor=1"});
+    const Json json = json_of(words + Words{"--json"});
+    const Json &good = json["settings"][0], &deep = json["settings"][1];
+    assert_true(good["usable"] == true && good["good_for_lens_file"] == true && good["lens_file_ev"] < 0.02);
+    assert_true(deep["usable"] == true && deep["good_for_lens_file"] == false && deep["lens_file_ev"] > 0.1);
+    const std::string table = must_exit(done, words);
+    assert_true(contains(table, "good, but not for Lensfun: k1..k3 alone are off by")
+                && contains(table, "of which 1 off by more than 0.1 EV"));
+    assert_true(contains(text_of(csv), "good, but not for Lensfun"));
+}
+
+// The list of missing settings names the camera of several.
+void test_missing_settings_of_cameras(void **) {
+    for (const char *camera : {"Box 1", "Box 2"}) shoot(format("two/%s.tif", camera), Card{24.0, 2.8, camera});
+    const std::string table = must_exit(done, flat_of({in_folder("two")}));
+    assert_true(contains(table, "Box 1, EF24-70mm f/2.8 ") && contains(table, "Box 2, EF24-70mm f/2.8 "));
+    const Json json = json_of(flat_of({in_folder("two")}, {"--json"}));
+    assert_true(json["missing"][0]["camera"] == "Box 1");
+}
+
+// Cells of a table may have the units that names of folders have.
+void test_units_in_a_table(void **) {
+    const auto table = [](const std::string &cells) {
+        save_text(in_folder("units.csv"), "file,focal,aperture,distance\na.tif," + cells + "\n");
+        return "table=" + in_folder("units.csv");
+    };
+    const auto key_of = [&](const std::string &cells) {
+        table(cells);
+        lensprof_profile_key key;
+        lensprof_profile_key_init(&key);
+        SettingTable(in_folder("units.csv")).apply("a.tif", key);
+        return key;
+    };
+    shoot("units/a.tif", Card{24.0, 2.8});
+    for (const char *cells : {"58mm,f/2.8,10m", "58 MM,F2.8,10 m", "58,2.8,10", "58 mm,f 2.8,1e1"}) {
+        const lensprof_profile_key key = key_of(cells);
+        assert_true(key.focal_mm == 58.0 && key.aperture == 2.8 && key.distance_m == 10.0);
+    }
+    assert_true(std::isinf(key_of("58,2,Infinity").distance_m) && std::isinf(key_of("58,2,inf").distance_m));
+    for (const char *cells :
+         {"58m,2,1", "mm,2,1", "58,f/,1", "58,2.8mm,1", "58,2,10mm", "58,2,-1m", "inf,2,1", "58,f,1"})
+        assert_refused(unreadable, flat_of({in_folder("units")}, {"--key", table(cells)}), {"units.csv: line 2"});
+}
+
 }  // namespace
 
 int main() {
@@ -415,6 +577,13 @@ int main() {
         CLI_TEST(test_turned),
         CLI_TEST(test_bundle),
         CLI_TEST(test_cards_and_photographs),
+        CLI_TEST(test_near_settings),
+        CLI_TEST(test_a_foreign_picture),
+        CLI_TEST(test_counts),
+        CLI_TEST(test_what_can_be_written_is),
+        CLI_TEST(test_deep_falloffs_for_lensfun),
+        CLI_TEST(test_missing_settings_of_cameras),
+        CLI_TEST(test_units_in_a_table),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

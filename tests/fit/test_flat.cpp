@@ -269,6 +269,30 @@ static void light_that_changes_between_shots_is_noticed(void **) {
     assert_reason(*r, FLAT_SHOTS_DIFFER, "shadow");
 }
 
+// Of three shots or more, the odd one is named, by its number; of two, neither.
+static void the_shot_unlike_the_others_is_named(void **) {
+    for (const uint32_t odd : {0u, 1u, 2u}) {
+        FlatPictures p;
+        for (uint32_t shot = 0; shot < 3; shot++) {
+            if (shot == odd) p.defect = [](double x, double y, uint32_t) { return 1.0 + 2e-6 * x * y; };
+            p.shoot(10 + shot);
+            p.defect = nullptr;
+        }
+        lensprof_flat_options o = p.options();
+        o.own_light = 1;
+        auto r = p.fit(o);
+        assert_false(r->usable);
+        assert_reason(*r, FLAT_SHOTS_DIFFER, "angles");
+        assert_int_equal(r->first.item.kind, LENSPROF_ITEM_SHOT);
+        assert_int_equal(r->first.item.index, 10 + odd);
+        const size_t other = odd == 0 ? 1 : 0;
+        p.images = {p.images[other], p.images[odd]};
+        r = p.fit(o);
+        assert_reason(*r, FLAT_SHOTS_DIFFER, "angles");
+        assert_int_equal(r->first.item.kind, LENSPROF_ITEM_NONE);
+    }
+}
+
 static void a_grid_of_a_radial_lens_is_flat(void **) {
     FlatPictures p;
     p.shoot(0);
@@ -335,6 +359,7 @@ int main(void) {
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(a_response_without_gradation_is_refused),
         cmocka_unit_test(light_that_changes_between_shots_is_noticed),
+        cmocka_unit_test(the_shot_unlike_the_others_is_named),
         cmocka_unit_test(a_grid_of_a_radial_lens_is_flat),
         cmocka_unit_test(reduced_views_and_layouts_are_the_same_picture),
         cmocka_unit_test(held_values_stay_and_have_no_error),

@@ -163,6 +163,29 @@ static void the_light_is_even_where_that_describes_the_card(void **) {
     assert_close(error_of(*r, sloped), 0.0, 0.003);
 }
 
+// In a deep falloff exp(-a r^2), a centre off by little looks like a steep light. Where other falloffs show the light,
+// it is warned of.
+static void the_depth_is_not_taken_for_a_slope(void **) {
+    for (const double stops : {4.0, 6.0})
+        for (const double center : {0.01, 0.02}) {
+            FlatPictures even = small_card();
+            even.set_falloff(center, 0.0, [=](double r) { return std::exp2(-stops * r * r); });
+            even.shoot(0);
+            auto r = even.fit(even.options());
+            assert_true(r->usable);
+            assert_null(r->with(LENSPROF_REASON_FLAT_STEEP));
+            FlatPictures sloped = small_card();
+            sloped.gradient[0] = 0.15;
+            sloped.set_falloff(center, 0.0, [=](double q) { return std::exp2(-stops * (0.6 + 0.4 * q * q) * q * q); });
+            sloped.shoot(0);
+            r = sloped.fit(sloped.options());
+            const lensprof_finding *steep = r->with(LENSPROF_REASON_FLAT_STEEP);
+            assert_non_null(steep);
+            assert_int_equal(steep->severity, LENSPROF_SEVERITY_WARNING);
+            assert_close(steep->value[0], 0.15, 0.02);
+        }
+}
+
 static void dust_texture_and_a_clipped_middle_are_named_each(void **) {
     FlatPictures p = small_card();
     p.width = 600, p.height = 450, p.level = 0.6;
@@ -226,6 +249,7 @@ int main(void) {
         cmocka_unit_test(a_dark_strip_leaves_the_rest),
         cmocka_unit_test(one_light_is_noted),
         cmocka_unit_test(the_light_is_even_where_that_describes_the_card),
+        cmocka_unit_test(the_depth_is_not_taken_for_a_slope),
         cmocka_unit_test(a_curved_light_is_part_of_the_error),
         cmocka_unit_test(the_falloff_is_that_of_a_pixel),
         cmocka_unit_test(dust_texture_and_a_clipped_middle_are_named_each),

@@ -78,7 +78,7 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
     keys.number("ignore-above", o.ignore_above, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
     keys.word(
         "white-level", "LEVEL", [&o](const std::string &word) { o.levels.white = white_level_of(word); },
-        "sample at saturation, as a value such as 4095 or a percentage; default full scale");
+        "sample at saturation, as a value such as 4095 or a percentage; default full scale, which is 1 for float samples");
     keys.count("channel", o.field_channel, 1, 1000, "with --fields: channel of stacks that have several, from 1");
     declare_max_side(keys, o.max_side);
 }
@@ -239,7 +239,7 @@ void check_outputs(const FlatCommand &o, const CardSettings &settings) {
         reserved.push_back(o.bundle);
     }
     for (const std::string &output : o.outputs) {
-        check_lens_output(output, o.store, settings);
+        check_lens_output(output);
         check_not_reserved(output, "output", reserved);
         check_output_file(output);
         reserved.push_back(output);
@@ -258,20 +258,48 @@ LensCards measured(const FlatCommand &o, const CardSettings &settings, Events &e
     return cards;
 }
 
+bool is_lens_file(const std::string &output) { return lowercase_extension(output) == "xml"; }
+
+bool wants_lens_file(const FlatCommand &o) { return std::any_of(o.outputs.begin(), o.outputs.end(), is_lens_file); }
+
+// Without other outputs, what prevents the file is reported before the pictures are read.
+bool is_lens_file_alone(const FlatCommand &o) {
+    return !o.outputs.empty() && std::all_of(o.outputs.begin(), o.outputs.end(), is_lens_file) && o.report.empty()
+           && o.bundle.empty();
+}
+
+// Makes the lens for Lensfun, as far as nothing prevents it, and warns of the outputs that therefore do not hold it.
+void make_or_explain(const FlatCommand &o, LensCards &cards, bool is_lacking, Events &events) {
+    try {
+        if (!is_lacking) make_lens_file({o.store.dbs, o.into}, cards);
+    } catch (const Failure &failure) {
+        if (is_lens_file_alone(o) || !is_of_input(failure)) throw;
+        cards.lens_file_obstacle = failure.what();
+    }
+    const std::string reason = cards.good() ? cards.lens_file_obstacle : "no setting is good";
+    if (reason.empty()) return;
+    for (const std::string &output : o.outputs)
+        if (is_lens_file(output)) events.warn(output, "not written: " + reason);
+    if (!o.bundle.empty() && cards.lens_file_text.empty()) events.warn(o.bundle, "has no lens.xml: " + reason);
+}
+
 // A line per setting.
 int run_lens(const FlatCommand &o, const CardSettings &settings, Streams &streams) {
     check_outputs(o, settings);
     check_store(o.store);
+    const bool has_lens_file = wants_lens_file(o) || !o.bundle.empty();
+    const std::string lacking = has_lens_file ? lacking_for_lensfun(o.store, settings) : std::string();
+    const std::string obstacle = lacking.empty() && wants_lens_file(o) ? several_for_lensfun(settings) : lacking;
+    if (is_lens_file_alone(o) && !obstacle.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, o.outputs.front() + ": " + obstacle);
     Progress progress(streams, o.progress);
     progress.note("", counted_settings(settings) + (settings.list.size() > 1 ? ": each is measured alone" : ""));
     LensCards cards = measured(o, settings, progress);
-    const LensFileSource lens_file{o.store.dbs, o.into};
+    cards.lens_file_obstacle = obstacle;
+    if (has_lens_file) make_or_explain(o, cards, !lacking.empty(), progress);
     OutputFiles outputs;
-    for (const std::string &output : o.outputs) add_lens_output(output, lens_file, cards, outputs);
-    if (!cards.good())
-        for (const std::string &output : o.outputs)
-            if (lowercase_extension(output) == "xml") progress.warn(output, "not written: no setting is good");
-    if (!o.bundle.empty()) add_bundle(o.bundle, lens_file, cards, command_text(streams.words), progress, outputs);
+    for (const std::string &output : o.outputs) add_lens_output(output, cards, outputs);
+    if (!o.bundle.empty()) add_bundle(o.bundle, cards, command_text(streams.words), progress, outputs);
     stop_if_cancelled();
     if (!o.store.no_store) store_settings(o.store, cards.settings);
     if (!o.report.empty()) outputs.add(o.report, lens_page(cards, command_text(streams.words), streams.warnings));
@@ -330,7 +358,7 @@ int run(FlatCommand o, Streams &streams) {
     if (o.field_channel) throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit channel: is for --fields; give it as well");
     Progress events(streams, o.progress);
     const CardSettings settings = settings_of(o, events);
-    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, events);
+    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, o.levels, events);
     const bool is_one = settings.list.size() == 1 && !settings.has_folders && settings.left_out.empty();
     if (is_one && o.outputs.empty() && o.bundle.empty() && o.check.empty())
         return run_one(o, settings.list.front(), streams);
@@ -349,7 +377,8 @@ void declare_flat(Command &program) {
     command.footer(
         "Pictures are grouped by camera, lens, focal length, aperture and distance, as EXIF or their names\n"
         "state them, and every setting is measured alone; of several settings, or a folder, a table has a\n"
-        "line for each. Exit code 0: all are good; 4: some must be taken again; 3: files could not be read.\n"
+        "line for each. Exit code 0: all are good; 4: some must be taken again, or something is missing for\n"
+        "the file for Lensfun; 3: files could not be read.\n"
         "With --fields, pictures of anything, such as fields of a microscope, give the shading that all\n"
         "have in common; see docs/fields.md.");
     command.example("lensprof flat cards -o lens.xml --report lens.html");

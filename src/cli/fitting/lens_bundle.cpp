@@ -100,8 +100,8 @@ void check_bundle(const std::string &path) {
     check_output_file(path);
 }
 
-void add_bundle(const std::string &path, const LensFileSource &source, LensCards cards, const std::string &command,
-                Events &events, OutputFiles &outputs) {
+void add_bundle(const std::string &path, LensCards cards, const std::string &command, Events &events,
+                OutputFiles &outputs) {
     for (MeasuredSetting &setting : cards.settings)
         if (setting.fit) setting.fit->load_s = setting.fit->solve_s = 0.0;  // which differ between runs
     const TemporaryFolder folder;
@@ -109,12 +109,7 @@ void add_bundle(const std::string &path, const LensFileSource &source, LensCards
     archive.add("report.html", lens_page(cards, command, {}));
     archive.add("lens.json", lens_json(cards).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     archive.add("lens.csv", lens_csv(cards));
-    try {
-        if (const std::string text = lensfun_text(source, cards); !text.empty()) archive.add("lens.xml", text);
-    } catch (const Failure &failure) {  // such as an unknown crop factor
-        if (!is_of_input(failure)) throw;
-        events.warn(path, std::string("has no lens.xml: ") + failure.what());
-    }
+    if (!cards.lens_file_text.empty()) archive.add("lens.xml", cards.lens_file_text);
     std::set<std::string> used_names;
     uint32_t done = 0;
     for (const MeasuredSetting &setting : cards.settings)

@@ -13,10 +13,11 @@ namespace {
 
 Json settings_json(const LensCards &cards) {
     Json rows = Json::array();
-    for (const MeasuredSetting &setting : cards.settings)
+    for (size_t n = 0; n < cards.settings.size(); n++) {
+        const MeasuredSetting &setting = cards.settings[n];
         rows.push_back({setting.of.label, std::to_string(setting.of.pictures.size()),
-                        setting.fit ? corner_text(*setting.fit->profile) : "–",
-                        setting.is_good() ? "good" : "take it again: " + setting.refusal});
+                        setting.fit ? corner_text(*setting.fit->profile) : "–", result_text(cards, n)});
+    }
     return rows;
 }
 
@@ -28,8 +29,9 @@ Verdict verdict_of(const LensCards &cards) {
             verdict.add_last(
                 {LENSPROF_REASON_NONE, LENSPROF_SEVERITY_WARNING, setting.of.label + ": " + setting.refusal});
     for (const MissingSetting &setting : cards.missing)
-        verdict.add_last({LENSPROF_REASON_NONE, LENSPROF_SEVERITY_NOTE,
-                          "missing: " + setting.lens + format(", %g mm, f/%g", setting.focal_mm, setting.aperture)});
+        verdict.add_last(
+            {LENSPROF_REASON_NONE, LENSPROF_SEVERITY_NOTE,
+             "missing: " + missing_lens(cards, setting) + format(", %g mm, f/%g", setting.focal_mm, setting.aperture)});
     return verdict;
 }
 

@@ -24,15 +24,10 @@ struct Corner {
 };
 
 Corner corner_of(const CardFit &found) {
-    constexpr uint32_t width = 30000, height = 20000;  // so large that the outermost pixels are in the corners
-    double sum = 0.0;
-    for (const double x : {0.0, width - 1.0})
-        for (const double y : {0.0, height - 1.0})
-            sum += lensprof_profile_falloff(found.profile.get(), green_curve(found.profile->vignettings), width, height,
-                                            x, y, nullptr);
+    const uint32_t curve = green_curve(found.profile->vignettings);
     double sigma = 0.0;  // with that of the light, if it was removed
-    (void)lensprof_profile_corner_falloff(found.profile.get(), green_curve(found.profile->vignettings), &sigma);
-    return {sum / 4.0, std::max(found.fit.corner_sigma, sigma)};
+    (void)lensprof_profile_corner_falloff(found.profile.get(), curve, &sigma);
+    return {mean_light(*found.profile, curve, 1.0), std::max(found.fit.corner_sigma, sigma)};
 }
 
 // "Canon EOS R5, RF 50mm F1.8", the parts that are known.
@@ -41,13 +36,14 @@ std::string lens_title(const lensprof_profile_key &key) {
     return camera + (camera.empty() || lens.empty() ? "" : ", ") + lens;
 }
 
-std::string missing_text(const std::vector<MissingSetting> &missing) {
+std::string missing_text(const LensCards &cards) {
     std::string text;
     double focal = 0.0;
     std::string title;
-    for (const MissingSetting &setting : missing) {
-        if (setting.lens != title) text += (text.empty() ? "" : "; ") + setting.lens, focal = 0.0;
-        title = setting.lens;
+    for (const MissingSetting &setting : cards.missing) {
+        const std::string of_setting = missing_lens(cards, setting);
+        if (of_setting != title) text += (text.empty() ? "" : "; ") + of_setting, focal = 0.0;
+        title = of_setting;
         if (setting.focal_mm != focal) text += format("%s%g mm:", focal == 0.0 ? " " : "; ", setting.focal_mm);
         text += format(" f/%g", setting.aperture);
         focal = setting.focal_mm;
@@ -55,15 +51,12 @@ std::string missing_text(const std::vector<MissingSetting> &missing) {
     return text;
 }
 
-std::string result_text(const MeasuredSetting &setting) {
-    return setting.is_good() ? "good" : "take it again: " + setting.refusal;
-}
-
 void print_settings(const LensCards &cards, std::ostream &out) {
     size_t width = 7;
     for (const MeasuredSetting &setting : cards.settings) width = std::max(width, setting.of.label.size());
     std::string title;
-    for (const MeasuredSetting &setting : cards.settings) {
+    for (size_t n = 0; n < cards.settings.size(); n++) {
+        const MeasuredSetting &setting = cards.settings[n];
         const std::string of_setting = lens_title(setting.of.key);
         if (of_setting != title || &setting == &cards.settings.front()) {
             title = of_setting;
@@ -77,7 +70,7 @@ void print_settings(const LensCards &cards, std::ostream &out) {
         } else {
             out << "         -     -";
         }
-        out << "  " << one_line(result_text(setting)) << "\n";
+        out << "  " << one_line(result_text(cards, n)) << "\n";
     }
 }
 
@@ -122,6 +115,13 @@ void print_findings(const LensCards &cards, std::ostream &out) {
     lines.print("note      ", out);
 }
 
+// How many of the settings in the file for Lensfun are not good there.
+std::string off_text(const LensCards &cards) {
+    size_t off = 0;
+    for (size_t n = 0; n < cards.settings.size(); n++) off += !cards.is_good_for_lensfun(n);
+    return off ? format(", of which %zu off by more than %g EV", off, largest_lens_file_ev) : std::string();
+}
+
 void print_left_out(const LensCards &cards, std::ostream &out) {
     if (cards.left_out.empty()) return;
     out << "left out  " << cards.left_out.size() << " of " << counted(cards.given, "picture") << "\n";
@@ -159,6 +159,26 @@ Json light_json(const LensCards &cards) {
 
 }  // namespace
 
+std::string missing_lens(const LensCards &cards, const MissingSetting &missing) {
+    const auto is_other = [&](const MeasuredSetting &setting) {
+        const lensprof_profile_key &key = setting.of.key;
+        return camera_name(key.camera_maker, key.camera_model) != missing.camera;
+    };
+    const bool are_several = std::any_of(cards.settings.begin(), cards.settings.end(), is_other);
+    return are_several && !missing.camera.empty() ? missing.camera + ", " + missing.lens : missing.lens;
+}
+
+std::string result_text(const LensCards &cards, size_t n) {
+    const MeasuredSetting &setting = cards.settings[n];
+    if (!setting.is_good()) return "take it again: " + setting.refusal;
+    if (cards.is_good_for_lensfun(n)) return "good";
+    return format("good, but not for Lensfun: k1..k3 alone are off by %.2f EV in a corner", cards.lens_file_ev[n]);
+}
+
+bool LensCards::is_good_for_lensfun(size_t setting) const {
+    return setting >= lens_file_ev.size() || !(lens_file_ev[setting] > largest_lens_file_ev);
+}
+
 size_t LensCards::good() const {
     return static_cast<size_t>(
         std::count_if(settings.begin(), settings.end(), [](const MeasuredSetting &s) { return s.is_good(); }));
@@ -170,36 +190,45 @@ std::string counted_settings(const CardSettings &settings) {
     return counted(pictures, "picture") + " of " + counted(settings.list.size(), "setting");
 }
 
-void check_lens_output(const std::string &output, const StoreOptions &store, const CardSettings &settings) {
+void check_lens_output(const std::string &output) {
     const std::string kind = lowercase_extension(output);
-    if (kind == "csv") return;
-    if (kind != "xml")
+    if (kind != "xml" && kind != "csv")
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       output + ": give a name that ends in .xml, for Lensfun, or .csv, a table");
-    std::set<std::string> titles;
+}
+
+std::string lacking_for_lensfun(const StoreOptions &store, const CardSettings &settings) {
+    const auto lacks = [](const std::string &what, const CardPicture &picture, const char *option) {
+        return "needs " + what + ", which " + picture.file + " does not state; give it with " + option_name(option);
+    };
     for (const CardSetting &setting : settings.list) {
-        if (!*setting.key.lens)
-            throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": needs the name of the lens, which "
-                                                       + setting.pictures.front().file
-                                                       + " does not state; give it with --lens");
-        titles.insert(lens_title(setting.key));
+        const CardPicture &first = setting.pictures.front();
+        if (!*setting.key.lens) return lacks("the name of the lens", first, "lens");
+        if (setting.key.focal_mm == LENSPROF_UNKNOWN) return lacks("the focal length", first, "focal");
+        if (setting.key.aperture == LENSPROF_UNKNOWN) return lacks("the aperture", first, "aperture");
+        StoreOptions unstored = store;
+        unstored.no_store = true;
+        if (override_key(setting.key, first.metadata.size, unstored, first.file).crop_factor == LENSPROF_UNKNOWN)
+            return "needs the crop factor of the camera, which neither EXIF nor a database states; give it with "
+                   + option_name("crop_factor");
     }
-    if (titles.size() > 1)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": holds one lens on one camera, but the pictures are of "
-                                                   + joined({titles.begin(), titles.end()}, "; ")
-                                                   + ": give each its own run, or omit -o");
-    const CardSetting &any = settings.list.front();  // of the one camera
-    StoreOptions unstored = store;
-    unstored.no_store = true;
-    const CardPicture &first = any.pictures.front();
-    if (override_key(any.key, first.metadata.size, unstored, first.file).crop_factor == LENSPROF_UNKNOWN)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, output + ": needs the crop factor of the camera, which neither EXIF nor a "
-                                                        "database states; give it with --key crop-factor=NUMBER");
+    return {};
+}
+
+std::string several_for_lensfun(const CardSettings &settings) {
+    std::set<std::string> titles;
+    for (const CardSetting &setting : settings.list) titles.insert(lens_title(setting.key));
+    if (titles.size() < 2) return {};
+    return "holds one lens on one camera, but the pictures are of " + joined({titles.begin(), titles.end()}, "; ")
+           + ": give each its own run, or omit -o";
 }
 
 std::string lens_csv(const LensCards &cards) {
-    std::string text = "camera,lens,focal_mm,aperture,distance_m,pictures,usable,corner,corner_sigma,k1,k2,k3,reason\n";
-    for (const MeasuredSetting &setting : cards.settings) {
+    std::string text =
+        "camera,lens,focal_mm,aperture,distance_m,pictures,usable,corner,corner_sigma,k1,k2,k3,reason,"
+        "lensfun_ev\n";
+    for (size_t n = 0; n < cards.settings.size(); n++) {
+        const MeasuredSetting &setting = cards.settings[n];
         const lensprof_profile_key &key = setting.fit ? setting.fit->key : setting.of.key;
         text += csv_cell(camera_name(key.camera_maker, key.camera_model)) + "," + csv_cell(key.lens) + ","
                 + csv_number(key.focal_mm) + "," + csv_number(key.aperture) + "," + csv_number(key.distance_m) + ","
@@ -212,39 +241,45 @@ std::string lens_csv(const LensCards &cards) {
         } else {
             text += ",,,,";
         }
-        text += "," + csv_cell(setting.refusal) + "\n";
+        const bool is_noted = setting.is_good() && !cards.is_good_for_lensfun(n);
+        text += "," + csv_cell(is_noted ? result_text(cards, n) : setting.refusal) + ","
+                + (n < cards.lens_file_ev.size() ? csv_number(cards.lens_file_ev[n]) : std::string()) + "\n";
     }
     return text;
 }
 
-std::string lensfun_text(const LensFileSource &source, LensCards &cards) {
+void make_lens_file(const LensFileSource &source, LensCards &cards) {
     std::vector<const lensprof_profile *> profiles;
     std::vector<std::string> names;
-    for (const MeasuredSetting &setting : cards.settings) {
+    std::vector<size_t> numbers;  // of the settings
+    for (size_t n = 0; n < cards.settings.size(); n++) {
+        const MeasuredSetting &setting = cards.settings[n];
         if (!setting.is_good()) continue;
         profiles.push_back(setting.fit->profile.get());
         names.push_back(setting.of.label);
+        numbers.push_back(n);
     }
-    if (profiles.empty()) return {};
+    if (profiles.empty()) return;
     LensFileCost cost;
-    const std::string text = lens_file_text(profiles, source.databases, source.into, cost, names);
+    cards.lens_file_text = lens_file_text(profiles, source.databases, source.into, cost, names);
     cards.lens_file_notes = notes_of(cost, names);
-    for (size_t i = 0; i < profiles.size(); i++)
+    cards.lens_file_ev.assign(cards.settings.size(), NAN);
+    for (size_t i = 0; i < profiles.size(); i++) {
+        cards.lens_file_ev[numbers[i]] = cost.ev[i];
         if (const std::string about = note_of_levels(*profiles[i], names[i]); !about.empty())
             cards.lens_file_notes.push_back(about);
-    return text;
+    }
 }
 
-void add_lens_output(const std::string &path, const LensFileSource &source, LensCards &cards, OutputFiles &outputs) {
+void add_lens_output(const std::string &path, LensCards &cards, OutputFiles &outputs) {
     if (lowercase_extension(path) == "csv") return outputs.add(path, lens_csv(cards));
-    const std::string text = lensfun_text(source, cards);
-    if (text.empty()) return;
-    outputs.add(path, text);
+    if (cards.lens_file_text.empty() || !cards.lens_file_obstacle.empty()) return;
+    outputs.add(path, cards.lens_file_text);
     cards.lens_file = path;
 }
 
 ExitCode lens_exit_code(const LensCards &cards) {
-    if (cards.good() < cards.settings.size()) return ExitCode::not_usable;
+    if (cards.good() < cards.settings.size() || !cards.lens_file_obstacle.empty()) return ExitCode::not_usable;
     return cards.left_out.empty() ? ExitCode::done : ExitCode::unreadable;
 }
 
@@ -259,19 +294,20 @@ void print_lens(const LensCards &cards, const std::string &database, std::ostrea
     if (!cards.missing.empty())
         out << format("missing   %zu more for an error of predictions below %.0f %%: ", cards.missing.size(),
                       100.0 * largest_prediction_error)
-            << missing_text(cards.missing) << "\n";
+            << missing_text(cards) << "\n";
     size_t stored = 0;
     for (const MeasuredSetting &setting : cards.settings) stored += setting.fit && setting.fit->profile_id;
     if (stored) out << "stored    " << counted(stored, "profile") << " in " << database << "\n";
     for (const std::string &text : cards.lens_file_notes) out << "note      " << one_line(text) << "\n";
     if (!cards.lens_file.empty())
-        out << "written   " << cards.lens_file << ": " << counted(cards.good(), "setting") << "\n";
+        out << "written   " << cards.lens_file << ": " << counted(cards.good(), "setting") << off_text(cards) << "\n";
     print_left_out(cards, out);
 }
 
 Json lens_json(const LensCards &cards) {
     Json settings = Json::array(), missing = Json::array(), left_out = Json::array();
-    for (const MeasuredSetting &setting : cards.settings) {
+    for (size_t n = 0; n < cards.settings.size(); n++) {
+        const MeasuredSetting &setting = cards.settings[n];
         Json files = Json::array(), notices = Json::array();
         for (const CardPicture &picture : setting.of.pictures) files.push_back(picture.file);
         for (const Notice &notice : setting.notices.list) notices.push_back(notice.line());
@@ -284,12 +320,15 @@ Json lens_json(const LensCards &cards) {
             const Corner corner = corner_of(*setting.fit);
             json["corner"] = corner.value, json["corner_sigma"] = number_or_null(corner.sigma);
         }
+        json["lens_file_ev"] = n < cards.lens_file_ev.size() ? number_or_null(cards.lens_file_ev[n]) : Json();
+        json["good_for_lens_file"] = setting.is_good() && cards.is_good_for_lensfun(n);
         json["notices"] = notices;
         json["result"] = setting.fit ? flat_json(*setting.fit) : Json();
         settings.push_back(json);
     }
     for (const MissingSetting &setting : cards.missing)
-        missing.push_back({{"lens", setting.lens},
+        missing.push_back({{"camera", setting.camera},
+                           {"lens", setting.lens},
                            {"focal_mm", setting.focal_mm},
                            {"aperture", setting.aperture},
                            {"sigma", number_or_null(setting.sigma)}});
@@ -301,6 +340,7 @@ Json lens_json(const LensCards &cards) {
             {"light", light_json(cards)},
             {"left_out", left_out},
             {"lens_file_notes", cards.lens_file_notes},
+            {"lens_file_obstacle", cards.lens_file_obstacle.empty() ? Json() : Json(cards.lens_file_obstacle)},
             {"lens_file", cards.lens_file.empty() ? Json() : Json(cards.lens_file)}};
 }
 

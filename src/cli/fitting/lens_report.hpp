@@ -21,20 +21,36 @@ struct LensCards {
     size_t given = 0;                          // pictures
     std::optional<LightCheck> light;           // what overlapping pictures show about it
     size_t light_removed = 0;                  // settings from which it was removed
+    std::string lens_file_text;                // the good settings for Lensfun; empty without any
+    std::string lens_file_obstacle;            // why there is no such text, or no file of it; empty: there can be
+    std::vector<double> lens_file_ev;          // per setting, its error in a corner there; NAN: not in it
     std::vector<std::string> lens_file_notes;  // what is lost in it, or unknown
     std::string lens_file;                     // written of it; empty: none
 
     size_t good() const;
+    bool is_good_for_lensfun(size_t setting) const;  // or not in the file
 };
 
 constexpr double largest_prediction_error = 0.05;  // of the corner's illuminance
+constexpr double largest_lens_file_ev = 0.1;       // in a corner, of a setting that is good for Lensfun: it is seen
+
+// "good", why it is not so in the file for Lensfun, or why to take it again.
+std::string result_text(const LensCards &cards, size_t setting);
+
+// The lens of a missing setting, with its camera if the pictures are of several.
+std::string missing_lens(const LensCards &cards, const MissingSetting &missing);
 
 // "24 pictures of 6 settings".
 std::string counted_settings(const CardSettings &settings);
 
-// Failure for a name that is neither .xml nor .csv, and for .xml of several cameras or lenses, which one entry of
-// Lensfun cannot be, or whose lens or crop factor is unknown.
-void check_lens_output(const std::string &output, const StoreOptions &store, const CardSettings &settings);
+// Failure for a name that is neither .xml nor .csv.
+void check_lens_output(const std::string &output);
+
+// What settings lack for Lensfun, and the option that states it; empty if they lack nothing.
+std::string lacking_for_lensfun(const StoreOptions &store, const CardSettings &settings);
+
+// Several cameras or lenses, which one entry of Lensfun cannot be; empty for one.
+std::string several_for_lensfun(const CardSettings &settings);
 
 // Where the file for Lensfun finds cameras, and the database of Lensfun that it is added to; empty: none.
 struct LensFileSource {
@@ -42,23 +58,24 @@ struct LensFileSource {
     std::string into;
 };
 
-// The bytes of a table with a row per setting, and of the file for Lensfun; empty if no setting is good. Sets its
-// notes.
+// The bytes of a table with a row per setting.
 std::string lens_csv(const LensCards &cards);
-std::string lensfun_text(const LensFileSource &source, LensCards &cards);
 
-// Adds such a file. One for Lensfun is added if any setting is good, and becomes `lens_file`.
-void add_lens_output(const std::string &path, const LensFileSource &source, LensCards &cards, OutputFiles &outputs);
+// Sets the text for Lensfun, with its notes and errors. Failure if Lensfun cannot hold a setting.
+void make_lens_file(const LensFileSource &source, LensCards &cards);
+
+// Adds such a file. One for Lensfun is added if there is a text and no obstacle, and becomes `lens_file`.
+void add_lens_output(const std::string &path, LensCards &cards, OutputFiles &outputs);
 
 // Failure for a name that does not end in .zip or cannot be written.
 void check_bundle(const std::string &path);
 
 // Adds a zip archive of the report, the numbers, the lens for Lensfun if any setting is good, and reduced pictures.
 // Same input, same bytes.
-void add_bundle(const std::string &path, const LensFileSource &source, LensCards cards, const std::string &command,
-                Events &events, OutputFiles &outputs);
+void add_bundle(const std::string &path, LensCards cards, const std::string &command, Events &events,
+                OutputFiles &outputs);
 
-// 0, 4 if cards must be taken again, 3 if files could not be read.
+// 0, 4 if cards must be taken again or there is an obstacle to the file for Lensfun, 3 if files could not be read.
 ExitCode lens_exit_code(const LensCards &cards);
 
 // A line per setting, what is missing, and what became of the result. `database`: where profiles are stored; empty:

@@ -1,5 +1,7 @@
 #include "cli/profiles/trial_report.hpp"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "photo/base/format.hpp"
@@ -75,6 +77,35 @@ std::string describe_corners(const lensprof_trial_candidate &candidate, const do
     }
 }
 
+bool leaves_corners_wrong(const lensprof_trial_candidate &candidate) {
+    return candidate.corners == LENSPROF_TRIAL_CORNERS_TOO_DARK
+           || candidate.corners == LENSPROF_TRIAL_CORNERS_TOO_BRIGHT;
+}
+
+// The profile with the most even corners, if the best by RMS clearly leaves these too dark or too bright, and that one
+// does not; -1 where rings and RMS agree.
+int64_t better_by_rings(const TrialReport &report) {
+    const lensprof_trial_candidate &best = report.candidates[report.result.best];
+    if (!report.result.usable || !leaves_corners_wrong(best)) return -1;
+    const auto left = [&](size_t i) { return std::fabs(report.candidates[i].ring_ev[best.rings - 1]); };
+    int64_t flattest = -1;
+    for (size_t i = 0; i < report.ids.size(); i++)
+        if (report.candidates[i].corners == LENSPROF_TRIAL_CORNERS_AGREE && report.candidates[i].rings == best.rings
+            && (flattest < 0 || left(i) < left(size_t(flattest))))
+            flattest = int64_t(i);
+    return flattest;
+}
+
+// The residuals of all pairs are of the whole frame, the rings of the falloff alone.
+void print_better_by_rings(const TrialReport &report, std::ostream &out) {
+    const int64_t even = better_by_rings(report);
+    if (even < 0) return;
+    const lensprof_trial_result &result = report.result;
+    out << "               by RMS, over all pairs, of which few show the corners: it "
+        << describe_corners(report.candidates[result.best], result.ring_end, true) << ", and profile "
+        << report.ids[size_t(even)] << " leaves them even; use that for its falloff\n";
+}
+
 // Per candidate the brightness that it leaves in each ring, relative to the middle, and what follows for the corners.
 void print_rings(const TrialReport &report, std::ostream &out) {
     const double *ends = report.result.ring_end;
@@ -129,6 +160,7 @@ Json trial_json(const TrialReport &report) {
     none.update(rings_json(report.candidates.back()));
     add_response(report, report.candidates.back(), none);
     const lensprof_trial_result &result = report.result;
+    const int64_t even = better_by_rings(report);
     return {{"schema", json_schema},
             {"file", report.file},
             {"against", report.path},
@@ -141,6 +173,7 @@ Json trial_json(const TrialReport &report) {
             {"none", none},
             {"profiles", profiles},
             {"best", result.usable ? Json(report.ids[result.best]) : Json()},
+            {"best_by_rings", even < 0 ? Json() : Json(report.ids[size_t(even)])},
             {"is_decided", result.decided != 0}};
 }
 
@@ -177,6 +210,7 @@ void print_trial(const TrialReport &report, std::ostream &out) {
             << ", but these pictures cannot distinguish profiles " << listed(best_ids)
             << ": they differ by less than "
                "twice the standard error\n";
+    print_better_by_rings(report, out);
 }
 
 }  // namespace lensprof

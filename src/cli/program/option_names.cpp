@@ -43,6 +43,7 @@ std::string option_of(const std::string &name) {
         {"track_colours", "--reconstruction track-colors"},
         {"unit", "--key unit"},
         {"unit_text", "--key unit=TEXT"},
+        {"white_level", "--fit white-level=LEVEL"},
     };
     const auto found = options.find(name);
     return found == options.end() ? name : found->second;

@@ -21,6 +21,17 @@ std::string light_at(const lensprof_profile &profile, uint32_t curve, double r, 
     return format("%.1f", 100.0 * m) + (is_known ? format(percent < 0.05 ? " +- %.1g" : " +- %.1f", percent) : "");
 }
 
+// The light with the grid, which holds what the polynomial does not: k1..k3 alone can be far from it.
+std::string light_with_grid(const lensprof_profile &profile, uint32_t curve) {
+    const uint32_t channel = profile.vignettings == 3 ? curve : 1;
+    const double corner_light = mean_light(profile, channel, 1.0);
+    return format(
+        "          light at r = 0.5: %.1f %%, in the corners: %.1f %% (%.2f stops), with the gain grid, which "
+        "holds what k1..k3 do not: these alone give %.1f %%\n",
+        100.0 * mean_light(profile, channel, 0.5), 100.0 * corner_light, -std::log2(corner_light),
+        100.0 * corner(profile.vignetting[curve]));
+}
+
 }  // namespace
 
 void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
@@ -35,6 +46,10 @@ void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
         out << "falloff" << channel
             << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
                       v.center[0], v.center[1]);
+        if (profile.grid.columns) {
+            out << light_with_grid(profile, c);
+            continue;
+        }
         bool is_known;
         const std::string middle = light_at(profile, c, 0.5, is_known), end = light_at(profile, c, 1.0, is_known);
         out << format("          light at r = 0.5: %s %%, in the corner: %s %% (%.2f stops)%s\n", middle.c_str(),

@@ -13,6 +13,7 @@ namespace lensprof {
 // The result while it is made.
 struct FlatResult : lensprof_flat_result {
     lensprof_flat_image_quality *image_quality = nullptr;  // per picture
+    uint32_t odd_shot = 0;                                 // the number of the one that differs most from the others
     Findings verdict;
     double sigma_without_black = 0.0;  // corner_sigma without the error of the black level
 };

@@ -41,9 +41,23 @@ bool lacks_card(const FlatFit &fit, uint32_t &number) {
     return false;
 }
 
+// Whether the slope is that of the plane that was not chosen.
+bool is_slope_of_other(const FlatFit &fit) { return fit.light == LENSPROF_FLAT_LIGHT_EVEN && fit.other; }
+
+// What counts of such a slope. A centre off by dc looks like the slope dc |d ln M / dr|, and lenses have the same dc
+// whatever their falloff: slopes in falloffs deeper than two stops count as in one of two, and as no more than the
+// centre of the even light explains, which the pictures show better than they show a plane.
+double counted_slope(const FlatFit &fit, const FlatResult &r, double slope) {
+    constexpr double usual_stops = 2.0;
+    const double stops = r.corner > 0.0 ? -std::log2(r.corner) : usual_stops;
+    if (!is_slope_of_other(fit) || stops <= usual_stops) return slope;
+    const double *center = r.vignetting[0].center, steepness = 2.0 * usual_stops * std::log(2.0);
+    return std::min(slope * usual_stops / stops, steepness * std::hypot(center[0], center[1]));
+}
+
 Worst steepest(const FlatFit &fit) {
     Worst worst;
-    const bool is_other = fit.light == LENSPROF_FLAT_LIGHT_EVEN && fit.other;  // the plane that was not chosen
+    const bool is_other = is_slope_of_other(fit);
     for (size_t s = 0; s < fit.shots.size(); s++) {
         auto slope = is_other ? light_gradient(fit.other->problem.model, fit.other->estimate.u, static_cast<int>(s))
                               : light_gradient(fit.problem.model, fit.estimate.u, static_cast<int>(s));
@@ -83,6 +97,7 @@ uint32_t state_of(const FlatFit &fit, const FlatResult &r) {
     if ((is_sloped || fit.other) && !r.separated && (fit.options.free & LENSPROF_FREE_CENTER)) state |= kCenterByPrior;
     if (!fit.options.several && fit.problem.model.angles() == 1) state |= kOneAngle;
     if (r.black_shown) state |= kBlackShown;
+    if (fit.shots.size() > 2) state |= kManyShots;
     if (fit.other) state |= is_even ? kEvenChosen : kPlaneChosen;
     return state;
 }
@@ -161,11 +176,15 @@ Measured texture(const JudgedFlat &judged) {
 
 Measured shot_difference(const JudgedFlat &judged) { return of_value(judged.r.shot_residual); }
 
+Measured odd_shot(const JudgedFlat &judged) { return of_shot(shot_difference(judged), judged.r.odd_shot); }
+
 Measured agreement(const JudgedFlat &judged) { return of_value(judged.r.inlier_share); }
 
 Measured slope(const JudgedFlat &judged) {
     const Worst steep = steepest(judged.fit);
-    return of_shot(of_value(steep.value), steep.shot);
+    Measured measured = of_shot(of_value(steep.value), steep.shot);
+    measured.value = counted_slope(judged.fit, judged.r, steep.value);
+    return measured;
 }
 
 Measured convergence(const JudgedFlat &judged) {

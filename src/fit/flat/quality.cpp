@@ -71,12 +71,40 @@ double root_of_rest(double square, double noise) { return std::sqrt(std::max(squ
 
 struct Patterns {
     double texture, frame, per_shot;
+    size_t odd = 0;  // the shot whose coarse residual differs most from that of the others
+};
+
+// Mean square of the difference of one shot's coarse residuals from the median of the others, where these are several:
+// a mean of few would follow the odd one.
+class ShotDifferences {
+public:
+    explicit ShotDifferences(size_t shots) : squares_(shots) {}
+
+    void add(const std::vector<std::vector<double>> &maps, size_t cell) {
+        for (size_t s = 0; s < maps.size(); s++) {
+            others_.clear();
+            for (size_t other = 0; other < maps.size(); other++)
+                if (other != s && !std::isnan(maps[other][cell])) others_.push_back(maps[other][cell]);
+            if (!others_.empty() && !std::isnan(maps[s][cell]))
+                squares_[s].add(std::pow(maps[s][cell] - 0.5 * (upper_median(others_) + median(others_)), 2));
+        }
+    }
+
+    size_t largest() const {
+        const auto less = [](const Mean &a, const Mean &b) { return a.value() < b.value(); };
+        return static_cast<size_t>(std::max_element(squares_.begin(), squares_.end(), less) - squares_.begin());
+    }
+
+private:
+    std::vector<Mean> squares_;
+    std::vector<double> others_;
 };
 
 // Splits the residuals, given the variance of a cell's noise (relative).
 Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, double noise) {
     const int shots = fit.problem.model.shots;
     Mean fine, frame, per_shot;
+    ShotDifferences differences(static_cast<size_t>(shots));
     double depth = 0.0;
     for (int c = 0; c < fit.problem.model.channels; c++) {
         std::vector<std::vector<double>> coarse;
@@ -91,6 +119,7 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
         }
         for (size_t i = 0; i < common.size(); i++) {
             if (common[i].count == 0.0) continue;
+            differences.add(coarse, i);
             frame.add(common[i].value() * common[i].value());
             depth += 1.0 / common[i].count;
             for (const auto &map : coarse)
@@ -100,7 +129,8 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
     }
     depth = frame.count > 0.0 ? depth / frame.count : 1.0;  // mean of 1 / number of shots that see a cell
     return {fine.value() > kTextured * noise ? root_of_rest(fine.value(), noise) : 0.0,
-            root_of_rest(frame.value(), noise * depth / kSmoothed), root_of_rest(per_shot.value(), noise / kSmoothed)};
+            root_of_rest(frame.value(), noise * depth / kSmoothed), root_of_rest(per_shot.value(), noise / kSmoothed),
+            differences.largest()};
 }
 
 constexpr double kNearCorner = 0.85;  // of the r^2 of the corner, from which on the pattern left counts as error there
@@ -339,6 +369,7 @@ void describe_flat(const FlatFit &fit, FlatResult &r) {
     r.texture = rest.texture;
     r.frame_residual = rest.frame;
     r.shot_residual = fit.shots.size() > 1 ? rest.per_shot : 0.0;
+    r.odd_shot = fit.shots[rest.odd].number;
     r.grid_residual = 0.0;
     lensprof_gain_grid_init(&r.gain_grid);
     const bool is_auto = fit.options.grid == LENSPROF_FLAT_GRID_AUTO;

@@ -21,7 +21,8 @@ enum FlatState : uint32_t {
     kOneAngle = 128,  // one light and one angle
     kEvenChosen = 256,
     kPlaneChosen = 512,
-    kBlackShown = 1024  // by the pictures
+    kBlackShown = 1024,  // by the pictures
+    kManyShots = 2048    // more than two: one of them can differ from the others
 };
 
 struct JudgedFlat {
@@ -48,6 +49,7 @@ Measured most_contrast(const JudgedFlat &judged);
 Measured exposure_distance(const JudgedFlat &judged);
 Measured texture(const JudgedFlat &judged);
 Measured shot_difference(const JudgedFlat &judged);
+Measured odd_shot(const JudgedFlat &judged);
 Measured agreement(const JudgedFlat &judged);
 Measured slope(const JudgedFlat &judged);
 Measured convergence(const JudgedFlat &judged);
@@ -80,6 +82,7 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_FLAT_RESPONSE,        kRefuses, kOfAll,                measure::most_contrast,           Side::above, flat_limits::kFlattest,           Wording::usual},
     {LENSPROF_REASON_FLAT_EXPOSURE_WRONG,  kRefuses, kOfAll,                measure::exposure_distance,       Side::above, flat_limits::kWrongEv,            Wording::usual},
     {LENSPROF_REASON_FLAT_TEXTURE,         kRefuses, kOfAll,                measure::texture,                 Side::above, flat_limits::kMuchTexture,        Wording::usual},
+    {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kRefuses, kManyShots,            measure::odd_shot,                Side::above, flat_limits::kMuchPerShot,        Wording::odd},
     {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kRefuses, kOfAll,                measure::shot_difference,         Side::above, flat_limits::kMuchPerShot,        Wording::usual},
     {LENSPROF_REASON_FEW_AGREE,            kRefuses, kOfAll,                measure::agreement,               Side::below, flat_limits::kFewInliers,         Wording::card},
     {LENSPROF_REASON_FLAT_STEEP,           kRefuses, kSloped|kSeparated,    measure::slope,                   Side::above, flat_limits::kSteepRotated,       Wording::usual},
@@ -101,6 +104,7 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_FLAT_EDGE,            kNotes,   kOfAll,                measure::edge,                    Side::above, 0.0,                              Wording::usual},
     {LENSPROF_REASON_FLAT_WHITE,           kNotes,   kOfAll,                measure::white_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
     {LENSPROF_REASON_FLAT_BLACK,           kNotes,   kOfAll,                measure::black_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
+    {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kNotes,   kManyShots,            measure::odd_shot,                Side::above, flat_limits::kSomePerShot,        Wording::less},
     {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kNotes,   kOfAll,                measure::shot_difference,         Side::above, flat_limits::kSomePerShot,        Wording::weak},
     {LENSPROF_REASON_FLAT_TEXTURE,         kNotes,   kOfAll,                measure::texture,                 Side::above, flat_limits::kSomeTexture,        Wording::weak},
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kNotes,   kHasGrid,              measure::not_radial_grid,         Side::above, flat_limits::kNotRadial,          Wording::grid},

@@ -21,8 +21,8 @@ enum class Wording {
     held,        // of a response or falloff that is given
     weak,        // the milder of two severities
     light,       // groups by light
-    odd,         // with a response unlike those of measured cameras
-    less,        // below its limit, or negative
+    odd,         // with a response unlike those of measured cameras, or a shot unlike the others
+    less,        // below its limit, negative, or the milder form of `odd`
     card,        // of a card
     alone,       // a card without rotated shots, or with few
     grid,        // a card with a gain grid

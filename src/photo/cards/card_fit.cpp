@@ -1,11 +1,14 @@
 #include "photo/cards/card_fit.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "fit/base/quantile.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/lap.hpp"
 #include "photo/calibration/fit.hpp"
+#include "photo/pictures/even_light.hpp"
 #include "photo/pictures/orientation.hpp"
 #include "photo/pictures/rotated_profile.hpp"
 #include "photo/report/falloff.hpp"
@@ -70,6 +73,30 @@ std::shared_ptr<lensprof_profile> sensor_profile(const CardInput &input, const l
     return profile;
 }
 
+// The pictures that do not show an even light, unlike others, and that the model describes clearly worse than those. Of
+// two shots, it describes neither well.
+std::vector<std::string> foreign_pictures(const CardFit &found) {
+    constexpr double clearly = 2.0;
+    std::vector<double> residuals;
+    for (const lensprof_flat_image_quality &quality : found.quality) residuals.push_back(quality.residual);
+    const double least = found.fit.shots > 2 ? clearly * upper_median(residuals) : 0.0;
+    std::vector<std::string> foreign;
+    bool is_any_even = false;
+    for (size_t i = 0; i < found.files.size(); i++) {
+        const bool is_even = shows_even_light(found.files[i]);
+        is_any_even |= is_even;
+        if (!is_even && residuals[i] > least) foreign.push_back(found.files[i]);
+    }
+    return is_any_even ? foreign : std::vector<std::string>();
+}
+
+// A scene among cards leaves texture, or cells that disagree: the refusal names it.
+void name_foreign_pictures(CardFit &found) {
+    if (found.fit.usable || found.fit.shots < 2) return;
+    if (const std::vector<std::string> files = foreign_pictures(found); !files.empty())
+        found.verdict.findings.front().text += "; not of an even light: " + joined(files, ", ") + "; leave it out";
+}
+
 }  // namespace
 
 CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
@@ -101,6 +128,7 @@ CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
     found.verdict = verdict_of(flat);
     name_images(found.files, found.verdict);
     name_shots(found.files, found.shots, found.verdict);
+    name_foreign_pictures(found);
     found.profile = sensor_profile(input, *flat, events);
     return found;
 }

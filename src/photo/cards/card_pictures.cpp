@@ -9,6 +9,7 @@
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/known_exposures.hpp"
+#include "photo/cards/count_samples.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/other_parts.hpp"
 #include "photo/scene/scene_pictures.hpp"
@@ -203,13 +204,27 @@ bool add_levels(const StatedLevels &added, const Picture &first, const std::stri
         return false;
     }
     if (!added.black.empty())
-        events.note(file, format("its black level of %g is subtracted, as the file states", added.black[1].number));
+        events.note(file, format(added.black[1].is_share ? "its black level of %g of full scale is subtracted, as the "
+                                                           "file states"
+                                                         : "its black level of %g is subtracted, as the file states",
+                                 added.black[1].number));
     if (added.white) events.note(file, format("its white level is %g, as the file states", added.white->number));
+    return true;
+}
+
+// Divides float counts by that at saturation, samples as well as levels. Returns whether the samples were counts.
+bool scale_counts(CardInput &input, StatedLevels &stated, Events &events) {
+    const auto count = count_at_white(stated, input.levels, input.pictures.front(), input.files.front(), events);
+    if (!count) return false;
+    for (Picture &picture : input.pictures) divide_samples(*count, picture);
+    stated = levels_in_shares(stated, *count), input.levels = levels_in_shares(input.levels, *count);
     return true;
 }
 
 // Levels of the samples, and how well they are known: as stated, of dark frames, or as the file states.
 void take_levels(const CardOptions &o, CardInput &input, Events &events) {
+    StatedLevels stated = o.levels;
+    const bool are_scaled = scale_counts(input, stated, events);
     const Picture &first = input.pictures.front();
     const std::string &file = input.files.front();
     lensprof_flat_options &options = input.options;
@@ -217,12 +232,12 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
         if (input.pictures[i].sample != first.sample)
             throw Failure(LENSPROF_ERROR_ARGUMENT, input.files[i] + ": its samples are of another type than those of "
                                                        + file + "; give pictures with the same black level");
-    options.levels = levels_of(o.levels, first, file);
-    const bool is_integer = first.sample == LENSPROF_SAMPLE_U8 || first.sample == LENSPROF_SAMPLE_U16;
+    options.levels = levels_of(stated, first, file);
+    const bool are_codes = first.sample == LENSPROF_SAMPLE_U8 || first.sample == LENSPROF_SAMPLE_U16 || are_scaled;
     StatedLevels added;  // by the file
-    if (has_linear_response(input) && is_integer) {
-        if (o.levels.black.empty() && !o.dark) added.black = input.levels.black;
-        if (!o.levels.white) added.white = input.levels.white;
+    if (has_linear_response(input) && are_codes) {
+        if (stated.black.empty() && !o.dark) added.black = input.levels.black;
+        if (!stated.white) added.white = input.levels.white;
     }
     if (added.any() && !add_levels(added, first, file, options.levels, events)) added = {};
     if (o.dark) {

@@ -65,19 +65,43 @@ bool states_setting(const lensprof_profile_key &key) {
     return key.focal_mm != LENSPROF_UNKNOWN && key.aperture != LENSPROF_UNKNOWN;
 }
 
+bool is_whole(double value) { return std::fabs(value - std::round(value)) < 1e-6 * std::max(value, 1.0); }
+
+// As cameras show f-numbers: two digits.
+bool is_shown_aperture(double aperture) { return is_whole(aperture < 10.0 ? 10.0 * aperture : aperture); }
+
+// One nominal f-number. Numbers computed from whole, half or third stops (APEX: 11.31 for f/11) are off by up to 0.082
+// stops; nominal ones are 0.089 apart or more (f/3.2 and f/3.3). Two that cameras show as such are never the same.
+bool is_same_aperture(double a, double b) {
+    constexpr double rounding_stops = 0.085;
+    const double stops = std::fabs(2.0 * std::log2(a / b));
+    return stops < 1e-3 || (stops < rounding_stops && !(is_shown_aperture(a) && is_shown_aperture(b)));
+}
+
+// One focal length, of which the shorter number may be rounded: 4.25 and 4.3 mm, but not 97 and 98 mm.
+bool is_same_focal(double a, double b) {
+    double unit = 1.0;  // of the last digit of the shorter one
+    while (unit > 1e-3 && !is_whole(a / unit) && !is_whole(b / unit)) unit /= 10.0;
+    return std::fabs(a - b) < 0.5 * unit + 1e-6;
+}
+
+constexpr double far_m = 9.0;
+
 // Unknown distances are taken as far; all far ones are alike, near ones within the rounding of EXIF.
 bool is_same_distance(double a, double b) {
-    constexpr double far_m = 9.0, rounding = 0.1;
+    constexpr double rounding = 0.1;
     const auto is_far = [](double distance) { return distance == LENSPROF_UNKNOWN || distance >= far_m; };
     return is_far(a) || is_far(b) ? is_far(a) && is_far(b) : std::fabs(std::log(a / b)) < rounding;
 }
 
 // What only one of them states separates them, too.
 bool is_same(const lensprof_profile_key &a, const lensprof_profile_key &b) {
-    const auto state_alike = [](double x, double y) { return (x == LENSPROF_UNKNOWN) == (y == LENSPROF_UNKNOWN); };
-    return std::strcmp(a.camera_model, b.camera_model) == 0 && !*a.lens == !*b.lens
-           && state_alike(a.focal_mm, b.focal_mm) && state_alike(a.aperture, b.aperture) && is_same_setting(a, b)
-           && is_same_distance(a.distance_m, b.distance_m);
+    const auto are_alike = [](double x, double y, bool (*is_one)(double, double)) {
+        return x == LENSPROF_UNKNOWN || y == LENSPROF_UNKNOWN ? x == y : is_one(x, y);
+    };
+    return std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.lens, b.lens) == 0
+           && are_alike(a.focal_mm, b.focal_mm, is_same_focal) && are_alike(a.aperture, b.aperture, is_same_aperture)
+           && is_same_setting(a, b) && is_same_distance(a.distance_m, b.distance_m);
 }
 
 auto rank_of(const lensprof_profile_key &key) {
@@ -99,6 +123,22 @@ std::vector<CardSetting> grouped(const std::vector<CardPicture> &pictures) {
     std::stable_sort(settings.begin(), settings.end(),
                      [](const CardSetting &a, const CardSetting &b) { return rank_of(a.key) < rank_of(b.key); });
     return settings;
+}
+
+// Names what the pictures of a setting state differently and is yet taken as one.
+void note_rounding(const CardSetting &setting, Events &events) {
+    const lensprof_profile_key &key = setting.key;
+    for (const CardPicture &picture : setting.pictures) {
+        const lensprof_profile_key &other = picture.metadata.key;
+        const std::string label = describe_setting(other, picture.file);
+        const bool is_near = std::isfinite(other.distance_m) && other.distance_m < far_m;
+        if (other.focal_mm == key.focal_mm && other.aperture == key.aperture
+            && (!is_near || other.distance_m == key.distance_m))
+            continue;
+        return events.note(setting.label, picture.file + " states " + label
+                                              + ": taken as one setting, by the rounding of what cameras state; "
+                                                "give a table if they are two");
+    }
 }
 
 // Files with the same bytes as an earlier one.
@@ -174,6 +214,7 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
     }
     settings.list = grouped(pictures);
     leave_out_unknown(settings);
+    for (const CardSetting &setting : settings.list) note_rounding(setting, events);
     return settings;
 }
 

@@ -7,6 +7,7 @@
 #include "fit/base/quantile.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
+#include "photo/cards/count_samples.hpp"
 
 namespace lensprof {
 namespace {
@@ -58,7 +59,8 @@ bool is_like(const Picture &a, const Picture &b) {
 
 }  // namespace
 
-DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, Events &events) {
+DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels &stated,
+                     Events &events) {
     DarkLevel dark;
     std::array<std::vector<double>, 3> means;   // of blocks
     std::array<std::vector<double>, 3> levels;  // of frames
@@ -66,7 +68,8 @@ DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, E
     reduced.max_side = max_side;
     uint32_t channels = 0;
     for (const std::string &file : files) {
-        const Picture picture = read_picture(file, reduced);
+        Picture picture = read_picture(file, reduced);
+        if (const auto count = count_at_white(stated, {}, picture, file, events)) divide_samples(*count, picture);
         if (dark.file.empty()) {
             dark.file = file, dark.form = picture, dark.form.pixels.clear();
             channels = lensprof_layout_channels(picture.layout);

@@ -7,6 +7,7 @@
 
 #include "photo/base/events.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/pictures/stated_levels.hpp"
 
 namespace lensprof {
 
@@ -18,8 +19,10 @@ struct DarkLevel {
     double spread = 0.0;            // standard deviation over the frame: what one level does not describe
 };
 
-// Median of the means of blocks, over all frames. Failure names a file that is not dark, or not like the first.
-DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, Events &events);
+// Median of the means of blocks, over all frames. Float samples in counts are divided by the white level as stated.
+// Failure names a file that is not dark, or not like the first.
+DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels &stated,
+                     Events &events);
 
 // Failure if a card is not a picture of the kind of the dark frames.
 void check_dark(const DarkLevel &dark, const Picture &card, const std::string &file);

@@ -30,7 +30,7 @@ void store_settings(const StoreOptions &o, std::vector<MeasuredSetting> &setting
 
 // A setting that is to be photographed, too.
 struct MissingSetting {
-    std::string lens;
+    std::string camera, lens;
     double focal_mm, aperture;
     double sigma;  // standard error of the predicted falloff in the corner; NAN: nothing is near enough to predict it
 };

@@ -7,6 +7,7 @@
 
 #include "photo/base/memory_file.hpp"
 #include "photo/cards/lens_cards.hpp"
+#include "photo/report/report.hpp"
 
 namespace lensprof {
 namespace {
@@ -78,7 +79,7 @@ std::vector<MissingSetting> candidates_of(const Range &range) {
         for (const double stops : {1.0, 2.0, 3.0})
             if (widest * std::exp2(stops / 2.0) < range.smallest)
                 apertures.insert(shown_aperture(widest * std::exp2(stops / 2.0)));
-        for (const double aperture : apertures) candidates.push_back({{}, focal, aperture, NAN});
+        for (const double aperture : apertures) candidates.push_back({{}, {}, focal, aperture, NAN});
     }
     return candidates;
 }
@@ -170,7 +171,9 @@ std::vector<MissingSetting> missing_settings(const std::vector<MeasuredSetting> 
         if (std::none_of(of_lens.begin(), of_lens.end(), [](const MeasuredSetting *s) { return s->is_good(); }))
             continue;
         std::vector<MissingSetting> own = missing_of(of_lens, limit);
-        for (MissingSetting &setting : own) setting.lens = name.second;
+        const lensprof_profile_key &key = of_lens.front()->of.key;
+        for (MissingSetting &setting : own)
+            setting.camera = camera_name(key.camera_maker, key.camera_model), setting.lens = name.second;
         missing.insert(missing.end(), own.begin(), own.end());
     }
     return missing;

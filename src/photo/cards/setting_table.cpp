@@ -68,14 +68,24 @@ Setter text_setter(char (lensprof_profile_key::*field)[size]) {
     };
 }
 
-Setter number_setter(double lensprof_profile_key::*field, bool may_be_infinite) {
+// A number as in names of folders, which may have its unit: "58 mm", "10m"; an aperture, without one, "f/2.8".
+std::string without_unit(std::string cell, const std::string &unit) {
+    for (char &c : cell) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const size_t begin = unit.empty() && cell[0] == 'f' ? cell.find_first_not_of(" /", 1) : 0;
+    if (begin == std::string::npos) return {};
+    const bool has_unit = cell.size() > unit.size() && cell.compare(cell.size() - unit.size(), unit.size(), unit) == 0;
+    const size_t end = cell.find_last_not_of(' ', cell.size() - (has_unit ? unit.size() : 0) - 1);
+    return end == std::string::npos || end < begin ? std::string() : cell.substr(begin, end + 1 - begin);
+}
+
+Setter number_setter(double lensprof_profile_key::*field, const std::string &unit, bool may_be_infinite) {
     return [=](const std::string &cell, lensprof_profile_key &key) {
+        const std::string number = without_unit(cell, unit);
+        if (may_be_infinite && (number == "inf" || number == "infinity")) return key.*field = INFINITY, true;
         char *end = nullptr;
-        const double value = std::strtod(cell.c_str(), &end);
-        const bool is_plain = cell.find_first_not_of("0123456789.eE+-") == std::string::npos;
-        key.*field = value;
-        return *end == '\0'
-               && ((is_plain && value > 0.0 && value <= largest_number) || (may_be_infinite && cell == "inf"));
+        key.*field = std::strtod(number.c_str(), &end);
+        const bool is_plain = !number.empty() && number.find_first_not_of("0123456789.e+-") == std::string::npos;
+        return is_plain && *end == '\0' && key.*field > 0.0 && key.*field <= largest_number;
     };
 }
 
@@ -85,9 +95,9 @@ Setter setter_of(const std::string &column) {
     if (column == "maker") return text_setter(&lensprof_profile_key::camera_maker);
     if (column == "camera") return text_setter(&lensprof_profile_key::camera_model);
     if (column == "lens") return text_setter(&lensprof_profile_key::lens);
-    if (column == "focal") return number_setter(&lensprof_profile_key::focal_mm, false);
-    if (column == "aperture") return number_setter(&lensprof_profile_key::aperture, false);
-    if (column == "distance") return number_setter(&lensprof_profile_key::distance_m, true);
+    if (column == "focal") return number_setter(&lensprof_profile_key::focal_mm, "mm", false);
+    if (column == "aperture") return number_setter(&lensprof_profile_key::aperture, "", false);
+    if (column == "distance") return number_setter(&lensprof_profile_key::distance_m, "m", true);
     throw std::invalid_argument(column);
 }
 

@@ -1,6 +1,7 @@
 // Falloffs of fits and profiles, for tables and charts.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,23 @@ inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || 
 
 // Which of the falloff curves is that of green: of one per channel the second, else the only one.
 constexpr uint32_t green_curve(size_t curves) { return curves == 3 ? 1 : 0; }
+
+// M times the gain grid at r half diagonals from the middle of a frame of 3:2: mean of a circle or, at r = 1, of the
+// corners.
+inline double mean_light(const lensprof_profile &profile, uint32_t channel, double r) {
+    constexpr uint32_t width = 30000, height = 20000;  // so large that the outermost pixels are in the corners
+    constexpr int count = 64;
+    const double half_width = 0.5 * (width - 1.0), half_height = 0.5 * (height - 1.0);
+    const double diagonal = std::hypot(half_width, half_height), corner = std::atan2(half_height, half_width);
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) {
+        const double at_corner = (i & 1) ? M_PI - corner : corner;
+        const double angle = r < 1.0 ? 2.0 * M_PI * i / count : (i & 2) ? -at_corner : at_corner;
+        sum += lensprof_profile_falloff(&profile, channel, width, height, half_width + r * diagonal * std::cos(angle),
+                                        half_height + r * diagonal * std::sin(angle), nullptr);
+    }
+    return sum / count;
+}
 
 // The profile of a lens setting of a fit with its covariance; key and origin are still empty.
 inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit &fit,

@@ -120,8 +120,22 @@ void name_images(const std::vector<std::string> &names, Verdict &verdict) {
     }
 }
 
+namespace {
+
+// Of two shots, neither is known to be the odd one: "the shots of a.tif and b.tif differ".
+void name_both_shots(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Finding &finding) {
+    static const std::string unnamed = "the shots";
+    const auto second = std::find_if(shots.begin(), shots.end(), [&](uint32_t shot) { return shot != shots.front(); });
+    if (second == shots.end() || finding.text.rfind(unnamed, 0) != 0) return;
+    finding.text.insert(unnamed.size(), " of " + names.front() + " and " + names[size_t(second - shots.begin())]);
+}
+
+}  // namespace
+
 void name_shots(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Verdict &verdict) {
     for (Finding &finding : verdict.findings) {
+        if (finding.code == LENSPROF_REASON_FLAT_SHOTS_DIFFER && finding.item.kind == LENSPROF_ITEM_NONE)
+            name_both_shots(names, shots, finding);
         const auto shot = std::find(shots.begin(), shots.end(), finding.item.index);
         if (finding.item.kind != LENSPROF_ITEM_SHOT || shot == shots.end()) continue;
         finding.file = names[static_cast<size_t>(shot - shots.begin())];

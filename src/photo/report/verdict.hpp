@@ -59,7 +59,8 @@ Verdict verdict_of(const lensprof_rendering *rendering, const lensprof_rendering
 // Replaces the numbers of images by their files.
 void name_images(const std::vector<std::string> &names, Verdict &verdict);
 
-// Replaces the numbers of shots by their first pictures; `shots` has the shot per picture.
+// Replaces the numbers of shots by their first pictures, and names both of two shots that differ; `shots` has the shot
+// per picture.
 void name_shots(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Verdict &verdict);
 
 // "passed", "note", "warning", "refusal".

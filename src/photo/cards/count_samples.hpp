@@ -1,0 +1,25 @@
+// Float samples that are counts of a sensor, not shares of full scale.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "photo/base/events.hpp"
+#include "photo/pictures/stated_levels.hpp"
+
+namespace lensprof {
+
+// Whether float samples are far above 1, which is full scale by convention.
+bool are_counts(const Picture &picture);
+
+// The count at saturation, by which float pictures are divided: the white level as stated, else that of the file if the
+// samples are counts; empty if they are shares already. Failure, which names the option, for counts of unknown scale.
+std::optional<double> count_at_white(const StatedLevels &stated, const StatedLevels &of_file, const Picture &picture,
+                                     const std::string &file, Events &events);
+
+// Makes shares of counts: of float samples, and of levels.
+void divide_samples(double count, Picture &picture);
+StatedLevels levels_in_shares(const StatedLevels &levels, double count);
+
+}  // namespace lensprof
