@@ -98,12 +98,13 @@ typedef struct lensprof_fields_smoothness {
 /* One channel. Frozen value struct. */
 typedef struct lensprof_fields_channel {
     double offset;         /* b, in units of the samples */
-    double offset_sigma;   /* standard error, by the scatter of the pictures; of a given offset, of what the pictures
-                              would have given; INFINITY: they do not determine it */
+    double offset_sigma;   /* standard error, by the scatter of the pictures or of fits without some of them, whichever
+                              is larger; of a given offset, of what the pictures would have given; INFINITY: they do
+                              not determine it */
     uint32_t offset_found; /* 1: estimated; 0: given, or not determined and taken as 0 */
     uint32_t smoothness;   /* index of the one chosen, of those tried */
-    double
-        shading_error;  /* standard error of S, rms over the frame, share: the jackknife over ten groups of pictures */
+    double shading_error;  /* standard error of S, rms over the frame, share: of chance, by fits without each of ten
+                              groups of pictures, of the smoothness, and of what no smooth surface follows */
     double heldout_rms; /* residual of held-out pictures, share of the light, with the shading */
     double even_rms;    /* the same with S = 1 */
     double pattern;     /* rms of fine detail that all pictures have in common, in the shading or beyond it, share of

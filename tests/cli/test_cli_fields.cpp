@@ -179,6 +179,50 @@ void test_a_folder_is_measured_and_corrected(void **) {
     }
 }
 
+Plane dark_frame(double level) {
+    Plane plane;
+    uint64_t random = 9;
+    for (uint32_t k = 0; k < width * height; k++)
+        plane.push_back(static_cast<uint16_t>(std::lround(level + 3.0 * lp_normal(&random))));
+    return plane;
+}
+
+// Pictures without light give the offset; what lies at a stated white level or above is saturated.
+void test_dark_frames_and_white_level(void **) {
+    const std::string folder = folder_of("with_dark", scenes(6)),
+                      dark = folder_of("dark_frames", {dark_frame(pedestal)}) + "/0.tif";
+    const Json json = json_of(fields({folder, "--no-store", "--json", "--dark", dark}));
+    assert_close(json["channels"][0]["offset"].get<double>(), pedestal, 0.2);
+    assert_false(json["channels"][0]["offset_found"].get<bool>());
+    assert_true(error_of(json) < 0.02);
+    const Json stated = json_of(fields({folder, "--no-store", "--json", "--dark", dark, "--fit", "white-level=2000"}));
+    assert_true(stated["white_share"].get<double>() > json["white_share"].get<double>() + 0.05);
+    assert_true(error_of(stated) < 0.02);
+    assert_refused(usage, fields({folder, "--no-store", "--dark", dark, "-o", dark}),
+                   {"0.tif", "would be overwritten"});
+}
+
+// A profile has no place for the offset of counts in float samples: both commands state it.
+void test_offset_of_float_counts_is_noted(void **) {
+    if (!can_read_fits()) return;
+    const std::string db = work("counts.db"), file = work("counts.fits"), one = work("one.fits");
+    save(file, fits_of(scenes(8), true));
+    const Outcome flat =
+        run_words(fields({file, "--camera", "Orca", "--lens", "10x", "--key", "processing=raw", "--db", db}));
+    assert_true(contains(flat.err, "the profile cannot hold the offset of 1"));
+    Picture picture = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_GREY);
+    auto *sample = reinterpret_cast<float *>(picture.pixels.data());
+    for (size_t i = 0; i < size_t(width) * height; i++) sample[i] = 700.0f;
+    write_picture(work("counts.tif"), picture);
+    const Words apply = {"apply", "--profile", "1", "--db", db, "-o", work("flattened"), "--overwrite"};
+    const Outcome counts = run_words(apply + Words{work("counts.tif")});
+    assert_int_equal(counts.code, done);
+    assert_true(contains(counts.err, "counts.tif: has float samples above 1, and the profile holds no offset"));
+    for (size_t i = 0; i < size_t(width) * height; i++) sample[i] = 0.7f;
+    write_picture(work("shares.tif"), picture);
+    assert_false(contains(run_words(apply + Words{work("shares.tif")}).err, "offset"));
+}
+
 // Pages, slices of ImageJ in both byte orders, and planes of FITS are the same pictures as files.
 void test_pages_stacks_and_planes(void **) {
     const auto planes = scenes(8);
@@ -318,6 +362,9 @@ void test_refused(void **) {
     const std::string dark = folder_of("dark", shut);
     const std::string sizes = folder_of("sizes", planes), kinds = folder_of("kinds", planes);
     write_picture(sizes + "/9.tif", make_noise(width, height - 8, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY));
+    Picture small = make_noise(width, height - 8, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY);
+    std::fill(small.pixels.begin(), small.pixels.end(), uint8_t(0));
+    write_picture(work("small.tif"), small);
     write_picture(kinds + "/8.png", make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB));
     const struct {
         int code;
@@ -336,8 +383,12 @@ void test_refused(void **) {
         {usage, {folder, "--no-store", "-o", "x.xml"}, {"x.xml", ".tif"}},
         {usage, {folder, "--no-store", "--black", "60000"}, {"darker than the black level", "--black"}},
         {usage, {folder, "--no-store", "-o", folder + "/0.tif"}, {"among the pictures"}},
-        {usage, {folder, "--no-store", "--dark", folder + "/0.tif"}, {"--dark"}},
-        {usage, {folder, "--no-store", "--fit", "white-level=4095"}, {"--fit white-level"}},
+        {not_usable, {folder, "--no-store", "--dark", sizes + "/9.tif"}, {"9.tif", "is not dark"}},
+        {usage, {folder, "--no-store", "--dark", work("small.tif")}, {"small.tif", "96 x 64 px", "give dark frames"}},
+        {usage, {folder, "--no-store", "--dark", folder + "/0.tif", "--black", "3"}, {"--dark", "--black"}},
+        {usage, {folder, "--no-store", "--dark", folder + "/0.tif", "--fit", "gamma=2.2"}, {"--dark"}},
+        {usage, {folder, "--no-store", "--fit", "white-level=70000"}, {"--fit white-level", "65535"}},
+        {usage, {folder, "--no-store", "--black", "120", "--fit", "white-level=100"}, {"0.tif", "not below its white"}},
         {usage, {folder, "--no-store", "--black", "3", "--fit", "gamma=2.2"}, {"--black"}},
     };
     for (const auto &one : cases) assert_refused(one.code, fields(one.words), one.named);
@@ -349,6 +400,8 @@ void test_refused(void **) {
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_a_folder_is_measured_and_corrected),
+        CLI_TEST(test_dark_frames_and_white_level),
+        CLI_TEST(test_offset_of_float_counts_is_noted),
         CLI_TEST(test_pages_stacks_and_planes),
         CLI_TEST(test_channels_of_stacks),
         CLI_TEST(test_files_of_several_pictures_are_noted),

@@ -221,6 +221,31 @@ void test_dark_stains_and_pictures_without_background(void **) {
     assert_true(error_of(*fitted(make(40, {Scene::waves, 0.2, 0.0, 0.001, 0.3}))) < 0.03);
 }
 
+// The true error over the stated one, of sets of ten pictures: with errors by chance alone, about two of three lie
+// below 1, and almost none beyond 3.
+void test_stated_errors_hold(void **) {
+    const Made kinds[] = {{Scene::cells, 0.012, 0.002, 0.0001, 0.3},
+                          {Scene::stains, 0.4, 0.01, 0.002, 0.15},
+                          {Scene::waves, 0.2, 0.01, 0.001, 0.3}};
+    std::vector<double> ratios;
+    for (const Made &made : kinds)
+        for (uint64_t seed = 11; seed < 17; seed++) {
+            const auto r = fitted(make(10, made, seed));
+            ratios.push_back(error_of(*r) / r->channel[0].shading_error);
+        }
+    std::sort(ratios.begin(), ratios.end());
+    const double median = ratios[ratios.size() / 2];
+    assert_true(median > 0.4 && median < 1.15);
+    assert_true(ratios.back() < 3.0);
+}
+
+// Two pictures are two groups, and state an error as well.
+void test_few_pictures_state_an_error(void **) {
+    const auto r = fitted(make(2, {}), known_offset());
+    const double stated = r->channel[0].shading_error;
+    assert_true(stated > error_of(*r) / 3.0 && std::isfinite(stated));
+}
+
 void test_given_offset(void **) {
     const auto r = fitted(make(6, {}), known_offset());
     assert_false(r->channel[0].offset_found);
@@ -481,6 +506,8 @@ int main() {
         cmocka_unit_test(test_shading_and_offset_of_bright_cells),
         cmocka_unit_test(test_levels),
         cmocka_unit_test(test_dark_stains_and_pictures_without_background),
+        cmocka_unit_test(test_stated_errors_hold),
+        cmocka_unit_test(test_few_pictures_state_an_error),
         cmocka_unit_test(test_given_offset),
         cmocka_unit_test(test_equal_levels_do_not_determine_the_offset),
         cmocka_unit_test(test_order_and_threads_do_not_change_a_byte),

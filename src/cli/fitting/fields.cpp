@@ -30,6 +30,7 @@ bool lies_in(const std::string &file, const std::string &folder) {
 // A picture of the shading is float TIFF. None may replace an input, the database or another output.
 void check_field_outputs(const FieldsCommand &o) {
     std::vector<std::string> reserved = o.files;
+    reserved.insert(reserved.end(), o.dark_files.begin(), o.dark_files.end());
     if (!o.fit.store.no_store) reserved.push_back(store_path(o.fit.store.db));
     if (!o.report.empty()) reserved.push_back(o.report);
     for (const std::string &output : o.outputs) {
@@ -49,7 +50,9 @@ void check_field_outputs(const FieldsCommand &o) {
 
 void check_fields_options(const FieldsCommand &o) {
     const bool has_response = o.fit.gamma || o.fit.profile;
-    if (has_response && !o.fit.black.empty())
+    if (has_response && !o.dark_files.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--dark: is of linear samples; omit it, or gamma and profile");
+    if (has_response && !o.fit.levels.black.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--black: is of linear samples; omit it, or gamma and profile");
     check_report(o.report, o.files, o.fit.store);
     check_field_outputs(o);
@@ -72,9 +75,10 @@ ExitCode exit_code_of(const FieldFit &found) {
 
 }  // namespace
 
-int fit_fields_command(const FieldsCommand &o, Streams &streams) {
+int fit_fields_command(FieldsCommand o, Streams &streams) {
     check_fields_options(o);
     Progress progress(streams, o.progress);
+    if (!o.dark_files.empty()) o.fit.dark = dark_level(o.dark_files, 0, nullptr, progress);
     FieldFit found = fit_fields_of(o.files, o.fit, progress);
     stop_if_cancelled();
     const StoreOptions &store = o.fit.store;

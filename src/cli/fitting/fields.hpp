@@ -13,13 +13,14 @@ namespace lensprof {
 
 struct FieldsCommand {
     std::vector<std::string> files, outputs;  // outputs: pictures of the shading
+    std::vector<std::string> dark_files;      // pictures without light
     std::string report;                       // .html; empty: none
     bool json = false, progress = false;
     FieldOptions fit;
 };
 
 // Fits, stores and prints; returns the exit code.
-int fit_fields_command(const FieldsCommand &o, Streams &streams);
+int fit_fields_command(FieldsCommand o, Streams &streams);
 
 // The object that --json prints; docs/json.md describes the schema.
 Json fields_json(const FieldFit &found);

@@ -324,9 +324,7 @@ const char *card_option(const FlatCommand &o) {
                                                    {!o.check.empty(), "--check"},
                                                    {!o.bundle.empty(), "--bundle"},
                                                    {!o.into.empty(), "--into"},
-                                                   {!o.dark_files.empty(), "--dark"},
                                                    {!o.table.empty(), "--key table"},
-                                                   {o.levels.white.has_value(), "--fit white-level"},
                                                    {o.ignore_below != cards.ignore_below, "--fit ignore-below"},
                                                    {o.ignore_above != cards.ignore_above, "--fit ignore-above"},
                                                    {o.max_side != cards.max_side, "--fit max-side"},
@@ -348,7 +346,8 @@ int run_fields(const FlatCommand &o, Streams &streams) {
     command.files = o.files, command.outputs = o.outputs, command.report = o.report;
     command.json = o.json, command.progress = o.progress;
     command.fit.store = o.store, command.fit.profile = o.profile, command.fit.gamma = o.gamma;
-    command.fit.linear = o.linear, command.fit.black = o.levels.black, command.fit.channel = o.field_channel;
+    command.fit.linear = o.linear, command.fit.levels = o.levels, command.fit.channel = o.field_channel;
+    command.dark_files = o.dark_files;
     return fit_fields_command(command, streams);
 }
 
@@ -358,7 +357,7 @@ int run(FlatCommand o, Streams &streams) {
     if (o.field_channel) throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit channel: is for --fields; give it as well");
     Progress events(streams, o.progress);
     const CardSettings settings = settings_of(o, events);
-    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, o.levels, events);
+    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, &o.levels, events);
     const bool is_one = settings.list.size() == 1 && !settings.has_folders && settings.left_out.empty();
     if (is_one && o.outputs.empty() && o.bundle.empty() && o.check.empty())
         return run_one(o, settings.list.front(), streams);

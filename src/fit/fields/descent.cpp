@@ -37,7 +37,8 @@ void Descent::take_logarithms() {
     const double least = std::max(kDarkest * (middle_ - offset), 1e-12);
     for (size_t i = 0; i < t_.size(); i++) {
         const auto value = static_cast<double>(data_->value[i]);
-        t_[i] = std::isnan(value) ? NAN : static_cast<float>(std::log(std::max(value - offset, least)));
+        const bool is_left_out = i / data_->cells % groups_ == left_out_;
+        t_[i] = is_left_out || std::isnan(value) ? NAN : static_cast<float>(std::log(std::max(value - offset, least)));
     }
 }
 
@@ -110,6 +111,12 @@ void Descent::search_levels() {
         }
         level[n] = found;
     }
+    take_residuals();
+}
+
+void Descent::leave_out(size_t group, size_t groups) {
+    left_out_ = group, groups_ = groups;
+    take_logarithms();
     take_residuals();
 }
 

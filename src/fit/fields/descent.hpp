@@ -17,6 +17,9 @@ public:
     // A beginning from what was found in some of the pictures.
     void start_from(const Descent &some, double share);
 
+    // From here on, picture n has no influence if n % groups is `group`; everything else stays where it is.
+    void leave_out(size_t group, size_t groups);
+
     // One step; `moves_offset` includes the offset.
     void step(bool moves_offset);
 
@@ -68,6 +71,7 @@ private:
            floor_ = 0.0;        // ends of the offset: 0 unless there are smaller values; below nearly all values
     std::vector<float> t_, e_;  // [picture][cell]
     int rounds_ = 3;            // of the content, per step
+    size_t left_out_ = 1, groups_ = 1;  // pictures n with n % groups_ == left_out_ have no t_
 };
 
 }  // namespace lensprof

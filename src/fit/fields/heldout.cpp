@@ -12,6 +12,7 @@ namespace {
 using Sums = Descent::Sums;
 
 constexpr double kSmallestRest = 1e-9;  // of the weight of a cell
+constexpr double kLessSmooth = 0.1;     // of the weight of the penalty
 
 Sums total_of(const std::vector<Sums> &groups) {
     Sums total = groups[0];
@@ -83,28 +84,29 @@ Heldout hold_out(const Descent &descent, const Surface &surface, size_t groups, 
     return found;
 }
 
-double jackknife(const Descent &descent, const Surface &surface, size_t groups) {
+double smoothing_bias(const Descent &descent, const Surface &surface, size_t groups) {
     const std::vector<Sums> parts = descent.sums(groups);
     const Sums total = total_of(parts);
-    const auto solver = surface.solver(total.weight, descent.smoothness);
-    std::vector<std::vector<double>> all;
+    Smoothness less = descent.smoothness;
+    less.weight *= kLessSmooth;
+    const auto chosen = surface.solver(total.weight, descent.smoothness), other = surface.solver(total.weight, less);
+    std::vector<std::vector<double>> changes;  // without each group
     for (const Sums &group : parts) {
-        std::vector<double> one = without(total, group, surface, *solver);
-        if (one.empty()) return INFINITY;
-        double mean = 0.0;
-        for (double cell : one) mean += cell / static_cast<double>(one.size());
-        for (double &cell : one) cell -= mean;
-        all.push_back(std::move(one));
+        const std::vector<double> smooth = without(total, group, surface, *chosen);
+        std::vector<double> change = without(total, group, surface, *other);
+        if (smooth.empty() || change.empty()) return 0.0;
+        for (size_t j = 0; j < change.size(); j++) change[j] -= smooth[j];
+        changes.push_back(std::move(change));
     }
-    double variance = 0.0;
+    double bias = 0.0;
     const auto count = static_cast<double>(groups);
     for (size_t j = 0; j < total.weight.size(); j++) {
         double mean = 0.0, square = 0.0;
-        for (const auto &one : all) mean += one[j] / count;
-        for (const auto &one : all) square += (one[j] - mean) * (one[j] - mean);
-        variance += (count - 1.0) / count * square;
+        for (const auto &change : changes) mean += change[j] / count;
+        for (const auto &change : changes) square += (change[j] - mean) * (change[j] - mean);
+        bias += mean * mean - (count - 1.0) / count * square;
     }
-    return std::sqrt(variance / static_cast<double>(total.weight.size()));
+    return std::max(bias / static_cast<double>(total.weight.size()), 0.0);
 }
 
 }  // namespace lensprof

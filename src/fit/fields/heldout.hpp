@@ -20,7 +20,8 @@ Smoothness smoothness_at(size_t index);                                      // 
 // Every group of pictures is predicted by the surface of all others; weights and levels stay.
 Heldout hold_out(const Descent &descent, const Surface &surface, size_t groups, uint32_t threads);
 
-// Standard error of ln S, rms over the cells: the jackknife over groups.
-double jackknife(const Descent &descent, const Surface &surface, size_t groups);
+// Mean square over the cells of what ten times less smoothness changes of ln S, beyond chance (the jackknife over
+// groups): the bias of the smoothness chosen, as far as the pictures show it.
+double smoothing_bias(const Descent &descent, const Surface &surface, size_t groups);
 
 }  // namespace lensprof

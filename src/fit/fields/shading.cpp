@@ -6,6 +6,7 @@
 
 #include "fit/base/parallel.hpp"
 #include "fit/fields/descent.hpp"
+#include "fit/fields/errors.hpp"
 #include "fit/fields/heldout.hpp"
 
 namespace lensprof {
@@ -136,12 +137,20 @@ double fine_variance(const Descent &descent, const Surface &surface) {
     return sum / static_cast<double>(smooth.size());
 }
 
-void report(const Descent &descent, const Surface &surface, size_t groups, Shading &found) {
-    found.offset = descent.offset, found.offset_sigma = descent.offset_step().sigma;
+// Chance, what the smoothness removed, and what no surface describes: independent of each other.
+void report_errors(const Descent &descent, const Surface &surface, const Refits &refits, const FieldStep &step,
+                   Shading &found) {
+    const FieldErrors chance = jackknife(descent, refits, step);
+    const double bias = smoothing_bias(descent, surface, refits.groups) + descent.variance().common;
+    found.error = std::sqrt(chance.shading * chance.shading + bias);
+    found.offset_sigma = std::max(descent.offset_step().sigma, chance.offset);
+}
+
+void report(const Descent &descent, const Surface &surface, Shading &found) {
+    found.offset = descent.offset;
     found.level = descent.level, found.nodes = descent.nodes, found.cells = descent.cells;
     found.seen = descent.sums(1)[0].weight;
     found.smoothness = descent.smoothness;
-    found.error = jackknife(descent, surface, groups);
     const Descent::Variance variance = descent.variance();
     const double fine = variance.common + fine_variance(descent, surface);
     found.pattern = std::sqrt(fine), found.pattern_share = fine / std::max(fine + variance.own, 1e-300);
@@ -168,7 +177,8 @@ Shading fit_shading(const FieldData &data, const Surface &surface, std::optional
         descent.start_from(first->descent, first->share);
         refine(descent, surface, groups, {false, threads}, step, found);
     }
-    report(descent, surface, groups, found);
+    report(descent, surface, found);
+    report_errors(descent, surface, {groups, !offset, threads}, step, found);
     return found;
 }
 

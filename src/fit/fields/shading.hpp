@@ -42,7 +42,7 @@ struct Shading {
     std::vector<double> heldout;    // of held-out pictures, rms of ln S, per order and weight of surface.hpp
     double heldout_rms = 0.0;       // with the smoothness chosen
     double even_rms = 0.0;          // of an even shading, S = 1
-    double error = 0.0;             // rms standard error of ln S over the frame, by leaving out groups of pictures
+    double error = 0.0;             // standard error of ln S, rms over the frame: chance and bias
     double pattern = 0.0;           // rms of what all pictures have in common and no surface of 12 nodes has
     double pattern_share = 0.0;     // its share of the variance of ln S as one picture sees it
     double content_sigma = 0.0;     // of the narrowest component of the content

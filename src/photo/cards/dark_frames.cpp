@@ -59,7 +59,7 @@ bool is_like(const Picture &a, const Picture &b) {
 
 }  // namespace
 
-DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels &stated,
+DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels *scale,
                      Events &events) {
     DarkLevel dark;
     std::array<std::vector<double>, 3> means;   // of blocks
@@ -69,7 +69,8 @@ DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, c
     uint32_t channels = 0;
     for (const std::string &file : files) {
         Picture picture = read_picture(file, reduced);
-        if (const auto count = count_at_white(stated, {}, picture, file, events)) divide_samples(*count, picture);
+        const auto count = scale ? count_at_white(*scale, {}, picture, file, events) : std::nullopt;
+        if (count) divide_samples(*count, picture);
         if (dark.file.empty()) {
             dark.file = file, dark.form = picture, dark.form.pixels.clear();
             channels = lensprof_layout_channels(picture.layout);
@@ -83,7 +84,8 @@ DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, c
                 if (const auto mean = block_mean(picture, block, c)) own.push_back(*mean);
             means[c].insert(means[c].end(), own.begin(), own.end());
             levels[c].push_back(median(own));
-            if (!(levels[c].back() <= largest_dark))
+            const bool has_range = picture.sample != LENSPROF_SAMPLE_F32 || levels[c].back() <= 1.0;  // 0..1
+            if (has_range && !(levels[c].back() <= largest_dark))
                 throw Failure(LENSPROF_ERROR_NOT_USABLE,
                               file
                                   + format(": is not dark, its level is %.0f %% of full scale; cover the lens",
@@ -113,10 +115,10 @@ DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, c
     return dark;
 }
 
-void check_dark(const DarkLevel &dark, const Picture &card, const std::string &file) {
-    if (!is_like(card, dark.form))
-        throw Failure(LENSPROF_ERROR_ARGUMENT, dark.file + ": is " + form_of(dark.form) + ", not " + form_of(card)
-                                                   + " as the card " + file + "; give dark frames of the same camera");
+void check_dark(const DarkLevel &dark, const Picture &picture, const std::string &file) {
+    if (!is_like(picture, dark.form))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, dark.file + ": is " + form_of(dark.form) + ", not " + form_of(picture)
+                                                   + " as " + file + "; give dark frames of the same camera");
 }
 
 }  // namespace lensprof

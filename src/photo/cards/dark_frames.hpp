@@ -19,12 +19,12 @@ struct DarkLevel {
     double spread = 0.0;            // standard deviation over the frame: what one level does not describe
 };
 
-// Median of the means of blocks, over all frames. Float samples in counts are divided by the white level as stated.
-// Failure names a file that is not dark, or not like the first.
-DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels &stated,
+// Median of the means of blocks, over all frames. Float samples in counts are divided by the white level in `scale`;
+// without (NULL), the level is in counts, too. Failure names a file that is not dark, or not like the first.
+DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels *scale,
                      Events &events);
 
-// Failure if a card is not a picture of the kind of the dark frames.
-void check_dark(const DarkLevel &dark, const Picture &card, const std::string &file);
+// Failure if a picture is not of the kind of the dark frames.
+void check_dark(const DarkLevel &dark, const Picture &picture, const std::string &file);
 
 }  // namespace lensprof

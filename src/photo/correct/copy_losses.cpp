@@ -1,6 +1,7 @@
 #include "photo/correct/copy_losses.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "photo/base/events.hpp"
@@ -61,7 +62,24 @@ void CopyLosses::Worst::add(const Correction &other, double of_other, double lim
     if (of_other > value) job = &other, value = of_other;
 }
 
-void CopyLosses::add(const Correction &job, double more_clipped) {
+bool is_fields_without_offset(const Correction &job) {
+    if (!job.model || job.levels || std::strcmp(job.model->provenance.method, "fields") != 0) return false;
+    const double *black = job.model->levels.black;
+    return std::all_of(black, black + 3, [](double level) { return level == 0.0; });
+}
+
+bool has_samples_above_one(const lensprof_image &rows) {
+    const uint32_t samples = rows.width * lensprof_layout_samples(rows.layout);
+    for (uint32_t y = 0; y < rows.height; y++) {
+        const auto *row = reinterpret_cast<const float *>(static_cast<const uint8_t *>(rows.data)
+                                                          + static_cast<ptrdiff_t>(y) * rows.row_bytes);
+        if (std::any_of(row, row + samples, [](float sample) { return sample > 1.0f; })) return true;
+    }
+    return false;
+}
+
+void CopyLosses::add(const Correction &job, double more_clipped, bool keeps_offset) {
+    offset_.add(job, keeps_offset, 0.5);
     lifted_.add(job, lift_of(job), largest_lift_ev);
     clipped_.add(job, more_clipped, largest_clipped);
 }
@@ -78,6 +96,10 @@ std::vector<std::string> CopyLosses::warnings() const {
                         + format(": the correction clips %s%.1f %% more of the pixels; use ",
                                  clipped_.count > 1 ? "up to " : "", 100.0 * clipped_.value)
                         + command_with(*clipped_.job, "linear") + ", which clips none");
+    if (offset_.count)
+        lines.push_back(with_others(offset_.job->source, offset_.count)
+                        + ": has float samples above 1, and the profile holds no offset of such samples; if the camera "
+                          "adds one, subtract it from the pictures first");
     return lines;
 }
 

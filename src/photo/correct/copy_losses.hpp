@@ -1,4 +1,5 @@
-// What a correction loses: pixels that it clips, and pictures that it lifts out of the dark.
+// What a correction loses: pixels that it clips, pictures that it lifts out of the dark, and offsets that no profile
+// holds.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +21,20 @@ private:
     uint64_t clipped_ = 0, pixels_ = 0;
 };
 
+// Whether a correction is a shading of fields without the offset of the samples: none was found, or it lies beyond the
+// limits of lensprof_levels, as that of counts in float samples.
+bool is_fields_without_offset(const Correction &job);
+
+// Whether a float sample exceeds 1: it is a count.
+bool has_samples_above_one(const lensprof_image &rows);
+
 // The copies of one run that are lifted by more than 2 EV, or clip more than 1 % more of their pixels than before.
 class CopyLosses {
 public:
-    // `job` must live as long as this.
-    void add(const Correction &job, double more_clipped);
+    // `job` must live as long as this. `keeps_offset`: it has counts in float samples, and its model no offset.
+    void add(const Correction &job, double more_clipped, bool keeps_offset = false);
 
-    // At most two lines, each with the worst copy and the number of others.
+    // At most three lines, each with the worst copy and the number of others.
     std::vector<std::string> warnings() const;
 
 private:
@@ -36,7 +44,7 @@ private:
         size_t count = 0;
         void add(const Correction &other, double of_other, double limit);
     };
-    Worst lifted_, clipped_;
+    Worst lifted_, clipped_, offset_;
 };
 
 }  // namespace lensprof

@@ -41,6 +41,7 @@ struct Finished {
     std::optional<Failure> failure;    // instead of both
     bool with_metadata = false;
     double more_clipped = 0.0;  // share of the pixels that the correction clips, minus that clipped before
+    bool keeps_offset = false;  // CopyLosses::add
 };
 
 // One picture in events.
@@ -69,6 +70,8 @@ private:
     const CropPlans crops_;
     const Picture result_;  // no pixels
     ClippedPixels clipped_before_, clipped_after_;
+    const bool has_no_offset_;  // the model, which belongs to the samples
+    bool exceeds_one_ = false;
     const bool thumbnails_;
     Thumbnail before_, after_;
     uint32_t strip_rows_, next_row_ = 0;
@@ -82,6 +85,7 @@ PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind
       plan_(options_, job.source),
       crops_(reader_.header(), job, kind),
       result_(header_of_result(reader_.header(), options_.target_sample)),
+      has_no_offset_(is_fields_without_offset(job) && reader_.header().sample == LENSPROF_SAMPLE_F32),
       thumbnails_(thumbnail_side > 0),
       strip_rows_(kind.strip_rows) {
     const Picture &source = reader_.header();
@@ -112,6 +116,7 @@ bool PictureCorrection::make(Strip &strip) {
     check_finite(from, next_row_, 1, job_.source);
     if (thumbnails_) before_.add(from);
     clipped_before_.add(from, next_row_);
+    exceeds_one_ = exceeds_one_ || (has_no_offset_ && has_samples_above_one(from));
     if (job_.crops.empty())
         check(lensprof_apply(plan_.get(), &from, &strip.written, 0, next_row_), job_.source);
     else
@@ -132,7 +137,8 @@ Finished PictureCorrection::run(bool split, Throughput &done) {
             done.add_pixels(uint64_t(strip.written.width) * strip.written.height);
         });
     const bool with_metadata = writer->finish();
-    return {std::move(writer), nullptr, std::nullopt, with_metadata, clipped_after_.share() - clipped_before_.share()};
+    return {std::move(writer), nullptr, std::nullopt, with_metadata, clipped_after_.share() - clipped_before_.share(),
+            exceeds_one_};
 }
 
 void PictureCorrection::run_unwritten() {
@@ -145,7 +151,7 @@ Finished copy_dng(const Correction &job) {
     auto output = std::make_unique<OutputFile>(job.target);
     write_opcodes(job.source, output->temporary(), *job.model);
     output->sync();
-    return {nullptr, std::move(output), std::nullopt, true, 0.0};
+    return {nullptr, std::move(output), std::nullopt, true, 0.0, false};
 }
 
 }  // namespace
@@ -179,7 +185,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
             correct_one(i);
         } catch (const Failure &failure) {
             if (!is_of_input(failure)) throw;
-            finished[i] = {nullptr, nullptr, failure, false, 0.0};
+            finished[i] = {nullptr, nullptr, failure, false, 0.0, false};
             if (sink) sink->put(i, SmallCopies());
         }
     };
@@ -194,8 +200,8 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         }
         finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
         parts.add(jobs[i].source, jobs[i].target);
-        if (!kind.simulate) losses.add(jobs[i], finished[i].more_clipped);
-        finished[i] = {nullptr, nullptr, std::nullopt, finished[i].with_metadata, 0.0};
+        if (!kind.simulate) losses.add(jobs[i], finished[i].more_clipped, finished[i].keeps_offset);
+        finished[i] = {nullptr, nullptr, std::nullopt, finished[i].with_metadata, 0.0, false};
         warn_of_written(jobs[i], finished[i].with_metadata, events);
         Json entry = {{"file", jobs[i].source}, {"output", jobs[i].target}};
         if (jobs[i].profile_id) entry["profile"] = jobs[i].profile_id;

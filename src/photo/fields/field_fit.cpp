@@ -50,10 +50,36 @@ void require_kind(const FieldKind &first, const FieldKind &other) {
                                                    + " ones; give pictures of one kind");
 }
 
-// The stated black level of a channel, 0..1 for integer samples.
+// A stated level, 0..1 for integer samples.
+double in_samples(const StatedLevel &level, double full_scale) {
+    return level.is_share ? level.number : level.number / full_scale;
+}
+
+bool is_black_stated(const FieldOptions &o) { return o.dark || !o.levels.black.empty(); }
+
+// The stated black level of a channel.
 double stated_black(const FieldOptions &o, uint32_t channels, uint32_t c, double full_scale) {
-    const StatedLevel &black = o.black[o.black.size() == 1 ? 0 : channels == 1 ? 1 : c];
-    return black.is_share ? black.number : black.number / full_scale;
+    if (o.dark) return o.dark->black[c];
+    const std::vector<StatedLevel> &black = o.levels.black;
+    return in_samples(black[black.size() == 1 ? 0 : channels == 1 ? 1 : c], full_scale);
+}
+
+// The stated white level; 0: the end of the range is found.
+double stated_white(const FieldOptions &o, const FieldKind &kind) {
+    const double full_scale = full_scale_of(kind.sample);
+    const double white = o.levels.white ? in_samples(*o.levels.white, full_scale) : 0.0;
+    if (o.levels.white && !(white > 0.0))
+        throw Failure(LENSPROF_ERROR_ARGUMENT, kind.name + ": its white level cannot be 0");
+    const bool is_integer = kind.sample == LENSPROF_SAMPLE_U8 || kind.sample == LENSPROF_SAMPLE_U16;
+    if (white > 1.0 && is_integer)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, kind.name
+                                                   + format(": its samples end at %.0f, below the stated level of %g",
+                                                            full_scale, o.levels.white->number));
+    for (uint32_t c = 0; white > 0.0 && is_black_stated(o) && c < kind.channels; c++)
+        if (!(stated_black(o, kind.channels, c, full_scale) < white))
+            throw Failure(LENSPROF_ERROR_ARGUMENT,
+                          kind.name + ": its black level is not below its white level; correct the stated levels");
+    return white;
 }
 
 using Fields = std::unique_ptr<lensprof_fields, void (*)(lensprof_fields *)>;
@@ -65,7 +91,10 @@ public:
 
     void add(const FieldPage &page, const Picture &picture) {
         const FieldKind kind = kind_of_field(page.name, picture);
-        if (!fields_) begin(kind), found_.first = page;
+        if (!fields_) {
+            if (o_.dark) check_dark(*o_.dark, picture, page.name);
+            begin(kind), found_.first = page;
+        }
         require_kind(first_, kind);
         const lensprof_image view = picture.view();
         lensprof_error error{};
@@ -83,9 +112,10 @@ private:
         lensprof_fields_options options;
         lensprof_fields_options_init(&options);
         options.channels = kind.channels, options.width = kind.width, options.height = kind.height;
-        options.given_offset = !o_.black.empty();
-        for (uint32_t c = 0; c < 3 && !o_.black.empty(); c++)
+        options.given_offset = is_black_stated(o_);
+        for (uint32_t c = 0; c < 3 && is_black_stated(o_); c++)
             options.offset[c] = stated_black(o_, kind.channels, c, full_scale);
+        options.white = stated_white(o_, kind);
         if (o_.gamma || o_.profile) options.response = found_.response.data();
         options.responses = static_cast<uint32_t>(found_.response.size());
         options.progress = on_fit_progress, options.progress_user = &events_;
@@ -93,7 +123,7 @@ private:
         lensprof_error error{};
         check(lensprof_fields_create(&options, &made, &error), kind.name, &error);
         fields_.reset(made);
-        found_.is_black_given = !o_.black.empty();
+        found_.is_black_given = is_black_stated(o_);
         found_.width = kind.width, found_.height = kind.height, found_.full_scale = full_scale;
     }
 
@@ -177,7 +207,7 @@ constexpr double black_noise = 0.02;  // of the light: cells without light are d
 
 // Failure if pictures are darker than the black level that was stated.
 void check_black(const FieldOptions &o, const FieldFit &found) {
-    for (uint32_t c = 0; c < found.fit.channels && !o.black.empty(); c++) {
+    for (uint32_t c = 0; c < found.fit.channels && is_black_stated(o); c++) {
         const double stated = found.full_scale * stated_black(o, found.fit.channels, c, found.full_scale),
                      used = found.full_scale * found.fit.channel[c].offset;
         std::vector<double> levels;
@@ -190,7 +220,7 @@ void check_black(const FieldOptions &o, const FieldFit &found) {
                           found.names.front()
                               + format(": the pictures are darker than the black level of %g: parts of them lie at %g; "
                                        "correct %s",
-                                       stated, used, option_name("black").c_str()));
+                                       stated, used, o.dark ? o.dark->file.c_str() : option_name("black").c_str()));
     }
 }
 

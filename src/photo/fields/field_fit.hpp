@@ -9,6 +9,7 @@
 #include <lensprof/fields.h>
 
 #include "photo/calibration/profile_store.hpp"
+#include "photo/cards/dark_frames.hpp"
 #include "photo/fields/field_list.hpp"
 #include "photo/pictures/picture.hpp"
 #include "photo/pictures/stated_levels.hpp"
@@ -20,7 +21,8 @@ struct FieldOptions {
     StoreOptions store;
     int64_t profile = 0;             // whose response the pictures have; 0: none
     std::optional<double> gamma;     // of the response x^(1/gamma)
-    std::vector<StatedLevel> black;  // of the samples: one, or red, green and blue; empty: estimated
+    StatedLevels levels;             // of the samples; no black level: it is estimated
+    std::optional<DarkLevel> dark;   // instead of a stated black level
     uint32_t channel = 0;            // of stacks with several, counted from 1; 0: not given
     bool linear = false;             // stated by the user
 };
