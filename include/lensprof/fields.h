@@ -105,11 +105,11 @@ typedef struct lensprof_fields_channel {
     uint32_t smoothness;   /* index of the one chosen, of those tried */
     double shading_error;  /* standard error of S, rms over the frame, share: of chance, by fits without each of ten
                               groups of pictures, of the smoothness, and of what no smooth surface follows */
-    double heldout_rms; /* residual of held-out pictures, share of the light, with the shading */
-    double even_rms;    /* the same with S = 1 */
-    double pattern;     /* rms of fine detail that all pictures have in common, in the shading or beyond it, share of
-                           the light: dust, edges, or one scene */
-    double pattern_share;    /* its share of the variance of a cell */
+    double heldout_rms;    /* residual of held-out pictures, share of the light, with the shading */
+    double even_rms;       /* the same with S = 1 */
+    double pattern;        /* rms of fine detail that all pictures have in common, in the shading or beyond it, share of
+                              the light: dust, edges, or one scene */
+    double pattern_share;  /* its share of the variance of a cell */
     double background_share; /* share of the cells in the narrowest component of the content */
     double background_sigma; /* standard deviation of ln C in it */
     uint32_t iterations;

@@ -49,7 +49,7 @@ struct Near {
     double sum = 0.0, squares = 0.0, count = 0.0, below = 0.0;
 };
 
-// Four values at once.
+// Four values in one register.
 typedef float Lanes __attribute__((vector_size(4 * sizeof(float))));
 
 Near near(const std::vector<float> &values, float center, float limit, float low) {

@@ -20,7 +20,7 @@ constexpr double kStill = 1e-6;         // of a level
 constexpr double kConverged = 1e-9;     // of full scale
 constexpr size_t kFullPictures2 = 400;  // square of the pictures of a group from which on some cells suffice
 constexpr double kOutlier2 = 9.0;       // of chi^2 per degree of freedom, from where a cell loses weight
-constexpr double kShown = 0.5;          // of the stated error: an error above it is no news from the pictures
+constexpr double kShown = 0.5;          // of the stated error: above it, the pictures show nothing new
 constexpr double kLargestShare = 0.9;   // of the darkest cell: the rest is light
 
 using Groups = std::vector<std::vector<uint32_t>>;

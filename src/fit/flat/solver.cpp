@@ -15,10 +15,11 @@
 namespace lensprof {
 namespace {
 
-constexpr double kCutoff = 4.0;                             // of the robust loss, sigmas of a cell's typical size
-constexpr int kRounds = 20;                                 // of estimating noise and fit in turn
-constexpr double kNoiseTolerance = 1e-3;                    // largest change of the noise parameters at convergence
-constexpr DescentLimits kLimits{8, 1e-6, 1e12, 1e-8};       // of a round: with the noise of a poor fit, steps are short
+constexpr double kCutoff = 4.0;           // of the robust loss, sigmas of a cell's typical size
+constexpr int kRounds = 12;               // of estimating noise and fit in turn, of which the first are cut off:
+constexpr int kShortRounds = 3;           // with the noise of a poor fit, steps are short
+constexpr double kNoiseTolerance = 1e-3;  // largest change of the noise parameters at convergence
+constexpr DescentLimits kLimits{60, 1e-6, 1e12, 1e-8}, kShortLimits{8, 1e-6, 1e12, 1e-8};
 constexpr DescentLimits kRoughLimits{8, 1e-6, 1e12, 1e-4};  // of the first descent
 constexpr double kSmallestScale = 0.2;
 constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;   // of chi-squared, 1 and 3 degrees of freedom
@@ -349,7 +350,7 @@ void refine_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     measure_noise(problem, estimate);
     for (int round = 0; round < kRounds; round++) {
         Eigen::Vector3d before = state();
-        descend(problem, estimate, kLimits);
+        descend(problem, estimate, round < kShortRounds ? kShortLimits : kLimits);
         measure_noise(problem, estimate);
         if (estimate.converged && (state() - before).norm() < kNoiseTolerance * before.norm()) break;
     }

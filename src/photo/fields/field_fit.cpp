@@ -72,9 +72,10 @@ double stated_white(const FieldOptions &o, const FieldKind &kind) {
         throw Failure(LENSPROF_ERROR_ARGUMENT, kind.name + ": its white level cannot be 0");
     const bool is_integer = kind.sample == LENSPROF_SAMPLE_U8 || kind.sample == LENSPROF_SAMPLE_U16;
     if (white > 1.0 && is_integer)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, kind.name
-                                                   + format(": its samples end at %.0f, below the stated level of %g",
-                                                            full_scale, o.levels.white->number));
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      kind.name
+                          + format(": its samples end at %.0f, below the stated level of %g; correct %s", full_scale,
+                                   o.levels.white->number, option_name("white_level").c_str()));
     for (uint32_t c = 0; white > 0.0 && is_black_stated(o) && c < kind.channels; c++)
         if (!(stated_black(o, kind.channels, c, full_scale) < white))
             throw Failure(LENSPROF_ERROR_ARGUMENT,

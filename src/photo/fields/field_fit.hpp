@@ -19,12 +19,12 @@ namespace lensprof {
 
 struct FieldOptions {
     StoreOptions store;
-    int64_t profile = 0;             // whose response the pictures have; 0: none
-    std::optional<double> gamma;     // of the response x^(1/gamma)
-    StatedLevels levels;             // of the samples; no black level: it is estimated
-    std::optional<DarkLevel> dark;   // instead of a stated black level
-    uint32_t channel = 0;            // of stacks with several, counted from 1; 0: not given
-    bool linear = false;             // stated by the user
+    int64_t profile = 0;            // whose response the pictures have; 0: none
+    std::optional<double> gamma;    // of the response x^(1/gamma)
+    StatedLevels levels;            // of the samples; no black level: it is estimated
+    std::optional<DarkLevel> dark;  // instead of a stated black level
+    uint32_t channel = 0;           // of stacks with several, counted from 1; 0: not given
+    bool linear = false;            // stated by the user
 };
 
 struct FieldFit {
