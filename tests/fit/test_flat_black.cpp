@@ -134,6 +134,22 @@ static void a_poorly_shown_offset_is_left_alone(void **) {
     }
 }
 
+// Three equal offsets of about three errors: subtracted from all channels or from none.
+static void channels_are_decided_together(void **) {
+    for (uint32_t seed = 0; seed < 6; seed++) {
+        FlatPictures p = small_card(0.008);
+        p.sample = LENSPROF_SAMPLE_U16;
+        p.noise = 3.0 / 255.0;
+        p.level = 0.7 + 0.01 * seed;
+        p.shoot(0);
+        p.shoot(0, -1.0);
+        const auto r = p.fit(open_options(p));
+        size_t subtracted = 0;
+        for (const double black : r->levels.black) subtracted += black != 0.0;
+        assert_true(subtracted == 0 || subtracted == 3);
+    }
+}
+
 static void an_offset_adds_to_the_stated_level(void **) {
     FlatPictures p = small_card(0.0625);
     p.levels.white = 0.5;
@@ -230,6 +246,7 @@ int main() {
         cmocka_unit_test(grey_pictures_have_one),
         cmocka_unit_test(shots_with_a_light_of_their_own_show_it_too),
         cmocka_unit_test(a_poorly_shown_offset_is_left_alone),
+        cmocka_unit_test(channels_are_decided_together),
         cmocka_unit_test(an_offset_adds_to_the_stated_level),
         cmocka_unit_test(one_level_leaves_the_corner_open),
         cmocka_unit_test(encoded_pictures_have_no_offset),

@@ -84,14 +84,8 @@ public:
 
     double offset() const { return offset_; }
 
-    // Whether the pictures tell more than the stated error did, and enough for the corners: an offset that is neither
-    // clearly present nor known well enough is noise, which would make corners worse.
-    bool is_shown() const {
-        const double error = sigma();
-        const bool is_clear = std::abs(offset_) > flat_limits::kClearOffset * error;
-        const double in_corner = error * (1.0 / std::max(darkest_ - offset_, 1e-6) - 1.0 / (brightest_ - offset_));
-        return error < kShown * sigma_ && (is_clear || in_corner < flat_limits::kLargestCornerSigma);
-    }
+    // Whether the pictures tell more than the stated error did.
+    bool is_shown() const { return sigma() < kShown * sigma_; }
 
     // Standard error, from the curvature and the scatter of the cells.
     double sigma() const {
@@ -114,7 +108,6 @@ private:
                             1.0 / std::sqrt(variance),
                             {1.0, (one.x - 0.5 * fit.grid.width) / half, (one.y - 0.5 * fit.grid.height) / half}});
             darkest_ = std::min(darkest_, value);
-            brightest_ = std::max(brightest_, value);
         }
         if (seen.size() > 1) cells_.push_back(std::move(seen));
     }
@@ -215,7 +208,7 @@ private:
     }
 
     int terms_;  // of a level
-    double sigma_, offset_ = 0.0, scatter_ = 1.0, darkest_ = 1.0, brightest_ = 0.0;
+    double sigma_, offset_ = 0.0, scatter_ = 1.0, darkest_ = 1.0;
     std::vector<SeenCell> cells_;
     std::vector<double> level_;  // terms of ln a_n; the first number is that of the offset, and not used
     Eigen::MatrixXd normal_;
@@ -226,6 +219,35 @@ bool are_linear(const lensprof_flat_options &o) {
     for (uint32_t c = 0; o.response && c < o.responses; c++)
         if (o.response[c].kind != LENSPROF_RESPONSE_LINEAR) return false;
     return true;
+}
+
+// What an offset of 1 changes of ln M from the darkest to the brightest cell of the picture that has most light.
+double effect_in_corner(const FlatFit &fit, size_t channel, double offset) {
+    double effect = 0.0, most = 0.0;
+    for (const CellPicture &picture : fit.pictures) {
+        double dark = INFINITY, bright = 0.0;
+        for (const Cell &cell : picture.cells) {
+            const double value = static_cast<double>(cell.value[channel]) - offset;
+            if (cell.state == CellState::used) dark = std::min(dark, value), bright = std::max(bright, value);
+        }
+        if (bright > most) most = bright, effect = 1.0 / std::max(dark, 1e-6) - 1.0 / bright;
+    }
+    return effect;
+}
+
+// An offset that is neither clearly present nor known well enough for the corners is noise, which would make them
+// worse. The same for all channels, whose falloffs would differ otherwise.
+bool is_clear_or_exact(const FlatFit &fit, const FlatOffset &found) {
+    double chi2 = 0.0, most = 0.0;
+    int channels = 0;
+    for (size_t c = 0; c < fit.options.channels; c++) {
+        if (found.sigma[c] == 0.0) continue;
+        channels++;
+        chi2 += std::pow(found.value[c] / found.sigma[c], 2);
+        most = std::max(most, found.sigma[c] * effect_in_corner(fit, c, found.value[c]));
+    }
+    const double clear = std::pow(flat_limits::kClearOffset, 2) + 2.6 * (channels - 1);  // 99.73 % of chi-squared
+    return chi2 > clear || most < flat_limits::kLargestCornerSigma;
 }
 
 void subtract(CellPicture &picture, size_t channel, double offset) {
@@ -245,21 +267,30 @@ void subtract_offset(FlatFit &fit) {
     if (!(fit.options.black_sigma > 0.0) || !are_linear(fit.options)) return;
     const Groups groups = groups_of(fit);
     const size_t channels = fit.options.channels;
-    fit.offset.sigma.fill(fit.options.black_sigma);
+    FlatOffset found;
     size_t shown = 0;
     for (size_t c = 0; c < channels; c++) {
         OffsetFit offset(fit, groups, c);
         if (!offset.solve() || !offset.is_shown()) continue;
-        fit.offset.value[c] = offset.offset(), fit.offset.sigma[c] = offset.sigma();
+        found.value[c] = offset.offset(), found.sigma[c] = offset.sigma();
         shown++;
     }
-    fit.offset.is_shown = shown == channels;
+    fit.offset.sigma.fill(fit.options.black_sigma);
     if (shown == 0) return;
+    if (!is_clear_or_exact(fit, found)) {  // as one light has it for all channels
+        for (size_t c = 0; c < channels; c++)
+            if (found.sigma[c] > 0.0)
+                fit.offset.sigma[c] = std::min(std::hypot(found.value[c], found.sigma[c]), fit.options.black_sigma);
+        return;
+    }
     double mean = 0.0;
     for (size_t c = 0; c < channels; c++) {
-        mean += fit.offset.value[c] / static_cast<double>(channels);
-        for (CellPicture &picture : fit.pictures) subtract(picture, c, fit.offset.value[c]);
+        if (found.sigma[c] == 0.0) continue;
+        fit.offset.value[c] = found.value[c], fit.offset.sigma[c] = found.sigma[c];
+        mean += found.value[c] / static_cast<double>(channels);
+        for (CellPicture &picture : fit.pictures) subtract(picture, c, found.value[c]);
     }
+    fit.offset.is_shown = shown == channels;
     for (lensprof_flat_image &image : fit.images)
         image.black = std::max((image.black - mean) / (1.0 - mean), 0.0),
         image.white = (image.white - mean) / (1.0 - mean);
