@@ -133,6 +133,7 @@ void add_entry(LensEntries &lens, const lensprof_profile &profile, uint32_t inde
     demand_of_profile(is_new, index,
                       "lens " + in_quotes(key.lens) + ": same setting as an earlier profile; leave one out");
     if (is_far) put(lens.far, kNearM);
+    if (!is_far && key.distance_m >= kNearM) put(lens.far, kNearM), put(lens.far, kLensfunInfinityM);
 }
 
 std::map<Setting, Curve> all_entries(const LensEntries &lens) {

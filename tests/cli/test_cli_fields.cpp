@@ -210,6 +210,7 @@ void test_offset_of_float_counts_is_noted(void **) {
     const Outcome flat =
         run_words(fields({file, "--camera", "Orca", "--lens", "10x", "--key", "processing=raw", "--db", db}));
     assert_true(contains(flat.err, "the profile cannot hold the offset of 1"));
+    assert_refused(usage, fields({file, "--no-store", "--black", "5%"}), {"counts.fits", "as counts"});
     Picture picture = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_GREY);
     auto *sample = reinterpret_cast<float *>(picture.pixels.data());
     for (size_t i = 0; i < size_t(width) * height; i++) sample[i] = 700.0f;

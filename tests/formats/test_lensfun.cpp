@@ -559,6 +559,9 @@ void test_into(void **) {
     assert_non_null(strstr(replaced_text.c_str(), "distance=\"1000\""));
     assert_null(strstr(replaced_text.c_str(), "k1=\"-2\""));
     assert_int_equal(read_lensfun(replaced_text).entries.size(), 3);
+    // Measured at 10 m, or farther: Lensfun's two distances for far hold it.
+    const auto far_from_10 = read_lensfun(add(lens_profile("FE 85mm F1.8", 1, 85, 4, 10, -0.25), kInto)).entries;
+    assert_int_equal(far_from_10.size(), 4);
     const std::string with_new =
         add(lens_profile("FE 35mm F1.8", 1, 35, 4, 2, -0.25), kInto);  // a lens that is not there
     const size_t end = kInto.find("</lensdatabase>");

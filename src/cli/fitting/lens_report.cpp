@@ -321,7 +321,8 @@ Json lens_json(const LensCards &cards) {
             json["corner"] = corner.value, json["corner_sigma"] = number_or_null(corner.sigma);
         }
         json["lens_file_ev"] = n < cards.lens_file_ev.size() ? number_or_null(cards.lens_file_ev[n]) : Json();
-        json["good_for_lens_file"] = setting.is_good() && cards.is_good_for_lensfun(n);
+        json["good_for_lens_file"] =
+            n < cards.lens_file_ev.size() ? Json(setting.is_good() && cards.is_good_for_lensfun(n)) : Json();
         json["notices"] = notices;
         json["result"] = setting.fit ? flat_json(*setting.fit) : Json();
         settings.push_back(json);

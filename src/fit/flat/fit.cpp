@@ -14,7 +14,7 @@ namespace {
 constexpr double kDiffers[] = {22.5,
                                32.9};  // chi-squared of the curves' differences, 6 and 12 degrees of freedom: 99.9 %
 constexpr double kSmallestDifference = 2e-3;  // of M in the corner: half a level
-constexpr double kMisfit = 5e-4;              // of the light: what k1..k3 leave that another form is tried for,
+constexpr double kMisfit = 1e-4;              // of the light: what k1..k3 leave that another form is tried for,
 constexpr double kClearlyBetter = 50.0;       // and how much that must lower the objective: 10 sigma
 constexpr double kEven = 22.5;                // chi-squared that six terms of a plane gain by chance: 99.9 %
 constexpr double kPlausibleCenter = 0.06;     // half diagonals, three standard deviations of the prior

@@ -214,7 +214,9 @@ bool add_levels(const StatedLevels &added, const Picture &first, const std::stri
 
 // Divides float counts by that at saturation, samples as well as levels. Returns whether the samples were counts.
 bool scale_counts(CardInput &input, StatedLevels &stated, Events &events) {
-    const auto count = count_at_white(stated, input.levels, input.pictures.front(), input.files.front(), events);
+    const auto counts = std::find_if(input.pictures.begin(), input.pictures.end(), are_counts);
+    const auto i = counts == input.pictures.end() ? 0 : static_cast<size_t>(counts - input.pictures.begin());
+    const auto count = count_at_white(stated, input.levels, input.pictures[i], input.files[i], events);
     if (!count) return false;
     for (Picture &picture : input.pictures) divide_samples(*count, picture);
     stated = levels_in_shares(stated, *count), input.levels = levels_in_shares(input.levels, *count);

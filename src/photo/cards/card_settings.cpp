@@ -131,9 +131,9 @@ void note_rounding(const CardSetting &setting, Events &events) {
     for (const CardPicture &picture : setting.pictures) {
         const lensprof_profile_key &other = picture.metadata.key;
         const std::string label = describe_setting(other, picture.file);
-        const bool is_near = std::isfinite(other.distance_m) && other.distance_m < far_m;
+        const bool is_stated = other.distance_m != LENSPROF_UNKNOWN && key.distance_m != LENSPROF_UNKNOWN;
         if (other.focal_mm == key.focal_mm && other.aperture == key.aperture
-            && (!is_near || other.distance_m == key.distance_m))
+            && (!is_stated || other.distance_m == key.distance_m))
             continue;
         return events.note(setting.label, picture.file + " states " + label
                                               + ": taken as one setting, by the rounding of what cameras state; "

@@ -31,6 +31,8 @@ bool are_counts(const Picture &picture) {
 std::optional<double> count_at_white(const StatedLevels &stated, const StatedLevels &of_file, const Picture &picture,
                                      const std::string &file, Events &events) {
     if (picture.sample != LENSPROF_SAMPLE_F32) return std::nullopt;
+    if (stated.white && stated.white->number == 0.0)
+        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": its white level cannot be 0");
     if (stated.white && !stated.white->is_share) return stated.white->number;
     if (!are_counts(picture)) return std::nullopt;
     if (!of_file.white)

@@ -62,10 +62,11 @@ void CopyLosses::Worst::add(const Correction &other, double of_other, double lim
     if (of_other > value) job = &other, value = of_other;
 }
 
-bool is_fields_without_offset(const Correction &job) {
-    if (!job.model || job.levels || std::strcmp(job.model->provenance.method, "fields") != 0) return false;
+bool lacks_offset_of_counts(const Correction &job) {
+    if (!job.model || job.levels) return false;
     const double *black = job.model->levels.black;
-    return std::all_of(black, black + 3, [](double level) { return level == 0.0; });
+    return std::strcmp(job.model->provenance.method, "fields") == 0
+           || std::any_of(black, black + 3, [](double level) { return level != 0.0; });
 }
 
 bool has_samples_above_one(const lensprof_image &rows) {
@@ -98,8 +99,8 @@ std::vector<std::string> CopyLosses::warnings() const {
                         + command_with(*clipped_.job, "linear") + ", which clips none");
     if (offset_.count)
         lines.push_back(with_others(offset_.job->source, offset_.count)
-                        + ": has float samples above 1, and the profile holds no offset of such samples; if the camera "
-                          "adds one, subtract it from the pictures first");
+                        + ": has float samples above 1, and the profile holds no offset of such samples, but shares of "
+                          "full scale; divide them by their count at saturation, or subtract their offset, first");
     return lines;
 }
 

@@ -21,9 +21,9 @@ private:
     uint64_t clipped_ = 0, pixels_ = 0;
 };
 
-// Whether a correction is a shading of fields without the offset of the samples: none was found, or it lies beyond the
-// limits of lensprof_levels, as that of counts in float samples.
-bool is_fields_without_offset(const Correction &job);
+// Whether a correction lacks the offset of counts in float samples: the levels of a profile are shares of full scale,
+// and no profile holds that of fields in counts.
+bool lacks_offset_of_counts(const Correction &job);
 
 // Whether a float sample exceeds 1: it is a count.
 bool has_samples_above_one(const lensprof_image &rows);

@@ -85,7 +85,7 @@ PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind
       plan_(options_, job.source),
       crops_(reader_.header(), job, kind),
       result_(header_of_result(reader_.header(), options_.target_sample)),
-      has_no_offset_(is_fields_without_offset(job) && reader_.header().sample == LENSPROF_SAMPLE_F32),
+      has_no_offset_(lacks_offset_of_counts(job) && reader_.header().sample == LENSPROF_SAMPLE_F32),
       thumbnails_(thumbnail_side > 0),
       strip_rows_(kind.strip_rows) {
     const Picture &source = reader_.header();

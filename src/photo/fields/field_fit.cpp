@@ -9,6 +9,7 @@
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/fit.hpp"
+#include "photo/cards/count_samples.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/orientation.hpp"
 #include "photo/pictures/picture.hpp"
@@ -55,6 +56,11 @@ double in_samples(const StatedLevel &level, double full_scale) {
     return level.is_share ? level.number : level.number / full_scale;
 }
 
+bool has_shares(const StatedLevels &levels) {
+    const auto is_share = [](const StatedLevel &level) { return level.is_share && level.number != 0.0; };
+    return (levels.white && is_share(*levels.white)) || std::any_of(levels.black.begin(), levels.black.end(), is_share);
+}
+
 bool is_black_stated(const FieldOptions &o) { return o.dark || !o.levels.black.empty(); }
 
 // The stated black level of a channel.
@@ -94,6 +100,9 @@ public:
         const FieldKind kind = kind_of_field(page.name, picture);
         if (!fields_) {
             if (o_.dark) check_dark(*o_.dark, picture, page.name);
+            if (has_shares(o_.levels) && are_counts(picture))
+                throw Failure(LENSPROF_ERROR_ARGUMENT,
+                              page.name + ": its float samples are counts; state its levels as counts, such as 200");
             begin(kind), found_.first = page;
         }
         require_kind(first_, kind);
