@@ -132,8 +132,7 @@ void add_entry(LensEntries &lens, const lensprof_profile &profile, uint32_t inde
     const bool is_new = is_far ? put(lens.far, kLensfunInfinityM) : put(lens.measured, key.distance_m);
     demand_of_profile(is_new, index,
                       "lens " + in_quotes(key.lens) + ": same setting as an earlier profile; leave one out");
-    if (is_far) put(lens.far, kNearM);
-    if (!is_far && key.distance_m >= kNearM) put(lens.far, kNearM), put(lens.far, kLensfunInfinityM);
+    if (is_far || key.distance_m >= kNearM) put(lens.far, kNearM), put(lens.far, kLensfunInfinityM);
 }
 
 std::map<Setting, Curve> all_entries(const LensEntries &lens) {

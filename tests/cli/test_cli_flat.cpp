@@ -181,6 +181,9 @@ void test_the_black_level(void **) {
     const std::string dim = shoot("dim.tif", card);
     card.dark = true;
     const std::string dark = shoot("dark.tif", card), again = shoot("dark2.tif", card);
+    Picture not_finite = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB);
+    reinterpret_cast<float *>(not_finite.pixels.data())[7] = NAN;
+    write_picture(in_folder("odd_dark.tif"), not_finite);
     const Words common = {"--linear", "--fit", "white-level=4095,center=fixed,light=even", "--json"};
     const auto measured = [&](const Words &words) { return json_of(flat(words) + common + Words{"--no-store"}); };
 
@@ -244,6 +247,7 @@ void test_the_black_level(void **) {
         {not_usable, {bright, "--dark", dim}, "dim.tif: is not dark"},
         {usage, {bright, "--dark", shoot_grey("grey_dark.tif")}, "grey_dark.tif"},
         {unreadable, {bright, "--dark", in_folder("none.tif")}, "none.tif"},
+        {unreadable, {bright, "--dark", in_folder("odd_dark.tif")}, "odd_dark.tif: pixel 2, 0 is not a finite"},
         {usage, {bright, "--fit", "white-level=0"}, "white level"},
     };
     for (const auto &one : wrong)

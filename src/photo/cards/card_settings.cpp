@@ -85,11 +85,9 @@ bool is_same_focal(double a, double b) {
     return std::fabs(a - b) < 0.5 * unit + 1e-6;
 }
 
-constexpr double far_m = 9.0;
-
 // Unknown distances are taken as far; all far ones are alike, near ones within the rounding of EXIF.
 bool is_same_distance(double a, double b) {
-    constexpr double rounding = 0.1;
+    constexpr double far_m = 9.0, rounding = 0.1;
     const auto is_far = [](double distance) { return distance == LENSPROF_UNKNOWN || distance >= far_m; };
     return is_far(a) || is_far(b) ? is_far(a) && is_far(b) : std::fabs(std::log(a / b)) < rounding;
 }

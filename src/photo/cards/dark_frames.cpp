@@ -8,6 +8,7 @@
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/cards/count_samples.hpp"
+#include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
 namespace {
@@ -45,13 +46,6 @@ std::optional<double> block_mean(const Picture &picture, uint32_t block, uint32_
     return sum / count;
 }
 
-void require_finite(const Picture &picture, const std::string &file) {
-    if (picture.sample != LENSPROF_SAMPLE_F32) return;
-    for (size_t n = 0; n < picture.pixels.size() / sizeof(float); n++)
-        if (!std::isfinite(sample_value(picture.sample, picture.pixels.data(), n)))
-            throw Failure(LENSPROF_ERROR_READ, file + ": has samples that are not finite numbers; leave it out");
-}
-
 std::string form_of(const Picture &picture) {
     static const char *const types[] = {"8 bit", "16 bit", "float", "half float"};
     return format("%u x %u px, %s, ", picture.frame_width, picture.frame_height, types[picture.sample])
@@ -76,7 +70,7 @@ DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, c
     uint32_t channels = 0;
     for (const std::string &file : files) {
         Picture picture = read_picture(file, reduced);
-        require_finite(picture, file);
+        check_finite(picture.view(), 0, picture.reduction, file);
         const auto count = scale ? count_at_white(*scale, {}, picture, file, events) : std::nullopt;
         if (count) divide_samples(*count, picture);
         if (dark.file.empty()) {

@@ -151,7 +151,7 @@ Finished copy_dng(const Correction &job) {
     auto output = std::make_unique<OutputFile>(job.target);
     write_opcodes(job.source, output->temporary(), *job.model);
     output->sync();
-    return {nullptr, std::move(output), std::nullopt, true, 0.0, false};
+    return {nullptr, std::move(output), std::nullopt, true};
 }
 
 }  // namespace
@@ -185,7 +185,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
             correct_one(i);
         } catch (const Failure &failure) {
             if (!is_of_input(failure)) throw;
-            finished[i] = {nullptr, nullptr, failure, false, 0.0, false};
+            finished[i] = {nullptr, nullptr, failure};
             if (sink) sink->put(i, SmallCopies());
         }
     };
@@ -201,7 +201,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
         parts.add(jobs[i].source, jobs[i].target);
         if (!kind.simulate) losses.add(jobs[i], finished[i].more_clipped, finished[i].keeps_offset);
-        finished[i] = {nullptr, nullptr, std::nullopt, finished[i].with_metadata, 0.0, false};
+        finished[i] = {nullptr, nullptr, std::nullopt, finished[i].with_metadata};
         warn_of_written(jobs[i], finished[i].with_metadata, events);
         Json entry = {{"file", jobs[i].source}, {"output", jobs[i].target}};
         if (jobs[i].profile_id) entry["profile"] = jobs[i].profile_id;
