@@ -135,6 +135,8 @@ typedef struct lensprof_apply_options {
     uint32_t reserved3;                       /* 0 */
     const lensprof_levels *levels;            /* of the input; NULL = none; read during plan init only */
     const lensprof_levels *output_levels; /* of the output; `levels` again: black is put back; NULL: the output is B' */
+    const lensprof_image_circle *image_circle; /* outside of it M is 1; NULL = none, or the blob's, with which it must
+                                                  be NULL; read during plan init only */
 } lensprof_apply_options;
 
 /* chroma: M of a channel is replaced by M / Y, where Y = 0.2126 M_red + 0.7152 M_green + 0.0722 M_blue is the luminance
@@ -144,7 +146,7 @@ typedef struct lensprof_apply_options {
  *
  * Levels: a linear response then counts as linear encoding, which is not clipped at black, so that noise about black
  * keeps its mean. Integer output is clipped at the white level of the output. Integer plans (fixed.h) are UNSUPPORTED
- * with levels. */
+ * with levels, and with an image circle. */
 
 /* Correct, encoded input and output, u8 RGB in and out, exposures 0 EV, strength 1. The rest is zero; the caller must
  * set it. */
@@ -153,10 +155,10 @@ static inline void lensprof_apply_options_init(lensprof_apply_options *options) 
     lensprof_apply_options_init_sized(options, sizeof *options);
 }
 
-/* Uses the model of a profile: responses, vignettings, gain grid and levels (of input and output)
- * point into *profile, which must not change until the plan is made; the blob is cleared. All other options stay.
- * Errors: ARGUMENT; STRUCT_SIZE of either; UNSUPPORTED if the profile has levels and options of an older version have
- * no room for them. */
+/* Uses the model of a profile: responses, vignettings, gain grid, levels (of input and output) and image circle point
+ * into *profile, which must not change until the plan is made; the blob is cleared. All other options stay.
+ * Errors: ARGUMENT; STRUCT_SIZE of either; UNSUPPORTED if the profile has levels or an image circle and options of an
+ * older version have no room for them. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *options,
                                                                                   const lensprof_profile *profile);
 

@@ -16,7 +16,7 @@
  * and the falloff is fitted to the result (equation 14):
  *     sum over cells of ( E - t L0 M(r) )^2,        M(0) = 1.
  * M is a polynomial in r^2 or, where this fits far better, as for deep falloffs, the exponential of one; the profile
- * then holds the nearest polynomial, and a gain grid the rest. What lies beyond the image circle is left out.
+ * then holds the nearest polynomial, and a gain grid the rest. What lies outside of the image circle is left out.
  *
  * Beyond the paper: cells are weighted by their noise, outliers are down-weighted, channels get curves of their own if
  * they differ, the centre is free, the gradient of the light is estimated, and the result has a covariance and
@@ -189,8 +189,8 @@ typedef struct lensprof_flat_result {
                                      centre of M. 0 x 0 if not requested, or if the pictures do not constrain it */
     double corner;                /* M times grid: mean of the corners and channels; with an edge, mean along
                                      `radius` */
-    double edge_radius; /* where the image circle, or something in front of the lens, ends the data: half diagonals from
-                           the middle of the frame; 0 = the data end with the frame */
+    double edge_radius; /* where the data end: the radius of the image circle, or the distance of what is nearest in
+                           front of the lens from the middle of the frame, half diagonals; 0 = with the frame */
     double edge_share;  /* share of the frame beyond the edge, which was left out */
     double light_ev;    /* largest change of the falloff in a corner if the light were stated to be even (PLANE was
                            chosen) or a plane (EVEN was chosen), EV; 0 if the light was not chosen by the data */
@@ -201,6 +201,7 @@ typedef struct lensprof_flat_result {
     double black_ev;         /* change of the falloff in the corner if the black level is off by this, EV */
     uint32_t black_shown;    /* 1: the pictures determine the black level better than the options do */
     uint32_t reserved;       /* 0 */
+    lensprof_image_circle image_circle; /* if the data end at one; all 0 = none */
 } lensprof_flat_result;
 
 /* An empty result. */

@@ -183,6 +183,22 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_levels_validate(const le
 LENSPROF_API double lensprof_levels_to_value(const lensprof_levels *levels, uint32_t channel, double sample);
 LENSPROF_API double lensprof_levels_to_sample(const lensprof_levels *levels, uint32_t channel, double value);
 
+/* The circle that the lens lights up, where it does not cover the frame: that of a fisheye, or of a lens for smaller
+ * sensors. What lies outside is dark: no falloff describes it, and corrections leave it alone (M = 1). Frozen value
+ * struct. */
+typedef struct lensprof_image_circle {
+    double center[2]; /* half diagonals to the right of and below the middle of the frame, -1..1 */
+    double radius;    /* half diagonals, up to 4; all 0 = the lens covers the frame, or it is not known */
+} lensprof_image_circle;
+
+/* LENSPROF_OK if the numbers are within these ranges. Error: ARGUMENT. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_image_circle_validate(const lensprof_image_circle *circle);
+
+/* 1 if pixel (x, y), which may be fractional, of a frame of width x height pixels lies in a valid circle, or its radius
+ * is 0; else 0. */
+LENSPROF_API int lensprof_image_circle_contains(const lensprof_image_circle *circle, uint32_t width, uint32_t height,
+                                                double x, double y);
+
 /* Exposure and white balance of one picture. Frozen value struct. */
 typedef struct lensprof_exposure {
     double ev;               /* log2 of the exposure factor; larger = more light recorded */

@@ -122,10 +122,12 @@ typedef struct lensprof_profile {
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid; /* multiplied by the vignetting; 0 x 0 = no grid */
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* n x n, row major, in its first n*n */
-    lensprof_levels levels; /* of the samples of pictures to which the profile applies; all 0 = none */
+    lensprof_levels levels;             /* of the samples of pictures to which the profile applies; all 0 = none */
+    lensprof_image_circle image_circle; /* outside of it there is no light, and no correction; all 0 = none */
 } lensprof_profile;
 
-/* Empty key, linear response, no falloff, no gain grid, no covariance, no levels, provenance unknown. */
+/* Empty key, linear response, no falloff, no gain grid, no covariance, no levels, no image circle,
+ * provenance unknown. */
 LENSPROF_API void lensprof_profile_init_sized(lensprof_profile *profile, size_t size);
 static inline void lensprof_profile_init(lensprof_profile *profile) {
     lensprof_profile_init_sized(profile, sizeof *profile);
@@ -137,19 +139,20 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_copy(lensprof_pr
                                                                      const lensprof_profile *from);
 
 /* LENSPROF_OK if struct_size, key, provenance, responses, vignettings (which share one centre), gain grid,
- * covariance (finite, symmetric, non-negative diagonal) and levels are valid. */
+ * covariance (finite, symmetric, non-negative diagonal), levels and image circle are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
 
 /* Relative illuminance at pixel (x, y), which may be fractional, of a frame of width x height pixels, in channel 0, 1
  * or 2 of a valid profile. This is the divisor of a correction: M times gain grid, > 0; 1 at the centre of the falloff
- * if there is no grid. Returns 0 for another channel. If not NULL, *sigma receives its standard error, computed from
- * the covariance of k1..k3 and the centre, with the grid taken as exact; LENSPROF_UNKNOWN if the covariance does not
- * include the curve, or the falloff was fixed. */
+ * if there is no grid, and 1 outside of the image circle. Returns 0 for another channel. If not NULL, *sigma receives
+ * its standard error, computed from the covariance of k1..k3 and the centre, with the grid taken as exact;
+ * LENSPROF_UNKNOWN if the covariance does not include the curve, if the falloff was fixed, or outside of the image
+ * circle. */
 LENSPROF_API double lensprof_profile_falloff(const lensprof_profile *profile, uint32_t channel, uint32_t width,
                                              uint32_t height, double x, double y, double *sigma);
 
-/* The same for the falloff alone, without gain grid: M at r half diagonals from its centre, r >= 0. The standard error
- * is that of k1..k3 at this r; the position of the centre does not matter. */
+/* The same for the falloff alone, without gain grid and image circle: M at r half diagonals from its centre, r >= 0.
+ * The standard error is that of k1..k3 at this r; the position of the centre does not matter. */
 LENSPROF_API double lensprof_profile_radial_falloff(const lensprof_profile *profile, uint32_t channel, double r,
                                                     double *sigma);
 
@@ -164,11 +167,11 @@ typedef enum lensprof_pack {
 
 /* Packs the profile as a blob (docs/blob.md): little-endian, with a version and a CRC-32, readable in place by
  * lensprof_plan_init (apply.h). It contains the key without unit, crop factor, colour temperature and style; the
- * responses (samples in single precision), vignettings and gain grid; and the provenance without source, doubt, prior,
- * forced and gamma_sigma. Size: 132 bytes and the texts for a linear response, 4 kB more per curve of samples. The same
- * profile gives the same bytes on every machine. `flags`: lensprof_pack, 0 = none. data[capacity] and *count (bytes) as
- * in base.h. Errors: those of lensprof_profile_validate; ARGUMENT for unknown flags; UNSUPPORTED for levels, which
- * blobs do not hold. */
+ * responses (samples in single precision), vignettings, image circle and gain grid; and the provenance without source,
+ * doubt, prior, forced and gamma_sigma. Size: 132 bytes and the texts for a linear response, 4 kB more per curve of
+ * samples. The same profile gives the same bytes on every machine. `flags`: lensprof_pack, 0 = none. data[capacity] and
+ * *count (bytes) as in base.h. Errors: those of lensprof_profile_validate; ARGUMENT for unknown flags; UNSUPPORTED for
+ * levels, which blobs do not hold. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
                                                                      void *data, size_t capacity, size_t *count);
 

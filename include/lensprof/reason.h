@@ -86,7 +86,7 @@ typedef enum lensprof_reason {
                                                    that it leaves */
     LENSPROF_REASON_FLAT_CENTER_BY_PRIOR = 511, /* change of the falloff in a corner with the other light, EV */
     LENSPROF_REASON_FLAT_DUST = 512,            /* spots; standard error of the falloff in the corner */
-    LENSPROF_REASON_FLAT_EDGE = 513,            /* radius, half diagonals; share of the frame beyond it */
+    LENSPROF_REASON_FLAT_EDGE = 513,            /* radius, half diagonals; share of the frame outside */
     LENSPROF_REASON_FLAT_ONE_LIGHT = 514,
     LENSPROF_REASON_FLAT_NEEDS_GRID = 515,  /* relative error of k1..k3 without the gain grid */
     LENSPROF_REASON_FLAT_BLACK_LEVEL = 516, /* note: standard error of black; change of the falloff in the corner, EV */

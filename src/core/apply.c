@@ -22,7 +22,8 @@ static void apply_rows(const lensprof_plan *plan, const lensprof_image *source, 
             from[p] = (const uint8_t *)source[p].data + (ptrdiff_t)y * source[p].row_bytes;
             to[p] = (uint8_t *)target[p].data + (ptrdiff_t)y * target[p].row_bytes;
         }
-        plan->row(plan, from, to, x0, y0 + y, source->width, stream);
+        uint32_t columns[2];
+        plan->row(plan, from, to, x0, y0 + y, source->width, lp_columns_inside(plan, y0 + y, columns), stream);
     }
 }
 

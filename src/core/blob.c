@@ -3,11 +3,13 @@
 
 #include <math.h>
 
+#include "core/features.h"
 #include "core/gain_grid.h"
 #include "core/profile.h"
 #include "core/response.h"
 
 #define CRC_BYTES 4
+#define LAST_LAYOUT (LP_HAS_CIRCLE ? LP_BLOB_LAYOUT_CIRCLE : LP_BLOB_LAYOUT)
 #define FRAME_BYTES (LP_BLOB_BYTES + 4 + CRC_BYTES) /* common to all layouts: magic, layout, length, CRC */
 
 uint32_t lp_crc32(const uint8_t *bytes, size_t count) {
@@ -40,6 +42,20 @@ static const uint8_t *take(reader *r, size_t count) {
 }
 
 /* ---- parts ---- */
+
+#if LP_HAS_CIRCLE
+static int open_circle(lp_blob *blob, reader *r) {
+    lensprof_image_circle *circle = &blob->model.circle;
+    if (lp_u32_at(blob->bytes + LP_BLOB_VERSION) != LP_BLOB_LAYOUT_CIRCLE) return 1;
+    const uint8_t *numbers = take(r, 3 * 8);
+    if (!numbers) return 0;
+    for (int d = 0; d < 2; d++) circle->center[d] = lp_f64_at(numbers + 8 * d);
+    circle->radius = lp_f64_at(numbers + 16);
+    return circle->radius != 0.0 && lensprof_image_circle_validate(circle) == LENSPROF_OK;
+}
+#else
+static int open_circle(lp_blob *blob, reader *r) { return (void)blob, (void)r, 1; }
+#endif
 
 static int open_falloff(lp_blob *blob, reader *r) {
     lp_model *m = &blob->model;
@@ -195,8 +211,8 @@ static lensprof_status check_frame(const uint8_t *b, size_t count) {
     if (lp_u32_at(b + LP_BLOB_BYTES) != count) return LENSPROF_ERROR_CORRUPT;
     if (lp_crc32(b, count - CRC_BYTES) != lp_u32_at(b + count - CRC_BYTES)) return LENSPROF_ERROR_CORRUPT;
     const uint32_t layout = lp_u32_at(b + LP_BLOB_VERSION); /* including the reserved bytes, which are 0 */
-    if ((layout & 0xFFFF) > LP_BLOB_LAYOUT) return LENSPROF_ERROR_LAYOUT;
-    return layout == LP_BLOB_LAYOUT ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
+    if ((layout & 0xFFFF) > LAST_LAYOUT) return LENSPROF_ERROR_LAYOUT;
+    return layout - 1 < LAST_LAYOUT ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
 }
 
 static int is_zero(const uint8_t *bytes, uint32_t count) {
@@ -214,8 +230,8 @@ lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob) {
     blob->bytes = b;
     reader r = {b + LP_BLOB_FIXED, count - LP_BLOB_FIXED - CRC_BYTES};
     const int is_blob = is_zero(b + LP_BLOB_COVARIANCE + 1, 1) && is_zero(b + LP_BLOB_TEXTS + 5, 3)
-                        && open_falloff(blob, &r) && open_responses(blob, &r) && open_grid(blob, &r)
-                        && open_covariance(blob, &r) && open_texts(blob, &r) && r.left == 0
+                        && open_falloff(blob, &r) && open_circle(blob, &r) && open_responses(blob, &r)
+                        && open_grid(blob, &r) && open_covariance(blob, &r) && open_texts(blob, &r) && r.left == 0
                         && is_key_and_provenance(blob);
     return is_blob ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
 }

@@ -8,7 +8,8 @@
 #include <lensprof/profile.h>
 
 #define LP_BLOB_LAYOUT 1
-#define LP_BLOB_FIXED 100 /* bytes before the parts of variable length */
+#define LP_BLOB_LAYOUT_CIRCLE 2 /* the same with an image circle */
+#define LP_BLOB_FIXED 100       /* bytes before the parts of variable length */
 
 /* Byte offsets of the fixed part. */
 enum lp_blob_offset {
@@ -65,6 +66,7 @@ typedef struct lp_model {
     uint32_t outputs;                   /* 1 or 3, or 0 */
     lensprof_vignetting vignetting[3];
     uint32_t columns, rows, channels; /* of the gain grid; 0 = none */
+    lensprof_image_circle circle;
     const float *attenuation;
     const uint8_t *packed_attenuation;
 } lp_model;

@@ -48,9 +48,12 @@ static texts texts_of(const lensprof_profile *p) {
     return t;
 }
 
+static int has_circle(const lensprof_profile *p) { return lp_profile_circle(p).radius > 0.0; }
+
 static size_t bytes_of(const lensprof_profile *p, uint32_t covariance) {
     const texts t = texts_of(p);
     size_t bytes = LP_BLOB_FIXED + p->vignettings * 3 * 8 + 4;
+    if (has_circle(p)) bytes += 3 * 8;
     for (uint32_t c = 0; c < p->responses; c++) {
         bytes += 4 + 8 * modes_of(&p->response[c]) + (p->response[c].kind == LENSPROF_RESPONSE_GAMMA ? 8 : 0);
         if (has_samples(&p->response[c])) bytes += 4 * LENSPROF_RESPONSE_SAMPLES;
@@ -64,7 +67,7 @@ static size_t bytes_of(const lensprof_profile *p, uint32_t covariance) {
 static void put_fixed(uint8_t **to, const lensprof_profile *p, uint32_t covariance, size_t bytes) {
     const texts t = texts_of(p);
     put(to, 0x4652504C, 4); /* "LPRF" */
-    put(to, LP_BLOB_LAYOUT, 4);
+    put(to, has_circle(p) ? LP_BLOB_LAYOUT_CIRCLE : LP_BLOB_LAYOUT, 4);
     put(to, bytes, 4);
     put(to, p->key.processing, 1);
     put(to, p->responses, 1);
@@ -99,6 +102,9 @@ static void put_rest(uint8_t **to, const lensprof_profile *p, uint32_t covarianc
     const uint32_t nodes = p->grid.channels * p->grid.rows * p->grid.columns;
     for (uint32_t c = 0; c < p->vignettings; c++)
         for (int n = 0; n < 3; n++) put_f64(to, p->vignetting[c].k[n]);
+    const lensprof_image_circle circle = lp_profile_circle(p);
+    for (int d = 0; d < 2 && has_circle(p); d++) put_f64(to, circle.center[d]);
+    if (has_circle(p)) put_f64(to, circle.radius);
     for (uint32_t c = 0; c < p->responses; c++) put_response(to, &p->response[c]);
     for (uint32_t i = 0; i < nodes; i++) put_f32(to, p->grid.attenuation[i]);
     for (uint32_t i = 0; i < covariance; i++)
@@ -160,6 +166,7 @@ lensprof_status lensprof_profile_unpack(const void *data, size_t size, lensprof_
     profile->vignettings = m->vignettings;
     for (uint32_t c = 0; c < m->responses; c++) copy_response(&b, c, &profile->response[c]);
     memcpy(profile->vignetting, m->vignetting, sizeof profile->vignetting);
+    if (profile->struct_size >= LP_END_OF(lensprof_profile, image_circle)) profile->image_circle = m->circle;
     profile->grid.columns = m->columns;
     profile->grid.rows = m->rows;
     profile->grid.channels = m->channels;

@@ -114,6 +114,8 @@ static lensprof_status validate(const lensprof_apply_options *given, lensprof_ap
                        "integers take U8 and U16 to the same, no planes, grid or dither");
     if (LP_HAS_LEVELS && (o->levels || o->output_levels))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take levels");
+    if (LP_HAS_CIRCLE && m->circle.radius > 0.0)
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take an image circle");
     if (o->chroma) return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers do not take chroma");
     if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, LP_INPUT) && is_linear(o, m, LP_OUTPUT)))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U16 through a linear response only");

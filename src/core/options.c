@@ -29,8 +29,10 @@ lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *optio
         return LENSPROF_ERROR_STRUCT_SIZE;
     const lensprof_levels levels = lp_profile_levels(profile);
     const int has_levels = lp_has_levels(&levels);
+    const int has_circle = lp_profile_circle(profile).radius > 0.0;
     const int has_room = options->struct_size >= LP_END_OF(lensprof_apply_options, output_levels);
-    if (has_levels && !has_room) return LENSPROF_ERROR_UNSUPPORTED;
+    const int has_room_for_circle = options->struct_size >= LP_END_OF(lensprof_apply_options, image_circle);
+    if ((has_levels && !has_room) || (has_circle && !has_room_for_circle)) return LENSPROF_ERROR_UNSUPPORTED;
     options->responses = profile->responses;
     options->vignettings = profile->vignettings;
     options->response = profile->response;
@@ -39,6 +41,7 @@ lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *optio
     options->blob = NULL;
     options->blob_bytes = 0;
     if (has_room) options->levels = options->output_levels = has_levels ? &profile->levels : NULL;
+    if (has_room_for_circle) options->image_circle = has_circle ? &profile->image_circle : NULL;
     return LENSPROF_OK;
 }
 
@@ -61,6 +64,9 @@ static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m
     m->vignettings = o->vignetting && (o->vignettings == 1 || o->vignettings == 3) ? o->vignettings : 0;
     for (uint32_t c = 0; c < m->responses; c++) view_response(&m->response[c], &o->response[c]);
     for (uint32_t c = 0; c < m->vignettings; c++) m->vignetting[c] = o->vignetting[c];
+#if LP_HAS_CIRCLE
+    if (o->image_circle) m->circle = *o->image_circle;
+#endif
     if (!o->grid) return LENSPROF_OK;
     m->columns = o->grid->columns, m->rows = o->grid->rows, m->channels = o->grid->channels;
     m->attenuation = o->grid->attenuation;
@@ -74,7 +80,7 @@ static int is_output_stated(const lensprof_apply_options *o) {
 
 static lensprof_status view_model(const lensprof_apply_options *o, lp_model *m) {
     if (!o->blob) return view_structs(o, m);
-    if (o->response || o->vignetting || o->grid) return LENSPROF_ERROR_ARGUMENT;
+    if (o->response || o->vignetting || o->grid || o->image_circle) return LENSPROF_ERROR_ARGUMENT;
     lp_blob blob;
     const lensprof_status status = lp_blob_open(o->blob, o->blob_bytes, &blob);
     if (status == LENSPROF_OK) *m = blob.model;
@@ -183,15 +189,19 @@ static lensprof_status validate_options(const lensprof_apply_options *o, lenspro
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "unknown sample type or layout");
     if (!(o->strength >= 0.0 && o->strength <= 1.0)
         || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)) || o->dither > 1
-        || o->chroma > LP_HAS_CHROMA || (!LP_HAS_LEVELS && (o->levels || o->output_levels)) || o->reserved
-        || o->reserved2 || o->reserved3)
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength, gain_cap, dither, chroma or levels");
+        || o->chroma > LP_HAS_CHROMA || (!LP_HAS_LEVELS && (o->levels || o->output_levels))
+        || (!LP_HAS_CIRCLE && o->image_circle) || o->reserved || o->reserved2 || o->reserved3)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength, gain_cap, dither, chroma, levels, circle");
     if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
         return lp_fail(error, LENSPROF_ERROR_SIZE, "frame size is 0, or over 2^20");
 #if LP_HAS_LEVELS
     if (lensprof_levels_validate(lp_levels_of(o, LP_INPUT)) != LENSPROF_OK
         || lensprof_levels_validate(lp_levels_of(o, LP_OUTPUT)) != LENSPROF_OK)
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "levels: black is not below white");
+#endif
+#if LP_HAS_CIRCLE
+    if (o->image_circle && lensprof_image_circle_validate(o->image_circle) != LENSPROF_OK)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "image_circle: centre or radius out of range");
 #endif
     const lensprof_status status = validate_exposures(o, error);
     return status == LENSPROF_OK && !o->blob ? validate_structs(o, error) : status;

@@ -119,6 +119,9 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, 
         plan->center_px[d] = (int32_t)floor(center + 0.5);
         plan->center_part[d] = (float)(center - plan->center_px[d]);
     }
+#if LP_HAS_CIRCLE
+    plan->circle = m->circle;
+#endif
     plan->least = (float)(1.0 / (o->gain_cap > 0.0 ? o->gain_cap : LP_LARGEST_GAIN_CAP));
     plan->strength = (float)o->strength;
     plan->gains = 1;

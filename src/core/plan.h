@@ -2,25 +2,13 @@
 #ifndef LENSPROF_CORE_PLAN_H
 #define LENSPROF_CORE_PLAN_H
 
+#include "core/features.h"
 #include "core/image.h"
+#include "core/image_circle.h"
 
 #define LP_FORWARD_SHIFT 10 /* log2 of the samples of a response */
 #define LP_CELL_SHIFT 11
 #define LP_CELLS (1 << LP_CELL_SHIFT) /* cells of the range 0..1, to find values among the samples */
-
-/* -DLENSPROF_NO_CHROMA leaves out the correction of colour alone (chroma of lensprof_apply_options). */
-#ifdef LENSPROF_NO_CHROMA
-#define LP_HAS_CHROMA 0
-#else
-#define LP_HAS_CHROMA 1
-#endif
-
-/* -DLENSPROF_NO_LEVELS leaves out black and white levels. */
-#ifdef LENSPROF_NO_LEVELS
-#define LP_HAS_LEVELS 0
-#else
-#define LP_HAS_LEVELS 1
-#endif
 
 /* What the kernels do with the levels of a plan. */
 enum lp_level_step {
@@ -37,10 +25,10 @@ enum lp_curve {
     LP_CURVE_MIXED  /* the channels differ: a power if exponent > 0, else the table */
 };
 
-/* Applies a plan to `count` pixels of a row, the first of which is pixel (x, y) of the frame. `stream`: write past
- * the caches. */
+/* Applies a plan to `count` pixels of a row, the first of which is pixel (x, y) of the frame; outside of columns
+ * inside[0]..inside[1] - 1 of the frame M is 1, NULL = all are inside. `stream`: write past the caches. */
 typedef void lp_row_kernel(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3],
-                           uint32_t x, uint32_t y, uint32_t count, int stream);
+                           uint32_t x, uint32_t y, uint32_t count, const uint32_t *inside, int stream);
 
 #if LP_HAS_LEVELS
 /* Of the input, value = (number - black_in) per_span_in; of the output, number = value span_out + black_out. Numbers
@@ -77,6 +65,9 @@ struct lensprof_plan {
 #if LP_HAS_LEVELS
     struct lp_plan_levels levels;
 #endif
+#if LP_HAS_CIRCLE
+    lensprof_image_circle circle; /* outside of it M is 1; radius 0 = none */
+#endif
     float exponent[LP_CHANNELS]; /* of the response, for LP_CURVE_POWER and _MIXED; else 0 */
     float inverse_exponent[LP_CHANNELS];
     uint32_t columns, rows;          /* of the gain grid; 0 = none */
@@ -97,6 +88,18 @@ static inline uint32_t lp_level_steps(const lensprof_plan *plan) {
     (void)plan;
     return 0;
 #endif
+}
+
+/* The columns of a row of the frame in which the falloff holds, in columns[2]; NULL = all. */
+static inline const uint32_t *lp_columns_inside(const lensprof_plan *plan, uint32_t y, uint32_t *columns) {
+#if LP_HAS_CIRCLE
+    if (plan->circle.radius > 0.0) {
+        lp_image_circle_columns(&plan->circle, plan->frame_width, plan->frame_height, y, &columns[0], &columns[1]);
+        return columns;
+    }
+#endif
+    (void)plan, (void)y, (void)columns;
+    return NULL;
 }
 
 /* The kernels. Each gives the same bytes. */

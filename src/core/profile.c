@@ -154,5 +154,7 @@ lensprof_status lensprof_profile_validate(const lensprof_profile *profile) {
     if (status == LENSPROF_OK) status = validate_covariance(profile->covariance, profile->covariance_size);
     if (status != LENSPROF_OK) return status;
     const lensprof_levels levels = lp_profile_levels(profile);
-    return lensprof_levels_validate(&levels);
+    const lensprof_image_circle circle = lp_profile_circle(profile);
+    status = lensprof_levels_validate(&levels);
+    return status == LENSPROF_OK ? lensprof_image_circle_validate(&circle) : status;
 }

@@ -21,6 +21,18 @@ static inline lensprof_levels lp_profile_levels(const lensprof_profile *profile)
     return levels;
 }
 
+/* The image circle of a profile; none if it has no such member. */
+static inline lensprof_image_circle lp_profile_circle(const lensprof_profile *profile) {
+    lensprof_image_circle circle = {{0.0, 0.0}, 0.0};
+    if (profile->struct_size >= LP_END_OF(lensprof_profile, image_circle)) circle = profile->image_circle;
+    return circle;
+}
+
+/* lensprof_profile_falloff in channel 0, 1 or 2, continued outside of the image circle: for what does not hold a
+ * circle. */
+double lp_profile_continued_falloff(const lensprof_profile *profile, uint32_t channel, uint32_t width, uint32_t height,
+                                    double x, double y);
+
 /* Whether the doubt of a provenance concerns the response alone (LENSPROF_DOUBT_RESPONSE). */
 int lp_provenance_doubts_response(const lensprof_provenance *provenance);
 

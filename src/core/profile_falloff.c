@@ -4,6 +4,7 @@
  *     g = (dM/dk1, dM/dk2, dM/dk3, dM/dcx, dM/dcy) = (r^2, r^4, r^6, dM/d(r^2) d(r^2)/dcx, dM/d(r^2) d(r^2)/dcy)
  * and the covariance C of these five, the variance of M is g' C g. */
 #include "core/covariance.h"
+#include "core/profile.h"
 
 #include <math.h>
 
@@ -39,16 +40,26 @@ static void set_sigma(double *sigma, double variance, double scale) {
     if (sigma) *sigma = variance >= 0.0 ? scale * sqrt(variance) : LENSPROF_UNKNOWN;
 }
 
+double lp_profile_continued_falloff(const lensprof_profile *profile, uint32_t channel, uint32_t width, uint32_t height,
+                                    double x, double y) {
+    const lensprof_vignetting *v = &profile->vignetting[curve_of(profile, channel)];
+    const double m = lensprof_vignetting_eval(v, lensprof_vignetting_r2(v, width, height, x, y, NULL), NULL);
+    return m * lensprof_gain_grid_eval(&profile->grid, width, height, x, y, channel);
+}
+
 double lensprof_profile_falloff(const lensprof_profile *profile, uint32_t channel, uint32_t width, uint32_t height,
                                 double x, double y, double *sigma) {
     set_sigma(sigma, LENSPROF_UNKNOWN, 1.0);
     if (channel > 2) return 0.0;
+    const lensprof_image_circle circle = lp_profile_circle(profile);
+    if (!lensprof_image_circle_contains(&circle, width, height, x, y)) return 1.0;
+    if (!sigma) /* maps evaluate this for every pixel */
+        return lp_profile_continued_falloff(profile, channel, width, height, x, y);
     const lensprof_vignetting *v = &profile->vignetting[curve_of(profile, channel)];
     double by_r2, by_center[2];
     const double r2 = lensprof_vignetting_r2(v, width, height, x, y, by_center);
     const double m = lensprof_vignetting_eval(v, r2, &by_r2);
     const double grid = lensprof_gain_grid_eval(&profile->grid, width, height, x, y, channel);
-    if (!sigma) return m * grid; /* maps evaluate this for every pixel */
     const uint32_t n = profile->covariance_size, modes = lp_covariance_modes(profile->response, profile->responses);
     const uint32_t first = lp_covariance_index(modes, curve_of(profile, channel));
     const uint32_t center = lp_covariance_index(modes, profile->vignettings);

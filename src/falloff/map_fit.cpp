@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/gain_grid.h"
+#include "core/profile.h"
 #include "falloff/failure.hpp"
 #include "falloff/levenberg_marquardt.hpp"
 #include "falloff/power_fit.hpp"
@@ -270,7 +271,7 @@ void refine_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &pro
             std::vector<double> sum(nodes), weight(nodes);
             for (const Sample &s : fit.channel(c).samples) {
                 const double model =
-                    fit.unit_value(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
+                    fit.unit_value(c) * lp_profile_continued_falloff(&profile, c, map.width, map.height, s.x, s.y);
                 const lp_grid_cell x = lp_grid_cell_at(s.x, map.width, grid.columns),
                                    y = lp_grid_cell_at(s.y, map.height, grid.rows);
                 for (uint32_t k = 0; k < 4; k++) {
@@ -296,7 +297,7 @@ double worst_error(const FalloffMap &map, const MapFit &fit, const lensprof_prof
     for (uint32_t c = 0; c < map.channels; c++) {
         for (const Sample &s : fit.channel(c).samples) {
             const double model =
-                fit.unit_value(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
+                fit.unit_value(c) * lp_profile_continued_falloff(&profile, c, map.width, map.height, s.x, s.y);
             worst = std::max(worst, std::fabs(model / s.value - 1.0));
         }
     }

@@ -5,6 +5,7 @@
 
 #include "formats/each_format.h"
 
+#include "core/profile.h"
 #include "falloff/map_fit.hpp"
 #include "falloff/refit.hpp"
 #include "formats/dng_opcodes.hpp"
@@ -116,7 +117,7 @@ void fill_gains(const lensprof_profile &profile, PixelFrame frame, uint32_t firs
             for (uint32_t i = 0; i < map.columns; i++) {
                 const double x = i * map.spacing[1] * frame.width - 0.5, y = j * map.spacing[0] * frame.height - 0.5;
                 entry(j, i) =
-                    1.0 / lensprof_profile_falloff(&profile, first + plane, frame.width, frame.height, x, y, nullptr);
+                    1.0 / lp_profile_continued_falloff(&profile, first + plane, frame.width, frame.height, x, y);
             }
         for (uint32_t j = 0; j < map.rows; j++)
             for (uint32_t i = 0; i < map.columns; i++) {
@@ -137,8 +138,7 @@ double worst_error(const lensprof_profile &profile, PixelFrame frame, uint32_t f
             for (uint32_t i = 0; i < kChecked; i++) {
                 const double x = i * (frame.width - 1.0) / (kChecked - 1),
                              y = j * (frame.height - 1.0) / (kChecked - 1);
-                const double m =
-                    lensprof_profile_falloff(&profile, first + plane, frame.width, frame.height, x, y, nullptr);
+                const double m = lp_profile_continued_falloff(&profile, first + plane, frame.width, frame.height, x, y);
                 worst = std::max(worst, std::fabs(map_gain(map, frame, x, y, plane) * m - 1.0));
             }
     return worst;

@@ -102,6 +102,15 @@ void read_levels(const JsonValue &object, lensprof_levels &levels) {
     check(lensprof_levels_validate(&levels), object, "black is not below white");
 }
 
+void read_circle(const JsonValue &object, lensprof_image_circle &circle) {
+    const std::vector<double> center = object.required("center").numbers(2, 2);
+    std::copy(center.begin(), center.end(), circle.center);
+    const JsonValue radius = object.required("radius");
+    circle.radius = radius.number_within(0.0, 4.0);
+    if (circle.radius == 0.0) radius.fail("is 0; leave out the circle");
+    check(lensprof_image_circle_validate(&circle), object, "not a valid image circle");
+}
+
 void read_responses(const JsonValue &object, lensprof_profile &profile) {
     const JsonValue values = object["values"], curves = object["curves"];
     profile.responses = values ? count_of_curves(values) : curves ? count_of_curves(curves) : 1;
@@ -183,6 +192,7 @@ void read_profile(const JsonValue &object, const char *source, lensprof_profile 
     profile.vignettings = read_vignetting(object.required("vignetting"), profile.vignetting);
     if (const JsonValue grid = object["gain_grid"]) read_grid(grid, profile.grid);
     if (const JsonValue levels = object["levels"]) read_levels(levels, profile.levels);
+    if (const JsonValue circle = object["image_circle"]) read_circle(circle, profile.image_circle);
     if (const JsonValue response = object["response"]) read_responses(response, profile);
     if (const JsonValue covariance = object["covariance"]) read_covariance(covariance, profile);
     if (const JsonValue provenance = object["provenance"])

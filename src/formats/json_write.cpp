@@ -68,6 +68,18 @@ void write_levels(JsonWriter &json, const lensprof_profile &profile) {
     json.close('}');
 }
 
+void write_circle(JsonWriter &json, const lensprof_profile &profile) {
+    const lensprof_image_circle circle = lp_profile_circle(&profile);
+    if (circle.radius == 0.0) return;
+    json.name("image_circle");
+    json.open('{');
+    json.name("center");
+    json.numbers(circle.center, 2);
+    json.name("radius");
+    json.number(circle.radius);
+    json.close('}');
+}
+
 // Samples of all curves, or, where they are implied, of none, which makes a profile 0.7 instead of 20 kB.
 void write_samples(JsonWriter &json, const lensprof_profile &profile) {
     if (std::all_of(profile.response, profile.response + profile.responses, is_implied)) return;
@@ -216,6 +228,7 @@ void write_profile(JsonWriter &json, const lensprof_profile &profile) {
     write_vignetting(json, profile.vignetting, profile.vignettings);
     write_grid(json, profile.grid);
     write_levels(json, profile);
+    write_circle(json, profile);
     write_response(json, profile);
     write_covariance(json, profile);
     write_provenance(json, profile.provenance);

@@ -11,6 +11,7 @@
 
 #include "formats/each_format.h"
 
+#include "core/profile.h"
 #include "falloff/refit.hpp"
 #include "formats/falloff/export.hpp"
 #include "formats/lensfun.hpp"
@@ -67,8 +68,9 @@ Curve refit_about_middle(const lensprof_profile &profile, Frame frame) {
     std::vector<FrameSample> samples;
     for (uint32_t y = 0; y < frame.height; y++)
         for (uint32_t x = 0; x < frame.width; x++)
-            samples.push_back({lensprof_vignetting_r2(&fitted, frame.width, frame.height, x, y, nullptr),
-                               mean_falloff(profile, frame, x, y)});
+            if (lensprof_image_circle_contains(&profile.image_circle, frame.width, frame.height, x, y))
+                samples.push_back({lensprof_vignetting_r2(&fitted, frame.width, frame.height, x, y, nullptr),
+                                   mean_falloff(profile, frame, x, y)});
     for (int count = 3; count > 0; count--) {
         const Curve k = refit_samples(samples, count);
         std::copy(k.begin(), k.end(), fitted.k);
@@ -100,7 +102,7 @@ double cost_of(const lensprof_profile &profile, const Curve &k, Frame frame) {
         for (double x : {-0.5, w - 0.5})
             for (double y : {-0.5, h - 0.5}) {
                 const auto at = [&](double i, double j) {
-                    return lensprof_profile_falloff(&profile, c, frame.width, frame.height, i, j, nullptr);
+                    return lp_profile_continued_falloff(&profile, c, frame.width, frame.height, i, j);
                 };
                 const double ratio = at(x, y) / at((w - 1) / 2, (h - 1) / 2) / written;
                 cost = std::max(cost, ratio > 0.0 ? std::fabs(std::log2(ratio)) : INFINITY);

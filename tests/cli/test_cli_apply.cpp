@@ -204,6 +204,42 @@ void test_colour_alone(void **) {
     assert_true(read_picture(work("plain/flat.tif")).pixels == scene_light.pixels);
 }
 
+// What lies outside of the image circle keeps its bytes, in the orientation of the picture, and a note states it.
+void test_image_circle(void **) {
+    const double half = std::hypot(64, 48) / 2;
+    auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
+    p->key.processing = LENSPROF_PROCESSING_JPEG;
+    p->vignetting[0].k[0] = -0.6;
+    p->image_circle = {{0.15, 0.0}, 0.6};
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("p.db").c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    Picture scene_light = make_noise(64, 48, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    for (size_t i = 0; i < size_t(64) * 48 * 3; i++)
+        reinterpret_cast<uint16_t *>(scene_light.pixels.data())[i] = static_cast<uint16_t>(9000 + i % 977);
+    write_picture(work("a.tif"), scene_light), write_picture(work("b.tif"), scene_light);
+    const Outcome outcome =
+        run_words({"apply", "--profile", "1", "--db", work("p.db"), work("a.tif"), work("b.tif"), "-o", work("out")});
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.err,
+                         "a.tif and 1 more: the image circle has a radius of 0.60 half diagonals; what lies "
+                         "outside is left as it is"));
+    const Picture corrected = read_picture(work("out/a.tif"));
+    int kept = 0;
+    for (size_t i = 0; i < size_t(64) * 48; i++) {
+        const double x = (double(i % 64) - 31.5) / half, y = (double(i / 64) - 23.5) / half;
+        const double gain = value_of(corrected, 3 * i) / value_of(scene_light, 3 * i);
+        const bool is_outside = std::hypot(x - 0.15, y) > 0.6;
+        kept += is_outside;
+        assert_close(gain, is_outside ? 1.0 : 1.0 / (1.0 - 0.6 * (x * x + y * y)), 1e-3);
+    }
+    assert_true(kept > 500);
+    const Outcome shown = run_words({"profile", "show", "1", "--db", work("p.db")});
+    assert_true(contains(shown.out, "image circle of r = 0.600 about (0.150, 0.000)"));
+}
+
 // The keys strength and gain-cap limit the effect of the falloff; dither preserves the mean that rounding would change.
 void test_strength_cap_and_dither(void **) {
     auto p = std::make_unique<lensprof_profile>();
@@ -514,6 +550,7 @@ int main() {
         CLI_TEST(test_two_circles),
         CLI_TEST(test_doubts_of_crops),
         CLI_TEST(test_colour_alone),
+        CLI_TEST(test_image_circle),
         CLI_TEST(test_strength_cap_and_dither),
         CLI_TEST(test_folder),
     };

@@ -33,30 +33,34 @@ Words export_to(const std::string &file, const Words &more = {}) {
     return Words{"profile", "export", "1", "--db", work("p.db"), "-o", file} + more;
 }
 
-// A loss of black and white level is stated, by formats that lose them.
+// A loss of black and white level, or of the image circle, is stated, by formats that lose them.
 void test_levels_that_are_lost(void **) {
     make_db();
     Json json = show("p.db");
     json["levels"] = {{"black", {0.004, 0.004, 0.004}}, {"white", 0.0625}};
+    json["image_circle"] = {{"center", {0.01, 0.0}}, {"radius", 0.8}};
     save_text(work("levels.json"), json.dump());
     must_exit(done, {"profile", "import", work("levels.json"), "--db", work("levels.db")});
     const Words frame = {"--encoding", "frame=600x400"};
     const struct {
         const char *file, *db;
         Words words;
-        bool is_noted;
+        bool loses_levels, loses_circle;
     } cases[] = {
-        {"l.xml", "levels.db", {}, true},      {"l.lcp", "levels.db", {}, true},
-        {"pcalib.txt", "levels.db", {}, true}, {"l.csv", "levels.db", {}, true},
-        {"l.png", "levels.db", frame, true},   {"l.tif", "levels.db", frame, true},
-        {"held.json", "levels.db", {}, false}, {"none.xml", "p.db", {}, false},
+        {"l.xml", "levels.db", {}, true, true},       {"l.lcp", "levels.db", {}, true, true},
+        {"pcalib.txt", "levels.db", {}, true, false}, {"l.csv", "levels.db", {}, true, false},
+        {"l.png", "levels.db", frame, true, true},    {"l.tif", "levels.db", frame, true, true},
+        {"held.json", "levels.db", {}, false, false}, {"none.xml", "p.db", {}, false, false},
     };
     for (const auto &one : cases) {
         const Outcome outcome =
             run_words(Words{"profile", "export", "1", "--db", work(one.db), "-o", work(one.file)} + one.words);
         assert_int_equal(outcome.code, done);
-        const bool is_noted = contains(outcome.err, "profile 1: the file does not hold its black and white level");
-        assert_int_equal(is_noted, one.is_noted);
+        const auto is_noted = [&](const std::string &what) {
+            return contains(outcome.err, "profile 1: the file does not hold its " + what);
+        };
+        assert_int_equal(is_noted("black and white level"), one.loses_levels);
+        assert_int_equal(is_noted("image circle"), one.loses_circle);
     }
 }
 

@@ -108,7 +108,7 @@ void test_list_with_a_damaged_row(void **) {
 void test_stats(void **) {
     const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4, 0.0, 0.45}, {50, 4, -0.2}, {24, 4, -0.6}});
     const std::string said = must_exit(done, {"profile", "stats", "--db", a});
-    for (const char *line : {"layout 6", "3 of 0 cameras, 1 lens, 0 single units", "3 raw, 0 jpeg", "24 mm to 50 mm",
+    for (const char *line : {"layout 7", "3 of 0 cameras, 1 lens, 0 single units", "3 raw, 0 jpeg", "24 mm to 50 mm",
                              "f/2 to f/4", "0.45 m to inf m", "import", "a.db.xml"})
         if (!contains(said, line)) fail_msg("no %s in %s", line, said.c_str());
     const Json json = json_of({"profile", "stats", "--db", a, "--json"});

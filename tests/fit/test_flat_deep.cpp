@@ -97,6 +97,9 @@ static void what_lies_outside_the_image_circle_is_left_out(void **) {
         assert_null(r->with(LENSPROF_REASON_FLAT_BLACK));
         assert_close(largest_error(*r, p, circle.radius - circle.x - 0.05), 0.0, 0.005);
         assert_close(r->corner, falloff(r->radius), 0.02);
+        assert_close(r->image_circle.radius, circle.radius, 0.01);
+        assert_close(r->image_circle.center[0], circle.x, 0.01);
+        assert_close(r->image_circle.center[1], 0.0, 0.01);
         for (const auto &corner : {std::array<double, 2>{0, 0}, {479, 0}, {0, 319}, {479, 319}}) {  // as at the edge
             const double held = found_falloff(*r, p, corner[0], corner[1]) / falloff(r->radius);
             assert_true(held > 0.85 && held < 1.05);
@@ -119,6 +122,7 @@ static void a_dark_strip_leaves_the_rest(void **) {
     assert_true(r->usable);
     assert_close(r->edge_radius, (239.5 - 60.0) / (0.5 * std::hypot(480, 320)), 0.02);
     assert_close(r->edge_share, 0.16, 0.03);
+    assert_true(r->image_circle.radius == 0.0);  // a strip is not a circle: the falloff is continued
     assert_close(found_falloff(*r, p, 479, 0), falloff(1.0), 0.005);
 }
 

@@ -47,6 +47,7 @@ inline Profile full_profile() {
         p->vignetting[c] = {{-0.6 * lp_random(&random), -0.0, 0.1 * lp_random(&random)}, {1.0 / 17, -1.0 / 19}};
     p->grid.columns = 3, p->grid.rows = 2, p->grid.channels = 3;
     for (int i = 0; i < 18; i++) p->grid.attenuation[i] = static_cast<float>(0.9 + 0.2 * lp_random(&random));
+    p->image_circle = {{0.1 / 3, -1.0 / 7}, 0.1 + 0.6};
     p->covariance_size = 5;
     for (int i = 0; i < 5; i++)
         for (int j = 0; j <= i; j++) p->covariance[5 * i + j] = p->covariance[5 * j + i] = lp_random(&random) * 1e-7;

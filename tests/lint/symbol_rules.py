@@ -97,7 +97,7 @@ def check_core(nm, archive):
 
 # Objects that apply a profile, without the rest of the core. The first set prepares plans and may use a few functions.
 APPLY_PATH = {"apply", "base", "best", "blob", "fixed", "fixed_open", "fixed_plan", "fixed_table", "levels",
-              "gain_grid", "image", "options", "plan", "plan_curves", "profile", "response",
+              "gain_grid", "image", "image_circle", "options", "plan", "plan_curves", "profile", "response",
               "row_avx2", "row_avx512", "row_neon", "row_scalar", "row_sse41", "vignetting"}
 # log: newlib implements log2 with it.
 APPLY_MAY_NEED = {"exp2", "fabs", "floor", "fmax", "hypot", "ldexp", "log", "log2", "pow", "sqrt", "copysign",

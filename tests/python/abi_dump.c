@@ -37,6 +37,9 @@ static void print_structs(void) {
     STRUCT(lensprof_levels);
     FIELD(lensprof_levels, black);
     FIELD(lensprof_levels, white);
+    STRUCT(lensprof_image_circle);
+    FIELD(lensprof_image_circle, center);
+    FIELD(lensprof_image_circle, radius);
     STRUCT(lensprof_exposure);
     FIELD(lensprof_exposure, ev);
     FIELD(lensprof_exposure, white_balance);
@@ -92,6 +95,7 @@ static void print_structs(void) {
     FIELD(lensprof_profile, grid);
     FIELD(lensprof_profile, covariance);
     FIELD(lensprof_profile, levels);
+    FIELD(lensprof_profile, image_circle);
     STRUCT(lensprof_image);
     FIELD(lensprof_image, data);
     FIELD(lensprof_image, row_bytes);
@@ -137,6 +141,7 @@ static void print_structs(void) {
     FIELD(lensprof_apply_options, reserved3);
     FIELD(lensprof_apply_options, levels);
     FIELD(lensprof_apply_options, output_levels);
+    FIELD(lensprof_apply_options, image_circle);
     STRUCT(lensprof_exposure_settings);
     FIELD(lensprof_exposure_settings, time_s);
     FIELD(lensprof_exposure_settings, f_number);
@@ -519,6 +524,7 @@ static void print_structs(void) {
     FIELD(lensprof_flat_result, black_ev);
     FIELD(lensprof_flat_result, black_shown);
     FIELD(lensprof_flat_result, reserved);
+    FIELD(lensprof_flat_result, image_circle);
     STRUCT(lensprof_pto_image);
     FIELD(lensprof_pto_image, struct_size);
     FIELD(lensprof_pto_image, response_type);

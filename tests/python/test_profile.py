@@ -205,6 +205,25 @@ class Blobs(unittest.TestCase):
             np.testing.assert_array_equal(back.covariance, profile.covariance)
             self.assertEqual(lp.Profile.unpack(profile.pack()).covariance_size, 0)
 
+    def test_image_circle(self):
+        profile = lp.Profile(vignetting=lp.Vignetting(k=(-0.5, 0, 0)), image_circle=lp.ImageCircle(center=(0.1, 0), radius=0.6))
+        profile.validate()
+        self.assertEqual(lp.Profile.unpack(profile.pack()).image_circle, profile.image_circle)
+        self.assertTrue(profile.image_circle.contains(300, 200, 150, 100))
+        self.assertFalse(profile.image_circle.contains(300, 200, 0, 0))
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.ImageCircle(radius=-1).validate()
+        options = lp.ApplyOptions(frame_width=300, frame_height=200)
+        options.set_profile(profile)
+        self.assertEqual((options.image_circle, options.levels), (profile.image_circle, None))
+        picture = np.full((200, 300, 3), 50, np.uint8)
+        corrected = lp.Plan(options).apply(picture)
+        self.assertEqual(corrected[0, 0].tolist(), [50, 50, 50])
+        self.assertGreater(int(corrected[100, 240, 0]), 55)
+        profile.levels.white = 0.5
+        options.set_profile(profile)
+        self.assertEqual((options.levels.white, options.output_levels.white), (0.5, 0.5))
+
     def test_refused(self):
         blob = samples()[1].pack()
         wrong = [b"", blob[:-1], blob + b"\0", b"x" * 200]
@@ -212,7 +231,7 @@ class Blobs(unittest.TestCase):
         for data in wrong:
             with refused(self, lp.Status.ERROR_CORRUPT):
                 lp.Profile.unpack(data)
-        newer = blob[:4] + b"\2" + blob[5:-4]
+        newer = blob[:4] + b"\3" + blob[5:-4]
         with refused(self, lp.Status.ERROR_LAYOUT):
             lp.Profile.unpack(newer + struct.pack("<I", zlib.crc32(newer)))
         for data in ("text", 5, None):

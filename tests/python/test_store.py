@@ -183,7 +183,7 @@ class Stores(unittest.TestCase):
             stats = store.stats()
             self.assertEqual((stats.profiles, stats.cameras, stats.lenses, stats.units), (3, 1, 2, 1))
             self.assertEqual(list(stats.processing), [3, 0, 0])
-            self.assertEqual((stats.with_covariance, stats.with_grid, stats.with_doubt, stats.layout), (3, 3, 0, 6))
+            self.assertEqual((stats.with_covariance, stats.with_grid, stats.with_doubt, stats.layout), (3, 3, 0, 7))
             self.assertEqual((list(stats.focal_mm), list(stats.distance_m)), ([28, 28], [math.inf, math.inf]))
             self.assertEqual((stats.method, stats.source), ({"transfer": 3}, {"/tmp/a.pto": 3}))
             self.assertEqual(stats.bytes, self.path.stat().st_size)

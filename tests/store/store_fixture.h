@@ -156,14 +156,19 @@ static inline void assert_file(const char *path, const void *expected, size_t si
 /* A file of an older layout, as an older lensprof wrote it, with these profiles except members it cannot hold: up to
  * layout 3, prior_id and forced are at the end of the method. */
 static inline void make_layout(const char *path, int layout, const lensprof_profile *profiles, size_t count) {
-    static const char *const schemas[] = {lp_schema_0001, lp_schema_0002, lp_schema_0003, lp_schema_0004,
-                                          lp_schema_0005},
+    static const char *const schemas[] = {lp_schema_0001, lp_schema_0002, lp_schema_0003,
+                                          lp_schema_0004, lp_schema_0005, lp_schema_0006},
                              *const added[] = {
-                                 "", ", gain_grids", ", gain_grids, unit, crop_factor, doubt, lens_name",
+                                 "",
+                                 ", gain_grids",
+                                 ", gain_grids, unit, crop_factor, doubt, lens_name",
                                  (", gain_grids, unit, crop_factor, doubt, lens_name, color_temperature_k,"
                                   " prior_id, forced"),
                                  (", gain_grids, unit, crop_factor, doubt, lens_name, color_temperature_k,"
-                                  " prior_id, forced, style, gamma_sigma")};
+                                  " prior_id, forced, style, gamma_sigma"),
+                                 (", gain_grids, unit, crop_factor, doubt, lens_name, color_temperature_k,"
+                                  " prior_id, forced, style, gamma_sigma, black_red, black_green, black_blue,"
+                                  " white_level")};
     const char *method =
         layout < 4 ? "method || ifnull('+' || prior_id, '') || iif(forced, ' (forced)', '')" : "method";
     char newer[400], sql[2000];
@@ -186,8 +191,10 @@ static inline void make_layout(const char *path, int layout, const lensprof_prof
     unlink(newer);
 }
 
-/* Removes from a profile what only layouts newer than `layout`, 4 or 5, can hold. */
+/* Removes from a profile what only layouts newer than `layout`, 4 to 6, can hold. */
 static inline void lose_newer(lensprof_profile *profile, int layout) {
+    memset(&profile->image_circle, 0, sizeof profile->image_circle);
+    if (layout >= 6) return;
     memset(&profile->levels, 0, sizeof profile->levels);
     if (layout >= 5) return;
     memset(profile->key.style, 0, sizeof profile->key.style);
@@ -246,6 +253,7 @@ static inline void fill_profile(lensprof_profile *profile) {
     assert_ok(lensprof_response_set_emor(&profile->response[0], coefficients, 5));
     profile->vignetting[0] = (lensprof_vignetting){{-0.3, 0.1, -0.1 / 3.0}, {0.01, -0.02}};
     fill_grid(&profile->grid, 5, 4, 1);
+    profile->image_circle = (lensprof_image_circle){{1.0 / 300.0, -0.01}, 0.9};
     profile->levels = (lensprof_levels){{256.0 / 65535.0, 0.0, -0.001}, 4095.0 / 65535.0};
     profile->covariance_size = 10;
     for (uint32_t i = 0; i < 10; i++)
@@ -262,6 +270,7 @@ static inline void assert_same_profile(const lensprof_profile *a, const lensprof
     assert_memory_equal(a->vignetting, b->vignetting, a->vignettings * sizeof *a->vignetting);
     assert_memory_equal(&a->grid, &b->grid, sizeof a->grid);
     assert_memory_equal(&a->levels, &b->levels, sizeof a->levels);
+    assert_memory_equal(&a->image_circle, &b->image_circle, sizeof a->image_circle);
     assert_int_equal(a->covariance_size, b->covariance_size);
     assert_memory_equal(a->covariance, b->covariance, a->covariance_size * a->covariance_size * sizeof(double));
 }

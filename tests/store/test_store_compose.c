@@ -441,15 +441,47 @@ static void test_open_settings_widen_the_error(void **state) {
     lensprof_store_close(store);
 }
 
+/* Between apertures the circle of the nearest profile holds, in half diagonals of the picture's sensor; a smaller one
+ * may be covered. */
+static void test_image_circles(void **state) {
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    for (int i = 0; i < 3; i++) {
+        lensprof_profile *p = zoom_profile("Fisheye 10mm", 10, 2.8 + i, INFINITY);
+        p->key.crop_factor = 1.0;
+        p->image_circle = (lensprof_image_circle){{0.02, -0.01}, 0.7 + 0.01 * i};
+        put_at(store, p);
+    }
+    lensprof_profile_key key = zoom_profile("Fisheye 10mm", 10, 3.0, INFINITY)->key;
+    const double crops[] = {1.0, 1.3, 1.6};
+    for (int i = 0; i < 3; i++) {
+        key.crop_factor = crops[i];
+        assert_ok(ask_for(store, &key));
+        const int is_covered = 0.7 * crops[i] - hypot(0.02, 0.01) * crops[i] >= 1.0;
+        assert_int_equal(is_covered, i == 2);
+        assert_close(answered.image_circle.radius, is_covered ? 0.0 : 0.7 * crops[i], 1e-12);
+        assert_close(answered.image_circle.center[0], is_covered ? 0.0 : 0.02 * crops[i], 1e-12);
+    }
+    lensprof_store_close(store);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        store_test(test_raw_rows_serve_jpeg),      store_test(test_raw_is_linear),
-        store_test(test_responses_of_the_camera),  store_test(test_bracket_has_no_falloff),
-        store_test(test_shared_errors_stay),       store_test(test_newest_under_all_names),
-        store_test(test_covariances_of_responses), store_test(test_styles),
-        store_test(test_which_responses),          store_test(test_corrected),
-        store_test(test_next_best_profiles),       store_test(test_response_alone),
-        store_test(test_several_databases),        store_test(test_open_settings_widen_the_error),
+        store_test(test_raw_rows_serve_jpeg),
+        store_test(test_raw_is_linear),
+        store_test(test_responses_of_the_camera),
+        store_test(test_bracket_has_no_falloff),
+        store_test(test_shared_errors_stay),
+        store_test(test_newest_under_all_names),
+        store_test(test_covariances_of_responses),
+        store_test(test_styles),
+        store_test(test_which_responses),
+        store_test(test_corrected),
+        store_test(test_next_best_profiles),
+        store_test(test_response_alone),
+        store_test(test_several_databases),
+        store_test(test_open_settings_widen_the_error),
+        store_test(test_image_circles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -161,15 +161,15 @@ static void test_layouts(void **state) {
     lensprof_store *store = NULL;
     lensprof_error error;
     make_database(here);
-    run_sql(here->path, "PRAGMA user_version = 7");
+    run_sql(here->path, "PRAGMA user_version = 8");
     assert_refused_untouched(here, LENSPROF_ERROR_LAYOUT);
     assert_int_equal(lensprof_store_open(here->path, 0, &store, &error), LENSPROF_ERROR_LAYOUT);
-    assert_non_null(strstr(error.text, "layout 7"));
+    assert_non_null(strstr(error.text, "layout 8"));
     run_sql(here->path, "PRAGMA user_version = 0");
     assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT);
-    run_sql(here->path, "PRAGMA user_version = 6");
+    run_sql(here->path, "PRAGMA user_version = 7");
     store = store_at(here->path, LENSPROF_STORE_WRITE);
-    run_sql(here->path, "PRAGMA user_version = 7"); /* another process upgrades it while it is open here */
+    run_sql(here->path, "PRAGMA user_version = 8"); /* another process upgrades it while it is open here */
     assert_int_equal(lensprof_store_list(store, NULL, NULL, 0, &(uint32_t){0}, &error), LENSPROF_ERROR_LAYOUT);
     assert_int_equal(lensprof_store_remove(store, 1, &error), LENSPROF_ERROR_LAYOUT);
     lensprof_store_close(store);

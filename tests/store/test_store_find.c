@@ -221,7 +221,7 @@ static void test_long_list(void **state) {
             " processing, method, software, source, created_unix_s, images, pairs, heldout_rms,"
             " inlier_share, response_curves, vignetting_curves, covariance_size, covariance, 0,"
             " unit, crop_factor, doubt, lens_name, color_temperature_k, prior_id, forced, style, gamma_sigma,"
-            " black_red, black_green, black_blue, white_level FROM profiles, n");
+            " black_red, black_green, black_blue, white_level, circle_x, circle_y, circle_radius FROM profiles, n");
     assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
     assert_int_equal(found, COUNT);
     for (int i = 0; i < COUNT; i++) assert_close(rows[i].key.focal_mm, i + 1.0, 0.0);

@@ -256,7 +256,8 @@ static void test_methods(void **state) {
 /* A user's own table or column of that name: the write fails, reading still works. */
 static void test_names_that_are_taken(void **state) {
     const place *here = *state;
-    static const char *const taken[] = {"ALTER TABLE profiles ADD COLUMN white_level REAL",
+    static const char *const taken[] = {"ALTER TABLE profiles ADD COLUMN circle_radius REAL",
+                                        "ALTER TABLE profiles ADD COLUMN white_level REAL",
                                         "ALTER TABLE profiles ADD COLUMN style TEXT",
                                         "CREATE TABLE cameras (a)",
                                         "ALTER TABLE profiles ADD COLUMN forced INTEGER",
@@ -264,7 +265,7 @@ static void test_names_that_are_taken(void **state) {
                                         "CREATE TABLE gain_grids (a)",
                                         "ALTER TABLE profiles ADD COLUMN gain_grids INTEGER"};
     lensprof_error error;
-    for (int i = 0; i < (from < 2 ? 7 : from < 4 ? 5 : from < 5 ? 3 : 1); i++) {
+    for (int i = 0; i < (from < 2 ? 8 : from < 4 ? 6 : from < 5 ? 4 : from < 6 ? 2 : 1); i++) {
         size_t size;
         unlink(here->path);
         make_old(here->path);
@@ -285,11 +286,12 @@ static int setup_2(void **state) { return from = 2, place_setup(state); }
 static int setup_3(void **state) { return from = 3, place_setup(state); }
 static int setup_4(void **state) { return from = 4, place_setup(state); }
 static int setup_5(void **state) { return from = 5, place_setup(state); }
+static int setup_6(void **state) { return from = 6, place_setup(state); }
 
 #define FROM(layout, function) \
     { #function " from layout " #layout, function, setup_##layout, place_teardown, NULL }
 #define FROM_OLD(function) FROM(1, function), FROM(2, function), FROM(3, function)
-#define FROM_EACH(function) FROM_OLD(function), FROM(4, function), FROM(5, function)
+#define FROM_EACH(function) FROM_OLD(function), FROM(4, function), FROM(5, function), FROM(6, function)
 
 int main(void) {
     const struct CMUnitTest tests[] = {

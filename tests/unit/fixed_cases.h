@@ -36,7 +36,7 @@ static void make_plan(fixture *f) {
 static void make_case(fixture *f, uint32_t sample, uint64_t *random) {
     lensprof_apply_options *o = &f->m.options;
     random_model(&f->m, random);
-    o->grid = NULL;
+    o->grid = NULL, o->image_circle = NULL;
     o->source_sample = o->target_sample = sample;
     o->source_layout = layouts[(uint32_t)(10 * lp_random(random))];
     o->frame_width = PIXELS + (uint32_t)(6000 * lp_random(random));

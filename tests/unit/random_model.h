@@ -16,6 +16,7 @@ typedef struct model {
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid;
     lensprof_levels levels[2]; /* of input and output */
+    lensprof_image_circle circle;
     lensprof_apply_options options;
 } model;
 
@@ -74,6 +75,12 @@ static void random_model(model *m, uint64_t *random) {
             m->grid.attenuation[i] = (float)(0.8 + 0.4 * lp_random(random));
         o->grid = &m->grid;
     }
+    uint64_t of_circle = *random; /* the other numbers stay */
+    if (lp_random(&of_circle) < 0.3) {
+        for (int d = 0; d < 2; d++) m->circle.center[d] = 0.2 * (lp_random(&of_circle) - 0.5);
+        m->circle.radius = 0.4 + 0.5 * lp_random(&of_circle);
+        o->image_circle = &m->circle;
+    }
 }
 
 static int has_levels(const model *m) { return m->options.levels || m->options.output_levels; }
@@ -96,6 +103,8 @@ static double reference(const model *m, double sample, uint32_t c, uint32_t x, u
     if (o->grid) falloff *= lensprof_gain_grid_eval(o->grid, o->frame_width, o->frame_height, x, y, c);
     falloff = 1.0 + o->strength * (falloff - 1.0);
     if (o->gain_cap > 0.0) falloff = fmax(falloff, 1.0 / o->gain_cap);
+    if (o->image_circle && !lensprof_image_circle_contains(o->image_circle, o->frame_width, o->frame_height, x, y))
+        falloff = 1.0;
     double ratio =
         (exp2(o->target.ev) * o->target.white_balance[c]) / (exp2(o->source.ev) * o->source.white_balance[c]);
     const int any = has_levels(m);

@@ -31,7 +31,7 @@ static guess_count count_of(lp_row_kernel *row, const lensprof_response *respons
     const uint8_t *from[3] = {(const uint8_t *)source, NULL, NULL};
     uint8_t *to[3] = {(uint8_t *)target, NULL, NULL};
     guess_counts = (guess_count){0, 0};
-    row(plan, from, to, 0, 100, width, 0);
+    row(plan, from, to, 0, 100, width, NULL, 0);
     free(memory);
     return guess_counts;
 }

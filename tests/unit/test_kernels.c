@@ -37,6 +37,7 @@ typedef struct model {
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid;
     lensprof_levels levels[2]; /* of input and output */
+    lensprof_image_circle circle;
     lensprof_apply_options options;
 } model;
 
@@ -99,6 +100,9 @@ static void make_model(model *m, uint64_t seed) {
     }
     if (lp_random(&random) < 0.3) o->levels = &m->levels[0];
     if (lp_random(&random) < 0.3) o->output_levels = lp_random(&random) < 0.5 ? o->levels : &m->levels[1];
+    for (int d = 0; d < 2; d++) m->circle.center[d] = lp_random(&random) - 0.5;
+    m->circle.radius = 0.05 + lp_random(&random);
+    if (lp_random(&random) < 0.3) o->image_circle = &m->circle;
     if (lp_random(&random) < 0.7) return;
     o->output_responses = lp_random(&random) < 0.5 ? 1 : 3;
     o->output_response = m->output;
@@ -141,7 +145,8 @@ static void apply_rows_streamed(const lensprof_plan *plan, const lensprof_image 
     for (uint32_t y = 0; y < ROWS; y++) {
         const uint8_t *source[3] = {(const uint8_t *)from->data + y * from->row_bytes, NULL, NULL};
         uint8_t *target[3] = {(uint8_t *)to->data + y * to->row_bytes, NULL, NULL};
-        plan->row(plan, source, target, x0, y0 + y, from->width, 1);
+        uint32_t columns[2];
+        plan->row(plan, source, target, x0, y0 + y, from->width, lp_columns_inside(plan, y0 + y, columns), 1);
     }
 }
 

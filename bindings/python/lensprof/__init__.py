@@ -26,7 +26,7 @@ from .fit import FitCamera, FitImage, FitOptions, FitResult, fit_overlap, fit_ra
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .folder import calibrate_folder
 from .geometry import Camera
-from .model import Exposure, GainGrid, Levels, Response, Vignetting, emor_table, half_diagonal
+from .model import Exposure, GainGrid, ImageCircle, Levels, Response, Vignetting, emor_table, half_diagonal
 from .pictures import Picture, PictureMetadata, encode_picture, read_picture, write_picture
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 from .reason import Finding, Item, reason_name, reason_text
@@ -44,7 +44,7 @@ __all__ = [
     "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FieldsChannel", "FieldsOptions",
     "FieldsResult", "Finding", "FitCamera", "FitImage",
     "FitModel", "FitOptions", "FitResponse", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
-    "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Item",
+    "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "ImageCircle", "Item",
     "ItemKind", "KNOWN_EXPOSURE_DTYPE", "LINK_DTYPE", "Layout", "Levels", "LinkState", "Lookup", "LookupOptions", "Loss",
     "MATCH_DTYPE", "MODES_AUTO", "Method", "Notice", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Picture",
     "PictureMetadata", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Progress", "Projection",

@@ -543,6 +543,13 @@ class Levels(Structure):
     ]
 
 
+class ImageCircle(Structure):
+    _fields_ = [
+        ("center", c_double * 2),
+        ("radius", c_double),
+    ]
+
+
 class Exposure(Structure):
     _fields_ = [
         ("ev", c_double),
@@ -615,6 +622,7 @@ class Profile(Structure):
         ("grid", GainGrid),
         ("covariance", c_double * 1296),
         ("levels", Levels),
+        ("image_circle", ImageCircle),
     ]
 
 
@@ -672,6 +680,7 @@ class ApplyOptions(Structure):
         ("reserved3", c_uint32),
         ("levels", POINTER(Levels)),
         ("output_levels", POINTER(Levels)),
+        ("image_circle", POINTER(ImageCircle)),
     ]
 
 
@@ -1194,6 +1203,7 @@ class FlatResult(Structure):
         ("black_ev", c_double),
         ("black_shown", c_uint32),
         ("reserved", c_uint32),
+        ("image_circle", ImageCircle),
     ]
 
 
@@ -1757,6 +1767,7 @@ STRUCTS = {
     "lensprof_vignetting": Vignetting,
     "lensprof_gain_grid": GainGrid,
     "lensprof_levels": Levels,
+    "lensprof_image_circle": ImageCircle,
     "lensprof_exposure": Exposure,
     "lensprof_profile_key": ProfileKey,
     "lensprof_camera_model": CameraModel,
@@ -1939,6 +1950,8 @@ FUNCTIONS = {
     "lensprof_levels_validate": (c_int, [POINTER(Levels)]),
     "lensprof_levels_to_value": (c_double, [POINTER(Levels), c_uint32, c_double]),
     "lensprof_levels_to_sample": (c_double, [POINTER(Levels), c_uint32, c_double]),
+    "lensprof_image_circle_validate": (c_int, [POINTER(ImageCircle)]),
+    "lensprof_image_circle_contains": (c_int, [POINTER(ImageCircle), c_uint32, c_uint32, c_double, c_double]),
     "lensprof_exposure_init": (None, [POINTER(Exposure)]),
     "lensprof_exposure_validate": (c_int, [POINTER(Exposure)]),
     "lensprof_exposure_mean": (None, [POINTER(Exposure), c_size_t, POINTER(Exposure)]),

@@ -16,7 +16,7 @@ from ._abi import Direction, Encoding, Layout, SampleType, Saturated
 from ._library import check, lib
 from ._struct import Bytes, Count, Enumerated, Flag, Nested, OptionalReference, Referenced, Struct, default, integer
 from ._types import Pixels
-from .model import Exposure, GainGrid, Levels, Response, Vignetting
+from .model import Exposure, GainGrid, ImageCircle, Levels, Response, Vignetting
 from .profile import Profile
 
 
@@ -45,7 +45,7 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     instead of rounding, for uint8 output. blob: a result of Profile.pack, instead of response, vignetting and grid, or
     None. chroma: correct only the colour of the falloff, luminance stays. output_response: one response or three that
     encode the output instead; None = those of the model. levels: of the input, or None; output_levels: of the output,
-    the same to put black back.
+    the same to put black back. image_circle: pixels outside of it keep their falloff; None = none.
     """
 
     direction: Enumerated[Direction] = Enumerated(Direction)
@@ -74,16 +74,21 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     chroma: Flag = Flag()
     levels: OptionalReference[Levels] = OptionalReference(Levels)
     output_levels: OptionalReference[Levels] = OptionalReference(Levels)
+    image_circle: OptionalReference[ImageCircle] = OptionalReference(ImageCircle)
 
     def set_profile(self, profile: Profile) -> None:
-        """Sets response, vignetting, grid and levels from a copy of the profile, replacing previous values."""
+        """Sets response, vignetting, grid, levels and image circle from a copy of the profile, replacing previous values."""
         own = Profile._copy_of(byref(profile))
         check(lib.lensprof_apply_options_set_profile(byref(self), byref(own)), "not a profile")
         shown: Any = _abi.Profile.from_buffer(own)
+
+        def pointed(name: str, value: Any) -> Any:
+            return [value] if getattr(_abi.ApplyOptions, name).__get__(self) else ()
+
         vars(self).update(_response=shown.response[:own.responses], _vignetting=shown.vignetting[:own.vignettings],
-                          _grid=[shown.grid] if shown.grid.columns else (), _blob=None,
-                          _levels=[shown.levels] if self.levels is not None else (),
-                          _output_levels=[shown.levels] if self.levels is not None else ())
+                          _grid=pointed("grid", shown.grid), _blob=None, _levels=pointed("levels", shown.levels),
+                          _output_levels=pointed("output_levels", shown.levels),
+                          _image_circle=pointed("image_circle", shown.image_circle))
 
 
 class Plan:

@@ -14,7 +14,7 @@ from ._library import Handle, check, initialised, lib
 from ._progress import WithProgress, calling
 from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, default, integer
 from ._types import Pixels, Records
-from .model import GainGrid, Levels, Response, Vignetting
+from .model import GainGrid, ImageCircle, Levels, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
 from .reason import WithFindings
 
@@ -91,7 +91,8 @@ class FlatResult(WithFindings, Struct, _abi.FlatResult):
     or 3. separated: the pictures tell the light's gradient from the centre. spot: dust, FLAT_SPOT_DTYPE.
     radius: largest r of a cell used. noise, residual, texture, frame_residual, shot_residual, grid_residual: of a cell.
     corner: M times grid in the corners, or along the edge if there is one; corner_sigma: its standard error. edge_radius,
-    edge_share: where the image circle ends, half diagonals (0: with the frame), and the share of the frame beyond it.
+    edge_share: where the data end, half diagonals (0: with the frame), and the share of the frame outside.
+    image_circle: if they end at one.
     light_ev: change in a corner for another model of the light, EV. polynomial_error: largest, of M without the
     grid. levels: those of the options with the offset found; black_offset, black_sigma: it and its error; black_ev:
     what that changes in a corner, EV; black_shown: the pictures determine it. gain_grid: what the polynomial leaves.
@@ -127,6 +128,7 @@ class FlatResult(WithFindings, Struct, _abi.FlatResult):
     black_sigma: float = default
     black_ev: float = default
     black_shown: Flag = Flag()
+    image_circle: Nested[ImageCircle] = Nested(ImageCircle)
     grid_residual: float = default
     covariance_size: int = default
     covariance: Covariance = Covariance()

@@ -316,6 +316,27 @@ class Levels(Value, _abi.Levels):
         return float(lib.lensprof_levels_to_sample(byref(self), integer(channel, "channel"), value))
 
 
+class ImageCircle(Value, _abi.ImageCircle):
+    """The circle that the lens lights up, where it does not cover the frame. Outside of it no falloff holds, and
+    corrections leave pictures as they are. By default none.
+
+    center: to the right of and below the middle of the frame, half diagonals, -1..1. radius: half diagonals, up to 4;
+    0 = none.
+    """
+
+    center: Vector = Vector()
+    radius: float = default
+
+    def validate(self) -> None:
+        """Raises lensprof.Error unless the numbers are within these ranges."""
+        check(lib.lensprof_image_circle_validate(byref(self)), f"{self}: center or radius out of range")
+
+    def contains(self, width: int, height: int, x: float, y: float) -> bool:
+        """Whether pixel (x, y) of a frame of width x height pixels lies in the circle, or its radius is 0."""
+        return bool(lib.lensprof_image_circle_contains(byref(self), integer(width, "width"), integer(height, "height"),
+                                                       x, y))
+
+
 class Exposure(Value, _abi.Exposure):
     """Exposure and white balance of one picture; 0 EV and 1, 1, 1 by default.
 

@@ -12,7 +12,7 @@ from ._abi import CameraKind, Pack, Processing
 from ._library import check, lib
 from ._struct import Curves, Enumerated, Flag, Nested, Text, UnixTime, Value, default, integer
 from ._types import Array
-from .model import GainGrid, Levels, Response, Vignetting
+from .model import GainGrid, ImageCircle, Levels, Response, Vignetting
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure  # type: ignore[import,unused-ignore]
@@ -137,7 +137,7 @@ class Profile(Value, _abi.Profile):
 
     response, vignetting: tuples of 1 (all channels) or 3; assign one or three. grid: multiplied by the vignetting.
     covariance: n x n, n = 0 if unknown; in the order EMoR coefficients of each response, k1, k2, k3 of each vignetting,
-    centre x and y. levels: black and white of the samples of its pictures.
+    centre x and y. levels: black and white of the samples of its pictures. image_circle: outside of it no falloff holds.
     """
 
     key: Nested[ProfileKey] = Nested(ProfileKey)
@@ -150,6 +150,7 @@ class Profile(Value, _abi.Profile):
     covariance_size: int = default
     covariance: Covariance = Covariance()
     levels: Nested[Levels] = Nested(Levels)
+    image_circle: Nested[ImageCircle] = Nested(ImageCircle)
 
     @classmethod
     def _copy_of(cls, shown: Any) -> Profile:
@@ -159,7 +160,7 @@ class Profile(Value, _abi.Profile):
         return profile
 
     def validate(self) -> None:
-        """Raises lensprof.Error unless key, curves, gain grid, covariance and levels are valid."""
+        """Raises lensprof.Error unless key, curves, gain grid, covariance, levels and image circle are valid."""
         check(lib.lensprof_profile_validate(byref(self)),
               f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the "
               "covariance must be finite and symmetric")

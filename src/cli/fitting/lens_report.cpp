@@ -266,8 +266,9 @@ void make_lens_file(const LensFileSource &source, LensCards &cards) {
     cards.lens_file_ev.assign(cards.settings.size(), NAN);
     for (size_t i = 0; i < profiles.size(); i++) {
         cards.lens_file_ev[numbers[i]] = cost.ev[i];
-        if (const std::string about = note_of_levels(*profiles[i], names[i]); !about.empty())
-            cards.lens_file_notes.push_back(about);
+        for (const std::string &about :
+             {note_of_levels(*profiles[i], names[i]), note_of_circle(*profiles[i], names[i])})
+            if (!about.empty()) cards.lens_file_notes.push_back(about);
     }
 }
 

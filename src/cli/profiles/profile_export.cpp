@@ -94,19 +94,27 @@ void export_blob(const ExportOptions &o, const StoredProfile &stored, Streams &s
     if (o.covariance && !profile.covariance_size) streams.out << "no covariance stored; exported without it\n";
 }
 
-// JSON holds levels; readers of a DNG subtract those that it states before they apply its opcodes.
-void note_levels(const ForeignRule &rule, const std::vector<StoredProfile> &chosen, Streams &streams) {
-    if (rule.format == LENSPROF_FORMAT_JSON || rule.format == LENSPROF_FORMAT_DNG_OPCODES) return;
+bool is_of_response(uint32_t format) {
+    return format == LENSPROF_FORMAT_PCALIB || format == LENSPROF_FORMAT_CURVES
+           || format == LENSPROF_FORMAT_RADICAL_RESPONSE;
+}
+
+// JSON holds all; readers of a DNG subtract the levels that it states before they apply its opcodes.
+void note_omissions(const ForeignRule &rule, const std::vector<StoredProfile> &chosen, Streams &streams) {
+    if (rule.format == LENSPROF_FORMAT_JSON) return;
     for (const StoredProfile &stored : chosen) {
-        const std::string about = note_of_levels(*stored.profile, "profile " + std::to_string(stored.id));
-        if (!about.empty()) note(streams, about);
+        const std::string name = "profile " + std::to_string(stored.id);
+        const std::string levels = note_of_levels(*stored.profile, name),
+                          circle = note_of_circle(*stored.profile, name);
+        if (!levels.empty() && rule.format != LENSPROF_FORMAT_DNG_OPCODES) note(streams, levels);
+        if (!circle.empty() && !is_of_response(rule.format)) note(streams, circle);
     }
 }
 
 // Reports what a format omits without being refused.
 void note_losses(const ForeignRule &rule, const ExportOptions &o, const std::vector<StoredProfile> &chosen,
                  Streams &streams) {
-    note_levels(rule, chosen, streams);
+    note_omissions(rule, chosen, streams);
     const bool is_mean = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP
                          || (rule.format == LENSPROF_FORMAT_MAP && format_of_name(o.output) == FileFormat::png);
     if (!is_mean) return;

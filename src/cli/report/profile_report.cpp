@@ -27,6 +27,14 @@ void print_levels(const lensprof_levels &levels, std::ostream &out) {
                   levels.white > 0.0 ? 100.0 * levels.white : 100.0);
 }
 
+void print_circle(const lensprof_image_circle &circle, std::ostream &out) {
+    if (circle.radius == 0.0) return;
+    out << format(
+        "circle    image circle of r = %.3f about (%.3f, %.3f) of the middle; outside of it pictures are not "
+        "corrected\n",
+        circle.radius, circle.center[0], circle.center[1]);
+}
+
 }  // namespace
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
@@ -39,6 +47,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     print_vignettings(profile, out);
     print_gain_grid(profile.grid, out);
     print_levels(profile.levels, out);
+    print_circle(profile.image_circle, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method");
     if (p.prior_id) out << ", with profile " << p.prior_id << " as its prior";

@@ -65,6 +65,15 @@ static void gains_of_colour(const lensprof_plan *plan, uint32_t count, strip *s)
     }
 }
 
+/* Outside of the columns inside[0]..inside[1] - 1 of the frame M is 1. */
+static void leave_outside(const lensprof_plan *plan, const uint32_t *inside, uint32_t x, uint32_t count, strip *s) {
+    for (uint32_t c = 0; c < plan->gains; c++) {
+        const float gain = plan->simulate ? 1.0f / plan->factor[c] : plan->factor[c];
+        for (uint32_t i = 0; i < count; i++)
+            if (x + i < inside[0] || x + i >= inside[1]) s->gain[c][i] = gain;
+    }
+}
+
 /* Copies the gains of `count` pixels to their samples. */
 static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint32_t count, strip *s) {
     const float *gain[LP_CHANNELS];

@@ -311,7 +311,7 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
 }
 
 void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3], uint32_t x,
-                uint32_t y, uint32_t count, int stream) {
+                uint32_t y, uint32_t count, const uint32_t *inside, int stream) {
     const uint32_t planes = plan->layout == LENSPROF_LAYOUT_PLANAR ? 3 : 1;
     const uint32_t from_step = plan->samples * lensprof_sample_type_bytes(plan->source_sample);
     const uint32_t to_step = plan->samples * lensprof_sample_type_bytes(plan->target_sample);
@@ -329,6 +329,8 @@ void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8
         run runs[3];
         for (uint32_t c = 0; c < plan->gains; c++) gains_of_channel(plan, c, x + done, dy, n, &s);
         if (LP_HAS_CHROMA && plan->chroma) gains_of_colour(plan, n, &s);
+        if (LP_HAS_CIRCLE && inside && (x + done < inside[0] || x + done + n > inside[1]))
+            leave_outside(plan, inside, x + done, n, &s);
         spread_gains(plan, x + done, y, n, &s);
         for (uint32_t p = 0; p < planes; p++)
             runs[p] = (run){source[p] + (size_t)done * from_step, target[p] + (size_t)done * to_step,

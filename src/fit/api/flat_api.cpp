@@ -230,6 +230,7 @@ lensprof_status lensprof_flat_profile(const lensprof_flat *flat, lensprof_profil
         std::copy_n(flat->response, flat->responses, target.response);
         target.grid = flat->result->gain_grid;
         target.levels = flat->result->levels;
+        target.image_circle = flat->result->image_circle;
         target.provenance.pairs = flat->result->cells;
     };
     return change_given_profile(profile, change, error);

@@ -186,13 +186,13 @@ FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
     std::vector<int> rim;
     edge.outside = surround(map, rim);
     if (rim.empty()) return edge;
-    const std::optional<Circle> circle = outline_of(map, rim, edge.radius);
-    if (circle) edge.radius = circle->radius;
+    edge.circle = outline_of(map, rim, edge.radius);
+    if (edge.circle) edge.radius = edge.circle->radius;
     int soft = 1;
     while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;
     for (int step = 0; step <= soft; step++) grow(grid, edge.outside);
     edge.inner = edge.radius - (soft + 1) * map.side;
-    if (circle) leave_out_beyond(grid, *circle, edge.inner, edge.outside);
+    if (edge.circle) leave_out_beyond(grid, *edge.circle, edge.inner, edge.outside);
     add_black(grid, shot, edge.outside);
     edge.share = static_cast<double>(std::count(edge.outside.begin(), edge.outside.end(), true)) / grid.count();
     return edge;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "falloff/circle.hpp"
 #include "fit/flat/solver.hpp"
 #include "fit/verdict/finding.hpp"
 
@@ -24,6 +25,7 @@ struct FlatEdge {
     double inner = 0.0;         // up to which there are cells
     double share = 0.0;         // of the frame's cells, left out
     std::vector<bool> outside;  // per cell
+    std::optional<Circle> circle;
 };
 
 // What the stated black level leaves, per channel: share of white less black.

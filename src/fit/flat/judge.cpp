@@ -230,8 +230,13 @@ Measured spots(const JudgedFlat &judged) {
     return {spots, 2, {spots, r.corner_sigma, share, r.spot[0].x, r.spot[0].y}};
 }
 
-Measured edge(const JudgedFlat &judged) {
-    return of_values(judged.r.edge_radius, judged.r.edge_radius, judged.r.edge_share);
+Measured image_circle(const JudgedFlat &judged) {
+    return of_values(judged.r.image_circle.radius, judged.r.edge_radius, judged.r.edge_share);
+}
+
+Measured cover(const JudgedFlat &judged) {
+    const double radius = judged.r.image_circle.radius > 0.0 ? 0.0 : judged.r.edge_radius;
+    return of_values(radius, radius, judged.r.edge_share);
 }
 
 Measured one_light(const JudgedFlat &) { return {1.0, 0, {}}; }

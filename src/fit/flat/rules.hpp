@@ -61,7 +61,8 @@ Measured not_radial_grid(const JudgedFlat &judged);
 Measured center_distance(const JudgedFlat &judged);
 Measured center_by_prior(const JudgedFlat &judged);
 Measured spots(const JudgedFlat &judged);
-Measured edge(const JudgedFlat &judged);
+Measured image_circle(const JudgedFlat &judged);
+Measured cover(const JudgedFlat &judged);
 Measured one_light(const JudgedFlat &judged);
 Measured polynomial_error(const JudgedFlat &judged);
 Measured black_error(const JudgedFlat &judged);
@@ -101,7 +102,8 @@ constexpr FlatRule kFlatRules[] = {
     {LENSPROF_REASON_FLAT_NOT_RADIAL,      kWarns,   kFewAngles|kHasNoGrid, measure::not_radial,              Side::above, flat_limits::kMuchNotRadial,      Wording::alone},
     {LENSPROF_REASON_FLAT_NEEDS_GRID,      kWarns,   kHasNoGrid,            measure::polynomial_error,        Side::above, flat_limits::kNotPolynomial,      Wording::alone},
     // Worth knowing.
-    {LENSPROF_REASON_FLAT_EDGE,            kNotes,   kOfAll,                measure::edge,                    Side::above, 0.0,                              Wording::usual},
+    {LENSPROF_REASON_FLAT_EDGE,            kNotes,   kOfAll,                measure::image_circle,            Side::above, 0.0,                              Wording::usual},
+    {LENSPROF_REASON_FLAT_EDGE,            kNotes,   kOfAll,                measure::cover,                    Side::above, 0.0,                              Wording::weak},
     {LENSPROF_REASON_FLAT_WHITE,           kNotes,   kOfAll,                measure::white_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
     {LENSPROF_REASON_FLAT_BLACK,           kNotes,   kOfAll,                measure::black_share,             Side::above, flat_limits::kSomeClipped,        Wording::weak},
     {LENSPROF_REASON_FLAT_SHOTS_DIFFER,    kNotes,   kManyShots,            measure::odd_shot,                Side::above, flat_limits::kSomePerShot,        Wording::less},

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/profile.h"
 #include "falloff/known_area.hpp"
 #include "formats/text/text.hpp"
 
@@ -73,16 +74,6 @@ void check_holes(const KnownArea &known) {
     throw FormatFailure{LENSPROF_ERROR_VIGNETTING, text};
 }
 
-// Adds the part of the frame that the falloff is of to the source.
-void note_circle(const Circle &circle, lensprof_profile &profile) {
-    char text[80];
-    std::snprintf(text, sizeof text, "valid within r = %.3f of (%.3f, %.3f)", circle.radius, circle.center[0],
-                  circle.center[1]);
-    lensprof_provenance &provenance = profile.provenance;
-    const std::string source = provenance.source;
-    put_text(provenance.source, sizeof provenance.source, source.empty() ? text : source + "; " + text);
-}
-
 }  // namespace
 
 void check_frame(uint32_t width, uint32_t height) {
@@ -112,7 +103,8 @@ double fit_values(const MapValues &form, const float *values, uint32_t width, ui
     const KnownArea known = drop_surround(map);
     const double worst = fit_map(map, profile);
     check_holes(known);
-    if (known.circle) note_circle(*known.circle, profile);
+    profile.image_circle = {};
+    if (known.circle) profile.image_circle = {{known.circle->center[0], known.circle->center[1]}, known.circle->radius};
     profile.covariance_size = 0;
     std::fill(std::begin(profile.covariance), std::end(profile.covariance), 0.0);
     return worst;
@@ -129,8 +121,8 @@ std::vector<double> attenuations_of(const lensprof_profile &profile, uint32_t wi
             for (uint32_t i = 0; i < columns; i++) {
                 double sum = 0.0;
                 for (uint32_t from = channels == 3 ? c : 0; from <= (channels == 3 ? c : 2); from++)
-                    sum += lensprof_profile_falloff(&profile, from, width, height, map.x0 + i * map.dx,
-                                                    map.y0 + j * map.dy, nullptr);
+                    sum += lp_profile_continued_falloff(&profile, from, width, height, map.x0 + i * map.dx,
+                                                        map.y0 + j * map.dy);
                 all.push_back(channels == 3 ? sum : sum / 3.0);
             }
     const double largest = *std::max_element(all.begin(), all.end());

@@ -61,6 +61,12 @@ std::string note_of_levels(const lensprof_profile &profile, const std::string &n
                   "subtracted from the pictures, and white be full scale, before they are corrected";
 }
 
+std::string note_of_circle(const lensprof_profile &profile, const std::string &name) {
+    if (profile.image_circle.radius == 0.0) return {};
+    return name + ": the file does not hold its image circle; where it is used, what lies outside is lifted by the "
+                  "continued falloff";
+}
+
 // A camera after another: each is added to the text with those before it.
 std::string lens_file_text(const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &dbs,
                            const std::string &into, LensFileCost &cost, const std::vector<std::string> &names) {

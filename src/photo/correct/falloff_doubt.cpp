@@ -17,6 +17,11 @@ double farthest_place(const lensprof_vignetting &falloff, uint32_t width, uint32
     return std::hypot(std::abs(falloff.center[0]) + width / diagonal, std::abs(falloff.center[1]) + height / diagonal);
 }
 
+double farthest_of_circle(const lensprof_vignetting &falloff, const lensprof_image_circle &circle) {
+    if (circle.radius == 0.0) return INFINITY;
+    return circle.radius + std::hypot(circle.center[0] - falloff.center[0], circle.center[1] - falloff.center[1]);
+}
+
 std::string impossible_curve(const lensprof_profile &profile, uint32_t channel, double farthest) {
     constexpr double errors_of_evidence = 2.0;  // standard errors
     const auto m_of = [&](double r2, double *sigma = nullptr) {
@@ -43,8 +48,11 @@ std::string impossible_curve(const lensprof_profile &profile, uint32_t channel, 
 
 std::string impossible_falloff(const lensprof_profile &profile, uint32_t width, uint32_t height, bool is_circular) {
     std::string text;
-    for (uint32_t c = 0; c < profile.vignettings && text.empty() && profile.grid.columns == 0; c++)
-        text = impossible_curve(profile, c, farthest_place(profile.vignetting[c], width, height, is_circular));
+    for (uint32_t c = 0; c < profile.vignettings && text.empty() && profile.grid.columns == 0; c++) {
+        const lensprof_vignetting &falloff = profile.vignetting[c];
+        const double in_frame = farthest_place(falloff, width, height, is_circular);
+        text = impossible_curve(profile, c, std::min(in_frame, farthest_of_circle(falloff, profile.image_circle)));
+    }
     return text;
 }
 

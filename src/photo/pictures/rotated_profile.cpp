@@ -40,6 +40,9 @@ void turn_profile(uint16_t turn, lensprof_profile &profile) {
         turn_upright(inverse_orientation(turn), centre[0], centre[1]);
         if (!turn) centre[0] = centre[1] = 0.0;
     }
+    double *circle = profile.image_circle.center;
+    turn_upright(inverse_orientation(turn), circle[0], circle[1]);
+    if (!turn) circle[0] = circle[1] = 0.0;
     if (!profile.grid.columns || turn == 1) return;
     const lensprof_gain_grid other = rotated_grid(profile.grid, turn ? turn : kOtherWay);
     profile.grid = rotated_grid(profile.grid, turn ? turn : kOneWay);

@@ -42,7 +42,9 @@ static lensprof_status check_tables(lensprof_store *store, lensprof_error *error
         ("SELECT mode, k1, channels, gamma_sigma, crop FROM profiles, responses, emor_coefficients, vignettings, gain_grids,"
          " (SELECT crop_factor AS crop FROM cameras)"),
         ("SELECT mode, k1, channels, white_level, crop FROM profiles, responses, emor_coefficients, vignettings, gain_grids,"
-         " (SELECT crop_factor AS crop FROM cameras)")};
+         " (SELECT crop_factor AS crop FROM cameras)"),
+        ("SELECT mode, k1, channels, circle_radius, crop FROM profiles, responses, emor_coefficients, vignettings,"
+         " gain_grids, (SELECT crop_factor AS crop FROM cameras)")};
     const int rc = sqlite3_prepare_v2(store->db, lp_store_of_layout(store, columns), -1, &statement, NULL);
     if (rc) status = lp_store_fail_sql(store->path, store->db, rc, error);
     sqlite3_finalize(statement);

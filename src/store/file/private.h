@@ -9,7 +9,7 @@
 #include "core/profile.h"
 
 #define LP_STORE_APPLICATION_ID 0x4C505246 /* as in 0001_profiles.sql */
-#define LP_STORE_LAYOUT 6                  /* that of the newest schema */
+#define LP_STORE_LAYOUT 7                  /* that of the newest schema */
 #define LP_STORE_BUSY_MS 5000
 
 #define LP_STORE_STATEMENTS 48 /* more than there are in the sources; what is beyond is prepared each time */
@@ -34,7 +34,7 @@ struct lensprof_store {
 
 /* profiles/schema: number n makes layout n of layout n - 1. */
 extern const char lp_schema_0001[], lp_schema_0002[], lp_schema_0003[], lp_schema_0004[], lp_schema_0005[],
-    lp_schema_0006[];
+    lp_schema_0006[], lp_schema_0007[];
 
 /* place.c: what lies around the file with the full path `full`. */
 bool lp_store_has_log(const char *full); /* a log that is not empty exists next to the file */

@@ -14,8 +14,8 @@ int lp_store_number(sqlite3 *db, const char *sql, int64_t *value) {
 }
 
 int lp_store_migrate(sqlite3 *db, int layout) {
-    static const char *const schemas[LP_STORE_LAYOUT] = {lp_schema_0001, lp_schema_0002, lp_schema_0003,
-                                                         lp_schema_0004, lp_schema_0005, lp_schema_0006};
+    static const char *const schemas[LP_STORE_LAYOUT] = {lp_schema_0001, lp_schema_0002, lp_schema_0003, lp_schema_0004,
+                                                         lp_schema_0005, lp_schema_0006, lp_schema_0007};
     int rc = SQLITE_OK;
     for (int next = layout; next < LP_STORE_LAYOUT && rc == SQLITE_OK; next++)
         rc = sqlite3_exec(db, schemas[next], NULL, NULL, NULL);

@@ -133,6 +133,16 @@ static void set_levels(const work *w, lensprof_profile *profile) {
             memset(&profile->levels, 0, sizeof profile->levels);
 }
 
+/* That of the nearest profile, on the sensor of the picture; none if it covers that. */
+static void set_circle(const work *w, double profile_crop_factor, lensprof_image_circle *circle) {
+    const double crop_factor = w->falloff.key.crop_factor;
+    if (profile_crop_factor != LENSPROF_UNKNOWN && crop_factor != LENSPROF_UNKNOWN) {
+        for (int d = 0; d < 2; d++) circle->center[d] *= crop_factor / profile_crop_factor;
+        circle->radius *= crop_factor / profile_crop_factor;
+    }
+    if (circle->radius - hypot(circle->center[0], circle->center[1]) >= 1.0) memset(circle, 0, sizeof *circle);
+}
+
 static void set_response(const work *w, lensprof_profile *profile) {
     lensprof_response linear;
     if (w->response.responses < 3) lensprof_response_set_linear(&linear);
@@ -158,6 +168,7 @@ static lensprof_status compose(work *w, lensprof_error *error) {
     if (status == LENSPROF_OK) status = lp_store_fetch_falloff(store, w->lookup.id[0], error);
     if (status != LENSPROF_OK) return status;
     set_sigma(w);
+    set_circle(w, profile->key.crop_factor, &profile->image_circle);
     profile->key = w->falloff.key;
     set_response(w, profile);
     set_levels(w, profile);

@@ -15,8 +15,9 @@
 #define LP_PLUS_3 LP_WITHOUT_DIGITS(LP_NAMED_3)                              /* "transfer+" */
 #define LP_HAS_PRIOR_3 LP_PLUS_3 " LIKE '%+' AND " LP_PLUS_3 " <> " LP_NAMED_3
 
-#define LP_LEVELS_5 /* what layout 6 adds */ \
-    "NULL AS black_red, NULL AS black_green, NULL AS black_blue, NULL AS white_level"
+#define LP_CIRCLE_6 "NULL AS circle_x, NULL AS circle_y, NULL AS circle_radius" /* what layout 7 adds */
+#define LP_LEVELS_5 /* what layout 6 adds, too */ \
+    "NULL AS black_red, NULL AS black_green, NULL AS black_blue, NULL AS white_level, " LP_CIRCLE_6
 #define LP_STYLE_4 "'' AS style, NULL AS gamma_sigma, " LP_LEVELS_5 /* what layout 5 adds, too */
 #define LP_SINCE_1 \
     "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, software, source," \
@@ -30,6 +31,9 @@
     " ELSE " LP_NAMED_3 " END AS method," \
     " CASE WHEN " LP_HAS_PRIOR_3 " THEN nullif(CAST(substr(" LP_NAMED_3 ", length(" LP_PLUS_3 ") + 1) AS INTEGER), 0)" \
     " END AS prior_id, " LP_FORCED_3 " AS forced, " LP_STYLE_4 ", " columns)
+#define LP_PROFILES_6 \
+    LP_WITH_PROFILES(LP_SINCE_1 "method, color_temperature_k, prior_id, forced, style, gamma_sigma, black_red," \
+                     " black_green, black_blue, white_level, " LP_CIRCLE_6 ", " LP_UNITS_3)
 #define LP_PROFILES_5 \
     LP_WITH_PROFILES(LP_SINCE_1 "method, color_temperature_k, prior_id, forced, style, gamma_sigma, " LP_LEVELS_5 \
                      ", " LP_UNITS_3)
@@ -46,7 +50,7 @@
  * newest `profiles`. */
 #define LP_BY_LAYOUT(sql) \
     {LP_PROFILES_3("0 AS gain_grids, " LP_UNITS_2) sql, LP_PROFILES_3("gain_grids, " LP_UNITS_2) sql, \
-     LP_PROFILES_3(LP_UNITS_3) sql, LP_PROFILES_4 sql, LP_PROFILES_5 sql, sql}
+     LP_PROFILES_3(LP_UNITS_3) sql, LP_PROFILES_4 sql, LP_PROFILES_5 sql, LP_PROFILES_6 sql, sql}
 
 /* clang-format on */
 #endif

@@ -74,6 +74,12 @@ static void read_levels(lp_store_reader *reader, lensprof_levels *levels) {
         if (!lp_read_null(reader)) *numbers[i] = lp_read_real(reader);
 }
 
+static void read_circle(lp_store_reader *reader, lensprof_image_circle *circle) {
+    double *const numbers[3] = {&circle->center[0], &circle->center[1], &circle->radius};
+    for (int i = 0; i < 3; i++)
+        if (!lp_read_null(reader)) *numbers[i] = lp_read_real(reader);
+}
+
 /* From the row at which `statement` stands, and its curves, into store->scratch. */
 static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *statement, bool with_response, int64_t *id,
                                     lensprof_error *error) {
@@ -93,6 +99,7 @@ static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *stateme
         lp_read_nothing(&reader);
     uint32_t grids = (uint32_t)lp_read_integer(&reader, 0, 1);
     read_levels(&reader, &profile->levels);
+    read_circle(&reader, &profile->image_circle);
     *id = sqlite3_column_int64(statement, 0);
     if (reader.bad) return lp_store_fail_profile(store, *id, reader.bad, error);
     lensprof_status status = lp_store_read_curves(store, *id, with_response, grids, error);
@@ -104,7 +111,7 @@ static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *stateme
 /* clang-format off */
 #define SELECT_PROFILE \
     "SELECT " ROW_COLUMNS ", response_curves, vignetting_curves, covariance_size, covariance, gain_grids, black_red," \
-    " black_green, black_blue, white_level FROM profiles" \
+    " black_green, black_blue, white_level, circle_x, circle_y, circle_radius FROM profiles" \
     " WHERE "
 #define WITH_KEY \
     SAME_TEXT("camera_maker", "?1") " AND " SAME_TEXT("camera_model", "?2") " AND " SAME_TEXT("lens", "?3") " AND " \

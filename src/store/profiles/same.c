@@ -18,7 +18,8 @@ static const char equal_rows[] =
     " AND covariance IS ?19 AND gain_grids = ?20 AND unit = ?21 AND crop_factor IS ?22 AND doubt = ?23 AND lens_name = ?24"
     " AND color_temperature_k IS ?25 AND style = ?28 AND gamma_sigma IS ?29"
     " AND black_red IS ?30 AND black_green IS ?31 AND black_blue IS ?32 AND white_level IS ?33"
-    " AND EXISTS (SELECT 1 FROM vignettings WHERE profile_id = id AND curve = 0 AND k1 = ?34 AND k2 = ?35 AND k3 = ?36)";
+    " AND circle_x IS ?34 AND circle_y IS ?35 AND circle_radius IS ?36"
+    " AND EXISTS (SELECT 1 FROM vignettings WHERE profile_id = id AND curve = 0 AND k1 = ?37 AND k2 = ?38 AND k3 = ?39)";
 
 /* Values, not bits: a database has no -0. */
 static bool are_equal(const double *a, const double *b, uint32_t count) {

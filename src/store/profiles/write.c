@@ -48,6 +48,16 @@ static void bind_levels(lp_store_binder *binder, lensprof_levels levels) {
     }
 }
 
+static void bind_circle(lp_store_binder *binder, lensprof_image_circle circle) {
+    const double numbers[3] = {circle.center[0], circle.center[1], circle.radius};
+    for (int i = 0; i < 3; i++) {
+        if (circle.radius > 0.0)
+            lp_bind_real(binder, numbers[i]);
+        else
+            lp_bind_null(binder);
+    }
+}
+
 void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name) {
     const lensprof_profile_key *key = &profile->key;
     const lensprof_provenance *provenance = &profile->provenance;
@@ -93,6 +103,7 @@ void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *prof
     else
         lp_bind_null(binder);
     bind_levels(binder, lp_profile_levels(profile));
+    bind_circle(binder, lp_profile_circle(profile));
 }
 
 /* With AUTOINCREMENT no id is used twice: where a row has or had the last one, no row can follow, and an INSERT would
@@ -117,8 +128,9 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
         "INSERT INTO profiles (camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing,"
         " method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
         " response_curves, vignetting_curves, covariance_size, covariance, gain_grids, unit, crop_factor, doubt, lens_name,"
-        " color_temperature_k, prior_id, forced, style, gamma_sigma, black_red, black_green, black_blue, white_level)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        " color_temperature_k, prior_id, forced, style, gamma_sigma, black_red, black_green, black_blue, white_level,"
+        " circle_x, circle_y, circle_radius)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     char lens_name[LP_NAME_BYTES]; /* bound as it is: until the statement has run */
