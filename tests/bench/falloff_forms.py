@@ -233,7 +233,7 @@ def of_program(card):
     path = tools.WORK / "forms" / "card.png"
     path.parent.mkdir(parents=True, exist_ok=True)
     flat.write_png(path, np.repeat(light[:, :, None], 3, axis=2))
-    found = flat.call("flat", path, "--linear", "--fit", "light=even", "--no-store", "--json")
+    found = flat.call("flat", path, "--linear", "--light", "even", "--no-store", "--json")
     return found and {"frame": found["residual"]["frame"], "with_grid": found["residual"]["with_grid"]}
 
 

@@ -103,6 +103,34 @@ void test_rotated_shots_are_measured_and_stored(void **) {
         assert_true(contains(table, part));
 }
 
+// One shot in a light of unknown slope: the note names the option that states the light, and what it would change is
+// what it does change.
+void test_the_light_is_stated(void **) {
+    const std::string file = shoot("one_light.tif", Card{});
+    const Words words = flat({file, "--linear", "--no-store", "--json"});
+    const auto corners = [](const Json &json) {
+        lensprof_vignetting found{};
+        for (size_t i = 0; i < 3; i++) found.k[i] = json["vignetting"]["k"][0][i].get<double>();
+        for (size_t i = 0; i < 2; i++) found.center[i] = json["vignetting"]["center"][i].get<double>();
+        std::vector<double> values;
+        for (const uint32_t x : {0u, width - 1})
+            for (const uint32_t y : {0u, height - 1})
+                values.push_back(lensprof_vignetting_eval(
+                    &found, lensprof_vignetting_r2(&found, width, height, x, y, nullptr), nullptr));
+        return values;
+    };
+    const Json chosen = json_of(words), even = json_of(words + Words{"--light", "even"}),
+               plane = json_of(words + Words{"--light", "plane"});
+    assert_true(even["light"] == "even" && plane["light"] == "plane" && chosen["light"] == "plane");
+    const auto note = std::find_if(chosen["findings"].begin(), chosen["findings"].end(),
+                                   [](const Json &finding) { return finding["code"] == "flat_center_by_prior"; });
+    assert_true(note != chosen["findings"].end() && contains((*note)["text"].get<std::string>(), "--light even"));
+    double change = 0.0;
+    for (size_t i = 0; i < 4; i++) change = std::max(change, std::fabs(std::log2(corners(even)[i] / corners(chosen)[i])));
+    assert_close(chosen["light_ev"].get<double>(), change, 0.1 * change + 0.002);
+    assert_false(contains(even.dump(), "flat_center_by_prior"));
+}
+
 // Grey value of a corner relative to the middle, each the mean of 16 x 16 pixels.
 double evenness(const std::string &file) {
     const Picture picture = read_picture(file);
@@ -184,7 +212,7 @@ void test_the_black_level(void **) {
     Picture not_finite = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB);
     reinterpret_cast<float *>(not_finite.pixels.data())[7] = NAN;
     write_picture(in_folder("odd_dark.tif"), not_finite);
-    const Words common = {"--linear", "--fit", "white-level=4095,center=fixed,light=even", "--json"};
+    const Words common = {"--linear", "--fit", "white-level=4095,center=fixed", "--light", "even", "--json"};
     const auto measured = [&](const Words &words) { return json_of(flat(words) + common + Words{"--no-store"}); };
 
     const Json open = measured({bright});
@@ -391,8 +419,9 @@ void test_refused(void **) {
         {usage, Words{path, other, "--ev", "1,99"} + good, {"card2.tif", "64 EV"}},
         {usage, Words{path, other, "--rotation", "0"} + good, {"--rotation"}},
         {usage, Words{path, other, "--rotation", "0,400"} + good, {"--rotation"}},
-        {usage, Words{path, "--fit", "light=bright"} + good, {"--fit light"}},
-        {usage, Words{path, "--fit", "light=plane", "--several"} + good, {"--several"}},
+        {usage, Words{path, "--light", "bright"} + good, {"--light"}},
+        {usage, Words{path, "--light", "plane", "--several"} + good, {"--several"}},
+        {usage, Words{path, "--fit", "light=even"} + good, {"--fit light is now --light; `lensprof flat --help-all`"}},
         {usage, Words{path, "--card", "1,2,3"} + good, {"--card"}},
         {usage, Words{path, "--card", "0,0,361,270"} + good, {"--card", "360 x 270", "card.tif"}},
         {usage, Words{path, "--card", "0,0,10,10", "--card", "find"} + good, {"--card", "find"}},
@@ -430,6 +459,7 @@ void test_refused(void **) {
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_rotated_shots_are_measured_and_stored),
+        CLI_TEST(test_the_light_is_stated),
         CLI_TEST(test_the_card_is_corrected),
         CLI_TEST(test_the_black_level),
         CLI_TEST(test_portrait_cards),

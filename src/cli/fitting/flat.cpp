@@ -57,13 +57,7 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
     keys.profile_id("profile", o.profile, "use the response of this profile of the database");
     keys.number("ev-sigma", o.ev_sigma, {0.001, 1.0},
                 "standard error of an exposure, EV, with --several; default 0.02");
-    keys.choice("light", o.light,
-                {{"auto", LENSPROF_FLAT_LIGHT_AUTO},
-                 {"even", LENSPROF_FLAT_LIGHT_EVEN},
-                 {"plane", LENSPROF_FLAT_LIGHT_PLANE},
-                 {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
-                "model of the light on the card: even, plane, quadratic or auto (default: plane; even with "
-                "--several or where it fits as well; quadratic where shots at several angles show it)");
+    keys.renamed("light", "--light");
     keys.flag("own-light", o.own_light, "estimate the light per shot, instead of one for all shots");
     keys.choice("falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
                 "number of falloff curves: 1, 3 (one per channel) or auto (default: 3 if they clearly differ)");
@@ -125,6 +119,14 @@ void declare(Command &command, FlatCommand &o) {
     expert.words(
         "--dark", "FILE", [&o](const std::string &word) { o.dark_files.push_back(word); },
         "picture with the lens covered, which gives the black level; repeat for several");
+    expert.choice("--light", o.light,
+                  {{"auto", LENSPROF_FLAT_LIGHT_AUTO},
+                   {"even", LENSPROF_FLAT_LIGHT_EVEN},
+                   {"plane", LENSPROF_FLAT_LIGHT_PLANE},
+                   {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
+                  "what the light on the card is taken to be: even, as in an integrating sphere; plane, which slopes; "
+                  "quadratic, which is also bent; or auto (default: plane; even with --several or where it fits as "
+                  "well; quadratic where shots at several angles show it)");
     expert.flag("--several", o.several,
                 "the pictures show one card at several places of the frame, with constant brightness");
     expert.words(
@@ -165,7 +167,7 @@ void check_options(const FlatCommand &o) {
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--fit max-side: fewer than 64 pixels give too few cells; give more, or 0 for full size");
     if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
-        throw Failure(LENSPROF_ERROR_ARGUMENT, "--several: assumes even light on the card; omit --fit light");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, "--several: assumes even light on the card; omit --light");
     if (!o.into.empty() && o.outputs.empty() && o.bundle.empty())
         throw Failure(LENSPROF_ERROR_ARGUMENT, "--into: needs -o FILE.xml, which receives the whole database");
     if (o.turned && !o.rotation_deg.empty())
@@ -328,7 +330,7 @@ const char *card_option(const FlatCommand &o) {
                                                    {o.ignore_below != cards.ignore_below, "--fit ignore-below"},
                                                    {o.ignore_above != cards.ignore_above, "--fit ignore-above"},
                                                    {o.max_side != cards.max_side, "--fit max-side"},
-                                                   {o.light != cards.light, "--fit light"},
+                                                   {o.light != cards.light, "--light"},
                                                    {o.own_light, "--fit own-light"},
                                                    {o.grid != cards.grid, "--fit grid"},
                                                    {!o.free_center, "--fit center"},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -21,6 +22,7 @@ struct KeyTable {
     std::string intro;   // what the keys are about
     std::string help;    // the command that prints the table
     std::vector<Key> keys;
+    std::map<std::string, std::string> renamed{};  // keys that are options now
     std::set<std::string> given{};  // keys of this command line
 
     const Key *find(const std::string &name) const;
@@ -45,6 +47,9 @@ public:
 
     void word(const char *name, const std::string &type, const Read &read, const std::string &about) override;
     void flag(const char *name, bool &value, const std::string &about) override;  // yes or no
+
+    // A key of an earlier version that is an option now: it is refused, and the option is named.
+    void renamed(const char *name, const char *option) { table_->renamed[name] = option; }
 
 private:
     std::shared_ptr<KeyTable> table_;

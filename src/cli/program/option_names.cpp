@@ -23,6 +23,7 @@ std::string option_of(const std::string &name) {
         {"image_list", "--reconstruction list=FILE"},
         {"images", "--images"},
         {"lens", "--lens"},
+        {"light", "--light"},
         {"linear", "--linear"},
         {"maker", "--key maker"},
         {"max_side", "--fit max-side"},

@@ -22,7 +22,6 @@ inline constexpr RenamedOption renamed_options[] = {
     {"--gamma-from", "--fit gamma-from=SOURCE"},
     {"--grid", "--fit grid=auto|none|always"},
     {"--huber", "--fit huber=NUMBER"},
-    {"--light", "--fit light=MODEL"},
     {"--loss", "--fit loss=robust|huber|squared"},
     {"--max-side", "--fit max-side=COUNT"},
     {"--method", "--fit method=METHOD"},

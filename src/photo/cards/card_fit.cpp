@@ -90,6 +90,18 @@ std::vector<std::string> foreign_pictures(const CardFit &found) {
     return is_any_even ? foreign : std::vector<std::string>();
 }
 
+// One shot, or several at one angle, do not separate the light from the centre: the option that states the light.
+void name_light_option(CardFit &found) {
+    const bool is_even = found.fit.light == LENSPROF_FLAT_LIGHT_EVEN;
+    const std::string other = option_name("light") + (is_even ? " plane" : " even");
+    for (Finding &finding : found.verdict.findings) {
+        if (finding.code == LENSPROF_REASON_FLAT_CENTER_BY_PRIOR && found.fit.light_ev > 0.0)
+            finding.text += " (" + other + ")";
+        if (finding.code == LENSPROF_REASON_FLAT_STEEP && !is_even && !found.fit.separated)
+            finding.text += "; or state an even light, if it is one, with " + other;
+    }
+}
+
 // A scene among cards leaves texture, or cells that disagree: the refusal names it.
 void name_foreign_pictures(CardFit &found) {
     if (found.fit.usable || found.fit.shots < 2) return;
@@ -129,6 +141,7 @@ CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
     name_images(found.files, found.verdict);
     name_shots(found.files, found.shots, found.verdict);
     name_foreign_pictures(found);
+    name_light_option(found);
     found.profile = sensor_profile(input, *flat, events);
     return found;
 }
