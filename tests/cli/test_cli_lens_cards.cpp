@@ -1,6 +1,8 @@
 // `lensprof flat` of a folder: settings by EXIF, names and a table, a result for each, the lens as one file.
 #include "raw_runs.hpp"
 
+#include <set>
+
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
 #include "photo/cards/card_names.hpp"
@@ -426,6 +428,48 @@ void test_near_settings(void **) {
     assert_false(contains(found.err, "97_"));
 }
 
+// The settings, their keys and notes do not depend on the order of pictures that round to each other.
+void test_order_of_near_settings(void **) {
+    const std::vector<std::pair<double, double>> numbers = {{24.0, 4.0},  {23.6, 4.0},  {24.4, 4.0}, {35.0, 1.7},
+                                                            {35.0, 1.75}, {35.0, 1.8},  {50.0, 2.8}, {50.0, 2.83},
+                                                            {4.3, 5.6},   {4.25, 5.66}, {4.25, 5.6}};
+    Words files;
+    for (const auto &[focal, aperture] : numbers)
+        files.push_back(shoot(format("order/%g_%g.tif", focal, aperture), Card{focal, aperture}));
+    CardOptions o;
+    o.linear = o.store.no_store = true;
+    std::map<std::string, Words> first;
+    std::set<std::string> first_notes;
+    for (int turn = 0; turn < 12; turn++) {
+        turn % 2 ? std::reverse(files.begin(), files.end())
+                 : void(std::rotate(files.begin(), files.begin() + 2, files.end()));
+        NoticeList events;
+        std::map<std::string, Words> settings;
+        std::set<std::string> notes;
+        for (const CardSetting &setting : card_settings(files, o, nullptr, events).list) {
+            Words &names = settings[setting.label];
+            for (const CardPicture &picture : setting.pictures) {
+                names.push_back(picture.file);
+                assert_true(picture.metadata.key.focal_mm == setting.key.focal_mm
+                            && picture.metadata.key.aperture == setting.key.aperture);
+            }
+            std::sort(names.begin(), names.end());
+        }
+        for (const Notice &notice : events.list) notes.insert(notice.line());
+        if (first.empty()) first = settings, first_notes = notes;
+        assert_true(settings == first && notes == first_notes);
+    }
+    Words labels;
+    for (const auto &[label, names] : first) labels.push_back(label);
+    assert_true(labels
+                == Words({"23.6 mm, f/4", "24 mm, f/4", "24.4 mm, f/4", "35 mm, f/1.7", "35 mm, f/1.75", "35 mm, f/1.8",
+                          "4.25 mm, f/5.6", "50 mm, f/2.8"}));
+    assert_int_equal(first["4.25 mm, f/5.6"].size(), 3);
+    assert_int_equal(first["50 mm, f/2.8"].size(), 2);
+    assert_true(first_notes.count("24 mm, f/4: may be 23.6 mm, f/4 or 24.4 mm, f/4, by the rounding of what cameras "
+                                  "state: measured alone; give a table if it is one of them"));
+}
+
 std::string reason_of(const Words &files) {
     const Json json = json_of(flat_of(files, {"--json", "-o", in_folder("odd.csv")}), not_usable);
     assert_int_equal(json["settings"].size(), 1);
@@ -578,6 +622,7 @@ int main() {
         CLI_TEST(test_bundle),
         CLI_TEST(test_cards_and_photographs),
         CLI_TEST(test_near_settings),
+        CLI_TEST(test_order_of_near_settings),
         CLI_TEST(test_a_foreign_picture),
         CLI_TEST(test_counts),
         CLI_TEST(test_what_can_be_written_is),

@@ -78,12 +78,15 @@ bool is_same_aperture(double a, double b) {
     return stops < 1e-3 || (stops < rounding_stops && !(is_shown_aperture(a) && is_shown_aperture(b)));
 }
 
-// One focal length, of which the shorter number may be rounded: 4.25 and 4.3 mm, but not 97 and 98 mm.
-bool is_same_focal(double a, double b) {
-    double unit = 1.0;  // of the last digit of the shorter one
-    while (unit > 1e-3 && !is_whole(a / unit) && !is_whole(b / unit)) unit /= 10.0;
-    return std::fabs(a - b) < 0.5 * unit + 1e-6;
+// Of the last digit, at least a thousandth.
+double unit_of(double number) {
+    double unit = 1.0;
+    while (unit > 1e-3 && !is_whole(number / unit)) unit /= 10.0;
+    return unit;
 }
+
+// One focal length, of which the shorter number may be rounded: 4.25 and 4.3 mm, but not 97 and 98 mm.
+bool is_same_focal(double a, double b) { return std::fabs(a - b) < 0.5 * std::max(unit_of(a), unit_of(b)) + 1e-6; }
 
 // Unknown distances are taken as far; all far ones are alike, near ones within the rounding of EXIF.
 bool is_same_distance(double a, double b) {
@@ -107,17 +110,44 @@ auto rank_of(const lensprof_profile_key &key) {
                            key.distance_m);
 }
 
-std::vector<CardSetting> grouped(const std::vector<CardPicture> &pictures) {
+// The least rounded numbers come first: apertures as cameras show them, focal lengths with most digits, distances that
+// are stated.
+auto precision_of(const lensprof_profile_key &key) {
+    return std::make_tuple(!is_shown_aperture(key.aperture), unit_of(key.focal_mm),
+                           key.distance_m == LENSPROF_UNKNOWN, rank_of(key));
+}
+
+// The settings that a number may be rounded from.
+std::vector<CardSetting *> possible_settings(std::vector<CardSetting> &settings, const lensprof_profile_key &key) {
+    std::vector<CardSetting *> possible;
+    for (CardSetting &setting : settings)
+        if (is_same(setting.key, key)) possible.push_back(&setting);
+    return possible;
+}
+
+// By what the pictures state, not by their order: rounded numbers join the setting that they are rounded from. Those of
+// two settings (24 mm, of 23.6 and 24.4) are measured alone.
+std::vector<CardSetting> grouped(const std::vector<CardPicture> &pictures, Events &events) {
+    std::map<decltype(precision_of(pictures.front().metadata.key)), std::vector<CardPicture>> alike;
+    for (const CardPicture &picture : pictures) alike[precision_of(picture.metadata.key)].push_back(picture);
     std::vector<CardSetting> settings;
-    for (const CardPicture &picture : pictures) {
-        const lensprof_profile_key &key = picture.metadata.key;
-        const auto same = std::find_if(settings.begin(), settings.end(),
-                                       [&](const CardSetting &setting) { return is_same(setting.key, key); });
-        if (same != settings.end())
-            same->pictures.push_back(picture);
-        else
-            settings.push_back({key, {picture}, describe_setting(key, picture.file)});
+    for (const auto &[precision, own] : alike) {
+        const lensprof_profile_key &key = own.front().metadata.key;
+        const std::string label = describe_setting(key, own.front().file);
+        const std::vector<CardSetting *> possible = possible_settings(settings, key);
+        if (possible.size() == 1) {
+            possible.front()->pictures.insert(possible.front()->pictures.end(), own.begin(), own.end());
+            continue;
+        }
+        if (possible.size() > 1)
+            events.note(label, "may be " + possible[0]->label + " or " + possible[1]->label
+                                   + ", by the rounding of what cameras state: measured alone; give a table if it is "
+                                     "one of them");
+        settings.push_back({key, own, label});
     }
+    for (CardSetting &setting : settings)
+        std::sort(setting.pictures.begin(), setting.pictures.end(),
+                  [](const CardPicture &a, const CardPicture &b) { return a.index < b.index; });
     std::stable_sort(settings.begin(), settings.end(),
                      [](const CardSetting &a, const CardSetting &b) { return rank_of(a.key) < rank_of(b.key); });
     return settings;
@@ -136,6 +166,15 @@ void note_rounding(const CardSetting &setting, Events &events) {
         return events.note(setting.label, picture.file + " states " + label
                                               + ": taken as one setting, by the rounding of what cameras state; "
                                                 "give a table if they are two");
+    }
+}
+
+// The profile is of the setting, not of what its first picture states.
+void take_numbers(CardSetting &setting) {
+    for (CardPicture &picture : setting.pictures) {
+        lensprof_profile_key &key = picture.metadata.key;
+        key.focal_mm = setting.key.focal_mm, key.aperture = setting.key.aperture;
+        key.distance_m = setting.key.distance_m;
     }
 }
 
@@ -210,9 +249,9 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
                                                : "none of the " + counted(settings.left_out.size(), "picture")
                                                      + " can be used; the first: " + first.reason);
     }
-    settings.list = grouped(pictures);
+    settings.list = grouped(pictures, events);
     leave_out_unknown(settings);
-    for (const CardSetting &setting : settings.list) note_rounding(setting, events);
+    for (CardSetting &setting : settings.list) note_rounding(setting, events), take_numbers(setting);
     return settings;
 }
 

@@ -11,7 +11,7 @@ namespace lensprof {
 
 // Pictures of one camera, lens, focal length, aperture and distance.
 struct CardSetting {
-    lensprof_profile_key key{};  // of the first picture
+    lensprof_profile_key key{};  // of the picture whose numbers are rounded least
     std::vector<CardPicture> pictures;
     std::string label;  // "24 mm, f/2.8"
 };
@@ -27,7 +27,7 @@ struct CardSettings {
     bool has_folders = false;
 };
 
-// Finds the settings of pictures and folders of them: by EXIF, completed by names, replaced by `table` (NULL: none) and
+// Finds the settings of pictures and folders of them, whatever their order: by EXIF, completed by names, replaced by `table` (NULL: none) and
 // by what `o` states for all. Left out, with the reason: files that cannot be read; of folders,
 // copies of other pictures and those whose falloff the camera corrected; and, of several settings, pictures that state
 // neither focal length nor aperture. Failure if nothing is left.
