@@ -202,6 +202,30 @@ void test_dark_frames_and_white_level(void **) {
                    {"0.tif", "would be overwritten"});
 }
 
+// Float counts, of which dark frames lie near 0 or above 1: the unit is that of the pictures.
+void test_dark_frames_of_float_counts(void **) {
+    if (!can_read_fits()) return;
+    for (const double level : {0.0, 0.6, pedestal}) {
+        std::vector<Plane> planes = scenes(8);
+        const std::string name = std::to_string(static_cast<int>(10.0 * level)),
+                          file = work("pictures" + name + ".fits"), dark = work("dark" + name + ".tif");
+        for (Plane &plane : planes)
+            for (uint16_t &value : plane) value = static_cast<uint16_t>(value - pedestal + level);
+        save(file, fits_of(planes, true));
+        Picture frame = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_GREY);
+        auto *sample = reinterpret_cast<float *>(frame.pixels.data());
+        uint64_t random = 5;
+        for (size_t i = 0; i < size_t(width) * height; i++)
+            sample[i] = static_cast<float>(level + 3.0 * lp_normal(&random));
+        write_picture(dark, frame);
+        const Json json = json_of(fields({file, "--no-store", "--json", "--dark", dark}));
+        assert_close(json["channels"][0]["offset"].get<double>(), level, 0.3);
+        for (size_t i = 0; i < size_t(width) * height; i++) sample[i] = static_cast<float>(level + 8.0 * (i % width));
+        write_picture(dark, frame);
+        assert_refused(not_usable, fields({file, "--no-store", "--dark", dark}), {dark, "is not dark"});
+    }
+}
+
 // A profile has no place for the offset of counts in float samples: both commands state it.
 void test_offset_of_float_counts_is_noted(void **) {
     if (!can_read_fits()) return;
@@ -402,6 +426,7 @@ int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_a_folder_is_measured_and_corrected),
         CLI_TEST(test_dark_frames_and_white_level),
+        CLI_TEST(test_dark_frames_of_float_counts),
         CLI_TEST(test_offset_of_float_counts_is_noted),
         CLI_TEST(test_pages_stacks_and_planes),
         CLI_TEST(test_channels_of_stacks),

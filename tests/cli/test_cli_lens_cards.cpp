@@ -272,6 +272,10 @@ void test_settings_of_names(void **) {
     assert_true(key.focal_mm == 24.0 && key.aperture == 2.8 && key.distance_m == 10.0);
     key = of("vignetting/Lens--35mm--2.8.CR2");
     assert_true(key.focal_mm == 35.0 && std::isinf(key.distance_m));
+    key = of("50mm--2.tif");
+    assert_true(key.focal_mm == 50.0 && key.aperture == 2.0 && !*key.lens);
+    key = of("x0--50mm--2.tif");
+    assert_true(key.focal_mm == 50.0 && key.aperture == 2.0 && std::string(key.lens) == "x0");
     key = of("cards/50mm/f4/0.5m/IMG_0012.dng");
     assert_true(key.focal_mm == 50.0 && key.aperture == 4.0 && key.distance_m == 0.5 && !*key.lens);
     key = of("EF 50mm f1.4/f8_2.tif");  // the folder has the name of a lens
@@ -338,7 +342,7 @@ void test_light_is_checked(void **) {
     }
     assert_refused(not_usable,
                    flat_of({in_folder("light/0.tif")}, {"--check", in_folder("photographs"), "--aperture", "16"}),
-                   {"no good setting of the cards"});
+                   {"no good setting of the cards", "0.tif", "differs in aperture"});
 }
 
 // Rendered pictures have the response of their camera, if a database has it.
@@ -466,8 +470,9 @@ void test_order_of_near_settings(void **) {
                           "4.25 mm, f/5.6", "50 mm, f/2.8"}));
     assert_int_equal(first["4.25 mm, f/5.6"].size(), 3);
     assert_int_equal(first["50 mm, f/2.8"].size(), 2);
-    assert_true(first_notes.count("24 mm, f/4: may be 23.6 mm, f/4 or 24.4 mm, f/4, by the rounding of what cameras "
-                                  "state: measured alone; give a table if it is one of them"));
+    assert_true(
+        first_notes.count("24 mm, f/4: may be 23.6 mm, f/4 or 24.4 mm, f/4, by the rounding of what cameras "
+                          "state: measured alone; give a table if it is one of them"));
 }
 
 std::string reason_of(const Words &files) {
@@ -524,7 +529,48 @@ void test_counts(void **) {
     const Json by_dark = of("counts/4095.tif", {"--dark", dark, "--fit", "white-level=4095"});
     for (size_t i = 0; i < 3; i++) assert_float_equal(by_dark[i].get<double>(), shares[i].get<double>(), 2e-3);
     assert_refused(usage, {"flat", in_folder("counts/4095.tif"), "--no-store", "--dark", dark},
-                   {"dark.tif", "counts", "--fit white-level=LEVEL"});
+                   {"4095.tif: its float samples reach", "counts", "--fit white-level=LEVEL"});
+}
+
+// Dark frames in float counts have the scale of the cards, also if the cards' file states it.
+void test_dark_frames_in_counts_of_the_file(void **) {
+    Card card{24.0, 2.8};
+    card.black = 0.06, card.counts = 4095.0;
+    const std::string file = shoot("tagged/card.tif", card);
+    TIFF *tiff = TIFFOpen(file.c_str(), "r+");
+    const uint32_t white = 4095;
+    assert_int_equal(TIFFSetField(tiff, 50717, 1, &white), 1);
+    assert_int_equal(TIFFRewriteDirectory(tiff), 1);
+    TIFFClose(tiff);
+    card.light = 1e4;
+    const std::string dark = shoot("covered.tif", card);
+    const Json json = json_of({"flat", file, "--no-store", "--json", "--dark", dark});
+    assert_float_equal(json["levels"]["black"][1].get<double>(), 0.06, 1e-3);
+    assert_float_equal(json["corner"].get<double>(), 0.63, 0.01);
+    const std::string lit = shoot("lit.tif", Card{24.0, 2.8, "", "", -0.4, 0.0, 7, false, 0.0, 0.0, 4095.0});
+    assert_refused(not_usable, {"flat", file, "--no-store", "--dark", lit}, {"lit.tif", "is not dark, its level is"});
+}
+
+// A dark frame among cards: its name and its darkness suggest the option; given so, it does not count as a card.
+void test_a_dark_frame_in_the_folder(void **) {
+    Card card{24.0, 2.8};
+    card.black = 0.06;
+    shoot("covered/a.tif", card);
+    card.seed = 8;
+    shoot("covered/b.tif", card);
+    card.light = 1e4;
+    const std::string folder = in_folder("covered"), dark = shoot("covered/dark_1.tif", card);
+    const Outcome among = run_words(flat_of({folder}));
+    assert_int_equal(among.code, not_usable);
+    assert_true(contains(among.out, "if the lens was covered for " + dark + ", give it with --dark"));
+    const Json json = json_of(flat_of({folder}, {"--dark", dark, "--json"}));
+    assert_int_equal(json["settings"][0]["files"].size(), 2);
+    assert_float_equal(json["settings"][0]["corner"].get<double>(), 0.63, 0.01);
+    fs::rename(dark, folder + "/night.tif");  // another name: nothing is known about it
+    assert_false(contains(run_words(flat_of({folder})).out, "--dark"));
+    card.focal_mm = card.aperture = LENSPROF_UNKNOWN;
+    shoot("covered/bias.tif", card);
+    assert_true(contains(run_words(flat_of({folder})).out, "give it with --dark"));
 }
 
 // What Lensfun lacks prevents its file alone, and the option that states it is named.
@@ -625,6 +671,8 @@ int main() {
         CLI_TEST(test_order_of_near_settings),
         CLI_TEST(test_a_foreign_picture),
         CLI_TEST(test_counts),
+        CLI_TEST(test_dark_frames_in_counts_of_the_file),
+        CLI_TEST(test_a_dark_frame_in_the_folder),
         CLI_TEST(test_what_can_be_written_is),
         CLI_TEST(test_deep_falloffs_for_lensfun),
         CLI_TEST(test_missing_settings_of_cameras),

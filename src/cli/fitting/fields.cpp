@@ -78,7 +78,7 @@ ExitCode exit_code_of(const FieldFit &found) {
 int fit_fields_command(FieldsCommand o, Streams &streams) {
     check_fields_options(o);
     Progress progress(streams, o.progress);
-    if (!o.dark_files.empty()) o.fit.dark = dark_level(o.dark_files, 0, nullptr, progress);
+    if (!o.dark_files.empty()) o.fit.dark = dark_level(o.dark_files, 0, o.fit.channel, progress);
     FieldFit found = fit_fields_of(o.files, o.fit, progress);
     stop_if_cancelled();
     const StoreOptions &store = o.fit.store;

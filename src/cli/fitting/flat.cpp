@@ -27,7 +27,7 @@ namespace {
 struct FlatCommand : CardOptions {
     std::vector<std::string> files;
     std::string report, bundle, into, table;  // files; empty: none
-    std::vector<std::string> outputs, check, dark_files;
+    std::vector<std::string> outputs, check;
     bool json = false, progress = false;
     bool fields = false;         // pictures of different scenes, not of a card
     uint32_t field_channel = 0;  // 0: not given
@@ -39,16 +39,6 @@ std::array<double, 4> card_of(const std::string &word) {
     std::array<double, 4> card;
     for (size_t i = 0; i < 4; i++) card[i] = number_of(sides[i], {0.0, 1e6});
     return card;
-}
-
-// The reason names the option that --black was in 0.2.
-std::vector<StatedLevel> black_level_or_limit(const std::string &word) {
-    try {
-        return black_levels_of(word);
-    } catch (const std::invalid_argument &reason) {
-        if (word.find_first_not_of("0123456789.") != std::string::npos) throw;
-        throw std::invalid_argument(reason.what() + ("; to ignore dark grey values, use --fit ignore-below=" + word));
-    }
 }
 
 void declare_flat_fit(Command &command, FlatCommand &o) {
@@ -78,6 +68,7 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
 }
 
 void declare(Command &command, FlatCommand &o) {
+    o.levels.black_option = "black", o.levels.white_option = "white_level";
     command.files("FILE", o.files, "pictures of the card, and folders of them: of one setting, or of all of a lens");
     command.require("FILE");
     command.flag(
@@ -113,9 +104,9 @@ void declare(Command &command, FlatCommand &o) {
                   "per picture");
     expert.numbers("--ev", o.ev, any_number, "exposure per picture, EV, separated by commas; default from EXIF");
     expert.word(
-        "--black", "LEVEL", [&o](const std::string &word) { o.levels.black = black_level_or_limit(word); },
-        "sample without light, which is subtracted: a value such as 256, a percentage such as 6%, or "
-        "RED:GREEN:BLUE; default 0, or what exposures of one card show");
+        "--black", "LEVEL", [&o](const std::string &word) { o.levels.black = black_levels_of(word); },
+        "sample without light, which is subtracted: a value such as 256, of float samples such as 0.06, a percentage "
+        "such as 6%, or RED:GREEN:BLUE; default 0, or what exposures of one card show");
     expert.words(
         "--dark", "FILE", [&o](const std::string &word) { o.dark_files.push_back(word); },
         "picture with the lens covered, which gives the black level; repeat for several");
@@ -359,7 +350,7 @@ int run(FlatCommand o, Streams &streams) {
     if (o.field_channel) throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit channel: is for --fields; give it as well");
     Progress events(streams, o.progress);
     const CardSettings settings = settings_of(o, events);
-    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, &o.levels, events);
+    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, 0, events);
     const bool is_one = settings.list.size() == 1 && !settings.has_folders && settings.left_out.empty();
     if (is_one && o.outputs.empty() && o.bundle.empty() && o.check.empty())
         return run_one(o, settings.list.front(), streams);

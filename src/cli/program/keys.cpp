@@ -46,8 +46,7 @@ void KeyTable::set(const std::string &pair) {
     const std::string name = pair.substr(0, equal), key_name = option + " " + name;
     const Key *key = find(name);
     if (const auto now = renamed.find(name); now != renamed.end())
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      key_name + " is now " + now->second + "; `" + help + "` explains it");
+        throw Failure(LENSPROF_ERROR_ARGUMENT, key_name + " is now " + now->second + "; `" + help + "` explains it");
     if (!key) {
         const std::string nearest = did_you_mean(name, names());
         throw Failure(LENSPROF_ERROR_ARGUMENT, option + ": " + (name.empty() ? "''" : name) + " is not a key" + nearest

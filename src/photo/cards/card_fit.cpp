@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "fit/base/quantile.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/lap.hpp"
 #include "photo/calibration/fit.hpp"
+#include "photo/cards/card_advice.hpp"
 #include "photo/pictures/even_light.hpp"
 #include "photo/pictures/orientation.hpp"
 #include "photo/pictures/rotated_profile.hpp"
@@ -73,42 +73,6 @@ std::shared_ptr<lensprof_profile> sensor_profile(const CardInput &input, const l
     return profile;
 }
 
-// The pictures that do not show an even light, unlike others, and that the model describes clearly worse than those. Of
-// two shots, it describes neither well.
-std::vector<std::string> foreign_pictures(const CardFit &found) {
-    constexpr double clearly = 2.0;
-    std::vector<double> residuals;
-    for (const lensprof_flat_image_quality &quality : found.quality) residuals.push_back(quality.residual);
-    const double least = found.fit.shots > 2 ? clearly * upper_median(residuals) : 0.0;
-    std::vector<std::string> foreign;
-    bool is_any_even = false;
-    for (size_t i = 0; i < found.files.size(); i++) {
-        const bool is_even = shows_even_light(found.files[i]);
-        is_any_even |= is_even;
-        if (!is_even && residuals[i] > least) foreign.push_back(found.files[i]);
-    }
-    return is_any_even ? foreign : std::vector<std::string>();
-}
-
-// One shot, or several at one angle, do not separate the light from the centre: the option that states the light.
-void name_light_option(CardFit &found) {
-    const bool is_even = found.fit.light == LENSPROF_FLAT_LIGHT_EVEN;
-    const std::string other = option_name("light") + (is_even ? " plane" : " even");
-    for (Finding &finding : found.verdict.findings) {
-        if (finding.code == LENSPROF_REASON_FLAT_CENTER_BY_PRIOR && found.fit.light_ev > 0.0)
-            finding.text += " (" + other + ")";
-        if (finding.code == LENSPROF_REASON_FLAT_STEEP && !is_even && !found.fit.separated)
-            finding.text += "; or state an even light, if it is one, with " + other;
-    }
-}
-
-// A scene among cards leaves texture, or cells that disagree: the refusal names it.
-void name_foreign_pictures(CardFit &found) {
-    if (found.fit.usable || found.fit.shots < 2) return;
-    if (const std::vector<std::string> files = foreign_pictures(found); !files.empty())
-        found.verdict.findings.front().text += "; not of an even light: " + joined(files, ", ") + "; leave it out";
-}
-
 }  // namespace
 
 CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
@@ -128,8 +92,13 @@ CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
         lensprof_fit_flat(&input.options, input.images.data(), count, nullptr, 0, &flat, &error);
     found.held = {flat, lensprof_flat_destroy};
     events.clear();
-    check_named(status, input.files.size() == 1 ? input.files[0] : input.files[0] + " and the others", error,
-                LENSPROF_ITEM_IMAGE, input.files);
+    try {
+        check_named(status, input.files.size() == 1 ? input.files[0] : input.files[0] + " and the others", error,
+                    LENSPROF_ITEM_IMAGE, input.files);
+    } catch (const Failure &failure) {
+        if (failure.group() != LENSPROF_ERROR_NOT_USABLE) throw;
+        throw Failure(failure.status, failure.what() + advice_without_fit(input), failure.reason);
+    }
     check(lensprof_flat_get(flat, &found.fit, &error), "fit", &error);
     for (uint32_t i = 0; i < count; i++) {
         lensprof_flat_image_quality_init(&found.quality[i]);
@@ -140,8 +109,9 @@ CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
     found.verdict = verdict_of(flat);
     name_images(found.files, found.verdict);
     name_shots(found.files, found.shots, found.verdict);
-    name_foreign_pictures(found);
-    name_light_option(found);
+    for (size_t i = 0; i < input.pictures.size() && !found.fit.usable; i++)
+        found.shows_even_light.push_back(shows_even_light(input.pictures[i]));
+    add_advice(o, input, found, events);
     found.profile = sensor_profile(input, *flat, events);
     return found;
 }

@@ -1,6 +1,7 @@
 // The falloff of one lens setting, measured on pictures of a card.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,9 +21,14 @@ struct CardFit {
     std::shared_ptr<const lensprof_flat> held;  // NULL without a fit
     std::shared_ptr<lensprof_profile> profile;  // of it, in the frame of the sensor; NULL without a fit
     lensprof_flat_result fit{};
-    Verdict verdict;  // of it
+    Verdict verdict;                     // of it
+    std::vector<bool> shows_even_light;  // per picture, of a refused fit
     double load_s = 0, solve_s = 0;
     int64_t profile_id = 0;  // 0 = not stored
+
+    bool shows_any_even_light() const {
+        return std::find(shows_even_light.begin(), shows_even_light.end(), true) != shows_even_light.end();
+    }
 };
 
 // Reads the pictures and fits. Failure, with the status NOT_USABLE if the pictures do not suffice for a fit.

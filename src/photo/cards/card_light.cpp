@@ -92,6 +92,41 @@ void add_error(const RadialLight &light, double scale, const lensprof_vignetting
         }
 }
 
+// What distinguishes the setting of the pictures from that of cards: "aperture".
+std::vector<std::string> differences(const lensprof_profile_key &cards, const lensprof_profile_key &pictures) {
+    std::vector<std::string> found;
+    const auto add = [&](bool differs, const char *what) {
+        if (differs) found.emplace_back(what);
+    };
+    const auto differ = [](const char *a, const char *b) { return *a && *b && std::strcmp(a, b) != 0; };
+    add(differ(cards.camera_model, pictures.camera_model), "camera");
+    add(differ(cards.lens, pictures.lens), "lens");
+    for (const auto &[field, what] : {std::pair(&lensprof_profile_key::focal_mm, "focal length"),
+                                      std::pair(&lensprof_profile_key::aperture, "aperture"),
+                                      std::pair(&lensprof_profile_key::distance_m, "distance")}) {
+        lensprof_profile_key a, b;  // with this number alone; distances differ by what they mean at a focal length
+        lensprof_profile_key_init(&a), lensprof_profile_key_init(&b);
+        if (field == &lensprof_profile_key::distance_m) a.focal_mm = b.focal_mm = pictures.focal_mm;
+        a.*field = cards.*field, b.*field = pictures.*field;
+        add(!is_same_setting(a, b), what);
+    }
+    return found;
+}
+
+// The good setting that differs least: "a.tif and others (24 mm, f/2.8) differ in aperture".
+std::string nearest_setting(const std::vector<MeasuredSetting> &settings, const lensprof_profile_key &key) {
+    const MeasuredSetting *nearest = nullptr;
+    std::vector<std::string> least;
+    for (const MeasuredSetting &setting : settings) {
+        if (!setting.is_good()) continue;
+        const std::vector<std::string> own = differences(setting.of.key, key);
+        if (!nearest || own.size() < least.size()) nearest = &setting, least = own;
+    }
+    if (!nearest) return "no setting of the cards is good";
+    return "no good setting of the cards is of their camera, lens, focal length, aperture and distance; the nearest, "
+           + nearest->of.label + " (" + nearest->of.pictures.front().file + "), differs in " + joined(least, " and ");
+}
+
 }  // namespace
 
 std::string LightCheck::text() const {
@@ -119,10 +154,9 @@ LightCheck check_light(const std::vector<std::string> &pictures, const std::vect
     };
     const auto found = std::find_if(settings.begin(), settings.end(), is_theirs);
     if (found == settings.end())
-        throw Failure(
-            LENSPROF_ERROR_NOT_USABLE,
-            check.pictures + ": taken at " + describe_setting(trial.key(), "unknown")
-                + ": no good setting of the cards is of their camera, lens, focal length, aperture and distance");
+        throw Failure(LENSPROF_ERROR_NOT_USABLE, check.pictures + ": taken at "
+                                                     + describe_setting(trial.key(), "unknown") + ": "
+                                                     + nearest_setting(settings, trial.key()));
     check.setting = static_cast<size_t>(found - settings.begin());
     lensprof_trial_result result;
     lensprof_trial_result_init(&result);

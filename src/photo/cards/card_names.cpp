@@ -31,12 +31,13 @@ std::string lens_of(const std::string &name) {
     return std::regex_replace(std::regex_replace(name, std::regex("__"), "/"), std::regex("_"), " ");
 }
 
-// Lens--FOCALmm--APERTURE, with anything after it that is not a digit. Returns whether the name has this form.
+// Lens--FOCALmm--APERTURE, or without the lens, with anything after it that is not a digit. Returns whether the name
+// has this form.
 bool read_three_parts(const std::string &name, lensprof_profile_key &key) {
-    static const std::regex form(R"((.+)--(\d+(?:\.\d+)?)mm--[fF]?/?(\d+(?:\.\d+)?)(?![\d.]).*)");
+    static const std::regex form(R"((?:(.+)--)?(\d+(?:\.\d+)?)mm--[fF]?/?(\d+(?:\.\d+)?)(?![\d.]).*)");
     std::smatch parts;
     if (!std::regex_match(name, parts, form)) return false;
-    if (!*key.lens) set_text(key.lens, sizeof key.lens, lens_of(parts[1]));
+    if (parts[1].matched && !*key.lens) set_text(key.lens, sizeof key.lens, lens_of(parts[1]));
     fill(key.focal_mm, positive(parts[2]));
     fill(key.aperture, positive(parts[3]));
     return true;

@@ -10,9 +10,10 @@ namespace lensprof {
 // What the names of a file and of its folders state: lens, focal length, aperture and distance; other fields are
 // unknown.
 //   Lens_name--35mm--2.8.CR2, Lens_name--35mm--2.8_IMG_1.CR2   as Lensfun's calibration scripts read: "_" is a blank,
-//   "__" a slash vignetting_10, vignetting                                  folders of theirs: the distance in m;
-//   infinity 24mm_f4_2.tif, f2.8/1.dng, 50mm/0.5m/card-3.tif            names of settings, numbers and words for a card
-//   alone
+//                                                              "__" a slash
+//   35mm--2.8.CR2                                              the same of a lens that is stated elsewhere
+//   vignetting_10, vignetting                                  folders of these scripts: the distance in m; infinity
+//   24mm_f4_2.tif, f2.8/1.dng, 50mm/0.5m/card-3.tif            names of settings, numbers and words for a card alone
 // The innermost name that states a field counts.
 lensprof_profile_key setting_of_names(const std::string &path);
 

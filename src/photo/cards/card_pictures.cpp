@@ -189,68 +189,67 @@ bool has_linear_response(const CardInput &input) {
 StatedLevels levels_of_file(const PictureMetadata &metadata) {
     StatedLevels levels;
     if (metadata.black_level)
-        for (const double black : *metadata.black_level) levels.black.push_back({black, false});
+        for (const double black : *metadata.black_level)  // below one code it is nothing
+            levels.black.push_back({black < 1.0 ? 0.0 : black, false});
     if (metadata.white_level) levels.white = {*metadata.white_level, false};
     return levels;
 }
 
 // Adds what a file states, or notes that it does not suit its samples.
-bool add_levels(const StatedLevels &added, const Picture &first, const std::string &file, lensprof_levels &levels,
-                Events &events) {
+bool add_levels(const StatedLevels &added, const Picture &first, const std::string &file, const LevelScale &scale,
+                lensprof_levels &levels, Events &events) {
     try {
-        levels = levels_of(added, first, file, levels);
+        levels = levels_of(added, first, file, levels, scale);
     } catch (const Failure &) {
         events.note(file, "its tags BlackLevel and WhiteLevel do not suit its samples, and are ignored");
         return false;
     }
     if (!added.black.empty())
-        events.note(file, format(added.black[1].is_share ? "its black level of %g of full scale is subtracted, as the "
-                                                           "file states"
-                                                         : "its black level of %g is subtracted, as the file states",
-                                 added.black[1].number));
+        events.note(file, format("its black level of %g is subtracted, as the file states", added.black[1].number));
     if (added.white) events.note(file, format("its white level is %g, as the file states", added.white->number));
     return true;
 }
 
-// Divides float counts by that at saturation, samples as well as levels. Returns whether the samples were counts.
-bool scale_counts(CardInput &input, StatedLevels &stated, Events &events) {
+// Divides float counts by that at saturation, which is full scale then. Returns it; nothing for other samples.
+std::optional<double> scale_counts(CardInput &input, StatedLevels &stated, Events &events) {
     const auto counts = std::find_if(input.pictures.begin(), input.pictures.end(), are_counts);
     const auto i = counts == input.pictures.end() ? 0 : static_cast<size_t>(counts - input.pictures.begin());
     const auto count = count_at_white(stated, input.levels, input.pictures[i], input.files[i], events);
-    if (!count) return false;
+    if (!count) return count;
     for (Picture &picture : input.pictures) divide_samples(*count, picture);
-    stated = levels_in_shares(stated, *count), input.levels = levels_in_shares(input.levels, *count);
-    return true;
+    for (StatedLevels *levels : {&stated, &input.levels})
+        if (levels->white && !levels->white->is_share) levels->white.reset();
+    return count;
 }
 
 // Levels of the samples, and how well they are known: as stated, of dark frames, or as the file states.
 void take_levels(const CardOptions &o, CardInput &input, Events &events) {
     StatedLevels stated = o.levels;
-    const bool are_scaled = scale_counts(input, stated, events);
+    const std::optional<double> count = scale_counts(input, stated, events);
     const Picture &first = input.pictures.front();
+    const LevelScale scale = count ? LevelScale{*count, true} : LevelScale::of(first);
     const std::string &file = input.files.front();
     lensprof_flat_options &options = input.options;
     for (size_t i = 1; i < input.pictures.size() && o.levels.any(); i++)
         if (input.pictures[i].sample != first.sample)
             throw Failure(LENSPROF_ERROR_ARGUMENT, input.files[i] + ": its samples are of another type than those of "
                                                        + file + "; give pictures with the same black level");
-    options.levels = levels_of(stated, first, file);
-    const bool are_codes = first.sample == LENSPROF_SAMPLE_U8 || first.sample == LENSPROF_SAMPLE_U16 || are_scaled;
+    std::optional<DarkLevel> dark;
+    if (o.dark) {
+        dark = dark_level_for(*o.dark, {scale.full_scale, true}, first, file, events);
+        std::copy(dark->black.begin(), dark->black.end(), options.levels.black);
+    }
+    options.levels = levels_of(stated, first, file, options.levels, scale);
+    const bool are_codes = first.sample == LENSPROF_SAMPLE_U8 || first.sample == LENSPROF_SAMPLE_U16 || count;
     StatedLevels added;  // by the file
     if (has_linear_response(input) && are_codes) {
         if (stated.black.empty() && !o.dark) added.black = input.levels.black;
         if (!stated.white) added.white = input.levels.white;
     }
-    if (added.any() && !add_levels(added, first, file, options.levels, events)) added = {};
-    if (o.dark) {
-        check_dark(*o.dark, first, file);
-        std::copy(o.dark->black.begin(), o.dark->black.end(), options.levels.black);
-        if (lensprof_levels_validate(&options.levels) != LENSPROF_OK)
-            throw Failure(LENSPROF_ERROR_ARGUMENT, o.dark->file + ": is not darker than the stated white level");
-    }
+    if (added.any() && !add_levels(added, first, file, scale, options.levels, events)) added = {};
     if (!has_linear_response(input)) return;
     const bool is_stated_by_file = first.traits.format == FileFormat::raw || !added.black.empty();
-    options.black_sigma = o.dark                    ? std::clamp(o.dark->sigma, 1e-6, 0.2)
+    options.black_sigma = dark                      ? std::clamp(dark->sigma, 1e-6, 0.2)
                           : !o.levels.black.empty() ? 0.0
                           : is_stated_by_file       ? file_black_sigma
                                                     : unknown_black_sigma;

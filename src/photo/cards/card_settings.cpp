@@ -11,6 +11,7 @@
 #include "photo/base/parallel.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/lens_settings.hpp"
+#include "photo/cards/card_advice.hpp"
 #include "photo/cards/card_names.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/report/report.hpp"
@@ -113,8 +114,8 @@ auto rank_of(const lensprof_profile_key &key) {
 // The least rounded numbers come first: apertures as cameras show them, focal lengths with most digits, distances that
 // are stated.
 auto precision_of(const lensprof_profile_key &key) {
-    return std::make_tuple(!is_shown_aperture(key.aperture), unit_of(key.focal_mm),
-                           key.distance_m == LENSPROF_UNKNOWN, rank_of(key));
+    return std::make_tuple(!is_shown_aperture(key.aperture), unit_of(key.focal_mm), key.distance_m == LENSPROF_UNKNOWN,
+                           rank_of(key));
 }
 
 // The settings that a number may be rounded from.
@@ -156,17 +157,18 @@ std::vector<CardSetting> grouped(const std::vector<CardPicture> &pictures, Event
 // Names what the pictures of a setting state differently and is yet taken as one.
 void note_rounding(const CardSetting &setting, Events &events) {
     const lensprof_profile_key &key = setting.key;
+    const CardPicture *named = nullptr;  // the first by name
     for (const CardPicture &picture : setting.pictures) {
         const lensprof_profile_key &other = picture.metadata.key;
-        const std::string label = describe_setting(other, picture.file);
         const bool is_stated = other.distance_m != LENSPROF_UNKNOWN && key.distance_m != LENSPROF_UNKNOWN;
-        if (other.focal_mm == key.focal_mm && other.aperture == key.aperture
-            && (!is_stated || other.distance_m == key.distance_m))
-            continue;
-        return events.note(setting.label, picture.file + " states " + label
-                                              + ": taken as one setting, by the rounding of what cameras state; "
-                                                "give a table if they are two");
+        const bool is_rounded = other.focal_mm != key.focal_mm || other.aperture != key.aperture
+                                || (is_stated && other.distance_m != key.distance_m);
+        if (is_rounded && (!named || picture.file < named->file)) named = &picture;
     }
+    if (named)
+        events.note(setting.label, named->file + " states " + describe_setting(named->metadata.key, named->file)
+                                       + ": taken as one setting, by the rounding of what cameras state; give a table "
+                                         "if they are two");
 }
 
 // The profile is of the setting, not of what its first picture states.
@@ -192,6 +194,19 @@ private:
     std::map<std::pair<uint64_t, std::string>, const NamedPicture *> files_;
 };
 
+// Those that are given as such, of folders.
+void remove_dark_frames(const std::vector<std::string> &dark_files, std::vector<NamedPicture> &named) {
+    const auto is_dark_frame = [&](const NamedPicture &picture) {
+        return picture.in_folder && std::any_of(dark_files.begin(), dark_files.end(), [&](const std::string &file) {
+                   return is_same_file(picture.file, file);
+               });
+    };
+    named.erase(std::remove_if(named.begin(), named.end(), is_dark_frame), named.end());
+    if (named.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      dark_files.front() + ": its folder has dark frames alone; give pictures of cards as well");
+}
+
 std::string reason_to_leave_out(const NamedPicture &named, const Read &read, Copies &copies) {
     if (!read.picture) return read.failure;
     try {
@@ -205,6 +220,17 @@ std::string reason_to_leave_out(const NamedPicture &named, const Read &read, Cop
     return {};
 }
 
+std::string unknown_setting_text(const CardPicture &picture) {
+    const bool has_focal = picture.metadata.key.focal_mm != LENSPROF_UNKNOWN,
+               has_aperture = picture.metadata.key.aperture != LENSPROF_UNKNOWN;
+    const char *const missing = has_focal      ? "the aperture"
+                                : has_aperture ? "the focal length"
+                                               : "focal length and aperture";
+    return picture.file + ": neither EXIF nor its name states " + missing
+           + "; name it LENS--24mm--2.8 or 24mm_f2.8, or give a table"
+           + (has_dark_name(picture.file) ? "; if the lens was covered, give it with " + option_name("dark") : "");
+}
+
 // Of several settings, none has pictures of unknown ones.
 void leave_out_unknown(CardSettings &settings) {
     if (settings.list.size() < 2) return;
@@ -213,9 +239,7 @@ void leave_out_unknown(CardSettings &settings) {
     if (unknown == settings.list.begin()) return;  // all of them: no picture states its setting
     for (auto setting = unknown; setting != settings.list.end(); ++setting)
         for (const CardPicture &picture : setting->pictures)
-            settings.left_out.push_back({picture.file, picture.file
-                                                           + ": neither EXIF nor its name states focal length and "
-                                                             "aperture; name it LENS--24mm--2.8, or give a table"});
+            settings.left_out.push_back({picture.file, unknown_setting_text(picture)});
     settings.list.erase(unknown, settings.list.end());
 }
 
@@ -226,7 +250,8 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
     CardSettings settings;
     std::vector<std::string> other_files;
     std::vector<UnlistedFolder> unlisted;
-    const std::vector<NamedPicture> named = named_pictures(names, "", other_files, &unlisted);
+    std::vector<NamedPicture> named = named_pictures(names, "", other_files, &unlisted);
+    remove_dark_frames(o.dark_files, named);
     for (const std::string &line : other_files) events.warn("", line);
     for (const UnlistedFolder &folder : unlisted) settings.left_out.push_back({folder.folder, folder.reason});
     settings.given = named.size();

@@ -27,10 +27,10 @@ struct CardSettings {
     bool has_folders = false;
 };
 
-// Finds the settings of pictures and folders of them, whatever their order: by EXIF, completed by names, replaced by `table` (NULL: none) and
-// by what `o` states for all. Left out, with the reason: files that cannot be read; of folders,
-// copies of other pictures and those whose falloff the camera corrected; and, of several settings, pictures that state
-// neither focal length nor aperture. Failure if nothing is left.
+// Finds the settings of pictures and folders of them, whatever their order: by EXIF, completed by names, replaced by
+// `table` (NULL: none) and by what `o` states for all. Left out, with the reason: files that cannot be read; of
+// folders, copies of other pictures and those whose falloff the camera corrected; and, of several settings, pictures
+// that state neither focal length nor aperture. Failure if nothing is left.
 CardSettings card_settings(const std::vector<std::string> &names, const CardOptions &o, SettingTable *table,
                            Events &events);
 

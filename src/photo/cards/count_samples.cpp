@@ -8,9 +8,7 @@
 #include "photo/base/format.hpp"
 
 namespace lensprof {
-namespace {
 
-// What few of the samples exceed; hot pixels do.
 double bright_sample(const Picture &picture) {
     constexpr double share = 0.9;
     std::vector<double> values;
@@ -21,8 +19,6 @@ double bright_sample(const Picture &picture) {
     return quantile(values, share);
 }
 
-}  // namespace
-
 bool are_counts(const Picture &picture) {
     constexpr double most_exposed = 2.0;  // of full scale: what developing can make of shares
     return picture.sample == LENSPROF_SAMPLE_F32 && bright_sample(picture) > most_exposed;
@@ -31,8 +27,6 @@ bool are_counts(const Picture &picture) {
 std::optional<double> count_at_white(const StatedLevels &stated, const StatedLevels &of_file, const Picture &picture,
                                      const std::string &file, Events &events) {
     if (picture.sample != LENSPROF_SAMPLE_F32) return std::nullopt;
-    if (stated.white && stated.white->number == 0.0)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": its white level cannot be 0");
     if (stated.white && !stated.white->is_share) return stated.white->number;
     if (!are_counts(picture)) return std::nullopt;
     if (!of_file.white)
@@ -52,14 +46,6 @@ void divide_samples(double count, Picture &picture) {
         const auto share = static_cast<float>(sample_value(picture.sample, picture.pixels.data(), n) / count);
         std::memcpy(picture.pixels.data() + n * sizeof share, &share, sizeof share);
     }
-}
-
-StatedLevels levels_in_shares(const StatedLevels &levels, double count) {
-    StatedLevels shares = levels;
-    for (StatedLevel &black : shares.black)
-        if (!black.is_share) black = {black.number / count, true};
-    if (shares.white && !shares.white->is_share) shares.white.reset();  // full scale
-    return shares;
 }
 
 }  // namespace lensprof

@@ -10,6 +10,9 @@
 
 namespace lensprof {
 
+// The sample that a tenth of a float picture exceeds; hot pixels are fewer.
+double bright_sample(const Picture &picture);
+
 // Whether float samples are far above 1, which is full scale by convention.
 bool are_counts(const Picture &picture);
 
@@ -18,8 +21,7 @@ bool are_counts(const Picture &picture);
 std::optional<double> count_at_white(const StatedLevels &stated, const StatedLevels &of_file, const Picture &picture,
                                      const std::string &file, Events &events);
 
-// Makes shares of counts: of float samples, and of levels.
+// Makes shares of the counts of a float picture.
 void divide_samples(double count, Picture &picture);
-StatedLevels levels_in_shares(const StatedLevels &levels, double count);
 
 }  // namespace lensprof

@@ -7,7 +7,7 @@
 #include "fit/base/quantile.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
-#include "photo/cards/count_samples.hpp"
+#include "photo/pictures/picture_stack.hpp"
 #include "photo/scene/scene_pictures.hpp"
 
 namespace lensprof {
@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t blocks = 16;       // along each side
 constexpr double largest_dark = 0.1;  // of full scale: no pedestal is as high
-// Of the level over the frame: light that falls on it varies by more. Shares of the level, or of full scale near 0.
+// Of the level over the frame: light that falls on it varies by more. Shares of the level, or of the scale near 0.
 constexpr double clear_spread = 0.01, largest_spread = 0.05, least_spread = 0.0001, least_light = 0.0005;
 constexpr double far_sigmas = 4.0, least_reach = 1.5 / 255.0;   // from the median of a block; more than a step of 8 bit
 constexpr double mad_to_sigma = 1.4826, median_error = 1.2533;  // of normal numbers; relative to that of a mean
@@ -58,69 +58,116 @@ bool is_like(const Picture &a, const Picture &b) {
            && lensprof_layout_channels(a.layout) == lensprof_layout_channels(b.layout);
 }
 
-}  // namespace
+struct DarkPage {
+    std::string file, name;
+    uint32_t page;
+    uint64_t offset;
+};
 
-DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels *scale,
-                     Events &events) {
-    DarkLevel dark;
-    std::array<std::vector<double>, 3> means;   // of blocks
-    std::array<std::vector<double>, 3> levels;  // of frames
-    ReadOptions reduced;
-    reduced.max_side = max_side;
-    uint32_t channels = 0;
+// Every page of every file; those of one channel of stacks that have several.
+std::vector<DarkPage> pages_of(const std::vector<std::string> &files, uint32_t channel) {
+    std::vector<DarkPage> pages;
     for (const std::string &file : files) {
-        Picture picture = read_picture(file, reduced);
-        check_finite(picture.view(), 0, picture.reduction, file);
-        const auto count = scale ? count_at_white(*scale, {}, picture, file, events) : std::nullopt;
-        if (count) divide_samples(*count, picture);
-        if (dark.file.empty()) {
-            dark.file = file, dark.form = picture, dark.form.pixels.clear();
-            channels = lensprof_layout_channels(picture.layout);
+        const PictureStack stack = picture_stack(file);
+        if (stack.is_damaged) throw Failure(LENSPROF_ERROR_READ, file + ": is truncated or damaged; copy it again");
+        for (size_t i = 0; i < stack.pages.size(); i++) {
+            if (channel && stack.channel_count > 1 && stack.channels[i] != channel - 1) continue;
+            pages.push_back({file, stack.pages.size() > 1 ? format("%s, page %zu", file.c_str(), i + 1) : file,
+                             stack.pages[i], stack.offsets[i]});
         }
-        if (!is_like(picture, dark.form))
-            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is " + form_of(picture) + ", not " + form_of(dark.form)
-                                                       + " as " + dark.file + "; give dark frames of one camera");
-        for (uint32_t c = 0; c < channels; c++) {
+    }
+    return pages;
+}
+
+// Levels of frames, and of their blocks, per channel.
+struct DarkValues {
+    std::array<std::vector<double>, 3> of_blocks, of_frames;
+
+    void add(const Picture &picture) {
+        for (uint32_t c = 0; c < lensprof_layout_channels(picture.layout); c++) {
             std::vector<double> own;
             for (uint32_t block = 0; block < blocks * blocks; block++)
                 if (const auto mean = block_mean(picture, block, c)) own.push_back(*mean);
-            means[c].insert(means[c].end(), own.begin(), own.end());
-            levels[c].push_back(median(own));
-            const bool has_range = picture.sample != LENSPROF_SAMPLE_F32 || levels[c].back() <= 1.0;  // 0..1
-            if (has_range && !(levels[c].back() <= largest_dark))
-                throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                              file
-                                  + format(": is not dark, its level is %.0f %% of full scale; cover the lens",
-                                           100.0 * levels[c].back()));
+            of_blocks[c].insert(of_blocks[c].end(), own.begin(), own.end());
+            of_frames[c].push_back(median(own));
         }
     }
-    for (uint32_t c = 0; c < channels; c++) {
-        const double spread = deviation(means[c]), frames = deviation(levels[c]);
-        dark.black[c] = median(means[c]);
-        dark.spread = std::max(dark.spread, spread);
-        dark.sigma = std::max(dark.sigma, median_error
-                                              * std::hypot(spread / std::sqrt(static_cast<double>(means[c].size())),
-                                                           frames / std::sqrt(static_cast<double>(files.size()))));
+
+    void summarise(DarkLevel &dark) {
+        const uint32_t channels = lensprof_layout_channels(dark.form.layout);
+        for (uint32_t c = 0; c < channels; c++) {
+            const double spread = deviation(of_blocks[c]), frames = deviation(of_frames[c]);
+            dark.black[c] = median(of_blocks[c]);
+            const auto brightest = std::max_element(of_frames[c].begin(), of_frames[c].end());
+            if (*brightest > dark.brightest || dark.brightest_file.empty())
+                dark.brightest = *brightest,
+                dark.brightest_file = dark.names[static_cast<size_t>(brightest - of_frames[c].begin())];
+            dark.spread = std::max(dark.spread, spread);
+            dark.sigma =
+                std::max(dark.sigma, median_error
+                                         * std::hypot(spread / std::sqrt(static_cast<double>(of_blocks[c].size())),
+                                                      frames / std::sqrt(static_cast<double>(of_frames[c].size()))));
+        }
+        if (channels == 1) dark.black.fill(dark.black[0]);
     }
-    if (channels == 1) dark.black.fill(dark.black[0]);
-    const double level = *std::max_element(dark.black.begin(), dark.black.end());
-    if (dark.spread > std::max(largest_spread * level, least_light))
+};
+
+// Failure if light fell on the frames.
+void require_dark(const DarkLevel &dark, const DarkScale &scale, Events &events) {
+    const double level = *std::max_element(dark.black.begin(), dark.black.end()), unit = scale.brightest;
+    if (scale.is_saturation && !(dark.brightest <= largest_dark * unit))
         throw Failure(LENSPROF_ERROR_NOT_USABLE,
-                      dark.file
-                          + format(": is not dark, it varies by %.2f %% of full scale over the frame; cover the "
-                                   "lens",
-                                   100.0 * dark.spread));
-    if (dark.spread > std::max(clear_spread * level, least_spread))
-        events.note(dark.file, format("the dark frames vary by %.3f %% of full scale over the frame; one level per "
-                                      "channel leaves that in the corners",
-                                      100.0 * dark.spread));
+                      dark.brightest_file
+                          + format(": is not dark, its level is %.0f %% of full scale; cover the lens",
+                                   100.0 * dark.brightest / unit));
+    const std::string spread = format("%.3g %% of %s", 100.0 * dark.spread / unit,
+                                      scale.is_saturation ? "full scale" : "the brightness of the pictures");
+    if (dark.spread > std::max(largest_spread * level, least_light * unit))
+        throw Failure(LENSPROF_ERROR_NOT_USABLE,
+                      dark.file + ": is not dark, it varies by " + spread + " over the frame; cover the lens");
+    if (dark.spread > std::max(clear_spread * level, least_spread * unit))
+        events.note(dark.file, "the dark frames vary by " + spread
+                                   + " over the frame; one level per channel leaves that in the corners");
+}
+
+}  // namespace
+
+DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, uint32_t channel, Events &events) {
+    DarkLevel dark;
+    DarkValues values;
+    for (const DarkPage &page : pages_of(files, channel)) {
+        ReadOptions read;
+        read.max_side = max_side, read.page = page.page, read.page_offset = page.offset;
+        const Picture picture = read_picture(page.file, read);
+        check_finite(picture.view(), 0, picture.reduction, page.name);
+        if (dark.file.empty()) dark.file = page.name, dark.form = picture, dark.form.pixels.clear();
+        if (!is_like(picture, dark.form))
+            throw Failure(LENSPROF_ERROR_ARGUMENT, page.name + ": is " + form_of(picture) + ", not "
+                                                       + form_of(dark.form) + " as " + dark.file
+                                                       + "; give dark frames of one camera");
+        values.add(picture);
+        dark.names.push_back(page.name);
+    }
+    if (dark.names.empty())
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      files.front() + format(": has no page of channel %u; give dark frames of it", channel));
+    values.summarise(dark);
+    if (dark.form.sample != LENSPROF_SAMPLE_F32) require_dark(dark, {}, events);
     return dark;
 }
 
-void check_dark(const DarkLevel &dark, const Picture &picture, const std::string &file) {
+DarkLevel dark_level_for(const DarkLevel &dark, const DarkScale &scale, const Picture &picture, const std::string &file,
+                         Events &events) {
     if (!is_like(picture, dark.form))
         throw Failure(LENSPROF_ERROR_ARGUMENT, dark.file + ": is " + form_of(dark.form) + ", not " + form_of(picture)
                                                    + " as " + file + "; give dark frames of the same camera");
+    if (dark.form.sample != LENSPROF_SAMPLE_F32) return dark;
+    require_dark(dark, scale, events);
+    DarkLevel level = dark;
+    if (!scale.is_saturation) return level;
+    for (double &black : level.black) black /= scale.brightest;
+    level.sigma /= scale.brightest, level.spread /= scale.brightest;
+    return level;
 }
 
 }  // namespace lensprof

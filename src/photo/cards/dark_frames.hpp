@@ -7,24 +7,33 @@
 
 #include "photo/base/events.hpp"
 #include "photo/pictures/picture.hpp"
-#include "photo/pictures/stated_levels.hpp"
 
 namespace lensprof {
 
 struct DarkLevel {
+    std::vector<std::string> names;  // of files and pages
     std::string file;               // the first of them
     Picture form;                   // its sample type, layout and frame, without pixels
-    std::array<double, 3> black{};  // shares of full scale; those of a grey picture are equal
+    std::array<double, 3> black{};  // samples: 0..1 of integers, or as float files have them; equal for grey pictures
     double sigma = 0.0;             // standard error of the level, from the scatter of blocks and of frames
     double spread = 0.0;            // standard deviation over the frame: what one level does not describe
+    double brightest = 0.0;         // level of the brightest frame
+    std::string brightest_file;
 };
 
-// Median of the means of blocks, over all frames. Float samples in counts are divided by the white level in `scale`;
-// without (NULL), the level is in counts, too. Failure names a file that is not dark, or not like the first.
-DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, const StatedLevels *scale,
-                     Events &events);
+// Median of the means of blocks, over all pages of all files. `channel`: of stacks with several, counted from 1; 0:
+// all. Failure names a file or page that is not like the first or, if its samples are integers, not dark.
+DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, uint32_t channel, Events &events);
 
-// Failure if a picture is not of the kind of the dark frames.
-void check_dark(const DarkLevel &dark, const Picture &picture, const std::string &file);
+// What the samples of the pictures, which share their unit with dark frames, reach.
+struct DarkScale {
+    double brightest = 1.0;  // the sample at saturation, or a bright one
+    bool is_saturation = true;
+};
+
+// The level of float frames for `picture`, which `file` holds, divided by that at saturation, if that is known. Failure
+// if it is not dark on this scale, or not of the kind of the picture.
+DarkLevel dark_level_for(const DarkLevel &dark, const DarkScale &scale, const Picture &picture, const std::string &file,
+                         Events &events);
 
 }  // namespace lensprof

@@ -4,7 +4,6 @@
 
 #include "photo/base/format.hpp"
 #include "photo/base/parallel.hpp"
-#include "photo/pictures/even_light.hpp"
 
 namespace lensprof {
 namespace {
@@ -41,9 +40,8 @@ void measure(const CardOptions &o, MeasuredSetting &setting) {
                                                          + std::to_string(LENSPROF_FLAT_IMAGES));
         CardInput input = prepare_cards(o, pictures, setting.notices);
         setting.fit = fit_cards(o, input, setting.notices);
-        const auto is_even = [](const CardPicture &picture) { return shows_even_light(picture.file); };
         if (!setting.fit->fit.usable)
-            setting.refusal = std::any_of(pictures.begin(), pictures.end(), is_even)
+            setting.refusal = setting.fit->shows_any_even_light()
                                   ? setting.fit->verdict.headline()
                                   : "the pictures do not show an even light" + advice("photographs");
     } catch (const Failure &failure) {

@@ -51,42 +51,24 @@ void require_kind(const FieldKind &first, const FieldKind &other) {
                                                    + " ones; give pictures of one kind");
 }
 
-// A stated level, 0..1 for integer samples.
-double in_samples(const StatedLevel &level, double full_scale) {
-    return level.is_share ? level.number : level.number / full_scale;
-}
-
-bool has_shares(const StatedLevels &levels) {
-    const auto is_share = [](const StatedLevel &level) { return level.is_share && level.number != 0.0; };
-    return (levels.white && is_share(*levels.white)) || std::any_of(levels.black.begin(), levels.black.end(), is_share);
-}
-
 bool is_black_stated(const FieldOptions &o) { return o.dark || !o.levels.black.empty(); }
 
-// The stated black level of a channel.
-double stated_black(const FieldOptions &o, uint32_t channels, uint32_t c, double full_scale) {
-    if (o.dark) return o.dark->black[c];
-    const std::vector<StatedLevel> &black = o.levels.black;
-    return in_samples(black[black.size() == 1 ? 0 : channels == 1 ? 1 : c], full_scale);
-}
-
-// The stated white level; 0: the end of the range is found.
-double stated_white(const FieldOptions &o, const FieldKind &kind) {
-    const double full_scale = full_scale_of(kind.sample);
-    const double white = o.levels.white ? in_samples(*o.levels.white, full_scale) : 0.0;
-    if (o.levels.white && !(white > 0.0))
-        throw Failure(LENSPROF_ERROR_ARGUMENT, kind.name + ": its white level cannot be 0");
-    const bool is_integer = kind.sample == LENSPROF_SAMPLE_U8 || kind.sample == LENSPROF_SAMPLE_U16;
-    if (white > 1.0 && is_integer)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      kind.name
-                          + format(": its samples end at %.0f, below the stated level of %g; correct %s", full_scale,
-                                   o.levels.white->number, option_name("white_level").c_str()));
-    for (uint32_t c = 0; white > 0.0 && is_black_stated(o) && c < kind.channels; c++)
-        if (!(stated_black(o, kind.channels, c, full_scale) < white))
-            throw Failure(LENSPROF_ERROR_ARGUMENT,
-                          kind.name + ": its black level is not below its white level; correct the stated levels");
-    return white;
+// The levels as stated, 0..1 for integer samples; float counts stay counts. White is 0 if the end of the range is to be
+// found.
+lensprof_levels stated_levels(const FieldOptions &o, const Picture &first, const std::string &name, Events &events) {
+    const bool are_kept = are_counts(first)
+                          || (first.sample == LENSPROF_SAMPLE_F32 && o.levels.white && !o.levels.white->is_share
+                              && o.levels.white->number > 1.0);
+    const LevelScale scale = are_kept ? LevelScale{1.0, false} : LevelScale::of(first);
+    lensprof_levels levels{};
+    if (o.dark) {
+        const DarkScale reached = are_kept ? DarkScale{bright_sample(first), false} : DarkScale{};
+        const DarkLevel dark = dark_level_for(*o.dark, reached, first, name, events);
+        std::copy(dark.black.begin(), dark.black.end(), levels.black);
+    }
+    levels = levels_of(o.levels, first, name, levels, scale);
+    if (lensprof_layout_channels(first.layout) == 1) levels.black[0] = levels.black[1];
+    return levels;
 }
 
 using Fields = std::unique_ptr<lensprof_fields, void (*)(lensprof_fields *)>;
@@ -99,10 +81,7 @@ public:
     void add(const FieldPage &page, const Picture &picture) {
         const FieldKind kind = kind_of_field(page.name, picture);
         if (!fields_) {
-            if (o_.dark) check_dark(*o_.dark, picture, page.name);
-            if (has_shares(o_.levels) && are_counts(picture))
-                throw Failure(LENSPROF_ERROR_ARGUMENT,
-                              page.name + ": its float samples are counts; state its levels as counts, such as 200");
+            levels_ = stated_levels(o_, picture, page.name, events_);
             begin(kind), found_.first = page;
         }
         require_kind(first_, kind);
@@ -113,6 +92,7 @@ public:
     }
 
     const FieldKind &first() const { return first_; }
+    const lensprof_levels &levels() const { return levels_; }  // as stated
     Fields take() { return std::move(fields_); }
 
 private:
@@ -123,9 +103,8 @@ private:
         lensprof_fields_options_init(&options);
         options.channels = kind.channels, options.width = kind.width, options.height = kind.height;
         options.given_offset = is_black_stated(o_);
-        for (uint32_t c = 0; c < 3 && is_black_stated(o_); c++)
-            options.offset[c] = stated_black(o_, kind.channels, c, full_scale);
-        options.white = stated_white(o_, kind);
+        if (options.given_offset) std::copy_n(levels_.black, 3, options.offset);
+        options.white = levels_.white;
         if (o_.gamma || o_.profile) options.response = found_.response.data();
         options.responses = static_cast<uint32_t>(found_.response.size());
         options.progress = on_fit_progress, options.progress_user = &events_;
@@ -141,6 +120,7 @@ private:
     FieldFit &found_;
     Events &events_;
     FieldKind first_;
+    lensprof_levels levels_{};
     Fields fields_{nullptr, lensprof_fields_destroy};
 };
 
@@ -216,10 +196,9 @@ std::shared_ptr<lensprof_profile> profile_of_fields(const FieldFit &found, const
 constexpr double black_noise = 0.02;  // of the light: cells without light are darker than the black level by noise
 
 // Failure if pictures are darker than the black level that was stated.
-void check_black(const FieldOptions &o, const FieldFit &found) {
+void check_black(const FieldOptions &o, const lensprof_levels &given, const FieldFit &found) {
     for (uint32_t c = 0; c < found.fit.channels && is_black_stated(o); c++) {
-        const double stated = found.full_scale * stated_black(o, found.fit.channels, c, found.full_scale),
-                     used = found.full_scale * found.fit.channel[c].offset;
+        const double stated = found.full_scale * given.black[c], used = found.full_scale * found.fit.channel[c].offset;
         std::vector<double> levels;
         for (const lensprof_fields_image &image : found.images)
             if (std::isfinite(image.level[c])) levels.push_back(found.full_scale * image.level[c]);
@@ -270,7 +249,7 @@ FieldFit fit_fields_of(const std::vector<std::string> &names, const FieldOptions
     found.held = std::move(fields);
     check(status, found.names.front() + (found.names.size() > 1 ? " and the others" : ""), &error);
     take_result(found);
-    check_black(o, found);
+    check_black(o, reader.levels(), found);
     found.profile = profile_of_fields(found, reader.first(), events);
     found.solve_s = lap(clock);
     return found;

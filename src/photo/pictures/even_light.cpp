@@ -24,7 +24,11 @@ void add_bend(double a, double b, double c, std::vector<double> &bends) {
 bool shows_even_light(const std::string &file) {
     ReadOptions read;
     read.max_side = read_side;
-    const Picture cells = upright_copy(read_picture(file, read), 1, cells_along);  // 8 bit RGB
+    return shows_even_light(read_picture(file, read));
+}
+
+bool shows_even_light(const Picture &picture) {
+    const Picture cells = upright_copy(picture, 1, cells_along);  // 8 bit RGB
     if (std::min(cells.width, cells.height) < 8) return false;
     const auto value = [&](uint32_t x, uint32_t y) {
         return double(cells.pixels[y * cells.row_bytes + size_t(3) * x + 1]);

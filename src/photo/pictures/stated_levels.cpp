@@ -1,43 +1,74 @@
 #include "photo/pictures/stated_levels.hpp"
 
+#include "photo/base/events.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 
 namespace lensprof {
 namespace {
 
-double share_of(const StatedLevel &level, const Picture &picture, const std::string &file) {
-    if (level.is_share) return level.number;
+[[noreturn]] void fail(const std::string &file, const std::string &text) {
+    throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": " + text);
+}
+
+bool has_codes(const Picture &picture) {
+    return picture.sample == LENSPROF_SAMPLE_U8 || picture.sample == LENSPROF_SAMPLE_U16;
+}
+
+std::string named(const std::string &option) { return option.empty() ? "the stated level" : option_name(option); }
+
+// A value of the file as a share of full scale.
+double share_of_value(double value, const Picture &picture, const std::string &file, const std::string &option,
+                      const LevelScale &scale) {
     if (picture.traits.format == FileFormat::raw)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      file + ": the black level that a raw file states is subtracted already; give what it leaves as a "
-                             "percentage, or nothing");
-    if (picture.sample != LENSPROF_SAMPLE_U8 && picture.sample != LENSPROF_SAMPLE_U16) {
-        if (level.number != 0.0)
-            throw Failure(LENSPROF_ERROR_ARGUMENT,
-                          file + ": has float samples, from 0 to 1; give its levels as percentages, such as 6%");
-        return 0.0;
+        fail(file,
+             "the black level that a raw file states is subtracted already; give what it leaves as a percentage, "
+             "or nothing");
+    if (has_codes(picture) && value > 0.0 && value < 1.0)
+        fail(file,
+             format("has integer samples, and %g is less than one of them: give a level as a value such as 256, or "
+                    "as a percentage, such as %g%%; to ignore dark grey values in a fit, use %s=%g",
+                    value, 100.0 * value, option_name("ignore_below").c_str(), value));
+    if (scale.is_known && value > scale.full_scale)
+        fail(file,
+             has_codes(picture) || scale.full_scale != 1.0
+                 ? format("its samples end at %.0f, below the stated level of %g; correct %s", scale.full_scale, value,
+                          named(option).c_str())
+                 : format("has float samples, from 0 to 1, below the stated level of %g; correct %s, or state the "
+                          "count at saturation, if they are counts",
+                          value, named(option).c_str()));
+    return value / scale.full_scale;
+}
+
+double level_on(const LevelScale &scale, const StatedLevel &level, const Picture &picture, const std::string &file,
+                const std::string &option) {
+    if (!level.is_share) return share_of_value(level.number, picture, file, option, scale);
+    if (!scale.is_known && level.number != 0.0)
+        fail(file, "its float samples are counts; state its levels as counts, such as 200");
+    return level.number;
+}
+
+// Of levels in counts, relative to white; without a white level, none is too high.
+bool are_ordered(lensprof_levels levels, const LevelScale &scale) {
+    if (!scale.is_known) {
+        if (!(levels.white > 0.0)) return true;
+        for (double &black : levels.black) black /= levels.white;
+        levels.white = 1.0;
     }
-    const double full = full_scale_of(picture.sample);
-    if (level.number > full)
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      file + format(": its samples end at %.0f, below the stated level of %g", full, level.number));
-    return level.number / full;
+    return lensprof_levels_validate(&levels) == LENSPROF_OK;
 }
 
 }  // namespace
 
 lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, const std::string &file,
-                          const lensprof_levels &others) {
+                          const lensprof_levels &others, const LevelScale &scale) {
     lensprof_levels levels = others;
     for (size_t c = 0; c < 3 && !stated.black.empty(); c++)
-        levels.black[c] = share_of(stated.black[stated.black.size() == 3 ? c : 0], picture, file);
-    if (stated.white) levels.white = share_of(*stated.white, picture, file);
-    if (stated.white && levels.white == 0.0)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": its white level cannot be 0");
-    if (lensprof_levels_validate(&levels) != LENSPROF_OK)
-        throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": its black level is not below its white level; correct the "
-                                                      "stated levels");
+        levels.black[c] =
+            level_on(scale, stated.black[stated.black.size() == 3 ? c : 0], picture, file, stated.black_option);
+    if (stated.white) levels.white = level_on(scale, *stated.white, picture, file, stated.white_option);
+    if (!are_ordered(levels, scale))
+        fail(file, "its black level is not below its white level; correct the stated levels");
     return levels;
 }
 

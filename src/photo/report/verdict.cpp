@@ -122,12 +122,12 @@ void name_images(const std::vector<std::string> &names, Verdict &verdict) {
 
 namespace {
 
-// Of two shots, neither is known to be the odd one: "the shots of a.tif and b.tif differ".
+// Of two shots, neither is known to be the odd one: both are named. Of more without an odd one, none is.
 void name_both_shots(const std::vector<std::string> &names, const std::vector<uint32_t> &shots, Finding &finding) {
-    static const std::string unnamed = "the shots";
     const auto second = std::find_if(shots.begin(), shots.end(), [&](uint32_t shot) { return shot != shots.front(); });
-    if (second == shots.end() || finding.text.rfind(unnamed, 0) != 0) return;
-    finding.text.insert(unnamed.size(), " of " + names.front() + " and " + names[size_t(second - shots.begin())]);
+    const auto is_third = [&](uint32_t shot) { return shot != shots.front() && shot != *second; };
+    if (second == shots.end() || std::any_of(second, shots.end(), is_third)) return;
+    finding.text += "; these are the shots of " + names.front() + " and " + names[size_t(second - shots.begin())];
 }
 
 }  // namespace
