@@ -389,6 +389,32 @@ class Lensfun(unittest.TestCase):
         self.assertEqual(len(imported(added, formats.Format.LENSFUN)), 2)
         self.assertIn("<mount>Sony E</mount>", added)
 
+    def test_cost(self):
+        """What a file for Lensfun loses: of a centre, the error of the corner that is farthest from it."""
+        key = lp.ProfileKey(lens="A", crop_factor=1, focal_mm=35, aperture=1.4, processing=lp.Processing.RAW)
+        exact, shifted = lp.Profile(), lp.Profile()
+        for profile in exact, shifted:
+            profile.key, profile.vignetting = key, lp.Vignetting(k=(-0.4, 0, 0))
+        shifted.key.aperture = 2.0
+        shifted.vignetting = lp.Vignetting(k=(-0.4, 0, 0), center=(0.1, 0))
+        cost = np.full(2, np.nan)
+        text = exported(iter([exact, shifted]), formats.Format.LENSFUN, cost_ev=cost)
+        self.assertLess(cost[0], 0.001)
+        width, height = 3000, 2000
+        written = {found.key.aperture: found.vignetting for found, _ in imported(text, formats.Format.LENSFUN)}
+        x, y = np.array([(width - 1) / 2, 0, width - 1, 0, width - 1]), np.array([(height - 1) / 2, 0, 0, height - 1, height - 1])
+        falloffs = [v.eval(v.r2(width, height, x, y)) for v in (shifted.vignetting, written[2.0])]
+        relative = [falloff[1:] / falloff[0] for falloff in falloffs]
+        self.assertAlmostEqual(cost[1], np.max(np.abs(np.log2(relative[0] / relative[1]))), delta=0.002)
+        self.assertGreater(cost[1], 0.05)
+        for wrong, kind in ((np.zeros(1), ValueError), (np.zeros(2, np.float32), TypeError), ([0.0, 0.0], TypeError),
+                            (np.zeros(4)[::2], ValueError)):
+            with self.assertRaises(kind):
+                exported([exact, shifted], formats.Format.LENSFUN, cost_ev=wrong)
+        cost.flags.writeable = False
+        with self.assertRaisesRegex(ValueError, "read-only"):
+            exported([exact, shifted], formats.Format.LENSFUN, cost_ev=cost)
+
     def test_refused(self):
         with refused(self, lp.Status.ERROR_SYNTAX) as caught:
             imported(LENSFUN.replace("k1=\"-2\"", "k1=\"x\""), formats.Format.LENSFUN)

@@ -6,6 +6,7 @@ import ctypes
 from typing import Any, Iterable, Optional, Union
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _abi
 from ._abi import Layout, SampleType
@@ -151,6 +152,17 @@ def mask(array: Pixels, shape: tuple[int, ...], writable: bool = False) -> tuple
     if array.shape != tuple(shape):
         raise ValueError(f"a mask of shape {array.shape} does not fit a picture of {shape[0]} rows, {shape[1]} columns")
     return address(array, ctypes.c_uint8), _row_bytes(array, writable, "mask")
+
+
+def results(array: npt.NDArray[Any], count: int, what: str) -> Any:
+    """Pointer to an array that receives this many numbers of type float64."""
+    if _checked(array, what).dtype != np.dtype(np.float64):
+        raise TypeError(f"{what} of type {array.dtype} is not supported; give float64")
+    if array.shape != (count,) or not array.flags.c_contiguous:
+        raise ValueError(f"{what} of {_form(array)}: give one contiguous dimension of {count}, as numpy.empty({count})")
+    if not array.flags.writeable:
+        raise ValueError(f"{what} is read-only; give an array that can be written")
+    return address(array, ctypes.c_double)
 
 
 def structured(array: Records, dtype: np.dtype[Any], kind: type, what: str) -> tuple[Any, int]:

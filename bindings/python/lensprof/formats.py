@@ -453,7 +453,8 @@ class WriteOptions(TypedDict, total=False):
     """How profiles are written. format: Format.AUTO = by the name. frame, tables: as for read_profiles; rows of curves
     are tables[1]. layout, form: of opcodes. curve: of curves. covariance: of a blob. color_temperature_k: of alsc.
     camera: of Lensfun's files, gives maker, mount and crop factor. into: a Lensfun database, to which the profiles are
-    added."""
+    added. cost_ev: of Lensfun's files, an array of float64 with a number per profile, which receives what the file loses
+    of it: the largest error in a corner of the frame relative to its middle, EV."""
 
     format: Format
     frame: tuple[int, int]
@@ -465,6 +466,7 @@ class WriteOptions(TypedDict, total=False):
     color_temperature_k: float
     camera: CameraModel
     into: Source
+    cost_ev: npt.NDArray[np.float64]
 
 
 class FormatInfo(NamedTuple):
@@ -528,7 +530,7 @@ def encode_profiles(profiles: Iterable[Profile], name: str = "", *, format: Form
                     frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0), layout: Layout = Layout.RGB,
                     form: DngForm = DngForm.AUTO, curve: CurveKind = CurveKind.INVERSE, covariance: bool = False,
                     color_temperature_k: float = _abi.UNKNOWN, camera: Optional[CameraModel] = None,
-                    into: Optional[Source] = None) -> bytes:
+                    into: Optional[Source] = None, cost_ev: Optional[npt.NDArray[np.float64]] = None) -> bytes:
     """The same as bytes; name: of the file, whose ending selects the format."""
     for other in Format:
         if other and not format and info(other).name == name:
@@ -544,4 +546,7 @@ def encode_profiles(profiles: Iterable[Profile], name: str = "", *, format: Form
     content = create_string_buffer(b"" if into is None else _content(into))
     if into is not None:
         options.into, options.into_size = cast(content, c_void_p), len(content) - 1
-    return _database(lib.lensprof_export, profiles, (byref(options),), "the file cannot be written")
+    given = list(profiles)
+    if cost_ev is not None:
+        options.cost_ev = _arrays.results(cost_ev, len(given), "cost_ev")
+    return _database(lib.lensprof_export, given, (byref(options),), "the file cannot be written")
