@@ -129,6 +129,8 @@ Bytes fits_of(const std::vector<Plane> &planes, bool is_float, const std::string
 
 Words fields(const Words &words) { return Words{"flat", "--fields"} + words; }
 
+Words fits_fields(const char *name, const Words &options) { return fields({work(name)}) + options; }
+
 // The largest error of the shading that JSON has, relative to the middle.
 double error_of(const Json &json) {
     const Json &grid = json["shading"];
@@ -374,6 +376,68 @@ void test_fits_with_undefined_samples(void **) {
     assert_true(rest["used"].get<int>() >= 3 && rest["left_out"].size() >= 3);
 }
 
+// A header of a FITS extension, and an image of it with this value everywhere.
+Bytes extension_of(uint32_t columns, uint32_t rows, uint16_t value) {
+    std::string head;
+    for (const std::string &card :
+         {std::string("XTENSION= 'IMAGE   '"), std::string("BITPIX  = 16"), std::string("NAXIS   = 2"),
+          "NAXIS1  = " + std::to_string(columns), "NAXIS2  = " + std::to_string(rows), std::string("PCOUNT  = 0"),
+          std::string("GCOUNT  = 1"), std::string("BZERO   = 32768"), std::string("BSCALE  = 1"), std::string("END")})
+        head += card + std::string(80 - card.size(), ' ');
+    head.resize((head.size() + 2879) / 2880 * 2880, ' ');
+    Bytes bytes(head.begin(), head.end());
+    for (size_t i = 0; i < size_t(columns) * rows; i++) {
+        bytes.resize(bytes.size() + 2);
+        put(bytes, bytes.size() - 2, 2, uint64_t(uint16_t(value - 32768)), true);
+    }
+    bytes.resize((bytes.size() + 2879) / 2880 * 2880);
+    return bytes;
+}
+
+// Images of another size are named and left out; what follows the last part and is not one is named, too.
+void test_parts_of_fits(void **) {
+    if (!can_read_fits()) return;
+    const Bytes planes = fits_of(scenes(8), false), small = extension_of(16, 12, 500);
+    const auto joined_bytes = [](Bytes a, const Bytes &b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+    };
+    const Words options = {"--no-store", "--json", "--black", "120"};
+    save(work("alone.fits"), planes);
+    save(work("weights.fits"), joined_bytes(planes, small));
+    const Outcome weights = run_words(fits_fields("weights.fits", options));
+    assert_int_equal(weights.code, done);
+    assert_true(contains(weights.err,
+                         "weights.fits: has images of another size than its first, which are left out: "
+                         "part 2, 16 x 12 px"));
+    const Json alone = json_of(fits_fields("alone.fits", options));
+    assert_true(parsed(weights.out)["shading"] == alone["shading"]);
+    Bytes damaged = joined_bytes(planes, extension_of(width, height, 500));
+    std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(planes.size()), 80, uint8_t('x'));
+    save(work("damaged.fits"), damaged);
+    const Json rest = json_of(fits_fields("damaged.fits", options), unreadable);
+    assert_int_equal(rest["used"].get<int>(), 8);
+    assert_true(contains(rest["left_out"][0].get<std::string>(), "damaged.fits: the pages after page 8"));
+    Bytes padded = planes;
+    padded.resize(padded.size() + 2880);
+    save(work("padded.fits"), padded);
+    assert_true(json_of(fits_fields("padded.fits", options))["left_out"].empty());
+}
+
+// The profile of pictures that are stated to be linear is for linear ones.
+void test_linear_pictures(void **) {
+    const std::string folder = folder_of("linear", scenes(6)), db = work("linear.db");
+    const Words words = fields({folder, "--camera", "Orca", "--lens", "10x", "--black", "120", "--db", db});
+    must_exit(done, words);
+    const Outcome linear = run_words(words + Words{"--linear"});
+    assert_int_equal(linear.code, done);
+    assert_true(contains(linear.err, "lensprof apply --key processing=raw"));
+    const auto processing = [&](const char *id) {
+        return json_of({"profile", "show", id, "--json", "--db", db})["key"]["processing"];
+    };
+    assert_true(processing("1") == "jpeg" && processing("2") == "raw");
+}
+
 void test_refused(void **) {
     const auto planes = scenes(3);
     const std::string folder = folder_of("few", planes), same = folder_of("same", {planes[0], planes[0], planes[0]});
@@ -434,6 +498,8 @@ int main() {
         CLI_TEST(test_too_many_pages),
         CLI_TEST(test_damaged_files_are_left_out),
         CLI_TEST(test_fits_with_undefined_samples),
+        CLI_TEST(test_parts_of_fits),
+        CLI_TEST(test_linear_pictures),
         CLI_TEST(test_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -134,6 +134,8 @@ void test_the_light_is_stated(void **) {
     const double stated = chosen["light_ev"];  // of ln M as a polynomial, without a grid
     assert_true(stated > 0.02 && change > 0.4 * stated && change < 1.2 * stated);
     assert_false(contains(even.dump(), "flat_center_by_prior"));
+    const Outcome printed = run_words(flat({file, "--linear", "--no-store"}));  // once
+    assert_true(contains(printed.out, "[flat_center_by_prior]") && !contains(printed.err, "[flat_center_by_prior]"));
 }
 
 // Grey value of a corner relative to the middle, each the mean of 16 x 16 pixels.

@@ -616,6 +616,26 @@ void test_deep_falloffs_for_lensfun(void **) {
     assert_true(contains(text_of(csv), "good, but not for Lensfun"));
 }
 
+// Errors have two significant digits; an empty file is named, and its row of the table counts as used.
+void test_the_table(void **) {
+    const std::string folder = in_folder("printed"), csv = in_folder("printed.csv");
+    const std::string card = shoot("printed/a.tif", Card{24.0, 2.8});
+    save_text(folder + "/empty.tif", "");
+    save_text(csv, "file,focal,aperture\na.tif,24,2.8\nempty.tif,24,4\nnone.tif,24,8\n");
+    const Outcome found = run_words(flat_of({folder}, {"--key", "table=" + csv}));
+    assert_int_equal(found.code, unreadable);
+    assert_true(contains(found.out, "empty.tif: is empty (0 bytes); copy it again"));
+    assert_true(contains(found.err, "no picture has the name none.tif") && !contains(found.err, "name empty.tif"));
+    const double sigma =
+        100.0 * json_of(flat_of({card}, {"-o", csv, "--json"}))["settings"][0]["corner_sigma"].get<double>();
+    assert_true(sigma > 0.0 && sigma < 0.05);
+    assert_true(contains(found.out, "  " + error_text(sigma) + "  good"));
+    for (const auto &[error, text] : {std::pair(0.0, "0"), std::pair(0.00996, "0.010"), std::pair(0.0421, "0.042"),
+                                      std::pair(1.26, "1.3"), std::pair(9.96, "10"), std::pair(314.0, "314")})
+        assert_string_equal(error_text(error).c_str(), text);
+    assert_string_equal(with_decimals_of(0.0421, 62.81234).c_str(), "62.812");
+}
+
 // The list of missing settings names the camera of several.
 void test_missing_settings_of_cameras(void **) {
     for (const char *camera : {"Box 1", "Box 2"}) shoot(format("two/%s.tif", camera), Card{24.0, 2.8, camera});
@@ -675,6 +695,7 @@ int main() {
         CLI_TEST(test_a_dark_frame_in_the_folder),
         CLI_TEST(test_what_can_be_written_is),
         CLI_TEST(test_deep_falloffs_for_lensfun),
+        CLI_TEST(test_the_table),
         CLI_TEST(test_missing_settings_of_cameras),
         CLI_TEST(test_units_in_a_table),
     };

@@ -98,10 +98,10 @@ int fit_fields_command(FieldsCommand o, Streams &streams) {
         streams.out << "stored    profile " << found.profile_id << " in " << store_path(store.db) << ": "
                     << describe_key(found.key) << "\n";
     const std::string &first = found.names.front();
-    if (found.fit.usable)
-        report_findings(found.verdict, first, progress);
-    else
+    if (!found.fit.usable)
         print_message(streams, not_usable_text(first, found.verdict, store));
+    else if (o.json)  // otherwise they are in the table
+        report_findings(found.verdict, first, progress);
     return static_cast<int>(exit_code_of(found));
 }
 

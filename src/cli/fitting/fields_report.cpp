@@ -79,7 +79,7 @@ Extremes extremes_of(const lensprof_gain_grid &grid, uint32_t channel) {
 std::string offset_text(const FieldFit &found, const lensprof_fields_channel &channel) {
     const double offset = channel.offset * found.full_scale, sigma = channel.offset_sigma * found.full_scale;
     const char *const digits = found.full_scale > 1.0 ? "%.1f" : "%.6g";
-    if (channel.offset_found) return format(digits, offset) + " +- " + format(digits, sigma);
+    if (channel.offset_found) return with_decimals_of(sigma, offset) + " +- " + error_text(sigma);
     return format(digits, offset) + (found.is_black_given ? ", given" : ", not estimated");
 }
 
@@ -133,7 +133,7 @@ Json fields_facts(const FieldFit &found) {
         const std::string of = found.fit.channels == 3 ? names[c] : "";
         const Extremes range = extremes_of(found.fit.shading, c);
         add("shading" + of, format("%.3f to %.3f", range.low, range.high));
-        add("standard error" + of, format("%.2f %%", 100.0 * found.fit.channel[c].shading_error));
+        add("standard error" + of, error_text(100.0 * found.fit.channel[c].shading_error) + " %");
         add("offset" + of, offset_text(found, found.fit.channel[c]));
     }
     return facts;
@@ -172,10 +172,10 @@ void print_fields(const FieldFit &found, std::ostream &out) {
         static const char *const names[] = {"red  ", "green", "blue "};
         const lensprof_fields_channel &channel = fit.channel[c];
         const Extremes range = extremes_of(fit.shading, c);
-        out << format(
-            "shading   %s%.3f to %.3f of the middle, +- %.2f %%; held-out pictures %.2f %% (%.2f %% if even)\n",
-            fit.channels == 3 ? format("%s ", names[c]).c_str() : "", range.low, range.high,
-            100.0 * channel.shading_error, 100.0 * channel.heldout_rms, 100.0 * channel.even_rms);
+        out << format("shading   %s%.3f to %.3f of the middle, +- %s %%; held-out pictures %.2f %% (%.2f %% if even)\n",
+                      fit.channels == 3 ? format("%s ", names[c]).c_str() : "", range.low, range.high,
+                      error_text(100.0 * channel.shading_error).c_str(), 100.0 * channel.heldout_rms,
+                      100.0 * channel.even_rms);
         out << "offset    " << (fit.channels == 3 ? format("%s ", names[c]) : std::string())
             << offset_text(found, channel)
             << (found.full_scale > 1.0 ? format(" of %.0f", found.full_scale) : std::string()) << "\n";

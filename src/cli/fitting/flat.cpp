@@ -77,22 +77,29 @@ void declare(Command &command, FlatCommand &o) {
         "colour profile with a linear tone curve");
     command.numbers("--rotation", o.rotation_deg, {-360.0, 360.0},
                     "rotation of the camera about its optical axis per shot, degrees, clockwise seen from the back of "
-                    "the camera; separates the light from the lens; default 0");
+                    "the camera; separates the light from the lens (--turned takes it from EXIF); default 0");
+    command.word(
+        "--black", "LEVEL", [&o](const std::string &word) { o.levels.black = black_levels_of(word); },
+        "sample without light, which is subtracted: a value such as 256, of float samples such as 0.06, a percentage "
+        "such as 6%, or RED:GREEN:BLUE; --dark FILE measures it on pictures with the lens covered; default 0, or what "
+        "exposures of one card show");
     command.words(
         "--check", "FILE", [&o](const std::string &word) { o.check.push_back(word); },
         "overlapping pictures of ordinary things, taken at a setting of the cards (folder, files or Hugin project): they "
         "show whether the light on the cards was even, and what was not is removed");
     command.words(
         "-o,--output", "FILE", [&o](const std::string &word) { o.outputs.push_back(word); },
-        "write the lens: its good settings for Lensfun as .xml, a table of all settings as .csv; repeat for both");
-    command.file("--bundle", o.bundle,
-                 "write report, numbers, the lens for Lensfun and reduced pictures as one .zip file, for an upload");
-    command.file("--report", o.report, "write a report with charts as one .html file");
+        "write the lens: its good settings for Lensfun as .xml (--into adds them to a database of Lensfun), a table of "
+        "all settings as .csv; repeat for both");
+    command.file("--report", o.report,
+                 "write a report with charts as one .html file (--bundle: with all else for an upload)");
     Command expert = command.expert();
     expert.flag(
         "--fields", o.fields,
         "the pictures show different scenes under one shading, such as fields of a microscope: find the shading "
         "that all have in common, and their offset");
+    expert.file("--bundle", o.bundle,
+                "write report, numbers, the lens for Lensfun and reduced pictures as one .zip file, for an upload");
     expert.file(
         "--into", o.into,
         "database of Lensfun that the .xml file contains, too: the settings are added to its entry of the lens");
@@ -103,10 +110,6 @@ void declare(Command &command, FlatCommand &o) {
                   "shot number per picture, such as 1,1,1,2,2,2: exposures of one shot are merged; default one shot "
                   "per picture");
     expert.numbers("--ev", o.ev, any_number, "exposure per picture, EV, separated by commas; default from EXIF");
-    expert.word(
-        "--black", "LEVEL", [&o](const std::string &word) { o.levels.black = black_levels_of(word); },
-        "sample without light, which is subtracted: a value such as 256, of float samples such as 0.06, a percentage "
-        "such as 6%, or RED:GREEN:BLUE; default 0, or what exposures of one card show");
     expert.words(
         "--dark", "FILE", [&o](const std::string &word) { o.dark_files.push_back(word); },
         "picture with the lens covered, which gives the black level; repeat for several");
@@ -210,7 +213,7 @@ int run_one(const FlatCommand &o, const CardSetting &setting, Streams &streams) 
         streams.out << "stored    profile " << found.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(found.key) << "\n";
     Progress events(streams);
-    if (found.fit.usable) report_findings(found.verdict, first, events);
+    if (found.fit.usable && o.json) report_findings(found.verdict, first, events);  // else they are in the table
     if (!found.fit.usable) print_message(streams, not_usable_text(first, found.verdict, o.store));
     return static_cast<int>(found.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }

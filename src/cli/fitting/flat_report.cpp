@@ -77,9 +77,9 @@ void print_levels(const lensprof_flat_result &fit, std::ostream &out) {
     out << format("black     %.3f %% of full scale", 100.0 * black[1]);
     if (black[0] != black[1] || black[2] != black[1])
         out << format(" (red %.3f, blue %.3f)", 100.0 * black[0], 100.0 * black[2]);
-    if (fit.black_sigma > 0.0) out << format(" +- %.3f", 100.0 * fit.black_sigma);
+    if (fit.black_sigma > 0.0) out << " +- " << error_text(100.0 * fit.black_sigma);
     out << (fit.black_shown ? ", as the pictures show" : "");
-    out << format("; its error changes the corner by %.3f EV\n", fit.black_ev);
+    out << "; its error changes the corner by " << error_text(fit.black_ev) << " EV\n";
 }
 
 void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
@@ -135,7 +135,7 @@ Json flat_json(const CardFit &report) {
 void print_flat(const CardFit &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_images(report, out);
-    print_vignettings(*profile_of(*report.held), out);
+    print_vignettings(*profile_of(*report.held), out, report.aspect);
     for (const auto &response : report.response) print_response(response, out);
     out << format("light     %s; its gradient %s\n", light_name(fit.light),
                   fit.light == LENSPROF_FLAT_LIGHT_EVEN ? "taken as zero"
@@ -147,8 +147,8 @@ void print_flat(const CardFit &report, std::ostream &out) {
         100.0 * fit.residual, 100.0 * fit.noise, 100.0 * fit.texture, 100.0 * fit.frame_residual,
         100.0 * fit.shot_residual, 100.0 * fit.inlier_share, fit.cells);
     if (fit.gain_grid.columns) {
-        out << format("corner    %.4f +- %.4f of the light in the middle, with the grid\n", fit.corner,
-                      fit.corner_sigma);
+        out << "corner    " << with_decimals_of(fit.corner_sigma, fit.corner) << " +- " << error_text(fit.corner_sigma)
+            << " of the light in the middle, with the grid\n";
         out << format("grid      %u x %u nodes for what k1..k3 leave: %.2f %% remain\n", fit.gain_grid.columns,
                       fit.gain_grid.rows, 100.0 * fit.grid_residual);
     }

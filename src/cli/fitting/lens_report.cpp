@@ -61,14 +61,16 @@ void print_settings(const LensCards &cards, std::ostream &out) {
         if (of_setting != title || &setting == &cards.settings.front()) {
             title = of_setting;
             if (!title.empty()) out << title << "\n";
-            out << format("%-*s  pictures  corner %%    +-  result\n", static_cast<int>(width), "setting");
+            out << format("%-*s  pictures   corner %%       +-  result\n", static_cast<int>(width), "setting");
         }
         out << format("%-*s  %8zu", static_cast<int>(width), setting.of.label.c_str(), setting.of.pictures.size());
         if (setting.fit) {
             const Corner corner = corner_of(*setting.fit);
-            out << format("  %8.1f  %4.1f", 100.0 * corner.value, 100.0 * corner.sigma);
+            const double sigma = 100.0 * corner.sigma;
+            out << format("  %9s  %7s", with_decimals_of(sigma, 100.0 * corner.value).c_str(),
+                          error_text(sigma).c_str());
         } else {
-            out << "         -     -";
+            out << "          -        -";
         }
         out << "  " << one_line(result_text(cards, n)) << "\n";
     }

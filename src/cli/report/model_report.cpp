@@ -22,19 +22,19 @@ std::string light_at(const lensprof_profile &profile, uint32_t curve, double r, 
 }
 
 // The light with the grid, which holds what the polynomial does not: k1..k3 alone can be far from it.
-std::string light_with_grid(const lensprof_profile &profile, uint32_t curve) {
+std::string light_with_grid(const lensprof_profile &profile, uint32_t curve, double aspect) {
     const uint32_t channel = profile.vignettings == 3 ? curve : 1;
-    const double corner_light = mean_light(profile, channel, 1.0);
+    const double corner_light = mean_light(profile, channel, 1.0, aspect);
     return format(
         "          light at r = 0.5: %.1f %%, in the corners: %.1f %% (%.2f stops), with the gain grid, which "
         "holds what k1..k3 do not: these alone give %.1f %%\n",
-        100.0 * mean_light(profile, channel, 0.5), 100.0 * corner_light, -std::log2(corner_light),
+        100.0 * mean_light(profile, channel, 0.5, aspect), 100.0 * corner_light, -std::log2(corner_light),
         100.0 * corner(profile.vignetting[curve]));
 }
 
 }  // namespace
 
-void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
+void print_vignettings(const lensprof_profile &profile, std::ostream &out, double aspect) {
     static const char *const channels[3] = {" of red", " of green", " of blue"};
     for (uint32_t c = 0; c < profile.vignettings; c++) {
         const lensprof_vignetting &v = profile.vignetting[c];
@@ -47,7 +47,7 @@ void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
             << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
                       v.center[0], v.center[1]);
         if (profile.grid.columns) {
-            out << light_with_grid(profile, c);
+            out << light_with_grid(profile, c, aspect);
             continue;
         }
         bool is_known;

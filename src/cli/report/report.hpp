@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "photo/report/falloff.hpp"
 #include "photo/report/report.hpp"
 
 namespace lensprof {
@@ -24,8 +25,8 @@ TrueValues read_truth(const std::string &path, size_t images);
 // determine).
 void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out);
 
-// Parts of tables.
-void print_vignettings(const lensprof_profile &profile, std::ostream &out);
+// Parts of tables. `aspect`: width over height of the frame.
+void print_vignettings(const lensprof_profile &profile, std::ostream &out, double aspect = usual_aspect);
 void print_response(const lensprof_response &r, std::ostream &out);
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);

@@ -1,7 +1,10 @@
 #include "photo/base/format.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 
 #include "photo/base/failure.hpp"
 
@@ -16,6 +19,28 @@ std::string format(const char *pattern, ...) {
     va_end(arguments_copy);
     va_end(arguments);
     return text;
+}
+
+namespace {
+
+// Decimals that show two significant digits of an error, as far as `most`.
+int decimals_of(double error, int most) {
+    const std::string rounded = format("%.1e", error);  // 9.96e-3 is 0.010
+    return std::clamp(1 - std::atoi(rounded.c_str() + rounded.find('e') + 1), 0, most);
+}
+
+}  // namespace
+
+std::string error_text(double error) {
+    constexpr int most = 9;
+    if (error == 0.0) return "0";
+    return error > 0.0 && std::isfinite(error) ? format("%.*f", decimals_of(error, most), error) : "-";
+}
+
+std::string with_decimals_of(double error, double number) {
+    constexpr int most = 6;
+    const bool is_known = error > 0.0 && std::isfinite(error);
+    return format("%.*f", is_known ? decimals_of(error, most) : 1, number);
 }
 
 std::string counted(size_t count, const std::string &singular, const std::string &plural) {

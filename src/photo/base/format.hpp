@@ -11,6 +11,12 @@ namespace lensprof {
 // printf into a string.
 std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));
 
+// A standard error with two significant digits, "0" if it is 0; "-" if it is unknown.
+std::string error_text(double error);
+
+// A number with the decimals of its error, at most 6: "63.021" of +- 0.013.
+std::string with_decimals_of(double error, double number);
+
 // "1 profile", "2 lenses"; the default plural adds an s.
 std::string counted(size_t count, const std::string &singular, const std::string &plural = "");
 

@@ -44,8 +44,7 @@ void name_light_option(CardFit &found) {
     const std::string other = option_name("light") + (is_even ? " plane" : " even");
     if (Finding *note = finding_of(found, LENSPROF_REASON_FLAT_CENTER_BY_PRIOR, 0); note && found.fit.light_ev > 0.0)
         note->text += " (" + other + ")";
-    if (Finding *steep = finding_of(found, LENSPROF_REASON_FLAT_STEEP, 0);
-        steep && !is_even && !found.fit.separated)
+    if (Finding *steep = finding_of(found, LENSPROF_REASON_FLAT_STEEP, 0); steep && !is_even && !found.fit.separated)
         steep->text += "; or state an even light, if it is one, with " + other;
 }
 
@@ -87,7 +86,8 @@ double middle_sample(const Picture &picture) {
 }
 
 std::string dark_frame_advice(const std::string &file) {
-    return "; if the lens was covered for " + file + ", give it with " + option_name("dark") + ", which takes it out of the cards";
+    return "; if the lens was covered for " + file + ", give it with " + option_name("dark")
+           + ", which takes it out of the cards";
 }
 
 // The first picture with the name of a dark frame and less than a quarter of the light of the others; empty: none.

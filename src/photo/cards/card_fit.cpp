@@ -11,7 +11,6 @@
 #include "photo/pictures/even_light.hpp"
 #include "photo/pictures/orientation.hpp"
 #include "photo/pictures/rotated_profile.hpp"
-#include "photo/report/falloff.hpp"
 
 namespace lensprof {
 namespace {
@@ -53,6 +52,8 @@ CardFit begun(const CardInput &input) {
         fit.ev.push_back(image.ev);
         fit.rotated.push_back(image.rotation_deg);
     }
+    if (const lensprof_flat_image &first = input.images.front(); first.height > 0)
+        fit.aspect = static_cast<double>(first.width) / first.height;
     fit.quality.resize(input.images.size());
     lensprof_flat_result_init(&fit.fit);
     return fit;

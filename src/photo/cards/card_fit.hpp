@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "photo/cards/card_pictures.hpp"
+#include "photo/report/falloff.hpp"
 #include "photo/report/verdict.hpp"
 
 namespace lensprof {
@@ -18,6 +19,7 @@ struct CardFit {
     std::vector<lensprof_flat_image_quality> quality;
     std::vector<lensprof_response> response;
     lensprof_profile_key key{};
+    double aspect = usual_aspect;               // width over height of the pictures
     std::shared_ptr<const lensprof_flat> held;  // NULL without a fit
     std::shared_ptr<lensprof_profile> profile;  // of it, in the frame of the sensor; NULL without a fit
     lensprof_flat_result fit{};

@@ -52,8 +52,12 @@ std::vector<Read> read_all(const std::vector<NamedPicture> &named, const CardOpt
             read[i].failure = failure.what();
         }
     });
-    for (Read &one : read) {
-        if (!one.picture) continue;
+    for (size_t i = 0; i < read.size(); i++) {
+        Read &one = read[i];
+        if (!one.picture) {
+            if (table) table->use(named[i].file);
+            continue;
+        }
         lensprof_profile_key &key = one.picture->metadata.key;
         complete_by_names(one.picture->file, key);
         if (table) table->apply(one.picture->file, key);
@@ -208,8 +212,9 @@ void remove_dark_frames(const std::vector<std::string> &dark_files, std::vector<
 }
 
 std::string reason_to_leave_out(const NamedPicture &named, const Read &read, Copies &copies) {
-    if (!read.picture) return read.failure;
     try {
+        if (!read.picture)
+            return file_bytes(named.file) ? read.failure : named.file + ": is empty (0 bytes); copy it again";
         if (const std::string first = copies.earlier(named); !first.empty()) return named.file + ": a copy of " + first;
     } catch (const Failure &failure) {  // not there any more
         return failure.what();

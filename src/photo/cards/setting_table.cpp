@@ -161,12 +161,18 @@ SettingTable::SettingTable(const std::string &path) {
     }
 }
 
+SettingTable::Row *SettingTable::row_of(const std::string &file) {
+    const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row &one) { return fits(one.file, file); });
+    return row == rows_.end() ? nullptr : &*row;
+}
+
+void SettingTable::use(const std::string &file) {
+    if (Row *row = row_of(file)) row->is_used = true;
+}
+
 void SettingTable::apply(const std::string &file, lensprof_profile_key &key) {
-    for (Row &row : rows_) {
-        if (!fits(row.file, file)) continue;
-        row.is_used = true;
-        return replace(row.key, key);
-    }
+    use(file);
+    if (const Row *row = row_of(file)) replace(row->key, key);
 }
 
 std::vector<std::string> SettingTable::unused() const {

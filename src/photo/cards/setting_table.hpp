@@ -19,6 +19,9 @@ public:
     // Replaces in `key` what the table states about a picture.
     void apply(const std::string &file, lensprof_profile_key &key);
 
+    // The row of a picture that cannot be read counts as used.
+    void use(const std::string &file);
+
     // Rows that no picture has used: their `file`.
     std::vector<std::string> unused() const;
 
@@ -28,6 +31,8 @@ private:
         lensprof_profile_key key;
         bool is_used = false;
     };
+    Row *row_of(const std::string &file);
+
     std::vector<Row> rows_;
 };
 

@@ -167,8 +167,11 @@ void note_response(const FieldOptions &o, const FieldKind &first, const PictureM
         events.warn(first.name,
                     "is compressed with losses, which round small differences of light; use the pictures as "
                     "the camera wrote them");
-    if (o.linear || o.gamma || o.profile || metadata.processing_before == LENSPROF_PROCESSING_RAW) return;
-    if (first.sample == LENSPROF_SAMPLE_U8)
+    if (o.gamma || o.profile || metadata.processing_before == LENSPROF_PROCESSING_RAW) return;
+    if (o.linear)
+        events.note(first.name, "is linear according to " + option_name("linear") + ", and so is its profile"
+                                    + advice("linear_pictures"));
+    else if (first.sample == LENSPROF_SAMPLE_U8)
         events.note(first.name, "8 bit samples are taken as proportional to light; if they have a gamma, give it with "
                                     + option_name("gamma"));
 }
@@ -235,7 +238,9 @@ FieldFit fit_fields_of(const std::vector<std::string> &names, const FieldOptions
     found.response = given_response(o.store, o.gamma, o.profile);
     const PictureMetadata &metadata = list.metadata;
     warn_of_truncation(metadata, o.store, list.pages.front().file, events);
-    found.key = override_key(metadata.key, metadata.size, o.store, list.pages.front().file);
+    lensprof_profile_key key = metadata.key;
+    if (o.linear && metadata.corrected_by.empty()) key.processing = LENSPROF_PROCESSING_RAW;
+    found.key = override_key(key, metadata.size, o.store, list.pages.front().file);
     FieldReader reader(o, found, events);
     read_fields(list, reader, found, events);
     if (found.names.empty()) throw Failure(LENSPROF_ERROR_READ, found.left_out.front());

@@ -39,9 +39,12 @@ void check_not_corrected(const std::string &file, const PictureMetadata &metadat
         throw Failure(LENSPROF_ERROR_READ, file + ": is a corrected copy; give the original");
 }
 
-void add_pages(const std::string &file, uint32_t channel, FieldList &list) {
+void add_pages(const std::string &file, uint32_t channel, FieldList &list, Events &events) {
     const PictureStack stack = picture_stack(file);
     check_channel(file, stack, channel);
+    if (!stack.others.empty())
+        events.note(file,
+                    "has images of another size than its first, which are left out: " + joined(stack.others, "; "));
     for (size_t i = 0; i < stack.pages.size(); i++) {
         if (channel && stack.channels[i] != channel - 1) continue;
         const std::string name = stack.pages.size() > 1 ? format("%s, page %zu", file.c_str(), i + 1) : file;
@@ -71,7 +74,7 @@ FieldList field_list(const std::vector<std::string> &names, uint32_t channel, Ev
             const PictureMetadata metadata = metadata_of(picture.file);
             check_not_corrected(picture.file, metadata);
             const bool is_first = list.pages.empty();
-            add_pages(picture.file, channel, list);
+            add_pages(picture.file, channel, list, events);
             if (is_first) list.metadata = metadata;
         } catch (const Failure &failure) {
             if (failure.group() != LENSPROF_ERROR_READ) throw;

@@ -33,8 +33,13 @@ CodedMetadata heif_metadata(const std::string &path, const std::string &kind);
 CodedMetadata jxl_metadata(const std::string &path);
 CodedMetadata fits_metadata(const std::string &path);
 
-// Number of planes: of all images of the file, those with more than two axes included.
-uint32_t fits_planes(const std::string &path);
+// The planes of the images in a FITS file.
+struct FitsPlanes {
+    std::vector<uint32_t> numbers;    // of the planes with the size of the first
+    std::vector<std::string> others;  // images of another size: "part 3, 40 x 30 px"
+    bool is_damaged = false;          // what follows the last part is not one
+};
+FitsPlanes fits_planes(const std::string &path);
 
 // What a HEIF file holds in addition to its primary picture, except thumbnails.
 struct HeifParts {

@@ -20,7 +20,7 @@ std::unique_ptr<RowSource> open_fits(const ReadRequest &request) { fail_without(
 
 CodedMetadata fits_metadata(const std::string &path) { fail_without(path); }
 
-uint32_t fits_planes(const std::string &path) { fail_without(path); }
+FitsPlanes fits_planes(const std::string &path) { fail_without(path); }
 
 }  // namespace codec
 

@@ -1,9 +1,12 @@
 // FITS through cfitsio (FITS Standard 4.0). A picture is one plane of the images in the file: its first two axes.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fitsio.h>
 
+#include "photo/base/format.hpp"
 #include "photo/pictures/coded_file.hpp"
 
 namespace lensprof {
@@ -49,6 +52,22 @@ public:
                 next(plane);
             }
         }
+    }
+
+    // Whether bytes follow the last part that could be found, other than a padding with zeros: after each_plane, which
+    // ended there.
+    bool has_rest() {
+        int count = 0;
+        LONGLONG head = 0, data = 0, end = 0;
+        fits_get_num_hdus(handle_, &count, &status_);
+        if (move_to(count)) fits_get_hduaddrll(handle_, &head, &data, &end, &status_);
+        check();
+        const File file = open_for_reading(path_);
+        std::array<char, 2880> block;
+        if (fseeko(file.get(), static_cast<off_t>(end), SEEK_SET) != 0) return false;
+        while (const size_t read = std::fread(block.data(), 1, block.size(), file.get()))
+            if (std::any_of(block.begin(), block.begin() + read, [](char c) { return c != 0; })) return true;
+        return false;
     }
 
     fitsfile *handle() { return handle_; }
@@ -159,10 +178,21 @@ CodedMetadata fits_metadata(const std::string &path) {
     return metadata;
 }
 
-uint32_t fits_planes(const std::string &path) {
+FitsPlanes fits_planes(const std::string &path) {
     FitsFile file(path);
-    uint32_t planes = 0;
-    file.each_plane([&](const Plane &, uint32_t) { return planes++, true; });
+    FitsPlanes planes;
+    std::array<long, 2> size{};
+    int other = 0;  // the part named last
+    file.each_plane([&](const Plane &plane, uint32_t number) {
+        const std::array<long, 2> own{plane.size[0], plane.size[1]};
+        if (number == 0) size = own;
+        if (own == size)
+            planes.numbers.push_back(number);
+        else if (std::exchange(other, plane.hdu) != plane.hdu)
+            planes.others.push_back(format("part %d, %ld x %ld px", plane.hdu, own[0], own[1]));
+        return true;
+    });
+    planes.is_damaged = file.has_rest();
     return planes;
 }
 

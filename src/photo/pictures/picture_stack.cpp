@@ -97,8 +97,8 @@ PictureStack picture_stack(const std::string &path) {
     if (raw_kind(path)) return stack;
     if (const auto coded = coded_kind(path)) {
         if (coded->format != FileFormat::fits) return stack;
-        const uint32_t planes = codec::fits_planes(path);
-        for (uint32_t i = 1; i < planes; i++) stack.pages.push_back(i);
+        const codec::FitsPlanes planes = codec::fits_planes(path);
+        stack.pages = planes.numbers, stack.others = planes.others, stack.is_damaged = planes.is_damaged;
         stack.offsets.assign(stack.pages.size(), 0), stack.channels.assign(stack.pages.size(), 0);
         return stack;
     }

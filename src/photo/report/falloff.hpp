@@ -1,6 +1,7 @@
 // Falloffs of fits and profiles, for tables and charts.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -17,11 +18,15 @@ inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || 
 // Which of the falloff curves is that of green: of one per channel the second, else the only one.
 constexpr uint32_t green_curve(size_t curves) { return curves == 3 ? 1 : 0; }
 
-// M times the gain grid at r half diagonals from the middle of a frame of 3:2: mean of a circle or, at r = 1, of the
-// corners.
-inline double mean_light(const lensprof_profile &profile, uint32_t channel, double r) {
-    constexpr uint32_t width = 30000, height = 20000;  // so large that the outermost pixels are in the corners
+constexpr double usual_aspect = 1.5;  // of a frame whose size is unknown
+
+// M times the gain grid at r half diagonals from the middle of a frame of this width over height: mean of a circle or,
+// at r = 1, of the corners.
+inline double mean_light(const lensprof_profile &profile, uint32_t channel, double r, double aspect = usual_aspect) {
+    constexpr double side = 30000.0;  // so large that the outermost pixels are in the corners
     constexpr int count = 64;
+    const auto width = static_cast<uint32_t>(std::lround(side * std::min(aspect, 1.0))),
+               height = static_cast<uint32_t>(std::lround(side * std::min(1.0 / aspect, 1.0)));
     const double half_width = 0.5 * (width - 1.0), half_height = 0.5 * (height - 1.0);
     const double diagonal = std::hypot(half_width, half_height), corner = std::atan2(half_height, half_width);
     double sum = 0.0;
