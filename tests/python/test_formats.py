@@ -403,7 +403,7 @@ class Lensfun(unittest.TestCase):
         width, height = 3000, 2000
         written = {found.key.aperture: found.vignetting for found, _ in imported(text, formats.Format.LENSFUN)}
         x, y = np.array([(width - 1) / 2, 0, width - 1, 0, width - 1]), np.array([(height - 1) / 2, 0, 0, height - 1, height - 1])
-        falloffs = [v.eval(v.r2(width, height, x, y)) for v in (shifted.vignetting, written[2.0])]
+        falloffs = [v.eval(v.r2(width, height, x, y)) for v in (shifted.vignetting[0], written[2.0][0])]
         relative = [falloff[1:] / falloff[0] for falloff in falloffs]
         self.assertAlmostEqual(cost[1], np.max(np.abs(np.log2(relative[0] / relative[1]))), delta=0.002)
         self.assertGreater(cost[1], 0.05)

@@ -79,7 +79,7 @@ void print_levels(const lensprof_flat_result &fit, std::ostream &out) {
         out << format(" (red %.3f, blue %.3f)", 100.0 * black[0], 100.0 * black[2]);
     if (fit.black_sigma > 0.0) out << " +- " << error_text(100.0 * fit.black_sigma);
     out << (fit.black_shown ? ", as the pictures show" : "");
-    out << "; its error changes the corner by " << error_text(fit.black_ev) << " EV\n";
+    out << format("; its error changes the corner by %.3f EV\n", fit.black_ev);
 }
 
 void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
