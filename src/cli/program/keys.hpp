@@ -23,7 +23,7 @@ struct KeyTable {
     std::string help;    // the command that prints the table
     std::vector<Key> keys;
     std::map<std::string, std::string> renamed{};  // keys that are options now
-    std::set<std::string> given{};  // keys of this command line
+    std::set<std::string> given{};                 // keys of this command line
 
     const Key *find(const std::string &name) const;
     std::vector<std::string> names() const;

@@ -12,12 +12,12 @@ namespace lensprof {
 
 struct DarkLevel {
     std::vector<std::string> names;  // of files and pages
-    std::string file;               // the first of them
-    Picture form;                   // its sample type, layout and frame, without pixels
-    std::array<double, 3> black{};  // samples: 0..1 of integers, or as float files have them; equal for grey pictures
-    double sigma = 0.0;             // standard error of the level, from the scatter of blocks and of frames
-    double spread = 0.0;            // standard deviation over the frame: what one level does not describe
-    double brightest = 0.0;         // level of the brightest frame
+    std::string file;                // the first of them
+    Picture form;                    // its sample type, layout and frame, without pixels
+    std::array<double, 3> black{};   // samples: 0..1 of integers, or as float files have them; equal for grey pictures
+    double sigma = 0.0;              // standard error of the level, from the scatter of blocks and of frames
+    double spread = 0.0;             // standard deviation over the frame: what one level does not describe
+    double brightest = 0.0;          // level of the brightest frame
     std::string brightest_file;
 };
 

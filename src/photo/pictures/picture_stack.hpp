@@ -9,12 +9,12 @@ namespace lensprof {
 
 // The pictures of one file, in its order.
 struct PictureStack {
-    std::vector<uint32_t> pages;     // of each, for ReadOptions::page; thumbnails and masks are left out
-    std::vector<uint64_t> offsets;   // of each, for ReadOptions::page_offset
-    std::vector<uint32_t> channels;  // of each: the channel of the microscope, counted from 0
-    std::vector<std::string> others{};   // images of FITS with another size than the first, which are left out
-    uint32_t channel_count = 1;      // stated by ImageJ or OME
-    bool is_damaged = false;         // further pages cannot be found: the file is truncated
+    std::vector<uint32_t> pages;        // of each, for ReadOptions::page; thumbnails and masks are left out
+    std::vector<uint64_t> offsets;      // of each, for ReadOptions::page_offset
+    std::vector<uint32_t> channels;     // of each: the channel of the microscope, counted from 0
+    std::vector<std::string> others{};  // images of FITS with another size than the first, which are left out
+    uint32_t channel_count = 1;         // stated by ImageJ or OME
+    bool is_damaged = false;            // further pages cannot be found: the file is truncated
 };
 
 // Other files have one page. Failure if the file cannot be opened.

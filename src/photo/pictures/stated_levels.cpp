@@ -24,11 +24,15 @@ double share_of_value(double value, const Picture &picture, const std::string &f
         fail(file,
              "the black level that a raw file states is subtracted already; give what it leaves as a percentage, "
              "or nothing");
+    // In 0.2, the option of the black level was the limit of ignored grey values.
     if (has_codes(picture) && value > 0.0 && value < 1.0)
         fail(file,
              format("has integer samples, and %g is less than one of them: give a level as a value such as 256, or "
-                    "as a percentage, such as %g%%; to ignore dark grey values in a fit, use %s=%g",
-                    value, 100.0 * value, option_name("ignore_below").c_str(), value));
+                    "as a percentage, such as %g%%",
+                    value, 100.0 * value)
+                 + (option != "black"
+                        ? std::string()
+                        : "; to ignore dark grey values, use " + option_name("ignore_below") + format("=%g", value)));
     if (scale.is_known && value > scale.full_scale)
         fail(file,
              has_codes(picture) || scale.full_scale != 1.0

@@ -17,8 +17,8 @@ struct StatedLevel {
 };
 
 struct StatedLevels {
-    std::vector<StatedLevel> black;    // one, or red, green and blue; empty: not stated
-    std::optional<StatedLevel> white;  // empty: full scale
+    std::vector<StatedLevel> black;          // one, or red, green and blue; empty: not stated
+    std::optional<StatedLevel> white;        // empty: full scale
     std::string black_option, white_option;  // that state them, for option_name(); empty: unknown
 
     bool any() const { return !black.empty() || white.has_value(); }
