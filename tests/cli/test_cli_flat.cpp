@@ -6,6 +6,7 @@
 
 #include "photo/base/library.hpp"
 #include "photo/pictures/picture.hpp"
+#include "photo/report/falloff.hpp"
 
 namespace {
 
@@ -467,6 +468,24 @@ void test_grey_pictures_and_the_grid(void **) {
     assert_close(json["vignetting"]["center"][0].get<double>(), 0.0, 0.0);
 }
 
+// A gain grid that grows as u^2 to both sides, u = -1..1: on a circle of r, u is r cos(angle) times the half diagonal
+// over the half width, sqrt(1 + 1 / aspect^2), and the mean of the squared cosine is 1/2.
+void test_light_on_a_circle_has_the_shape_of_the_picture(void **) {
+    const auto profile = lensprof::new_profile();
+    profile->vignettings = 1;
+    lensprof_gain_grid &grid = profile->grid;
+    grid.columns = 17, grid.rows = 2;
+    for (uint32_t channel = 0; channel < 3; channel++)
+        for (uint32_t i = 0; i < 34; i++) {
+            const double u = (i % 17) / 8.0 - 1.0;
+            grid.attenuation[channel * 34 + i] = static_cast<float>(1.0 + 0.5 * u * u);
+        }
+    for (const double aspect : {4.0, 1.5, 1.0, 0.75}) {
+        const double mean = 1.0 + 0.5 * 0.25 * 0.5 * (1.0 + 1.0 / (aspect * aspect));
+        assert_close(lensprof::mean_light(*profile, 1, 0.5, aspect), mean, 0.002);
+    }
+}
+
 void test_refused(void **) {
     Card card;
     const std::string path = shoot("card.tif", card), other = shoot("card2.tif", card);
@@ -549,6 +568,7 @@ int main() {
         CLI_TEST(test_the_response_of_a_profile),
         CLI_TEST(test_what_is_not_usable_is_not_stored),
         CLI_TEST(test_grey_pictures_and_the_grid),
+        CLI_TEST(test_light_on_a_circle_has_the_shape_of_the_picture),
         CLI_TEST(test_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
