@@ -23,6 +23,7 @@ struct Card {
     Bytes icc;                        // colour profile
     double black = 0.0, white = 1.0;  // samples without light and at saturation
     bool dark = false;                // the lens is covered
+    double circle = 2.0;              // half diagonals that it lights up
 };
 
 std::string shoot(const std::string &name, const Card &card) {
@@ -43,7 +44,7 @@ std::string shoot(const std::string &name, const Card &card) {
                 0.4 * std::exp2(card.ev) * m * std::exp(card.slant * (std::cos(turn) * dx - std::sin(turn) * dy));
             light *= 1.0 + card.texture * std::sin(0.35 * x) * std::sin(0.3 * y);
             if (x < card.left * width || x >= card.right * width) light *= 0.1;
-            if (card.dark) light = 0.0;
+            if (card.dark || std::hypot(dx, dy) > card.circle) light = 0.0;
             for (uint32_t c = 0; c < samples; c++) {
                 double grey = lensprof_response_eval(&response, light, nullptr) + 0.003 * lp_normal(&random);
                 const double value = card.black + (card.white - card.black) * grey;
@@ -205,6 +206,30 @@ void state_level(const std::string &file, uint16_t tag, uint32_t value) {
         tag == TIFFTAG_BLACKLEVEL ? TIFFSetField(tiff, tag, 1, &level) : TIFFSetField(tiff, tag, 1, &white), 1);
     assert_int_equal(TIFFRewriteDirectory(tiff), 1);
     TIFFClose(tiff);
+}
+
+// The image circle is found, stored and printed; applied, what lies outside keeps its bytes.
+void test_an_image_circle(void **) {
+    Card card;
+    card.circle = 0.8, card.slant = 0.0;
+    const std::string file = shoot("circle.tif", card);
+    const Outcome outcome = run_words({"flat", file, "--fit", "gamma=1", "--db", work("c.db")});
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.out, "at the edge of the image circle: 7"));  // 76.6 % by the formula at r = .8
+    const Json profile = json_of({"profile", "show", "1", "--db", work("c.db"), "--json"});
+    assert_close(profile["image_circle"]["radius"].get<double>(), 0.8, 0.01);
+    must_exit(done, {"apply", "--profile", "1", "--db", work("c.db"), "-o", work("out"), file});
+    const Picture before = read_picture(file), after = read_picture(work("out/circle.tif"));
+    int kept = 0;
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            const double r =
+                std::hypot(x - 0.5 * (width - 1), y - 0.5 * (height - 1)) / (0.5 * std::hypot(width, height));
+            const size_t at = 3 * (size_t(y) * width + x);
+            if (r > 0.81) assert_true(value_of(after, at) == value_of(before, at)), kept++;
+            if (r > 0.7 && r < 0.79) assert_true(value_of(after, at) > 1.1 * value_of(before, at));
+        }
+    assert_true(kept > 10000);
 }
 
 // The black level is stated, that of dark frames, or that which two exposures show; applied, the card is even, and
@@ -558,6 +583,7 @@ int main() {
         CLI_TEST(test_rotated_shots_are_measured_and_stored),
         CLI_TEST(test_the_light_is_stated),
         CLI_TEST(test_the_card_is_corrected),
+        CLI_TEST(test_an_image_circle),
         CLI_TEST(test_the_black_level),
         CLI_TEST(test_levels_of_float_samples),
         CLI_TEST(test_pages_of_dark_frames),

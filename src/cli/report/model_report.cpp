@@ -25,11 +25,15 @@ std::string light_at(const lensprof_profile &profile, uint32_t curve, double r, 
 std::string light_with_grid(const lensprof_profile &profile, uint32_t curve, double aspect) {
     const uint32_t channel = profile.vignettings == 3 ? curve : 1;
     const double corner_light = mean_light(profile, channel, 1.0, aspect);
-    return format(
-        "          light at r = 0.5: %.1f %%, in the corners: %.1f %% (%.2f stops), with the gain grid, which "
-        "holds what k1..k3 do not: these alone give %.1f %%\n",
-        100.0 * mean_light(profile, channel, 0.5, aspect), 100.0 * corner_light, -std::log2(corner_light),
-        100.0 * corner(profile.vignetting[curve]));
+    const std::string text =
+        format("          light at r = 0.5: %.1f %%, %s: %.1f %% (%.2f stops), with the gain grid",
+               100.0 * mean_light(profile, channel, 0.5, aspect),
+               profile.image_circle.radius > 0.0 ? "at the edge of the image circle" : "in the corners",
+               100.0 * corner_light, -std::log2(corner_light));
+    if (profile.image_circle.radius > 0.0) return text + "\n";
+    return text
+           + format(", which holds what k1..k3 do not: these alone give %.1f %%\n",
+                    100.0 * corner(profile.vignetting[curve]));
 }
 
 }  // namespace

@@ -20,8 +20,17 @@ constexpr uint32_t green_curve(size_t curves) { return curves == 3 ? 1 : 0; }
 
 constexpr double usual_aspect = 1.5;  // of a frame whose size is unknown
 
-// M times the gain grid at r half diagonals from the middle of a frame of this width over height: mean of a circle or,
-// at r = 1, of the corners.
+// Half diagonals from the middle of the frame to the edge of the image circle, less than a pixel inside; without one
+// infinite.
+inline double reach_of_circle(const lensprof_image_circle &circle, double angle) {
+    if (circle.radius == 0.0) return INFINITY;
+    const double *c = circle.center, along = c[0] * std::cos(angle) + c[1] * std::sin(angle);
+    const double square = along * along + circle.radius * circle.radius - c[0] * c[0] - c[1] * c[1];
+    return (1.0 - 1e-6) * std::max(along + std::sqrt(std::max(square, 0.0)), 0.0);
+}
+
+// M times the gain grid at r half diagonals from the middle of a frame of this width over height, or at the edge of the
+// image circle if that is nearer: mean of a circle or, at r = 1, of the corners.
 inline double mean_light(const lensprof_profile &profile, uint32_t channel, double r, double aspect = usual_aspect) {
     constexpr double side = 30000.0;  // so large that the outermost pixels are in the corners
     constexpr int count = 64;
@@ -33,8 +42,9 @@ inline double mean_light(const lensprof_profile &profile, uint32_t channel, doub
     for (int i = 0; i < count; i++) {
         const double at_corner = (i & 1) ? M_PI - corner : corner;
         const double angle = r < 1.0 ? 2.0 * M_PI * i / count : (i & 2) ? -at_corner : at_corner;
-        sum += lensprof_profile_falloff(&profile, channel, width, height, half_width + r * diagonal * std::cos(angle),
-                                        half_height + r * diagonal * std::sin(angle), nullptr);
+        const double reach = diagonal * std::min(r, reach_of_circle(profile.image_circle, angle));
+        sum += lensprof_profile_falloff(&profile, channel, width, height, half_width + reach * std::cos(angle),
+                                        half_height + reach * std::sin(angle), nullptr);
     }
     return sum / count;
 }
