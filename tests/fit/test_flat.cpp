@@ -286,6 +286,12 @@ static void the_shot_unlike_the_others_is_named(void **) {
         assert_reason(*r, FLAT_SHOTS_DIFFER, "angles");
         assert_int_equal(r->first.item.kind, LENSPROF_ITEM_SHOT);
         assert_int_equal(r->first.item.index, 10 + odd);
+        o.own_light = 0;
+        r = p.fit(o);
+        assert_reason(*r, FLAT_SHOTS_DIFFER, "angles");
+        assert_int_equal(r->first.item.index, 10 + odd);
+        assert_close(r->light_ev, 0.0, 0.0);  // no light was chosen, which takes most of the time
+        o.own_light = 1;
         const size_t other = odd == 0 ? 1 : 0;
         p.images = {p.images[other], p.images[odd]};
         r = p.fit(o);

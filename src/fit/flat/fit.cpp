@@ -56,12 +56,20 @@ void solve(FlatFit &fit, int curves, FalloffForm form) {
     problem.free = free_unknowns(problem.model, fit.options.free);
     fit.estimate = {};
     fit.estimate.u = flat_start(problem, fit.options.vignetting);
-    solve_flat(problem, fit.estimate);
+    solve_flat(problem, fit.estimate, fit.steps);
     fit.covariance = flat_covariance(problem, fit.estimate);
 }
 
 FlatSolution solution_of(const FlatFit &fit) { return fit; }
 void take(const FlatSolution &solution, FlatFit &fit) { static_cast<FlatSolution &>(fit) = solution; }
+
+// Solves again, unless the steps do not suffice.
+void solve_or_keep(FlatFit &fit, int curves, FalloffForm form) {
+    if (fit.steps.are_over()) return;
+    const FlatSolution before = solution_of(fit);
+    solve(fit, curves, form);
+    if (fit.steps.are_over()) take(before, fit);
+}
 
 // The objective of a solution for the noise that another one states.
 double cost_with_noise_of(const FlatEstimate &noise, const FlatProblem &problem, FlatEstimate estimate) {
@@ -78,7 +86,8 @@ bool can_be_logarithm(const lensprof_flat_options &o) {
 // Solves again with ln M as the polynomial where M leaves a pattern, if that is clearly better. About a far centre, it
 // would describe a lamp next to the card.
 void choose_form(FlatFit &fit, int curves) {
-    const bool is_open = can_be_logarithm(fit.options) && fit.problem.model.form == FalloffForm::powers;
+    const bool is_open =
+        can_be_logarithm(fit.options) && fit.problem.model.form == FalloffForm::powers && !fit.steps.are_over();
     if (!is_open || frame_residual(fit) < kMisfit) return;
     const FlatSolution powers = solution_of(fit);
     solve(fit, curves, FalloffForm::logarithm);
@@ -92,11 +101,11 @@ void choose_form(FlatFit &fit, int curves) {
 
 // The plane again, from the solution of an even light. Far from the solution, the pattern that a wrong centre leaves
 // inflates the errors, and with them the weight of the prior that keeps the centre wrong.
-void try_from_even(const FlatSolution &even, FlatSolution &plane) {
+void try_from_even(const FlatSolution &even, FlatSolution &plane, FlatSteps &steps) {
     FlatEstimate estimate = plane.estimate;
     estimate.u.setZero();
     estimate.u.head(even.estimate.u.size()) = even.estimate.u;
-    refine_flat(plane.problem, estimate);
+    refine_flat(plane.problem, estimate, steps);
     if (flat_cost(plane.problem, estimate) >= cost_with_noise_of(estimate, plane.problem, plane.estimate)) return;
     plane.estimate = estimate;
     plane.covariance = flat_covariance(plane.problem, estimate);
@@ -128,7 +137,7 @@ void choose_light(FlatFit &fit, int curves) {
     const auto &o = fit.options;
     const bool is_open = o.light == LENSPROF_FLAT_LIGHT_AUTO && !o.several && (o.free & LENSPROF_FREE_CENTER)
                          && fit.problem.model.angles() == 1;
-    if (!is_open) return;
+    if (!is_open || fit.steps.are_over()) return;
     const FlatSolution before = solution_of(fit);
     const FalloffForm form = can_be_logarithm(o) ? FalloffForm::logarithm : FalloffForm::powers;
     if (before.problem.model.form != form) solve(fit, curves, form);
@@ -136,11 +145,12 @@ void choose_light(FlatFit &fit, int curves) {
     fit.light = LENSPROF_FLAT_LIGHT_EVEN;
     solve(fit, curves, form);
     const FlatSolution even = solution_of(fit);
-    try_from_even(even, plane);
+    try_from_even(even, plane, fit.steps);
     const lensprof_vignetting v = falloff_of(even.problem.model, even.estimate.u, 0);
     const double gain =
         2.0
         * (cost_with_noise_of(plane.estimate, even.problem, even.estimate) - flat_cost(plane.problem, plane.estimate));
+
     fit.light_ev = corner_difference(fit.grid, even, plane);
     const bool is_even = gain < kEven && std::hypot(v.center[0], v.center[1]) < kPlausibleCenter;
     fit.other = is_even ? plane : even;
@@ -151,6 +161,10 @@ void choose_light(FlatFit &fit, int curves) {
         solve(fit, curves, before.problem.model.form);
     else
         take(before, fit);
+    if (!fit.steps.are_over()) return;
+    fit.light = LENSPROF_FLAT_LIGHT_PLANE, fit.light_ev = 0.0;  // what was cut off is no solution
+    fit.other.reset();
+    take(before, fit);
 }
 
 // Shots at several angles separate the light from the lens in its second-order terms, too.
@@ -158,7 +172,7 @@ void choose_curvature(FlatFit &fit, int curves) {
     const FlatModel &model = fit.problem.model;
     const bool is_open = fit.options.light == LENSPROF_FLAT_LIGHT_AUTO && model.light_terms == 2 && model.angles() > 1
                          && !model.own_light;
-    if (!is_open || !fit.estimate.converged) return;
+    if (!is_open || !fit.estimate.converged || fit.steps.are_over()) return;
     const FlatSolution plane = solution_of(fit);
     fit.light = LENSPROF_FLAT_LIGHT_QUADRATIC;
     solve(fit, curves, plane.problem.model.form);
@@ -190,13 +204,13 @@ double middle_over_mean(const FlatFit &fit, int curve, const CellLight &light) {
 // model is compared: with the falloff found, replaces the mean by it, and solves again.
 void take_middles(FlatFit &fit) {
     const FlatModel &model = fit.problem.model;
-    if (!fit.estimate.converged) return;
+    if (!fit.estimate.converged || fit.steps.are_over()) return;
     for (Shot &shot : fit.shots)
         for (CellLight &light : shot.light)
             for (int c = 0; c < model.channels && light.state == CellState::used; c++)
                 light.value[static_cast<size_t>(c)] *= middle_over_mean(fit, model.curve_of(c), light);
     collect_cells(fit);
-    refine_flat(fit.problem, fit.estimate);
+    refine_flat(fit.problem, fit.estimate, fit.steps);
     fit.covariance = flat_covariance(fit.problem, fit.estimate);
 }
 
@@ -280,6 +294,12 @@ void take_pictures(FlatFit &fit) {
     fit.left_out.assign(fit.shots.size(), std::vector<bool>(static_cast<size_t>(fit.grid.count())));
 }
 
+// Whether shots at one angle differ by more than is accepted: no form and no light that they have in common changes
+// that.
+bool contradict_each_other(const FlatFit &fit) {
+    return fit.shots.size() > 1 && fit.problem.model.angles() == 1 && shot_residual(fit) > flat_limits::kMuchPerShot;
+}
+
 // Falloff and light, with the cells of dust left out; false if no cell is left.
 bool solve_all(FlatFit &fit, FlatResult &result) {
     const auto &o = fit.options;
@@ -288,18 +308,19 @@ bool solve_all(FlatFit &fit, FlatResult &result) {
     const int curves = o.channels == 3 && o.vignettings != 1 ? 3 : 1;
     solve(fit, curves, FalloffForm::powers);
     choose_form(fit, curves);
+    if (contradict_each_other(fit)) fit.steps.left = 0;  // nothing is to be chosen
     report(o, 0.85);
     find_spots(fit, result);
     if (result.spots) {
         collect_cells(fit);
         if (fit.problem.cells.empty()) return false;
-        solve(fit, curves, fit.problem.model.form);
+        solve_or_keep(fit, curves, fit.problem.model.form);
     }
     report(o, 0.9);
     choose_light(fit, curves);
     choose_curvature(fit, curves);
     choose_form(fit, curves);
-    if (o.vignettings == 0 && curves == 3 && !curves_differ(fit)) solve(fit, 1, fit.problem.model.form);
+    if (o.vignettings == 0 && curves == 3 && !curves_differ(fit)) solve_or_keep(fit, 1, fit.problem.model.form);
     take_middles(fit);
     report(o, 0.95);
     return true;

@@ -68,6 +68,7 @@ struct FlatFit : FlatSolution {
     std::optional<FlatSolution> other{};         // if the light was chosen: the fit with the one not chosen,
     double light_ev = 0.0;                       // and its largest difference in a corner
     HeldFalloff held{};
+    FlatSteps steps{};
 };
 
 // Throws Cancelled. False if no cell lies between black and white.
@@ -92,6 +93,9 @@ double held_ratio(const FlatFit &fit, int channel, double x, double y);
 
 // Coarse residual of the model that all shots have in common, share of the light.
 double frame_residual(const FlatFit &fit);
+
+// The same of what the shots do not have in common.
+double shot_residual(const FlatFit &fit);
 
 // The largest r^2 of the data up to the corner, where errors are stated.
 double corner_r2(const FlatModel &model);

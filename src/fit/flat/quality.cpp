@@ -351,6 +351,8 @@ double noise_variance(const FlatFit &fit) {
 
 double frame_residual(const FlatFit &fit) { return split_residuals(fit, nullptr, noise_variance(fit)).frame; }
 
+double shot_residual(const FlatFit &fit) { return split_residuals(fit, nullptr, noise_variance(fit)).per_shot; }
+
 void describe_flat(const FlatFit &fit, FlatResult &r) {
     Mean square, inlier;
     r.radius = 0.0;

@@ -140,7 +140,8 @@ bool is_falloff(const FlatModel &model, const Eigen::VectorXd &u) {
 }
 
 // Steps until the objective converges, with sigmas held.
-void descend(const FlatProblem &problem, FlatEstimate &estimate, const DescentLimits &limits) {
+void descend(const FlatProblem &problem, FlatEstimate &estimate, DescentLimits limits, FlatSteps &steps) {
+    limits.steps = std::min(limits.steps, std::max(steps.left, 0));
     const Sigmas sigmas = all_sigmas(problem, estimate);
     const auto moved = [&](const Eigen::VectorXd &change) {
         Eigen::VectorXd next = estimate.u;
@@ -156,6 +157,7 @@ void descend(const FlatProblem &problem, FlatEstimate &estimate, const DescentLi
         [&](const Eigen::VectorXd &change) { estimate.u = moved(change); });
     estimate.converged = descent.converged;
     estimate.iterations += static_cast<uint32_t>(descent.steps);
+    steps.left -= descent.steps;
 }
 
 // Residuals of all cells, (E - P) / sigma / scale, and their chi-squared.
@@ -345,18 +347,18 @@ double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const
     return sum / square(estimate.scale);
 }
 
-void refine_flat(const FlatProblem &problem, FlatEstimate &estimate) {
+void refine_flat(const FlatProblem &problem, FlatEstimate &estimate, FlatSteps &steps) {
     auto state = [&] { return Eigen::Vector3d(estimate.unevenness, estimate.scale, estimate.inflation); };
     measure_noise(problem, estimate);
-    for (int round = 0; round < kRounds; round++) {
+    for (int round = 0; round < kRounds && !steps.are_over(); round++) {
         Eigen::Vector3d before = state();
-        descend(problem, estimate, round < kShortRounds ? kShortLimits : kLimits);
+        descend(problem, estimate, round < kShortRounds ? kShortLimits : kLimits, steps);
         measure_noise(problem, estimate);
         if (estimate.converged && (state() - before).norm() < kNoiseTolerance * before.norm()) break;
     }
 }
 
-void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
+void solve_flat(const FlatProblem &problem, FlatEstimate &estimate, FlatSteps &steps) {
     // The first fit holds the centre and counts cells as independent: before the falloff is near its solution, the
     // errors of all cells are correlated, and the priors would be too strong.
     FlatProblem held = problem;
@@ -365,8 +367,8 @@ void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     held.free.erase(std::remove_if(held.free.begin(), held.free.end(), is_center), held.free.end());
     measure_noise(held, estimate);
     estimate.inflation = 1.0;
-    descend(held, estimate, kRoughLimits);
-    refine_flat(problem, estimate);
+    descend(held, estimate, kRoughLimits, steps);
+    refine_flat(problem, estimate, steps);
 }
 
 Eigen::MatrixXd flat_covariance(const FlatProblem &problem, const FlatEstimate &estimate) {

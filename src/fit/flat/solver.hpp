@@ -35,6 +35,14 @@ struct FlatEstimate {
     bool converged = false;
 };
 
+// Steps that the solutions of one fit may still take. Pictures that one lens and one light describe need few; those
+// that contradict each other creep for hundreds, form by form, to a fit that is refused.
+struct FlatSteps {
+    int left = 1200;  // good cards of tests/bench take up to 345, of falloffs of 5 stops that are off centre 829
+
+    bool are_over() const { return left <= 0; }
+};
+
 // Indices of the unknowns that are estimated: those of the lens that `free` (LENSPROF_FREE_...) includes, and all
 // others.
 std::vector<int> free_unknowns(const FlatModel &model, uint32_t free);
@@ -61,10 +69,10 @@ double flat_cost(const FlatProblem &problem, const FlatEstimate &estimate);
 // Neighbouring cells whose residuals are correlated count as fewer cells. The weight of the cells against the prior and
 // in the covariance is divided by the inflation: how much more their sums over blocks of 4 to 32 cells per side vary
 // than those of independent cells.
-void solve_flat(const FlatProblem &problem, FlatEstimate &estimate);
+void solve_flat(const FlatProblem &problem, FlatEstimate &estimate, FlatSteps &steps);
 
 // The same from values that are near the solution, with the centre free.
-void refine_flat(const FlatProblem &problem, FlatEstimate &estimate);
+void refine_flat(const FlatProblem &problem, FlatEstimate &estimate, FlatSteps &steps);
 
 // Covariance of all unknowns, zero for held ones. Empty if the cells do not determine every free unknown.
 Eigen::MatrixXd flat_covariance(const FlatProblem &problem, const FlatEstimate &estimate);
