@@ -245,6 +245,30 @@ static void the_falloff_is_that_of_a_pixel(void **) {
     assert_close(r->corner, p.light(0.0, 0.0, 1, 0.0) / p.light(149.5, 99.5, 1, 0.0), 2e-5);
 }
 
+// The verdict does not get better where a light that slopes more looks more like a centre that is off.
+static void steeper_light_gets_no_better_verdict(void **) {
+    const double half = 0.5 * std::hypot(300.0, 225.0);
+    constexpr uint32_t passed = LENSPROF_SEVERITY_PASSED;
+    uint32_t worst = passed;
+    for (const double slope : {0.08, 0.16, 0.24, 0.28, 0.36, 0.44}) {
+        FlatPictures p;
+        p.width = 300, p.height = 225, p.noise = 0.001, p.level = 0.9 / (1.0 + 0.5 * slope);
+        p.set_falloff(0.0, 0.0, [](double r) { return std::exp2(-5.0 * r * r * (0.95 + 0.05 * r * r)); });
+        const Defect falloff = p.defect;
+        p.defect = [&](double x, double y, uint32_t c) {
+            return falloff(x, y, c) * (1.0 + slope * (x - 149.5) / half);
+        };
+        p.shoot(0);
+        const auto r = p.fit(p.options());
+        const lensprof_finding *steep = r->with(LENSPROF_REASON_FLAT_STEEP);
+        const uint32_t severity = steep ? steep->severity : passed;
+        assert_true(severity >= worst);
+        worst = severity;
+        if (slope < 0.1) assert_null(steep);
+        if (slope > 0.25) assert_false(r->usable);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(up_to_six_stops_are_measured),
@@ -257,6 +281,7 @@ int main(void) {
         cmocka_unit_test(a_curved_light_is_part_of_the_error),
         cmocka_unit_test(the_falloff_is_that_of_a_pixel),
         cmocka_unit_test(dust_texture_and_a_clipped_middle_are_named_each),
+        cmocka_unit_test(steeper_light_gets_no_better_verdict),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -44,15 +44,19 @@ bool lacks_card(const FlatFit &fit, uint32_t &number) {
 // Whether the slope is that of the plane that was not chosen.
 bool is_slope_of_other(const FlatFit &fit) { return fit.light == LENSPROF_FLAT_LIGHT_EVEN && fit.other; }
 
-// What counts of such a slope. A centre off by dc looks like the slope dc |d ln M / dr|, and lenses have the same dc
-// whatever their falloff: slopes in falloffs deeper than two stops count as in one of two, and as no more than the
-// centre of the even light explains, which the pictures show better than they show a plane.
+// A centre off leaves no pattern, where a slope that the model lacks leaves one.
+bool has_pattern_of_slope(const FlatResult &r) { return r.frame_residual > flat_limits::kPatternOfSlope; }
+
+// What counts of such a slope: no more than the centre of the even light explains, which the pictures show better than
+// they show a plane. A centre off by dc looks like the slope dc |d ln M / dr|, and lenses have the same dc whatever
+// their falloff: slopes in falloffs deeper than two stops count as in one of two, unless they leave their pattern.
 double counted_slope(const FlatFit &fit, const FlatResult &r, double slope) {
     constexpr double usual_stops = 2.0;
     const double stops = r.corner > 0.0 ? -std::log2(r.corner) : usual_stops;
     if (!is_slope_of_other(fit) || stops <= usual_stops) return slope;
-    const double *center = r.vignetting[0].center, steepness = 2.0 * usual_stops * std::log(2.0);
-    return std::min(slope * usual_stops / stops, steepness * std::hypot(center[0], center[1]));
+    const double *center = r.vignetting[0].center, steepness = 2.0 * stops * std::log(2.0);
+    const double explained = std::min(slope, steepness * std::hypot(center[0], center[1]));
+    return has_pattern_of_slope(r) ? explained : explained * usual_stops / stops;
 }
 
 Worst steepest(const FlatFit &fit) {
@@ -88,7 +92,7 @@ double contrast_of_light(const FlatFit &fit, uint32_t image) {
 }
 
 uint32_t state_of(const FlatFit &fit, const FlatResult &r) {
-    const bool is_sloped = fit.problem.model.light_terms > 0;
+    const bool is_sloped = fit.problem.model.light_terms > 0 || (is_slope_of_other(fit) && has_pattern_of_slope(r));
     const bool is_even = fit.light == LENSPROF_FLAT_LIGHT_EVEN;
     uint32_t state = r.separated ? kSeparated : kNotSeparated;
     state |= r.gain_grid.columns ? kHasGrid : kHasNoGrid;

@@ -29,6 +29,10 @@ constexpr double kMuchTexture = 0.01, kSomeTexture = 0.005;
 // 28/6, 0/6, 0/6 (slant); the good ones reach .08. Rotated: 10/8, 0/9, 0/10; the good ones reach .3.
 constexpr double kSteepAlone = 0.2, kSlantAlone = 0.1, kSteepRotated = 0.5;
 
+// Of the light: what an even light leaves of one that slopes. Made cards of 3 and 5 stops: slopes of .16 leave .001 and
+// more, falloffs that are up to .06 off centre .0007 at most.
+constexpr double kPatternOfSlope = 0.001;
+
 // Of the light. Much: cards 0/25, 0/25, 0/29. Some: 22/11, 7/11, 0/11. With two shots, a changed light or a wrong angle
 // can leave a pattern that both show, which counts as not radial.
 constexpr double kMuchPerShot = 0.015, kSomePerShot = 0.004;
