@@ -8,6 +8,7 @@
 #include "fit/base/quantile.hpp"
 #include "fit/fields/dark.hpp"
 #include "fit/fields/heldout.hpp"
+#include "fit/problem/linear.hpp"
 
 namespace lensprof {
 namespace {
@@ -120,9 +121,7 @@ lensprof_fields_channel channel_of(const Shading &shading) {
 }  // namespace
 
 bool is_linear(const FieldsFit &fit) {
-    for (uint32_t c = 0; fit.options.response && c < fit.options.responses; c++)
-        if (fit.response[c].kind != LENSPROF_RESPONSE_LINEAR) return false;
-    return true;
+    return are_linear(fit.options.response ? fit.response.data() : nullptr, fit.options.responses);
 }
 
 namespace {

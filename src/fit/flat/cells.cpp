@@ -7,6 +7,7 @@
 
 #include "core/levels.h"
 #include "fit/base/constants.hpp"
+#include "fit/base/lanes.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/quantile.hpp"
 
@@ -49,11 +50,7 @@ struct Near {
     double sum = 0.0, squares = 0.0, count = 0.0, below = 0.0;
 };
 
-// Four values in one register.
-typedef float Lanes __attribute__((vector_size(4 * sizeof(float))));
-
 Near near(const std::vector<float> &values, float center, float limit, float low) {
-    constexpr size_t kLanes = 4;
     const Lanes none{}, one = none + 1.0f;
     Lanes sum{}, squares{}, count{}, below{};
     const auto add = [&](const Lanes &value) {

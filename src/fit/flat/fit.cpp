@@ -162,7 +162,7 @@ void choose_light(FlatFit &fit, int curves) {
     else
         take(before, fit);
     if (!fit.steps.are_over()) return;
-    fit.light = LENSPROF_FLAT_LIGHT_PLANE, fit.light_ev = 0.0;  // what was cut off is no solution
+    fit.light = LENSPROF_FLAT_LIGHT_PLANE, fit.light_ev = 0.0;  // what was cut off does not count
     fit.other.reset();
     take(before, fit);
 }

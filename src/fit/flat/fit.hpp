@@ -82,6 +82,9 @@ std::vector<double> residual_map(const FlatFit &fit, int shot, int channel, cons
 // Estimates the offset from pictures of one pattern of light at different levels, and subtracts it from their cells.
 void subtract_offset(FlatFit &fit);
 
+// What an offset of 1 changes of ln M between two places with these grey values, the brighter first.
+inline double effect_of_offset(double bright, double dark) { return 1.0 / dark - 1.0 / bright; }
+
 // Looks for a dark surround in a shot, such as the corners outside of an image circle.
 FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot);
 

@@ -11,6 +11,7 @@
 #include "falloff/dense.hpp"
 #include "fit/flat/fit.hpp"
 #include "fit/flat/limits.hpp"
+#include "fit/problem/linear.hpp"
 
 namespace lensprof {
 namespace {
@@ -215,13 +216,7 @@ private:
     Eigen::VectorXd gradient_;
 };
 
-bool are_linear(const lensprof_flat_options &o) {
-    for (uint32_t c = 0; o.response && c < o.responses; c++)
-        if (o.response[c].kind != LENSPROF_RESPONSE_LINEAR) return false;
-    return true;
-}
-
-// What an offset of 1 changes of ln M from the darkest to the brightest cell of the picture that has most light.
+// What an offset of 1 changes of ln M from the brightest to the darkest cell of the picture that has most light.
 double effect_in_corner(const FlatFit &fit, size_t channel, double offset) {
     double effect = 0.0, most = 0.0;
     for (const CellPicture &picture : fit.pictures) {
@@ -230,7 +225,7 @@ double effect_in_corner(const FlatFit &fit, size_t channel, double offset) {
             const double value = static_cast<double>(cell.value[channel]) - offset;
             if (cell.state == CellState::used) dark = std::min(dark, value), bright = std::max(bright, value);
         }
-        if (bright > most) most = bright, effect = 1.0 / std::max(dark, 1e-6) - 1.0 / bright;
+        if (bright > most) most = bright, effect = effect_of_offset(bright, std::max(dark, 1e-6));
     }
     return effect;
 }
@@ -264,7 +259,7 @@ void subtract(CellPicture &picture, size_t channel, double offset) {
 }  // namespace
 
 void subtract_offset(FlatFit &fit) {
-    if (!(fit.options.black_sigma > 0.0) || !are_linear(fit.options)) return;
+    if (!(fit.options.black_sigma > 0.0) || !are_linear(fit.options.response, fit.options.responses)) return;
     const Groups groups = groups_of(fit);
     const size_t channels = fit.options.channels;
     FlatOffset found;

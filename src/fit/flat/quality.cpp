@@ -217,7 +217,7 @@ double brightest_grey(const FlatFit &fit) {
     return mean.value();
 }
 
-// The levels with the offset found, and what an error of them means: d ln(corner) = (1 / B_middle - 1 / B_corner) db.
+// The levels with the offset found, and what an error of them means in the corner.
 void describe_levels(const FlatFit &fit, FlatResult &r) {
     const FlatOffset &offset = fit.offset;
     r.levels = fit.options.levels;
@@ -234,7 +234,7 @@ void describe_levels(const FlatFit &fit, FlatResult &r) {
     r.black_shown = offset.is_shown;
     const double brightest = brightest_grey(fit);
     if (brightest > 0.0 && r.corner > 0.0)
-        r.black_ev = sigma * std::abs(1.0 / r.corner - 1.0) / brightest / std::log(2.0);
+        r.black_ev = sigma * std::abs(effect_of_offset(brightest, brightest * r.corner)) / std::log(2.0);
     r.sigma_without_black = r.corner_sigma;
     if (r.black_shown) r.corner_sigma = std::hypot(r.corner_sigma, r.corner * r.black_ev * std::log(2.0));
 }

@@ -7,6 +7,7 @@
 
 #include "fit/base/constants.hpp"
 #include "fit/base/fail.hpp"
+#include "fit/base/lanes.hpp"
 #include "fit/base/parallel.hpp"
 
 namespace lensprof {
@@ -36,10 +37,7 @@ double load(const lensprof_image &view, int u, int v, uint32_t sample) {
     return value;
 }
 
-// The channels of a patch's pixel side by side (the last lane is a copy), in one register: the following code processes
-// all of them together, without a branch.
-constexpr int kLanes = 4;
-typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
+// Lanes are the channels of a patch's pixel (the last one is a copy).
 
 // Grey values of the bytes 0..255.
 struct ByteValues {
