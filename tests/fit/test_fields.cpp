@@ -258,6 +258,20 @@ void test_given_offset(void **) {
     assert_true(fitted(make(6, {}), above)->channel[0].offset < 0.5);
 }
 
+// Then the next step is to give the offset.
+void test_an_error_by_the_offset_is_explained(void **) {
+    const Held held = added(make(4, {Scene::cells, 0.012, 0.002, 0.0001, 0.0}), options());
+    assert_ok(lensprof_fields_fit(held.get(), nullptr));
+    const auto r = result_of(held);
+    assert_false(r->channel[0].offset_found);
+    assert_true(r->channel[0].shading_error > 0.02);
+    lensprof_finding finding;
+    lensprof_finding_init(&finding);
+    for (uint32_t i = 0; finding.code != LENSPROF_REASON_FIELDS_UNCERTAIN; i++)
+        assert_ok(lensprof_fields_finding_at(held.get(), i, &finding, nullptr));
+    assert_non_null(std::strstr(finding.text, "give the offset"));
+}
+
 // Pictures of one level do not show the offset.
 void test_equal_levels_do_not_determine_the_offset(void **) {
     const Held held = added(make(6, {Scene::stains, 0.4, 0.0, 0.002, 0.0}), options());
@@ -510,6 +524,7 @@ int main() {
         cmocka_unit_test(test_few_pictures_state_an_error),
         cmocka_unit_test(test_given_offset),
         cmocka_unit_test(test_equal_levels_do_not_determine_the_offset),
+        cmocka_unit_test(test_an_error_by_the_offset_is_explained),
         cmocka_unit_test(test_order_and_threads_do_not_change_a_byte),
         cmocka_unit_test(test_colour_reduced_and_gamma),
         cmocka_unit_test(test_excluded_pixels),

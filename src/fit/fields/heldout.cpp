@@ -13,6 +13,7 @@ using Sums = Descent::Sums;
 
 constexpr double kSmallestRest = 1e-9;  // of the weight of a cell
 constexpr double kLessSmooth = 0.1;     // of the weight of the penalty
+constexpr double kUnknownBias = 1.0;    // mean square of ln S: more than a usable shading has
 
 Sums total_of(const std::vector<Sums> &groups) {
     Sums total = groups[0];
@@ -39,11 +40,16 @@ std::vector<double> without(const Sums &total, const Sums &group, const Surface 
     return surface.at_cells(nodes);
 }
 
+// Whether pictures of other groups have seen a cell of this one: its own value predicts it otherwise.
+bool is_held_out(const Sums &total, const Sums &group, size_t j) {
+    return group.weight[j] > 0.0 && total.weight[j] - group.weight[j] > kSmallestRest * total.weight[j];
+}
+
 // Weighted squared distance of a group's cells from a surface, whose level is free.
-double distance(const Sums &group, const std::vector<double> &predicted) {
+double distance(const Sums &total, const Sums &group, const std::vector<double> &predicted) {
     double sum = 0.0, first = 0.0, second = 0.0;
     for (size_t j = 0; j < predicted.size(); j++) {
-        if (!(group.weight[j] > 0.0)) continue;
+        if (!is_held_out(total, group, j)) continue;
         const double away = group.weighted[j] / group.weight[j] - predicted[j];
         sum += group.weight[j], first += group.weight[j] * away, second += group.weight[j] * away * away;
     }
@@ -59,8 +65,10 @@ Smoothness smoothness_at(size_t index) {
 Heldout hold_out(const Descent &descent, const Surface &surface, size_t groups, uint32_t threads) {
     const std::vector<Sums> parts = descent.sums(groups);
     const Sums total = total_of(parts);
-    double weights = 0.0;
-    for (double weight : total.weight) weights += weight;
+    double weights = 0.0;  // of the cells that are held out
+    for (const Sums &group : parts)
+        for (size_t j = 0; j < total.weight.size(); j++)
+            if (is_held_out(total, group, j)) weights += group.weight[j];
     Heldout found;
     found.rms.assign(kSmoothnesses, INFINITY);
     for_each_parallel(
@@ -70,17 +78,17 @@ Heldout hold_out(const Descent &descent, const Surface &surface, size_t groups, 
             double sum = 0.0;
             for (const Sums &group : parts) {
                 const std::vector<double> predicted = without(total, group, surface, *solver);
-                sum += predicted.empty() ? INFINITY : distance(group, predicted);
+                sum += predicted.empty() ? INFINITY : distance(total, group, predicted);
             }
-            found.rms[i] = std::sqrt(sum / weights);
+            found.rms[i] = std::sqrt(sum / std::max(weights, kSmallestRest));
         },
         [] { return false; });
     const auto best = static_cast<size_t>(std::min_element(found.rms.begin(), found.rms.end()) - found.rms.begin());
     found.best_index = best, found.best = smoothness_at(best), found.best_rms = found.rms[best];
     const std::vector<double> even(total.weight.size());
     double sum = 0.0;
-    for (const Sums &group : parts) sum += distance(group, even);
-    found.even_rms = std::sqrt(sum / weights);
+    for (const Sums &group : parts) sum += distance(total, group, even);
+    found.even_rms = std::sqrt(sum / std::max(weights, kSmallestRest));
     return found;
 }
 
@@ -94,7 +102,7 @@ double smoothing_bias(const Descent &descent, const Surface &surface, size_t gro
     for (const Sums &group : parts) {
         const std::vector<double> smooth = without(total, group, surface, *chosen);
         std::vector<double> change = without(total, group, surface, *other);
-        if (smooth.empty() || change.empty()) return 0.0;
+        if (smooth.empty() || change.empty()) return kUnknownBias;
         for (size_t j = 0; j < change.size(); j++) change[j] -= smooth[j];
         changes.push_back(std::move(change));
     }

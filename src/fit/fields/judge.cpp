@@ -79,6 +79,7 @@ Measured fields_gain(const JudgedFields &judged) {
 void judge_fields(FieldsFit &fit) {
     JudgedFields judged{fit, fit.result};
     if (fit.result.shading.columns) judged.state = kIsFitted;
+    if (measure::fields_offset(judged).value > 0.0) judged.state |= kHasOpenOffset;
     fit.verdict.clear();
     apply_rules(kFieldsRules, judged, fit.verdict);
     fit.result.usable = is_usable(fit.verdict);

@@ -35,7 +35,7 @@ struct JudgedFields {
 using FieldsRule = VerdictRule<JudgedFields>;
 
 // States of a result.
-constexpr uint32_t kOfFields = 0, kIsFitted = 1;
+constexpr uint32_t kOfFields = 0, kIsFitted = 1, kHasOpenOffset = 2;  // that no picture and no option determines
 
 namespace measure {
 
@@ -58,7 +58,9 @@ constexpr FieldsRule kFieldsRules[] = {
     {LENSPROF_REASON_FIELDS_FEW,       kRefuses, kOfFields, measure::fields_that_differ, Side::below, fields_limits::kFewest,     Wording::usual},
     {LENSPROF_REASON_FIELDS_PATTERN,   kRefuses, kIsFitted, measure::fields_scene,       Side::above, fields_limits::kOneScene,   Wording::usual},
     {LENSPROF_REASON_FIELDS_UNSEEN,    kRefuses, kIsFitted, measure::fields_unseen,      Side::above, fields_limits::kMuchUnseen, Wording::usual},
+    {LENSPROF_REASON_FIELDS_UNCERTAIN, kRefuses, kIsFitted|kHasOpenOffset, measure::fields_error, Side::above, fields_limits::kUncertain, Wording::alone},
     {LENSPROF_REASON_FIELDS_UNCERTAIN, kRefuses, kIsFitted, measure::fields_error,       Side::above, fields_limits::kUncertain,  Wording::usual},
+    {LENSPROF_REASON_FIELDS_UNCERTAIN, kWarns,   kIsFitted|kHasOpenOffset, measure::fields_error, Side::above, fields_limits::kDoubtful,  Wording::alone},
     {LENSPROF_REASON_FIELDS_UNCERTAIN, kWarns,   kIsFitted, measure::fields_error,       Side::above, fields_limits::kDoubtful,   Wording::usual},
     {LENSPROF_REASON_FIELDS_WHITE,     kWarns,   kIsFitted, measure::fields_white,       Side::above, fields_limits::kMuchWhite,  Wording::usual},
     {LENSPROF_REASON_FIELDS_UNSEEN,    kWarns,   kIsFitted, measure::fields_unseen,      Side::above, fields_limits::kSomeUnseen, Wording::weak},

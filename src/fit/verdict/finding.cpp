@@ -216,6 +216,8 @@ constexpr Sentence kSentences[] = {
      "fine detail of {0.1%} of the light is common to all pictures: dust, an edge of the shading, or a part of the scene that all share"},
     {LENSPROF_REASON_FIELDS_UNCERTAIN, Wording::usual,
      "the shading has a standard error of {0.1%}; add pictures of other scenes, best with some empty background"},
+    {LENSPROF_REASON_FIELDS_UNCERTAIN, Wording::alone,
+     "the shading has a standard error of {0.1%}, as the pictures do not determine the offset (pedestal); give the offset, or add pictures with more and less light"},
     {LENSPROF_REASON_FIELDS_OFFSET, Wording::usual,
      "the pictures do not determine the offset (pedestal), which was taken as 0; give it, or add pictures with more and less light"},
     {LENSPROF_REASON_FIELDS_WHITE, Wording::usual,
