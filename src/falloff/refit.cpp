@@ -48,7 +48,7 @@ std::array<double, 3> refit_samples(const std::vector<FrameSample> &samples, int
     constexpr int kScaledPowers[] = {0, 1, 2, 3};
     const PowerTerms terms = fit_powers(kScaledPowers, count + 1, static_cast<int>(samples.size()), 1, [&](int i) {
         const FrameSample &at = samples[static_cast<size_t>(i)];
-        return PowerSample{at.r2, at.attenuation, 1.0 / (at.attenuation * at.attenuation)};
+        return PowerSample{at.r2, at.attenuation, at.weight / (at.attenuation * at.attenuation)};
     });
     std::array<double, 3> k{};
     for (int n = 1; n <= count; n++) k[static_cast<size_t>(n - 1)] = terms[n] / terms[0];

@@ -30,7 +30,7 @@ RadialRefit refit_radial(const std::function<double(double r2)> &attenuation, do
 
 // s (1 + k1 r^2 + ... + kn r^2n), n = `count` of 1..3, to attenuations at any points of a frame: its k, the others 0.
 struct FrameSample {
-    double r2, attenuation;
+    double r2, attenuation, weight = 1.0;
 };
 std::array<double, 3> refit_samples(const std::vector<FrameSample> &samples, int count);
 

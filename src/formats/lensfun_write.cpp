@@ -62,21 +62,61 @@ bool is_written_as_is(const lensprof_profile &profile) {
     return profile.grid.columns == 0 && center[0] == 0.0 && center[1] == 0.0;
 }
 
-// About its middle, over the frame. Takes fewer powers where the curve would fall to 0.
-Curve refit_about_middle(const lensprof_profile &profile, Frame frame) {
-    lensprof_vignetting fitted = {{0, 0, 0}, {0, 0}};
+// The falloff inside of the image circle, about the middle of the frame.
+std::vector<FrameSample> samples_of(const lensprof_profile &profile, Frame frame) {
+    const lensprof_vignetting about_middle = {{0, 0, 0}, {0, 0}};
     std::vector<FrameSample> samples;
     for (uint32_t y = 0; y < frame.height; y++)
         for (uint32_t x = 0; x < frame.width; x++)
             if (lensprof_image_circle_contains(&profile.image_circle, frame.width, frame.height, x, y))
-                samples.push_back({lensprof_vignetting_r2(&fitted, frame.width, frame.height, x, y, nullptr),
+                samples.push_back({lensprof_vignetting_r2(&about_middle, frame.width, frame.height, x, y, nullptr),
                                    mean_falloff(profile, frame, x, y)});
-    for (int count = 3; count > 0; count--) {
-        const Curve k = refit_samples(samples, count);
-        std::copy(k.begin(), k.end(), fitted.k);
-        if (lensprof_vignetting_validate(&fitted) == LENSPROF_OK) return k;
+    return samples;
+}
+
+// Relative errors of a curve that is right in the middle of the frame; nothing where it falls to 0.
+std::vector<double> errors_of(const Curve &k, const std::vector<FrameSample> &samples) {
+    std::vector<double> errors;
+    double nearest = INFINITY, middle = 0.0;
+    for (const FrameSample &at : samples) {
+        const double m = 1.0 + at.r2 * (k[0] + at.r2 * (k[1] + at.r2 * k[2]));
+        if (!(m > 0.0)) return {};
+        errors.push_back(std::log(m / at.attenuation));
+        if (at.r2 < nearest) nearest = at.r2, middle = errors.back();
     }
-    return {};
+    for (double &error : errors) error = std::fabs(error - middle);
+    return errors;
+}
+
+double worst_of(const std::vector<double> &errors) {
+    return errors.empty() ? INFINITY : *std::max_element(errors.begin(), errors.end());
+}
+
+bool is_valid(const Curve &k) {
+    const lensprof_vignetting curve = {{k[0], k[1], k[2]}, {0, 0}};
+    return lensprof_vignetting_validate(&curve) == LENSPROF_OK;
+}
+
+// That with the least largest error over the frame: of the profile's own curve and of those fitted to the falloff with
+// its grid and centre, by least squares whose weights follow the errors (Lawson 1961), as plain ones leave the corners
+// of a deep falloff. Takes fewer powers where a curve would fall to 0.
+Curve best_about_middle(const lensprof_profile &profile, Frame frame) {
+    constexpr int kRounds = 20;
+    Curve best = mean_curve(profile);
+    std::vector<FrameSample> samples = samples_of(profile, frame);
+    double least = worst_of(errors_of(best, samples));
+    for (int count = 3; count > 0; count--) {
+        for (FrameSample &at : samples) at.weight = 1.0;
+        for (int round = 0; round < kRounds; round++) {
+            const Curve k = refit_samples(samples, count);
+            const std::vector<double> errors = errors_of(k, samples);
+            const double worst = worst_of(errors);
+            if (is_valid(k) && worst < least) least = worst, best = k;
+            if (!(worst > 0.0) || !std::isfinite(worst)) break;
+            for (size_t i = 0; i < samples.size(); i++) samples[i].weight *= 1e-3 + errors[i] / worst;
+        }
+    }
+    return best;
 }
 
 std::string decimals(double value, int count) {
@@ -90,7 +130,7 @@ std::string decimals(double value, int count) {
 double to_four_decimals(double k) { return std::round(1e4 * k) / 1e4; }
 
 Curve written_curve(const lensprof_profile &profile, Frame frame) {
-    Curve k = is_written_as_is(profile) ? mean_curve(profile) : refit_about_middle(profile, frame);
+    Curve k = is_written_as_is(profile) ? mean_curve(profile) : best_about_middle(profile, frame);
     for (double &term : k) term = to_four_decimals(term) + 0.0;
     return k;
 }
