@@ -65,10 +65,11 @@ bool is_written_as_is(const lensprof_profile &profile) {
 // The falloff inside of the image circle, about the middle of the frame.
 std::vector<FrameSample> samples_of(const lensprof_profile &profile, Frame frame) {
     const lensprof_vignetting about_middle = {{0, 0, 0}, {0, 0}};
+    const lensprof_image_circle circle = lp_profile_circle(&profile);
     std::vector<FrameSample> samples;
     for (uint32_t y = 0; y < frame.height; y++)
         for (uint32_t x = 0; x < frame.width; x++)
-            if (lensprof_image_circle_contains(&profile.image_circle, frame.width, frame.height, x, y))
+            if (lensprof_image_circle_contains(&circle, frame.width, frame.height, x, y))
                 samples.push_back({lensprof_vignetting_r2(&about_middle, frame.width, frame.height, x, y, nullptr),
                                    mean_falloff(profile, frame, x, y)});
     return samples;
