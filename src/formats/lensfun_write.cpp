@@ -136,16 +136,37 @@ Curve written_curve(const lensprof_profile &profile, Frame frame) {
     return k;
 }
 
+// The last place inside of the image circle on the way from the middle of the frame.
+std::array<double, 2> last_inside(const lensprof_image_circle &circle, Frame frame, double x, double y) {
+    const double middle[2] = {0.5 * (frame.width - 1.0), 0.5 * (frame.height - 1.0)};
+    double inside = 0.0, outside = 1.0;
+    const auto place = [&](double part) {
+        return std::array<double, 2>{middle[0] + part * (x - middle[0]), middle[1] + part * (y - middle[1])};
+    };
+    const auto contains = [&](double part) {
+        return lensprof_image_circle_contains(&circle, frame.width, frame.height, place(part)[0], place(part)[1]) != 0;
+    };
+    if (contains(1.0)) return place(1.0);
+    for (int i = 0; i < 30; i++) (contains(0.5 * (inside + outside)) ? inside : outside) = 0.5 * (inside + outside);
+    return place(inside);
+}
+
+// In the corners, or where the image circle ends on the way to them.
 double cost_of(const lensprof_profile &profile, const Curve &k, Frame frame) {
-    const double written = 1.0 + k[0] + k[1] + k[2], w = frame.width, h = frame.height;
+    const double w = frame.width, h = frame.height;
+    const lensprof_vignetting written = {{k[0], k[1], k[2]}, {0, 0}};
+    const lensprof_image_circle circle = lp_profile_circle(&profile);
     double cost = 0.0;
     for (uint32_t c = 0; c < 3; c++)
-        for (double x : {-0.5, w - 0.5})
-            for (double y : {-0.5, h - 0.5}) {
-                const auto at = [&](double i, double j) {
-                    return lp_profile_continued_falloff(&profile, c, frame.width, frame.height, i, j);
+        for (double corner_x : {-0.5, w - 0.5})
+            for (double corner_y : {-0.5, h - 0.5}) {
+                const auto at = [&](double x, double y) {
+                    return lp_profile_continued_falloff(&profile, c, frame.width, frame.height, x, y);
                 };
-                const double ratio = at(x, y) / at((w - 1) / 2, (h - 1) / 2) / written;
+                const auto [x, y] = last_inside(circle, frame, corner_x, corner_y);
+                const double r2 = lensprof_vignetting_r2(&written, frame.width, frame.height, x, y, nullptr);
+                const double ratio =
+                    at(x, y) / at((w - 1) / 2, (h - 1) / 2) / lensprof_vignetting_eval(&written, r2, nullptr);
                 cost = std::max(cost, ratio > 0.0 ? std::fabs(std::log2(ratio)) : INFINITY);
             }
     return cost;

@@ -64,6 +64,23 @@ void test_levels_that_are_lost(void **) {
     }
 }
 
+// A map that is dark outside of a circle gives a profile with one.
+void test_map_of_a_circle(void **) {
+    constexpr uint32_t width = 300, height = 200;
+    Picture map = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY);
+    const double half = 0.5 * std::hypot(width, height);
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            const double r = std::hypot(x - 0.5 * (width - 1), y - 0.5 * (height - 1)) / half;
+            reinterpret_cast<uint16_t *>(map.pixels.data())[y * width + x] =
+                static_cast<uint16_t>(r < 0.75 ? 60000 * (1 - 0.4 * r * r) : 0);
+        }
+    write_picture(work("circle.png"), map);
+    must_exit(done, {"profile", "import", work("circle.png"), "--camera", "a", "--lens", "b", "--db", work("m.db")});
+    const Json circle = json_of({"profile", "show", "1", "--db", work("m.db"), "--json"})["image_circle"];
+    assert_close(circle["radius"].get<double>(), 0.75, 0.01);
+}
+
 // Arguments that select a file's format, then what is read back from it.
 void test_round_trips(void **) {
     const Words frame = {"--encoding", "frame=600x400"}, camera = {"--camera", "Other"};
@@ -301,6 +318,7 @@ void test_tuning_files(void **) {
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_round_trips),
                                 CLI_TEST(test_levels_that_are_lost),
+                                CLI_TEST(test_map_of_a_circle),
                                 CLI_TEST(test_dips),
                                 CLI_TEST(test_tuning_files),
                                 CLI_TEST(test_two_files_one_profile),

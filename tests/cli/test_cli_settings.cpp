@@ -226,8 +226,8 @@ void test_turned_frames(void **) {
     }
 }
 
-// Centre and grid of a profile for a picture that orientation 6 or 8 turns back, or that may have been rotated either
-// way.
+// Centre, grid and image circle of a profile for a picture that orientation 6 or 8 turns back, or that may have been
+// rotated either way.
 void test_turned_profile(void **) {
     const struct {
         uint16_t turn;
@@ -243,9 +243,13 @@ void test_turned_profile(void **) {
         profile.vignetting[0].center[0] = 0.1, profile.vignetting[0].center[1] = -0.06;
         profile.grid.columns = 3, profile.grid.rows = 2, profile.grid.channels = 1;
         for (int n = 0; n < 6; n++) profile.grid.attenuation[n] = static_cast<float>(n + 1);
+        profile.image_circle = {{0.1, -0.06}, 0.8};
         turn_profile(expected.turn, profile);
         assert_close(profile.vignetting[0].center[0], expected.x, 1e-12);
         assert_close(profile.vignetting[0].center[1], expected.y, 1e-12);
+        assert_close(profile.image_circle.center[0], expected.x, 1e-12);
+        assert_close(profile.image_circle.center[1], expected.y, 1e-12);
+        assert_close(profile.image_circle.radius, expected.turn ? 0.8 : 0.8 - std::hypot(0.1, 0.06), 1e-12);
         assert_int_equal(profile.grid.columns, expected.turn == 1 ? 3 : 2);
         for (size_t n = 0; n < 6; n++) assert_close(profile.grid.attenuation[n], expected.nodes[n], 0);
     }

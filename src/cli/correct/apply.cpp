@@ -71,20 +71,20 @@ void note_colourless(const std::vector<Correction> &jobs, Streams &streams) {
                       + ": its profile has one falloff for all channels, so that --chroma leaves it unchanged");
 }
 
-// What a profile with an image circle leaves alone.
-void note_circles(const std::vector<Correction> &jobs, Streams &streams) {
+// What a profile with an image circle leaves alone; opcodes of DNG do not hold it.
+void note_circles(const std::vector<Correction> &jobs, bool in_opcodes, Streams &streams) {
     const Correction *first = nullptr;
     size_t count = 0;
     for (const Correction &job : jobs) {
-        if (job.model->image_circle.radius == 0.0) continue;
+        if (job.model->image_circle.radius == 0.0 || job.copies_dng != in_opcodes) continue;
         if (!count++) first = &job;
     }
     if (!first) return;
     note(streams,
          first->source + (count > 1 ? format(" and %zu more", count - 1) : "")
              + format(": the image circle has a radius of %.2f half diagonals; ", first->model->image_circle.radius)
-             + (first->copies_dng ? "the opcode lifts what lies outside by the continued falloff"
-                                  : "what lies outside is left as it is"));
+             + (in_opcodes ? "the opcode lifts what lies outside by the continued falloff"
+                           : "what lies outside is left as it is"));
 }
 
 // Prints each note once, with the first picture it applies to; for pictures with the same answer the largest error.
@@ -202,7 +202,7 @@ Corrected correct(const ApplyOptions &o, const ApplySource &source, ApplyWork &w
     Progress progress(streams, o.progress);
     ContactSheet sheet(o.sheet.empty() ? 0 : work.jobs.size());
     if (o.kind.chroma) note_colourless(work.jobs, streams);
-    note_circles(work.jobs, streams);
+    for (const bool in_opcodes : {false, true}) note_circles(work.jobs, in_opcodes, streams);
     print_notes(work.jobs, streams);
     const CopySink sink{sheet.side(), [&](uint32_t i, const SmallCopies &small) {
                             sheet.put(i, sheet_cell(work.jobs[i], small, sheet.side()));

@@ -148,7 +148,8 @@ void print_flat(const CardFit &report, std::ostream &out) {
         100.0 * fit.shot_residual, 100.0 * fit.inlier_share, fit.cells);
     if (fit.gain_grid.columns) {
         out << "corner    " << with_decimals_of(fit.corner_sigma, fit.corner) << " +- " << error_text(fit.corner_sigma)
-            << " of the light in the middle, with the grid\n";
+            << " of the light in the middle, with the grid"
+            << (fit.edge_radius > 0.0 ? format(", at the outermost cells (r = %.2f)", fit.radius) : "") << "\n";
         out << format("grid      %u x %u nodes for what k1..k3 leave: %.2f %% remain\n", fit.gain_grid.columns,
                       fit.gain_grid.rows, 100.0 * fit.grid_residual);
     }

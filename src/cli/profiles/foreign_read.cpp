@@ -48,6 +48,7 @@ lensprof_status take_part(void *user, const lensprof_import_entry *entry) {
     profile.vignettings = found.vignettings;
     std::copy_n(found.vignetting, 3, profile.vignetting);
     profile.grid = found.grid;
+    profile.image_circle = found.image_circle;
     return LENSPROF_OK;
 }
 

@@ -1,4 +1,5 @@
 // Response, falloff and covariance, the parts that fits and profiles share, as rows of a table.
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -55,9 +56,12 @@ void print_vignettings(const lensprof_profile &profile, std::ostream &out, doubl
             continue;
         }
         bool is_known;
-        const std::string middle = light_at(profile, c, 0.5, is_known), end = light_at(profile, c, 1.0, is_known);
-        out << format("          light at r = 0.5: %s %%, in the corner: %s %% (%.2f stops)%s\n", middle.c_str(),
-                      end.c_str(), -std::log2(corner(v)), is_known ? "" : ", error unknown");
+        const bool has_circle = profile.image_circle.radius > 0.0;
+        const double r = has_circle ? std::min(profile.image_circle.radius, 1.0) : 1.0;
+        const std::string middle = light_at(profile, c, 0.5, is_known), end = light_at(profile, c, r, is_known);
+        out << format("          light at r = 0.5: %s %%, %s: %s %% (%.2f stops)%s\n", middle.c_str(),
+                      has_circle ? "at the edge of the image circle" : "in the corner", end.c_str(),
+                      -std::log2(lensprof_vignetting_eval(&v, r * r, nullptr)), is_known ? "" : ", error unknown");
     }
 }
 

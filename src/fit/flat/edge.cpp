@@ -192,6 +192,7 @@ FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
     while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;
     for (int step = 0; step <= soft; step++) grow(grid, edge.outside);
     edge.inner = edge.radius - (soft + 1) * map.side;
+    edge.soft = (soft - 1) * map.side;
     if (edge.circle) leave_out_beyond(grid, *edge.circle, edge.inner, edge.outside);
     add_black(grid, shot, edge.outside);
     edge.share = static_cast<double>(std::count(edge.outside.begin(), edge.outside.end(), true)) / grid.count();

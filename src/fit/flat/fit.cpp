@@ -256,7 +256,8 @@ void fill_lens(const FlatFit &fit, FlatResult &r) {
     r.light_ev = fit.light_ev;
     r.edge_radius = fit.edge.radius;
     r.edge_share = fit.edge.share;
-    if (const auto &circle = fit.edge.circle) r.image_circle = {{circle->center[0], circle->center[1]}, circle->radius};
+    if (const auto &circle = fit.edge.circle)  // the falloff does not describe a soft edge
+        r.image_circle = {{circle->center[0], circle->center[1]}, std::max(circle->radius - fit.edge.soft, 0.01)};
     r.shots = static_cast<uint32_t>(model.shots);
     r.cells = static_cast<uint32_t>(fit.problem.cells.size());
     r.separated = is_separated(fit);

@@ -33,6 +33,9 @@ RingMeans means_over(const TrialPairs &pairs, const TrialModel &model) {
         for (int i = 0; i < kAreaSide; i++) {
             const double x = (i + 0.5) / kAreaSide * (image.width - 1.0),
                          y = (j + 0.5) / kAreaSide * (image.height - 1.0);
+            if (model.falloff
+                && !lensprof_image_circle_contains(&model.falloff->image_circle, image.width, image.height, x, y))
+                continue;
             const double r2 = r2_of(image, x, y);
             const int ring = ring_of(r2);
             means.area[ring]++;

@@ -43,6 +43,7 @@ lensprof_status take_falloff(void *user, const lensprof_import_entry *entry) {
     profile.vignettings = found.vignettings;
     std::copy_n(found.vignetting, 3, profile.vignetting);
     profile.grid = found.grid;
+    profile.image_circle = found.image_circle;
     std::copy_n(found.provenance.doubt, sizeof profile.provenance.doubt, profile.provenance.doubt);
     if (!*profile.key.camera_maker)
         std::copy_n(found.key.camera_maker, sizeof profile.key.camera_maker, profile.key.camera_maker);

@@ -93,7 +93,9 @@ int64_t store_setting(const BuildReport &report, const SettingReport &setting, c
     const bool is_usable = setting.found.usable != 0;
     const EarlierProfile *prior = how.prior;
     const auto profile = profile_of_setting(report, setting, how);
-    const int64_t prior_id = prior && holds_prior(setting.found) && prior->is_own ? prior->id : 0;
+    const bool holds = prior && holds_prior(setting.found);
+    const int64_t prior_id = holds && prior->is_own ? prior->id : 0;
+    if (holds && prior->profile) profile->image_circle = prior->profile->image_circle;  // no overlaps show it
     return store_profile(store, *profile, {how.method, how.source, is_usable, prior_id});
 }
 

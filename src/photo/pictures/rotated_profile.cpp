@@ -1,5 +1,6 @@
 #include "photo/pictures/rotated_profile.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "photo/pictures/orientation.hpp"
@@ -40,9 +41,10 @@ void turn_profile(uint16_t turn, lensprof_profile &profile) {
         turn_upright(inverse_orientation(turn), centre[0], centre[1]);
         if (!turn) centre[0] = centre[1] = 0.0;
     }
-    double *circle = profile.image_circle.center;
-    turn_upright(inverse_orientation(turn), circle[0], circle[1]);
-    if (!turn) circle[0] = circle[1] = 0.0;
+    lensprof_image_circle &circle = profile.image_circle;
+    turn_upright(inverse_orientation(turn), circle.center[0], circle.center[1]);
+    if (!turn && circle.radius > 0.0)  // what both turns have inside, but not the whole of it
+        circle = {{0.0, 0.0}, std::max(circle.radius - std::hypot(circle.center[0], circle.center[1]), 0.01)};
     if (!profile.grid.columns || turn == 1) return;
     const lensprof_gain_grid other = rotated_grid(profile.grid, turn ? turn : kOtherWay);
     profile.grid = rotated_grid(profile.grid, turn ? turn : kOneWay);

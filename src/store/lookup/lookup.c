@@ -133,14 +133,24 @@ static void set_levels(const work *w, lensprof_profile *profile) {
             memset(&profile->levels, 0, sizeof profile->levels);
 }
 
-/* That of the nearest profile, on the sensor of the picture; none if it covers that. */
-static void set_circle(const work *w, double profile_crop_factor, lensprof_image_circle *circle) {
+/* Centre and image circle are those of the nearest profile, in half diagonals of the picture's sensor; no circle if it
+ * covers that. */
+static void set_places(const work *w, double profile_crop_factor, lensprof_profile *profile) {
     const double crop_factor = w->falloff.key.crop_factor;
-    if (profile_crop_factor != LENSPROF_UNKNOWN && crop_factor != LENSPROF_UNKNOWN) {
-        for (int d = 0; d < 2; d++) circle->center[d] *= crop_factor / profile_crop_factor;
-        circle->radius *= crop_factor / profile_crop_factor;
+    const int is_known = profile_crop_factor != LENSPROF_UNKNOWN && crop_factor != LENSPROF_UNKNOWN;
+    const double scale = is_known ? crop_factor / profile_crop_factor : 1.0;
+    lensprof_image_circle *circle = &profile->image_circle;
+    for (int d = 0; d < 2; d++) {
+        for (uint32_t c = 0; c < 3; c++) {
+            double *center = &profile->vignetting[c].center[d];
+            *center = fmin(fmax(*center * scale, -1.0), 1.0);
+        }
+        circle->center[d] *= scale;
     }
-    if (circle->radius - hypot(circle->center[0], circle->center[1]) >= 1.0) memset(circle, 0, sizeof *circle);
+    circle->radius *= scale;
+    if (circle->radius - hypot(circle->center[0], circle->center[1]) >= 1.0
+        || lensprof_image_circle_validate(circle) != LENSPROF_OK)
+        memset(circle, 0, sizeof *circle);
 }
 
 static void set_response(const work *w, lensprof_profile *profile) {
@@ -168,11 +178,12 @@ static lensprof_status compose(work *w, lensprof_error *error) {
     if (status == LENSPROF_OK) status = lp_store_fetch_falloff(store, w->lookup.id[0], error);
     if (status != LENSPROF_OK) return status;
     set_sigma(w);
-    set_circle(w, profile->key.crop_factor, &profile->image_circle);
+    const double profile_crop_factor = profile->key.crop_factor;
     profile->key = w->falloff.key;
     set_response(w, profile);
     set_levels(w, profile);
     set_falloff(w, profile);
+    set_places(w, profile_crop_factor, profile);
     set_covariance(w, profile);
     set_provenance(w, profile);
     if (lensprof_profile_validate(profile) != LENSPROF_OK)

@@ -74,10 +74,16 @@ static void read_levels(lp_store_reader *reader, lensprof_levels *levels) {
         if (!lp_read_null(reader)) *numbers[i] = lp_read_real(reader);
 }
 
+/* All three or none. */
 static void read_circle(lp_store_reader *reader, lensprof_image_circle *circle) {
     double *const numbers[3] = {&circle->center[0], &circle->center[1], &circle->radius};
-    for (int i = 0; i < 3; i++)
-        if (!lp_read_null(reader)) *numbers[i] = lp_read_real(reader);
+    const bool is_whole = sqlite3_column_type(reader->statement, reader->column) != SQLITE_NULL;
+    for (int i = 0; i < 3; i++) {
+        if (is_whole)
+            *numbers[i] = lp_read_real(reader);
+        else
+            lp_read_nothing(reader);
+    }
 }
 
 /* From the row at which `statement` stands, and its curves, into store->scratch. */
