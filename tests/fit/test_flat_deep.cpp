@@ -75,8 +75,9 @@ static void without_a_grid_a_deep_falloff_is_warned_of(void **) {
 static void what_lies_outside_the_image_circle_is_left_out(void **) {
     const struct {
         double radius, x, share;
-    } circles[] = {
-        {0.9, 0.0, 0.06}, {0.8, 0.08, 0.2}, {0.55, 0.0, 0.59}, {0.8, 0.027, 0.2}};  // the last: a line at the border
+    } circles[] = {{0.9, 0.0, 0.06},  {0.8, 0.08, 0.2},
+                   {0.55, 0.0, 0.59}, {0.8, 0.027, 0.2},   // the last: a line at the border
+                   {0.95, 0.0, 0.02}, {0.97, 0.0, 0.01}};  // the last cells of the corners
     for (const auto &circle : circles) {
         FlatPictures p = small_card();
         const auto falloff = law_of_the_cosine(0.4);
@@ -92,12 +93,13 @@ static void what_lies_outside_the_image_circle_is_left_out(void **) {
         const lensprof_finding *finding = r->with(LENSPROF_REASON_FLAT_EDGE);
         assert_non_null(finding);
         assert_int_equal(finding->severity, LENSPROF_SEVERITY_NOTE);
-        assert_close(finding->value[0], circle.radius, 0.01);
+        const double tolerance = circle.radius > 0.92 ? 0.02 : 0.01;  // of few cells
+        assert_close(finding->value[0], circle.radius, tolerance);
         assert_close(finding->value[1], circle.share, 0.03);
         assert_null(r->with(LENSPROF_REASON_FLAT_BLACK));
         assert_close(largest_error(*r, p, circle.radius - circle.x - 0.05), 0.0, 0.005);
         assert_close(r->corner, falloff(r->radius), 0.02);
-        assert_close(r->image_circle.radius, circle.radius, 0.01);
+        assert_close(r->image_circle.radius, circle.radius, tolerance);
         assert_close(r->image_circle.center[0], circle.x, 0.01);
         assert_close(r->image_circle.center[1], 0.0, 0.01);
         for (const auto &corner : {std::array<double, 2>{0, 0}, {479, 0}, {0, 319}, {479, 319}}) {  // as at the edge

@@ -18,12 +18,17 @@ constexpr double kSoft = 7.0;       // ln per half diagonal inside of it: more t
 constexpr size_t kFewest = 3;       // cells of a dark place,
 constexpr int kDepth = 2;           // and as many from the frame's border: a narrower one is a border of the picture,
 constexpr size_t kCorner = 12;      // unless it has so few that it is a corner
-constexpr double kOffCircle = 2.0;  // cells between a place of the outline and its circle
+constexpr int kTip = 3;            // cells along a diagonal that a circle cuts off without such a dark place: they have
+constexpr double kMissing = 0.06;  // less light, ln, than those before them continue to,
+constexpr int kBeforeTip = 8;      // of which these are taken
+constexpr int kCornersOfCircle = 3;  // of the frame cut off: by a circle about the middle
+constexpr double kOffCircle = 2.0;   // cells between a place of the outline and its circle
 
 struct DarkMap {
     const CellGrid &grid;
-    std::vector<double> light;  // ln, the mean of the channels; NaN without data
-    double side;                // of a cell, half diagonals
+    std::vector<double> light;     // ln, the mean of the channels; NaN without data
+    std::vector<double> variance;  // of it, by the noise of the pixels
+    double side;                   // of a cell, half diagonals
 
     int cells(double width) const { return std::max(2, static_cast<int>(std::lround(width / side))); }
 
@@ -41,13 +46,17 @@ struct DarkMap {
 
 DarkMap dark_map(const CellGrid &grid, int channels, const Shot &shot) {
     const double half = lensprof_half_diagonal(grid.width, grid.height);
-    DarkMap map{grid, std::vector<double>(shot.light.size(), NAN),
+    DarkMap map{grid, std::vector<double>(shot.light.size(), NAN), std::vector<double>(shot.light.size(), 0.0),
                 std::max(grid.cell_width(), grid.cell_height()) / half};
     for (size_t i = 0; i < map.light.size(); i++) {
-        if (shot.light[i].state == CellState::masked || !shot.card[i]) continue;
-        double sum = 0.0;
-        for (int c = 0; c < channels; c++) sum += std::log(std::max(shot.light[i].value[static_cast<size_t>(c)], 1e-9));
-        map.light[i] = sum / channels;
+        const CellLight &cell = shot.light[i];
+        if (cell.state == CellState::masked || !shot.card[i]) continue;
+        double sum = 0.0, variance = 0.0;
+        for (size_t c = 0; c < static_cast<size_t>(channels); c++) {
+            const double value = std::max(cell.value[c], 1e-9);
+            sum += std::log(value), variance += cell.variance[c] / (value * value);
+        }
+        map.light[i] = sum / channels, map.variance[i] = variance / channels / channels;
     }
     return map;
 }
@@ -108,6 +117,50 @@ std::vector<bool> surround(const DarkMap &map, std::vector<int> &rim) {
         for (int cell : group) found[static_cast<size_t>(cell)] = true;
     }
     return found;
+}
+
+// How many of the first of some cells, up to kTip, end in one with less light than a cubic through the four cells that
+// follow continues to: by a fourth difference beyond five standard deviations, by noise and of those that follow.
+int depth_of_tip(const DarkMap &map, const std::array<int, kTip + kBeforeTip> &cells) {
+    constexpr std::array<double, 5> binomial = {1.0, -4.0, 6.0, -4.0, 1.0};
+    const auto sum = [&](int k, const auto &of_cell) {
+        double total = 0.0;
+        for (size_t n = 0; n < binomial.size(); n++)
+            total += of_cell(static_cast<size_t>(cells[static_cast<size_t>(k) + n]), binomial[n]);
+        return total;
+    };
+    const auto difference = [&](int k) { return sum(k, [&](size_t i, double b) { return b * map.light[i]; }); };
+    double squares = 0.0;
+    for (int k = kTip; k < kTip + kBeforeTip - 4; k++) squares += difference(k) * difference(k);
+    for (int depth = kTip; depth > 0; depth--) {
+        const double noise = sum(depth - 1, [&](size_t i, double b) { return b * b * map.variance[i]; });
+        const double sigma = std::sqrt(std::max(noise, squares / (kBeforeTip - 4)));
+        if (-difference(depth - 1) > std::max(kMissing, 5.0 * sigma)) return depth;
+    }
+    return 0;
+}
+
+// Corners of the frame that an image circle cuts off within a few cells, too small for a dark place. Returns how many.
+int add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &rim) {
+    const CellGrid &grid = map.grid;
+    int tips = 0;
+    if (std::min(grid.columns, grid.rows) < 2 * (kTip + kBeforeTip)) return 0;
+    for (const bool is_right : {false, true})
+        for (const bool is_low : {false, true}) {
+            const auto cell_at = [&](int i, int j) {
+                return (is_low ? grid.rows - 1 - j : j) * grid.columns + (is_right ? grid.columns - 1 - i : i);
+            };
+            if (outside[static_cast<size_t>(cell_at(0, 0))] && ++tips) continue;
+            std::array<int, kTip + kBeforeTip> diagonal;
+            for (int k = 0; k < kTip + kBeforeTip; k++) diagonal[static_cast<size_t>(k)] = cell_at(k, k);
+            const int depth = depth_of_tip(map, diagonal);
+            if (depth == 0) continue;
+            tips++;
+            for (int i = 0; i < 2 * depth; i++)
+                for (int j = 0; i + j < 2 * depth; j++) outside[static_cast<size_t>(cell_at(i, j))] = true;
+            rim.push_back(cell_at(depth - 1, depth - 1));
+        }
+    return tips;
 }
 
 void grow(const CellGrid &grid, std::vector<bool> &cells) {
@@ -185,8 +238,10 @@ FlatEdge find_edge(const CellGrid &grid, int channels, const Shot &shot) {
     FlatEdge edge;
     std::vector<int> rim;
     edge.outside = surround(map, rim);
+    const int corners = add_tips(map, edge.outside, rim);
     if (rim.empty()) return edge;
     edge.circle = outline_of(map, rim, edge.radius);
+    if (!edge.circle && corners >= kCornersOfCircle) edge.circle = Circle{{0.0, 0.0}, edge.radius};
     if (edge.circle) edge.radius = edge.circle->radius;
     int soft = 1;
     while (soft < map.cells(kMostSoft) && rise(map, rim, soft, soft + 1) > kSoft) soft++;
