@@ -20,14 +20,16 @@ constexpr int kDepth = 2;           // and as many from the frame's border: a na
 constexpr size_t kCorner = 12;      // unless it has so few that it is a corner
 constexpr int kTip = 3;            // cells along a diagonal that a circle cuts off without such a dark place: they have
 constexpr double kMissing = 0.06;  // less light, ln, than those before them continue to,
-constexpr int kBeforeTip = 8;      // of which these are taken
-constexpr int kCornersOfCircle = 3;  // of the frame cut off: by a circle about the middle
-constexpr double kOffCircle = 2.0;   // cells between a place of the outline and its circle
+constexpr double kMissingInBlack = 1.0;  // by more if it is black,
+constexpr int kBeforeTip = 8;            // of which these are taken
+constexpr int kCornersOfCircle = 3;      // of the frame cut off: by a circle about the middle
+constexpr double kOffCircle = 2.0;       // cells between a place of the outline and its circle
 
 struct DarkMap {
     const CellGrid &grid;
     std::vector<double> light;     // ln, the mean of the channels; NaN without data
     std::vector<double> variance;  // of it, by the noise of the pixels
+    std::vector<bool> is_black;    // the light is about 0, and its logarithm imprecise
     double side;                   // of a cell, half diagonals
 
     int cells(double width) const { return std::max(2, static_cast<int>(std::lround(width / side))); }
@@ -47,7 +49,7 @@ struct DarkMap {
 DarkMap dark_map(const CellGrid &grid, int channels, const Shot &shot) {
     const double half = lensprof_half_diagonal(grid.width, grid.height);
     DarkMap map{grid, std::vector<double>(shot.light.size(), NAN), std::vector<double>(shot.light.size(), 0.0),
-                std::max(grid.cell_width(), grid.cell_height()) / half};
+                std::vector<bool>(shot.light.size(), false), std::max(grid.cell_width(), grid.cell_height()) / half};
     for (size_t i = 0; i < map.light.size(); i++) {
         const CellLight &cell = shot.light[i];
         if (cell.state == CellState::masked || !shot.card[i]) continue;
@@ -57,6 +59,7 @@ DarkMap dark_map(const CellGrid &grid, int channels, const Shot &shot) {
             sum += std::log(value), variance += cell.variance[c] / (value * value);
         }
         map.light[i] = sum / channels, map.variance[i] = variance / channels / channels;
+        map.is_black[i] = cell.state == CellState::black;
     }
     return map;
 }
@@ -135,7 +138,8 @@ int depth_of_tip(const DarkMap &map, const std::array<int, kTip + kBeforeTip> &c
     for (int depth = kTip; depth > 0; depth--) {
         const double noise = sum(depth - 1, [&](size_t i, double b) { return b * b * map.variance[i]; });
         const double sigma = std::sqrt(std::max(noise, squares / (kBeforeTip - 4)));
-        if (-difference(depth - 1) > std::max(kMissing, 5.0 * sigma)) return depth;
+        const bool is_black = map.is_black[static_cast<size_t>(cells[static_cast<size_t>(depth) - 1])];
+        if (-difference(depth - 1) > std::max(is_black ? kMissingInBlack : kMissing, 5.0 * sigma)) return depth;
     }
     return 0;
 }
