@@ -144,27 +144,44 @@ int depth_of_tip(const DarkMap &map, const std::array<int, kTip + kBeforeTip> &c
     return 0;
 }
 
-// Corners of the frame that an image circle cuts off within a few cells, too small for a dark place. Returns how many.
+// A corner of the frame, with the cells along its diagonal.
+struct Corner {
+    std::array<int, kTip + kBeforeTip> diagonal;
+    int right, down;  // steps into the frame, cells
+};
+
+std::array<Corner, 4> corners_of(const CellGrid &grid) {
+    std::array<Corner, 4> corners;
+    for (int n = 0; n < 4; n++) {
+        Corner &corner = corners[static_cast<size_t>(n)];
+        corner.right = n & 1 ? -1 : 1, corner.down = (n & 2 ? -1 : 1) * grid.columns;
+        const int first = (n & 1 ? grid.columns - 1 : 0) + (n & 2 ? grid.rows - 1 : 0) * grid.columns;
+        for (int k = 0; k < kTip + kBeforeTip; k++)
+            corner.diagonal[static_cast<size_t>(k)] = first + k * (corner.right + corner.down);
+    }
+    return corners;
+}
+
+// Corners of the frame that an image circle cuts off within a few cells, too small for a dark place. Returns how many
+// it cuts off; a single one may be dust.
 int add_tips(const DarkMap &map, std::vector<bool> &outside, std::vector<int> &rim) {
-    const CellGrid &grid = map.grid;
-    int tips = 0;
-    if (std::min(grid.columns, grid.rows) < 2 * (kTip + kBeforeTip)) return 0;
-    for (const bool is_right : {false, true})
-        for (const bool is_low : {false, true}) {
-            const auto cell_at = [&](int i, int j) {
-                return (is_low ? grid.rows - 1 - j : j) * grid.columns + (is_right ? grid.columns - 1 - i : i);
-            };
-            if (outside[static_cast<size_t>(cell_at(0, 0))] && ++tips) continue;
-            std::array<int, kTip + kBeforeTip> diagonal;
-            for (int k = 0; k < kTip + kBeforeTip; k++) diagonal[static_cast<size_t>(k)] = cell_at(k, k);
-            const int depth = depth_of_tip(map, diagonal);
-            if (depth == 0) continue;
-            tips++;
-            for (int i = 0; i < 2 * depth; i++)
-                for (int j = 0; i + j < 2 * depth; j++) outside[static_cast<size_t>(cell_at(i, j))] = true;
-            rim.push_back(cell_at(depth - 1, depth - 1));
-        }
-    return tips;
+    if (std::min(map.grid.columns, map.grid.rows) < 2 * (kTip + kBeforeTip)) return 0;
+    const std::array<Corner, 4> corners = corners_of(map.grid);
+    std::array<int, 4> depth{};
+    int cut = 0;
+    for (size_t n = 0; n < 4; n++) {
+        const bool is_dark = outside[static_cast<size_t>(corners[n].diagonal[0])];
+        depth[n] = is_dark ? 0 : depth_of_tip(map, corners[n].diagonal);
+        cut += is_dark || depth[n] > 0;
+    }
+    for (size_t n = 0; n < 4 && cut > 1; n++) {
+        const Corner &corner = corners[n];
+        for (int i = 0; i < 2 * depth[n]; i++)
+            for (int j = 0; i + j < 2 * depth[n]; j++)
+                outside[static_cast<size_t>(corner.diagonal[0] + i * corner.right + j * corner.down)] = true;
+        if (depth[n] > 0) rim.push_back(corner.diagonal[static_cast<size_t>(depth[n] - 1)]);
+    }
+    return cut;
 }
 
 void grow(const CellGrid &grid, std::vector<bool> &cells) {

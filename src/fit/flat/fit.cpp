@@ -309,7 +309,7 @@ bool solve_all(FlatFit &fit, FlatResult &result) {
     const int curves = o.channels == 3 && o.vignettings != 1 ? 3 : 1;
     solve(fit, curves, FalloffForm::powers);
     choose_form(fit, curves);
-    if (contradict_each_other(fit)) fit.steps.left = 0;  // nothing is to be chosen
+    if (contradict_each_other(fit)) fit.steps.left = 0;  // they are refused: no step is spent on choices
     report(o, 0.85);
     find_spots(fit, result);
     if (result.spots) {
