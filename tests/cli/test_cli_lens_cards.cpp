@@ -434,9 +434,9 @@ void test_near_settings(void **) {
 
 // The settings, their keys and notes do not depend on the order of pictures that round to each other.
 void test_order_of_near_settings(void **) {
-    const std::vector<std::pair<double, double>> numbers = {{24.0, 4.0},  {23.6, 4.0},  {24.4, 4.0}, {35.0, 1.7},
-                                                            {35.0, 1.75}, {35.0, 1.8},  {50.0, 2.8}, {50.0, 2.83},
-                                                            {4.3, 5.6},   {4.25, 5.66}, {4.25, 5.6}};
+    const std::vector<std::pair<double, double>> numbers = {
+        {24.0, 4.0}, {23.6, 4.0},  {24.4, 4.0}, {35.0, 1.7}, {35.0, 1.75}, {35.0, 1.8},     {50.0, 2.8}, {50.0, 2.83},
+        {4.3, 5.6},  {4.25, 5.66}, {4.25, 5.6}, {85.0, 2.8}, {85.0, 2.9},  {85.0, 2.82843}, {85.0, 2.83}};
     Words files;
     for (const auto &[focal, aperture] : numbers)
         files.push_back(shoot(format("order/%g_%g.tif", focal, aperture), Card{focal, aperture}));
@@ -451,6 +451,7 @@ void test_order_of_near_settings(void **) {
         std::map<std::string, Words> settings;
         std::set<std::string> notes;
         for (const CardSetting &setting : card_settings(files, o, nullptr, events).list) {
+            assert_int_equal(settings.count(setting.label), 0);
             Words &names = settings[setting.label];
             for (const CardPicture &picture : setting.pictures) {
                 names.push_back(picture.file);
@@ -467,7 +468,8 @@ void test_order_of_near_settings(void **) {
     for (const auto &[label, names] : first) labels.push_back(label);
     assert_true(labels
                 == Words({"23.6 mm, f/4", "24 mm, f/4", "24.4 mm, f/4", "35 mm, f/1.7", "35 mm, f/1.75", "35 mm, f/1.8",
-                          "4.25 mm, f/5.6", "50 mm, f/2.8"}));
+                          "4.25 mm, f/5.6", "50 mm, f/2.8", "85 mm, f/2.8", "85 mm, f/2.82843", "85 mm, f/2.9"}));
+    assert_int_equal(first["85 mm, f/2.82843"].size(), 2);  // of 2.8 or 2.9, but both of one
     assert_int_equal(first["4.25 mm, f/5.6"].size(), 3);
     assert_int_equal(first["50 mm, f/2.8"].size(), 2);
     assert_true(

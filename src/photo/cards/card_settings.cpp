@@ -122,34 +122,54 @@ auto precision_of(const lensprof_profile_key &key) {
                            rank_of(key));
 }
 
-// The settings that a number may be rounded from.
-std::vector<CardSetting *> possible_settings(std::vector<CardSetting> &settings, const lensprof_profile_key &key) {
-    std::vector<CardSetting *> possible;
-    for (CardSetting &setting : settings)
-        if (is_same(setting.key, key)) possible.push_back(&setting);
-    return possible;
+// A setting, and those that its numbers may be rounded from: none, or several.
+struct GroupedSetting {
+    CardSetting setting;
+    std::vector<size_t> sources;
+};
+
+// The settings that a number may be rounded from; those that may be rounded themselves do not count.
+std::vector<size_t> sources_of(const std::vector<GroupedSetting> &groups, const lensprof_profile_key &key) {
+    std::vector<size_t> sources;
+    for (size_t i = 0; i < groups.size(); i++)
+        if (groups[i].sources.empty() && is_same(groups[i].setting.key, key)) sources.push_back(i);
+    return sources;
+}
+
+// The setting that pictures of this key belong to; the end of the list if it is a new one.
+size_t group_of(const std::vector<GroupedSetting> &groups, const lensprof_profile_key &key,
+                const std::vector<size_t> &sources) {
+    if (sources.size() == 1) return sources.front();
+    const auto is_it = [&](const GroupedSetting &group) {
+        return group.sources == sources && is_same(group.setting.key, key);
+    };
+    return static_cast<size_t>(std::find_if(groups.begin(), groups.end(), is_it) - groups.begin());
 }
 
 // By what the pictures state, not by their order: rounded numbers join the setting that they are rounded from. Those of
-// two settings (24 mm, of 23.6 and 24.4) are measured alone.
+// two settings (24 mm, of 23.6 and 24.4) are measured apart from both, with what is the same but for rounding.
 std::vector<CardSetting> grouped(const std::vector<CardPicture> &pictures, Events &events) {
     std::map<decltype(precision_of(pictures.front().metadata.key)), std::vector<CardPicture>> alike;
     for (const CardPicture &picture : pictures) alike[precision_of(picture.metadata.key)].push_back(picture);
-    std::vector<CardSetting> settings;
+    std::vector<GroupedSetting> groups;
     for (const auto &[precision, own] : alike) {
         const lensprof_profile_key &key = own.front().metadata.key;
-        const std::string label = describe_setting(key, own.front().file);
-        const std::vector<CardSetting *> possible = possible_settings(settings, key);
-        if (possible.size() == 1) {
-            possible.front()->pictures.insert(possible.front()->pictures.end(), own.begin(), own.end());
+        const std::vector<size_t> sources = sources_of(groups, key);
+        const size_t group = group_of(groups, key, sources);
+        if (group < groups.size()) {
+            std::vector<CardPicture> &joined = groups[group].setting.pictures;
+            joined.insert(joined.end(), own.begin(), own.end());
             continue;
         }
-        if (possible.size() > 1)
-            events.note(label, "may be " + possible[0]->label + " or " + possible[1]->label
+        const std::string label = describe_setting(key, own.front().file);
+        if (sources.size() > 1)
+            events.note(label, "may be " + groups[sources[0]].setting.label + " or " + groups[sources[1]].setting.label
                                    + ", by the rounding of what cameras state: measured alone; give a table if it is "
                                      "one of them");
-        settings.push_back({key, own, label});
+        groups.push_back({{key, own, label}, sources});
     }
+    std::vector<CardSetting> settings;
+    for (GroupedSetting &group : groups) settings.push_back(std::move(group.setting));
     for (CardSetting &setting : settings)
         std::sort(setting.pictures.begin(), setting.pictures.end(),
                   [](const CardPicture &a, const CardPicture &b) { return a.index < b.index; });
