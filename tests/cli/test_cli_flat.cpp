@@ -353,6 +353,9 @@ void test_levels_of_float_samples(void **) {
     const Outcome white = run_words(flat({bright, "--no-store"}));
     assert_int_equal(white.code, not_usable);
     assert_true(contains(white.err, "--fit white-level=LEVEL"));
+    const Outcome stated = run_words(flat({bright, "--no-store", "--fit", "white-level=80%"}));
+    assert_int_equal(stated.code, not_usable);
+    assert_false(contains(stated.err, "--fit white-level"));  // it is stated
     assert_close(corner_error(measured({bright, "--black", "0.225", "--fit", "white-level=4.5"})), 0.0, 0.003);
 }
 

@@ -64,9 +64,9 @@ void name_other_settings(CardFit &found) {
         refusal->text += "; another aperture or focal length than stated shows as such a difference, too";
 }
 
-// Of linear float samples, what exceeds 1 need not be saturated.
-bool has_samples_above_1(const CardInput &input) {
-    return std::any_of(input.pictures.begin(), input.pictures.end(), [](const Picture &picture) {
+// Of linear float samples, what exceeds 1 need not be saturated, unless somebody stated it.
+bool may_lack_white_level(const CardOptions &o, const CardInput &input) {
+    return !o.levels.white && std::any_of(input.pictures.begin(), input.pictures.end(), [](const Picture &picture) {
         return picture.sample == LENSPROF_SAMPLE_F32 && bright_sample(picture) > 1.0;
     });
 }
@@ -116,7 +116,7 @@ void add_advice(const CardOptions &o, const CardInput &input, CardFit &found, Ev
     name_light_option(found);
     name_other_settings(found);
     name_rotation_options(o, found);
-    if (Finding *white = finding_of(found, LENSPROF_REASON_FLAT_WHITE, 0); white && has_samples_above_1(input))
+    if (Finding *white = finding_of(found, LENSPROF_REASON_FLAT_WHITE, 0); white && may_lack_white_level(o, input))
         white->text += white_level_advice();
     const std::string dark = dark_frame_among(input);
     if (dark.empty()) return;
@@ -126,9 +126,9 @@ void add_advice(const CardOptions &o, const CardInput &input, CardFit &found, Ev
         events.warn(dark, "is far darker than the other pictures" + dark_frame_advice(dark));
 }
 
-std::string advice_without_fit(const CardInput &input) {
+std::string advice_without_fit(const CardOptions &o, const CardInput &input) {
     const std::string dark = dark_frame_among(input);
-    return (has_samples_above_1(input) ? white_level_advice() : "") + (dark.empty() ? "" : dark_frame_advice(dark));
+    return (may_lack_white_level(o, input) ? white_level_advice() : "") + (dark.empty() ? "" : dark_frame_advice(dark));
 }
 
 }  // namespace lensprof

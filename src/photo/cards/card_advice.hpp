@@ -11,7 +11,7 @@ namespace lensprof {
 void add_advice(const CardOptions &o, const CardInput &input, CardFit &found, Events &events);
 
 // The same for pictures that do not suffice for a fit; empty without advice.
-std::string advice_without_fit(const CardInput &input);
+std::string advice_without_fit(const CardOptions &o, const CardInput &input);
 
 // Whether the name of a file is that of a dark frame: dark.tif, bias_02.tif, cap.tif.
 bool has_dark_name(const std::string &file);

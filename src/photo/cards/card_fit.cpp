@@ -98,7 +98,7 @@ CardFit fit_cards(const CardOptions &o, CardInput &input, Events &events) {
                     LENSPROF_ITEM_IMAGE, input.files);
     } catch (const Failure &failure) {
         if (failure.group() != LENSPROF_ERROR_NOT_USABLE) throw;
-        throw Failure(failure.status, failure.what() + advice_without_fit(input), failure.reason);
+        throw Failure(failure.status, failure.what() + advice_without_fit(o, input), failure.reason);
     }
     check(lensprof_flat_get(flat, &found.fit, &error), "fit", &error);
     for (uint32_t i = 0; i < count; i++) {
