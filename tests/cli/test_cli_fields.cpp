@@ -200,6 +200,10 @@ void test_dark_frames_and_white_level(void **) {
     const Json stated = json_of(fields({folder, "--no-store", "--json", "--dark", dark, "--fit", "white-level=2000"}));
     assert_true(stated["white_share"].get<double>() > json["white_share"].get<double>() + 0.05);
     assert_true(error_of(stated) < 0.02);
+    std::filesystem::copy_file(dark, folder + "/dark.tif");  // which is not a picture with light
+    const Json among = json_of(fields({folder, "--no-store", "--json", "--dark", folder + "/dark.tif"}));
+    assert_true(among["shading"] == json["shading"] && among["used"] == json["used"]);
+    std::filesystem::remove(folder + "/dark.tif");
     assert_refused(usage, fields({folder, "--no-store", "--dark", dark, "-o", dark}),
                    {"0.tif", "would be overwritten"});
 }

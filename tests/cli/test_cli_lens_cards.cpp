@@ -568,6 +568,13 @@ void test_a_dark_frame_in_the_folder(void **) {
     const Json json = json_of(flat_of({folder}, {"--dark", dark, "--json"}));
     assert_int_equal(json["settings"][0]["files"].size(), 2);
     assert_float_equal(json["settings"][0]["corner"].get<double>(), 0.63, 0.01);
+    const Words named = {folder + "/a.tif", folder + "/b.tif"};
+    const Outcome found = run_words(flat_of(named + Words{dark}, {"--dark", dark, "--json"}));
+    assert_int_equal(found.code, done);
+    assert_true(
+        contains(found.err, dark + ": is a dark frame, as --dark states, and not used as a picture with light"));
+    assert_true(parsed(found.out)["corner"] == json_of(flat_of(named, {"--dark", dark, "--json"}))["corner"]);
+    assert_refused(usage, flat_of({dark}, {"--dark", dark}), {dark, "no other picture is given"});
     fs::rename(dark, folder + "/night.tif");  // another name: nothing is known about it
     assert_false(contains(run_words(flat_of({folder})).out, "--dark"));
     card.focal_mm = card.aperture = LENSPROF_UNKNOWN;

@@ -29,7 +29,7 @@ struct CardOptions {
     double ev_sigma = 0.02;
     double ignore_below = 2.0 / 255.0, ignore_above = 250.0 / 255.0;  // grey values, 0..1
     StatedLevels levels;                                              // of the samples
-    std::vector<std::string> dark_files;                              // with the lens covered; left out of folders
+    std::vector<std::string> dark_files;                              // with the lens covered; they are not cards
     std::optional<DarkLevel> dark;                                    // of them, instead of a stated black level
     uint32_t max_side = 1600;
     uint32_t threads = 0;  // of one fit; 0: all cores

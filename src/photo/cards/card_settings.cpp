@@ -218,19 +218,6 @@ private:
     std::map<std::pair<uint64_t, std::string>, const NamedPicture *> files_;
 };
 
-// Those that are given as such, of folders.
-void remove_dark_frames(const std::vector<std::string> &dark_files, std::vector<NamedPicture> &named) {
-    const auto is_dark_frame = [&](const NamedPicture &picture) {
-        return picture.in_folder && std::any_of(dark_files.begin(), dark_files.end(), [&](const std::string &file) {
-                   return is_same_file(picture.file, file);
-               });
-    };
-    named.erase(std::remove_if(named.begin(), named.end(), is_dark_frame), named.end());
-    if (named.empty())
-        throw Failure(LENSPROF_ERROR_ARGUMENT,
-                      dark_files.front() + ": its folder has dark frames alone; give pictures of cards as well");
-}
-
 std::string reason_to_leave_out(const NamedPicture &named, const Read &read, Copies &copies) {
     try {
         if (!read.picture)
@@ -276,7 +263,7 @@ CardSettings card_settings(const std::vector<std::string> &names, const CardOpti
     std::vector<std::string> other_files;
     std::vector<UnlistedFolder> unlisted;
     std::vector<NamedPicture> named = named_pictures(names, "", other_files, &unlisted);
-    remove_dark_frames(o.dark_files, named);
+    leave_out_dark_frames(o.dark_files, named, events);
     for (const std::string &line : other_files) events.warn("", line);
     for (const UnlistedFolder &folder : unlisted) settings.left_out.push_back({folder.folder, folder.reason});
     settings.given = named.size();

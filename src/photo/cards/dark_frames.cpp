@@ -7,6 +7,8 @@
 #include "fit/base/quantile.hpp"
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
+#include "photo/cards/count_samples.hpp"
 #include "photo/pictures/picture_stack.hpp"
 #include "photo/scene/scene_pictures.hpp"
 
@@ -132,8 +134,25 @@ void require_dark(const DarkLevel &dark, const DarkScale &scale, Events &events)
 
 }  // namespace
 
+void leave_out_dark_frames(const std::vector<std::string> &dark_files, std::vector<NamedPicture> &pictures,
+                           Events &events) {
+    const auto is_lit = [&](const NamedPicture &picture) {
+        return std::none_of(dark_files.begin(), dark_files.end(),
+                            [&](const std::string &file) { return is_same_file(picture.file, file); });
+    };
+    const auto dark = std::stable_partition(pictures.begin(), pictures.end(), is_lit);
+    const std::string stated = "is a dark frame, as " + option_name("dark") + " states";
+    if (dark == pictures.begin() && dark != pictures.end())
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      dark->file + ": " + stated + ", and no other picture is given; give pictures with light as well");
+    for (auto picture = dark; picture != pictures.end(); ++picture)
+        if (!picture->in_folder) events.note(picture->file, stated + ", and not used as a picture with light");
+    pictures.erase(dark, pictures.end());
+}
+
 DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, uint32_t channel, Events &events) {
     DarkLevel dark;
+    dark.files = files;
     DarkValues values;
     for (const DarkPage &page : pages_of(files, channel)) {
         ReadOptions read;

@@ -232,7 +232,7 @@ void take_result(FieldFit &found) {
 
 FieldFit fit_fields_of(const std::vector<std::string> &names, const FieldOptions &o, Events &events) {
     auto clock = std::chrono::steady_clock::now();
-    const FieldList list = field_list(names, o.channel, events);
+    const FieldList list = field_list(names, o.dark ? o.dark->files : std::vector<std::string>(), o.channel, events);
     FieldFit found;
     found.files = list.files, found.left_out = list.left_out;
     found.response = given_response(o.store, o.gamma, o.profile);

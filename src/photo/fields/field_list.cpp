@@ -5,6 +5,7 @@
 #include "photo/base/failure.hpp"
 #include "photo/base/format.hpp"
 #include "photo/base/library.hpp"
+#include "photo/cards/dark_frames.hpp"
 #include "photo/pictures/named_pictures.hpp"
 #include "photo/pictures/picture_stack.hpp"
 
@@ -65,10 +66,13 @@ void add_pages(const std::string &file, uint32_t channel, FieldList &list, Event
 
 }  // namespace
 
-FieldList field_list(const std::vector<std::string> &names, uint32_t channel, Events &events) {
+FieldList field_list(const std::vector<std::string> &names, const std::vector<std::string> &dark_files,
+                     uint32_t channel, Events &events) {
     FieldList list;
     std::vector<UnlistedFolder> unlisted;
-    for (const NamedPicture &picture : named_pictures(names, "", list.left_out, &unlisted)) {
+    std::vector<NamedPicture> pictures = named_pictures(names, "", list.left_out, &unlisted);
+    leave_out_dark_frames(dark_files, pictures, events);
+    for (const NamedPicture &picture : pictures) {
         note_instead(picture, events);
         try {
             const PictureMetadata metadata = metadata_of(picture.file);

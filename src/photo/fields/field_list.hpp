@@ -24,9 +24,10 @@ struct FieldList {
     PictureMetadata metadata;           // of the first of them
 };
 
-// `names`: files, and folders of them. `channel`: of stacks with several, counted from 1; 0: not given. Failure if a
-// stack has several channels and none is given, or not that one, if there is no picture, and if there are more than
-// LENSPROF_FIELDS_IMAGES.
-FieldList field_list(const std::vector<std::string> &names, uint32_t channel, Events &events);
+// `names`: files, and folders of them, without `dark_files`. `channel`: of stacks with several, counted from 1; 0: not
+// given. Failure if a stack has several channels and none is given, or not that one, if there is no picture, and if
+// there are more than LENSPROF_FIELDS_IMAGES.
+FieldList field_list(const std::vector<std::string> &names, const std::vector<std::string> &dark_files,
+                     uint32_t channel, Events &events);
 
 }  // namespace lensprof
