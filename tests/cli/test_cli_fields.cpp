@@ -232,6 +232,39 @@ void test_dark_frames_of_float_counts(void **) {
     }
 }
 
+std::string float_folder_of(const std::string &name, const std::vector<Plane> &planes, double unit) {
+    const std::string folder = work(name);
+    std::filesystem::create_directories(folder);
+    for (size_t i = 0; i < planes.size(); i++) {
+        Picture picture = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_GREY);
+        auto *sample = reinterpret_cast<float *>(picture.pixels.data());
+        for (size_t n = 0; n < planes[i].size(); n++) sample[n] = static_cast<float>(planes[i][n] / unit);
+        write_picture(folder + "/" + std::to_string(i) + ".tif", picture);
+    }
+    return folder;
+}
+
+// A share among counts, or the reverse, is refused with the unit.
+void test_units_of_levels(void **) {
+    const std::vector<Plane> covered = {dark_frame(pedestal)};
+    const std::string counts = float_folder_of("unit_counts", scenes(6), 1.0),
+                      shares = float_folder_of("unit_shares", scenes(6), 4095.0),
+                      dark_counts = float_folder_of("unit_dark_counts", covered, 1.0) + "/0.tif",
+                      dark = float_folder_of("unit_dark", covered, 4095.0) + "/0.tif";
+    const struct {
+        Words words, named;
+    } cases[] = {
+        {{counts, "--black", "0.05"}, {"0.tif", "are counts", "a level of 0.05", "such as 200"}},
+        {{counts, "--dark", dark}, {dark, "its level is 0.029", "are counts", "--black"}},
+        {{counts, "--fit", "white-level=0.9"}, {"0.tif", "are counts", "a level of 0.9", "such as 4095"}},
+        {{counts, "--fit", "white-level=1"}, {"0.tif", "are counts", "a level of 1"}},
+        {{shares, "--dark", dark_counts}, {dark_counts, "its level is 1", "full scale of " + shares, "unit"}},
+    };
+    for (const auto &one : cases) assert_refused(usage, fields(one.words + Words{"--no-store"}), one.named);
+    const Json json = json_of(fields({shares, "--no-store", "--json", "--dark", dark}));
+    assert_close(json["channels"][0]["offset"].get<double>(), pedestal / 4095.0, 0.0005);
+}
+
 // A profile has no place for the offset of counts in float samples: both commands state it.
 void test_offset_of_float_counts_is_noted(void **) {
     if (!can_read_fits()) return;
@@ -495,6 +528,7 @@ int main() {
         CLI_TEST(test_a_folder_is_measured_and_corrected),
         CLI_TEST(test_dark_frames_and_white_level),
         CLI_TEST(test_dark_frames_of_float_counts),
+        CLI_TEST(test_units_of_levels),
         CLI_TEST(test_offset_of_float_counts_is_noted),
         CLI_TEST(test_pages_stacks_and_planes),
         CLI_TEST(test_channels_of_stacks),

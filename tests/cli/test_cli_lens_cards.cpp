@@ -534,6 +534,30 @@ void test_counts(void **) {
                    {"4095.tif: its float samples reach", "counts", "--fit white-level=LEVEL"});
 }
 
+// A share among counts, or the reverse, is refused with the unit.
+void test_units_of_levels(void **) {
+    const auto shot = [](const std::string &name, double counts, double light) {
+        return shoot("units/" + name, Card{24.0, 2.8, "", "", -0.4, 0.0, 7, false, light, 0.0, counts, 0.06});
+    };
+    const std::string counts = shot("counts.tif", 4095.0, 0.0), shares = shot("shares.tif", 1.0, 0.0),
+                      dark_counts = shot("covered_counts.tif", 4095.0, 1e4), dark = shot("covered.tif", 1.0, 1e4);
+    const struct {
+        Words words, named;
+    } cases[] = {
+        {{counts, "--fit", "white-level=4095", "--black", "0.05"}, {counts, "4095", "204.75", "5%"}},
+        {{counts, "--fit", "white-level=4095", "--black", "0.05:0.05:0.05"}, {counts, "5%"}},
+        {{counts, "--fit", "white-level=4095", "--dark", dark}, {dark, "its level is 0.06", "counts", "--black"}},
+        {{shares, "--dark", dark_counts},
+         {dark_counts, "its level is 24", "full scale of " + shares + " is 1", "unit"}},
+        {{counts, "--fit", "white-level=0.9"}, {counts, "a level of 0.9", "such as 4095"}},
+        {{counts, "--fit", "white-level=1"}, {counts, "a level of 1", "such as 4095"}},
+        {{counts, "--fit", "white-level=90%"}, {counts, "--fit white-level", "not a percentage"}},
+    };
+    for (const auto &one : cases) assert_refused(usage, Words{"flat", "--no-store"} + one.words, one.named);
+    const Json json = json_of({"flat", shares, "--no-store", "--json", "--dark", dark});
+    assert_float_equal(json["levels"]["black"][1].get<double>(), 0.06, 1e-3);
+}
+
 // Dark frames in float counts have the scale of the cards, also if the cards' file states it.
 void test_dark_frames_in_counts_of_the_file(void **) {
     Card card{24.0, 2.8};
@@ -700,6 +724,7 @@ int main() {
         CLI_TEST(test_order_of_near_settings),
         CLI_TEST(test_a_foreign_picture),
         CLI_TEST(test_counts),
+        CLI_TEST(test_units_of_levels),
         CLI_TEST(test_dark_frames_in_counts_of_the_file),
         CLI_TEST(test_a_dark_frame_in_the_folder),
         CLI_TEST(test_what_can_be_written_is),

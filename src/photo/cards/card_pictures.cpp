@@ -236,7 +236,7 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
                                                        + file + "; give pictures with the same black level");
     std::optional<DarkLevel> dark;
     if (o.dark) {
-        dark = dark_level_for(*o.dark, {scale.full_scale, true}, first, file, events);
+        dark = dark_level_for(*o.dark, {scale.full_scale, true, scale.has_counts()}, first, file, events);
         std::copy(dark->black.begin(), dark->black.end(), options.levels.black);
     }
     options.levels = levels_of(stated, first, file, options.levels, scale);

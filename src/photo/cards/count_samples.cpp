@@ -20,21 +20,24 @@ double bright_sample(const Picture &picture) {
 }
 
 bool are_counts(const Picture &picture) {
-    constexpr double most_exposed = 2.0;  // of full scale: what developing can make of shares
     return picture.sample == LENSPROF_SAMPLE_F32 && bright_sample(picture) > most_exposed;
 }
 
 std::optional<double> count_at_white(const StatedLevels &stated, const StatedLevels &of_file, const Picture &picture,
                                      const std::string &file, Events &events) {
     if (picture.sample != LENSPROF_SAMPLE_F32) return std::nullopt;
-    if (stated.white && !stated.white->is_share) return stated.white->number;
-    if (!are_counts(picture)) return std::nullopt;
+    const bool is_stated = stated.white && !stated.white->is_share, is_counted = are_counts(picture);
+    if (is_stated && is_counted)
+        levels_of({{}, stated.white, {}, stated.white_option}, picture, file, {}, {1.0, false, bright_sample(picture)});
+    if (is_stated) return stated.white->number;
+    if (!is_counted) return std::nullopt;
     if (!of_file.white)
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       file
                           + format(": its float samples reach %.6g, and are counts: 1 would be full scale. State the "
-                                   "count at saturation with %s",
-                                   bright_sample(picture), option_name("white_level").c_str()));
+                                   "count at saturation with %s%s",
+                                   bright_sample(picture), option_name("white_level").c_str(),
+                                   stated.white ? ", not a percentage of it" : ""));
     events.note(file,
                 format("its samples are counts; its white level is %g, as the file states", of_file.white->number));
     return of_file.white->number;

@@ -114,6 +114,25 @@ struct DarkValues {
     }
 };
 
+// Failure if one of frames and pictures are counts, and the other shares of 1. Frames of counts have noise: a level
+// below 1 does not keep their samples below 1.
+void require_unit(const DarkLevel &dark, const DarkScale &scale, const std::string &file) {
+    const double level = *std::max_element(dark.black.begin(), dark.black.end());
+    if (scale.has_counts && level > 0.0 && level < 1.0 && dark.reach <= 1.0)
+        throw Failure(LENSPROF_ERROR_ARGUMENT,
+                      dark.file
+                          + format(": its level is %.3g, of samples from 0 to 1, but those of %s are counts: give dark "
+                                   "frames in counts as well, or the count without light with %s",
+                                   level, file.c_str(), option_name("black").c_str()));
+    if (scale.is_saturation && dark.brightest > most_exposed * scale.brightest)
+        throw Failure(
+            LENSPROF_ERROR_ARGUMENT,
+            dark.brightest_file
+                + format(": its level is %.6g, but full scale of %s is %g: give dark frames in the unit of the "
+                         "pictures, or, if all are counts, the one at saturation with %s",
+                         dark.brightest, file.c_str(), scale.brightest, option_name("white_level").c_str()));
+}
+
 // Failure if light fell on the frames.
 void require_dark(const DarkLevel &dark, const DarkScale &scale, Events &events) {
     const double level = *std::max_element(dark.black.begin(), dark.black.end()), unit = scale.brightest;
@@ -165,6 +184,7 @@ DarkLevel dark_level(const std::vector<std::string> &files, uint32_t max_side, u
                                                        + form_of(dark.form) + " as " + dark.file
                                                        + "; give dark frames of one camera");
         values.add(picture);
+        if (picture.sample == LENSPROF_SAMPLE_F32) dark.reach = std::max(dark.reach, bright_sample(picture));
         dark.names.push_back(page.name);
     }
     if (dark.names.empty())
@@ -181,6 +201,7 @@ DarkLevel dark_level_for(const DarkLevel &dark, const DarkScale &scale, const Pi
         throw Failure(LENSPROF_ERROR_ARGUMENT, dark.file + ": is " + form_of(dark.form) + ", not " + form_of(picture)
                                                    + " as " + file + "; give dark frames of the same camera");
     if (dark.form.sample != LENSPROF_SAMPLE_F32) return dark;
+    require_unit(dark, scale, file);
     require_dark(dark, scale, events);
     DarkLevel level = dark;
     if (!scale.is_saturation) return level;

@@ -20,6 +20,7 @@ struct DarkLevel {
     double sigma = 0.0;              // standard error of the level, from the scatter of blocks and of frames
     double spread = 0.0;             // standard deviation over the frame: what one level does not describe
     double brightest = 0.0;          // level of the brightest frame
+    double reach = 0.0;              // bright sample of float frames
     std::string brightest_file;
 };
 

@@ -59,10 +59,13 @@ lensprof_levels stated_levels(const FieldOptions &o, const Picture &first, const
     const bool are_kept = are_counts(first)
                           || (first.sample == LENSPROF_SAMPLE_F32 && o.levels.white && !o.levels.white->is_share
                               && o.levels.white->number > 1.0);
-    const LevelScale scale = are_kept ? LevelScale{1.0, false} : LevelScale::of(first);
+    const double bright = are_kept ? bright_sample(first) : 1.0;
+    const LevelScale scale =
+        are_kept ? LevelScale{1.0, false, std::max(bright, o.levels.white ? o.levels.white->number : 0.0)}
+                 : LevelScale::of(first);
     lensprof_levels levels{};
     if (o.dark) {
-        const DarkScale reached = are_kept ? DarkScale{bright_sample(first), false} : DarkScale{};
+        const DarkScale reached = are_kept ? DarkScale{bright, false, scale.has_counts()} : DarkScale{};
         const DarkLevel dark = dark_level_for(*o.dark, reached, first, name, events);
         std::copy(dark.black.begin(), dark.black.end(), levels.black);
     }

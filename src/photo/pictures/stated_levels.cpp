@@ -17,22 +17,37 @@ bool has_codes(const Picture &picture) {
 
 std::string named(const std::string &option) { return option.empty() ? "the stated level" : option_name(option); }
 
+// Whether a level is a share without its %. A white level of counts is above 1.
+bool is_in_shares(double value, const LevelScale &scale, bool is_white) {
+    return is_white && !scale.is_known ? value <= 1.0 : scale.has_counts() && value > 0.0 && value < 1.0;
+}
+
+std::string unit_advice(double value, const Picture &picture, const LevelScale &scale, bool is_white) {
+    if (!scale.is_known)
+        return format(
+            "its float samples are counts, which reach %.6g; give a count such as %s instead of a level of %g",
+            scale.reach, is_white ? "4095" : "200", value);
+    const std::string kind = has_codes(picture) ? "has integer samples"
+                                                : format("has float counts, of which %g are full scale", scale.reach);
+    const std::string forms = format("give a level as a value such as %.6g, or as a percentage, such as %g%%",
+                                     has_codes(picture) ? 256.0 : value * scale.full_scale, 100.0 * value);
+    return kind + format(", and %g is less than one of them: ", value) + forms;
+}
+
 // A value of the file as a share of full scale.
 double share_of_value(double value, const Picture &picture, const std::string &file, const std::string &option,
-                      const LevelScale &scale) {
+                      const LevelScale &scale, bool is_white) {
     if (picture.traits.format == FileFormat::raw)
         fail(file,
              "the black level that a raw file states is subtracted already; give what it leaves as a percentage, "
              "or nothing");
     // In 0.2, the option of the black level was the limit of ignored grey values.
-    if (has_codes(picture) && value > 0.0 && value < 1.0)
+    if (is_in_shares(value, scale, is_white))
         fail(file,
-             format("has integer samples, and %g is less than one of them: give a level as a value such as 256, or "
-                    "as a percentage, such as %g%%",
-                    value, 100.0 * value)
-                 + (option != "black"
-                        ? std::string()
-                        : "; to ignore dark grey values, use " + option_name("ignore_below") + format("=%g", value)));
+             unit_advice(value, picture, scale, is_white)
+                 + (option == "black" && has_codes(picture)
+                        ? "; to ignore dark grey values, use " + option_name("ignore_below") + format("=%g", value)
+                        : std::string()));
     if (scale.is_known && value > scale.full_scale)
         fail(file,
              has_codes(picture) || scale.full_scale != 1.0
@@ -45,8 +60,8 @@ double share_of_value(double value, const Picture &picture, const std::string &f
 }
 
 double level_on(const LevelScale &scale, const StatedLevel &level, const Picture &picture, const std::string &file,
-                const std::string &option) {
-    if (!level.is_share) return share_of_value(level.number, picture, file, option, scale);
+                const std::string &option, bool is_white) {
+    if (!level.is_share) return share_of_value(level.number, picture, file, option, scale, is_white);
     if (!scale.is_known && level.number != 0.0)
         fail(file, "its float samples are counts; state its levels as counts, such as 200");
     return level.number;
@@ -69,8 +84,8 @@ lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, co
     lensprof_levels levels = others;
     for (size_t c = 0; c < 3 && !stated.black.empty(); c++)
         levels.black[c] =
-            level_on(scale, stated.black[stated.black.size() == 3 ? c : 0], picture, file, stated.black_option);
-    if (stated.white) levels.white = level_on(scale, *stated.white, picture, file, stated.white_option);
+            level_on(scale, stated.black[stated.black.size() == 3 ? c : 0], picture, file, stated.black_option, false);
+    if (stated.white) levels.white = level_on(scale, *stated.white, picture, file, stated.white_option, true);
     if (!are_ordered(levels, scale))
         fail(file, "its black level is not below its white level; correct the stated levels");
     return levels;

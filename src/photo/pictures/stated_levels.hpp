@@ -26,15 +26,20 @@ struct StatedLevels {
 
 // What samples are counted in.
 struct LevelScale {
-    double full_scale = 1.0;  // value of the file that is 1 in levels
-    bool is_known = true;     // false: float counts that are kept, as nobody stated the one at saturation
+    double full_scale = 1.0;    // value of the file that is 1 in levels
+    bool is_known = true;       // false: float counts that are kept, as nobody stated the one at saturation
+    double reach = full_scale;  // of the samples
+
+    // Whether a level below 1 is a share without its %: it would be less than 2 % of the range. Smaller numbers are
+    // units of their own, such as 4.5.
+    bool has_counts() const { return reach >= 64.0; }
 
     static LevelScale of(const Picture &picture) { return {full_scale_of(picture.sample), true}; }
 };
 
 // The levels of samples on a scale: all checks of what is stated. Failure, which names the file, for values if the
-// samples are not those of the file (raw), for values beyond full scale, for shares if that is unknown, and for a black
-// level that is not below white. What is not stated is that of `others`.
+// samples are not those of the file (raw), for values beyond full scale or less than one count, for shares if full
+// scale is unknown, and for a black level that is not below white. What is not stated is that of `others`.
 lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, const std::string &file,
                           const lensprof_levels &others, const LevelScale &scale);
 inline lensprof_levels levels_of(const StatedLevels &stated, const Picture &picture, const std::string &file,
