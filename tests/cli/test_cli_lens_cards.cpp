@@ -345,6 +345,22 @@ void test_light_is_checked(void **) {
                    {"no good setting of the cards", "0.tif", "differs in aperture"});
 }
 
+// Overlaps that nothing but --linear declares linear are linear, as the cards are: the light is known well.
+void test_light_is_checked_on_linear_pictures(void **) {
+    must_exit(done, {"simulate", "-o", in_folder("linear"), "--exif", "--response", "linear", "--format", "tiff16",
+                     "--vignetting", "-0.4,0.05,-0.02", "--images", "6", "--size", "480x360"});
+    const PictureMetadata photograph = read_metadata(in_folder("linear/img000.tif"));
+    assert_true(photograph.may_be_linear);
+    Card card{photograph.key.focal_mm, photograph.key.aperture, photograph.key.camera_model, photograph.key.lens};
+    card.light = 0.25;
+    const Json json =
+        json_of(flat_of({shoot("bright/a.tif", card)}, {"--black", "0", "--check", in_folder("linear"), "--json"}));
+    assert_int_equal(json["light"]["removed_from"], 1);
+    assert_float_equal(json["light"]["rings"][4]["ev"].get<double>(), 0.3, 0.06);
+    assert_true(json["light"]["rings"][4]["sigma_ev"].get<double>() < 0.03);
+    assert_float_equal(json["settings"][0]["corner"].get<double>(), 0.63, 0.015);
+}
+
 // Rendered pictures have the response of their camera, if a database has it.
 void test_response_of_the_camera(void **) {
     const std::string file = shoot("rendered/a.tif", Card{24.0, 2.8}), db = in_folder("responses.db");
@@ -716,6 +732,7 @@ int main() {
         CLI_TEST(test_names_and_table),
         CLI_TEST(test_missing_settings),
         CLI_TEST(test_light_is_checked),
+        CLI_TEST(test_light_is_checked_on_linear_pictures),
         CLI_TEST(test_response_of_the_camera),
         CLI_TEST(test_turned),
         CLI_TEST(test_bundle),

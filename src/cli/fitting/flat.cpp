@@ -247,7 +247,7 @@ LensCards measured(const FlatCommand &o, const CardSettings &settings, Events &e
     cards.settings = measure_settings(o, settings, 0, events);
     cards.left_out = settings.left_out, cards.given = settings.given;
     if (!o.check.empty()) {
-        cards.light = check_light(o.check, cards.settings, events);
+        cards.light = check_light(o.check, o.linear, cards.settings, events);
         if (cards.light->finds_light()) cards.light_removed = remove_light(*cards.light, cards.settings);
     }
     cards.missing = missing_settings(cards.settings, largest_prediction_error);

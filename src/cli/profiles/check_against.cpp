@@ -80,7 +80,7 @@ int run_against(const AgainstOptions &o, const std::string &db, bool json, Strea
     TrialReport report(store_path(db), scene.path, profiles);
     std::vector<const lensprof_profile *> given;
     for (const StoredProfile &stored : profiles) given.push_back(stored.profile.get());
-    report.candidates = SceneTrial(scene, progress).run(given, &report.result);
+    report.candidates = SceneTrial(scene, false, progress).run(given, &report.result);
     if (json)
         print_json(trial_json(report), streams.out);
     else

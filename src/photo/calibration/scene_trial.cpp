@@ -50,7 +50,7 @@ void warn_of_earlier_correction(const Scene &scene, const std::vector<PictureMet
 
 }  // namespace
 
-SceneTrial::SceneTrial(const Scene &scene, Events &events) : scene_(scene) {
+SceneTrial::SceneTrial(const Scene &scene, bool are_linear, Events &events) : scene_(scene) {
     if (scene.images.size() < 2)
         throw Failure(LENSPROF_ERROR_NOT_USABLE, scene.path + ": has only one image; give at least two that overlap",
                       LENSPROF_REASON_FEW_PAIRS);
@@ -65,7 +65,8 @@ SceneTrial::SceneTrial(const Scene &scene, Events &events) : scene_(scene) {
     key_ = metadata[first].key;
     lensprof_trial_options_init(&options_);
     options_.channels = sampled.channels;
-    options_.camera_kind = camera_kind_of({}, key_, metadata[first]).kind;
+    options_.camera_kind = are_linear && metadata[first].may_be_linear ? static_cast<uint32_t>(LENSPROF_CAMERA_LINEAR)
+                                                                       : camera_kind_of({}, key_, metadata[first]).kind;
     images_ = fit_images(scene);
     WarningsAlone warnings(events);
     add_known_exposures(options.fit, scene, metadata, images_, warnings);

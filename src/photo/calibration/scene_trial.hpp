@@ -25,8 +25,9 @@ public:
 // pictures of others, and of those whose falloff was corrected before.
 class SceneTrial {
 public:
-    // Draws the pairs. Failure. The scene must live as long.
-    SceneTrial(const Scene &scene, Events &events);
+    // Draws the pairs. Failure. The scene must live as long. `are_linear`: pictures of which it is unknown whether they
+    // are rendered (PictureMetadata::may_be_linear) are linear.
+    SceneTrial(const Scene &scene, bool are_linear, Events &events);
 
     // Of the image with most metadata.
     const lensprof_profile_key &key() const { return key_; }

@@ -140,11 +140,11 @@ std::string LightCheck::text() const {
     }
 }
 
-LightCheck check_light(const std::vector<std::string> &pictures, const std::vector<MeasuredSetting> &settings,
-                       Events &events) {
+LightCheck check_light(const std::vector<std::string> &pictures, bool are_linear,
+                       const std::vector<MeasuredSetting> &settings, Events &events) {
     WarningsAlone warnings(events);
     const Scene scene = open_scene(pictures, {}, warnings);
-    const SceneTrial trial(scene, events);
+    const SceneTrial trial(scene, are_linear, events);
     LightCheck check;
     check.pictures = scene.path;
     const auto is_theirs = [&](const MeasuredSetting &setting) {

@@ -35,10 +35,10 @@ struct LightCheck {
     }
 };
 
-// Tries the profile of the setting that the overlapping pictures were taken with. Failure if no setting is theirs, or
-// if they do not overlap.
-LightCheck check_light(const std::vector<std::string> &pictures, const std::vector<MeasuredSetting> &settings,
-                       Events &events);
+// Tries the profile of the setting that the overlapping pictures were taken with. `are_linear`: those that are not
+// marked as rendered or linear are linear. Failure if no setting is theirs, or if they do not overlap.
+LightCheck check_light(const std::vector<std::string> &pictures, bool are_linear,
+                       const std::vector<MeasuredSetting> &settings, Events &events);
 
 // The light that explains the rings: by least squares, with a standard error of 0.5 EV of c before.
 RadialLight light_of(const LightCheck &check);
