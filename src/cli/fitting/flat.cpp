@@ -58,7 +58,9 @@ void declare_flat_fit(Command &command, FlatCommand &o) {
         {{"auto", LENSPROF_FLAT_GRID_AUTO}, {"none", LENSPROF_FLAT_GRID_NONE}, {"always", LENSPROF_FLAT_GRID_ALWAYS}},
         "gain grid for what k1..k3 leave: auto (default: if 0.3 % or more remain, or for a deep falloff), none or "
         "always");
-    keys.number("ignore-below", o.ignore_below, {0.0, 1.0}, "ignore grey values below this, 0 to 1; default 2/255");
+    keys.number("ignore-below", o.ignore_below, {0.0, 1.0},
+                "ignore grey values below this, 0 to 1; default 2/255, or 0.2/255 of linear pictures of 16 bits "
+                "or floats whose black level is known");
     keys.number("ignore-above", o.ignore_above, {0.0, 1.0}, "ignore grey values above this, 0 to 1; default 250/255");
     keys.word(
         "white-level", "LEVEL", [&o](const std::string &word) { o.levels.white = white_level_of(word); },
@@ -152,7 +154,7 @@ void check_options(const FlatCommand &o) {
         for (size_t j = 0; j < i; j++)
             if (is_same_file(o.files[i], o.files[j]))
                 throw Failure(LENSPROF_ERROR_ARGUMENT, o.files[i] + ": given twice; give it once");
-    if (!(o.ignore_below < o.ignore_above))
+    if (o.ignore_below && !(*o.ignore_below < o.ignore_above))
         throw Failure(LENSPROF_ERROR_ARGUMENT,
                       "--fit ignore-below: must be less than ignore-above; give a smaller value");
     if (!o.dark_files.empty() && !o.levels.black.empty())

@@ -222,6 +222,14 @@ std::optional<double> scale_counts(CardInput &input, StatedLevels &stated, Event
     return count;
 }
 
+// Grey values below which cells are left out. Steps of 8 bit, tone curves and an unknown black level change darker
+// ones; of finer linear samples above a known black level, only noise does.
+constexpr double usual_darkest = 2.0 / 255.0, least_darkest = 0.2 / 255.0;
+
+void ignore_below(double darkest, CardInput &input) {
+    for (lensprof_flat_image &image : input.images) image.black = darkest;
+}
+
 // Levels of the samples, and how well they are known: as stated, of dark frames, or as the file states.
 void take_levels(const CardOptions &o, CardInput &input, Events &events) {
     StatedLevels stated = o.levels;
@@ -247,8 +255,11 @@ void take_levels(const CardOptions &o, CardInput &input, Events &events) {
         if (!stated.white) added.white = input.levels.white;
     }
     if (added.any() && !add_levels(added, first, file, scale, options.levels, events)) added = {};
+    ignore_below(o.ignore_below.value_or(usual_darkest), input);
     if (!has_linear_response(input)) return;
     const bool is_stated_by_file = first.traits.format == FileFormat::raw || !added.black.empty();
+    const bool is_known = dark || !o.levels.black.empty() || is_stated_by_file;
+    if (is_known && first.sample != LENSPROF_SAMPLE_U8) ignore_below(o.ignore_below.value_or(least_darkest), input);
     options.black_sigma = dark                      ? std::clamp(dark->sigma, 1e-6, 0.2)
                           : !o.levels.black.empty() ? 0.0
                           : is_stated_by_file       ? file_black_sigma
@@ -276,7 +287,6 @@ CardInput prepare_cards(const CardOptions &o, const std::vector<CardPicture> &pi
         image.shot = shots[i];
         image.ev = ev[i];
         image.rotation_deg = rotations[i];
-        image.black = o.ignore_below;
         image.white = o.ignore_above;
         input.images.push_back(image);
     }

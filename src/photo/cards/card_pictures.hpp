@@ -27,10 +27,11 @@ struct CardOptions {
     int64_t profile = 0;          // whose response the pictures have; 0: none
     std::optional<double> gamma;  // of the response x^(1/gamma)
     double ev_sigma = 0.02;
-    double ignore_below = 2.0 / 255.0, ignore_above = 250.0 / 255.0;  // grey values, 0..1
-    StatedLevels levels;                                              // of the samples
-    std::vector<std::string> dark_files;                              // with the lens covered; they are not cards
-    std::optional<DarkLevel> dark;                                    // of them, instead of a stated black level
+    std::optional<double> ignore_below;   // grey values, 0..1; by default 2/255, less if the black level is known
+    double ignore_above = 250.0 / 255.0;  // grey values, 0..1
+    StatedLevels levels;                  // of the samples
+    std::vector<std::string> dark_files;  // with the lens covered; they are not cards
+    std::optional<DarkLevel> dark;        // of them, instead of a stated black level
     uint32_t max_side = 1600;
     uint32_t threads = 0;  // of one fit; 0: all cores
 };
