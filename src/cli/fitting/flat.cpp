@@ -19,6 +19,7 @@
 #include "cli/program/run.hpp"
 #include "photo/base/paths.hpp"
 #include "photo/calibration/outcome.hpp"
+#include "photo/cards/card_advice.hpp"
 #include "photo/cards/lens_cards.hpp"
 
 namespace lensprof {
@@ -354,8 +355,11 @@ int run(FlatCommand o, Streams &streams) {
     if (o.fields) return run_fields(o, streams);
     if (o.field_channel) throw Failure(LENSPROF_ERROR_ARGUMENT, "--fit channel: is for --fields; give it as well");
     Progress events(streams, o.progress);
+    if (!o.dark_files.empty()) {
+        o.dark = dark_level(o.dark_files, o.max_side, 0, events);
+        refuse_dark_cards(o.files, o, *o.dark);
+    }
     const CardSettings settings = settings_of(o, events);
-    if (!o.dark_files.empty()) o.dark = dark_level(o.dark_files, o.max_side, 0, events);
     const bool is_one = settings.list.size() == 1 && !settings.has_folders && settings.left_out.empty();
     if (is_one && o.outputs.empty() && o.bundle.empty() && o.check.empty())
         return run_one(o, settings.list.front(), streams);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <regex>
 
 #include "fit/base/quantile.hpp"
 #include "photo/base/format.hpp"
+#include "photo/base/paths.hpp"
 #include "photo/cards/count_samples.hpp"
 
 namespace lensprof {
@@ -103,7 +105,34 @@ std::string dark_frame_among(const CardInput &input) {
     return {};
 }
 
+// The level of a picture if it is one of a dark frame; unknown if it is bright or uneven.
+std::optional<double> dark_level_of(const std::string &file, uint32_t max_side) {
+    NoticeList events;
+    try {
+        return dark_level({file}, max_side, 0, events).brightest;
+    } catch (const Failure &failure) {
+        if (!is_of_input(failure)) throw;
+        return std::nullopt;
+    }
+}
+
 }  // namespace
+
+void refuse_dark_cards(const std::vector<std::string> &files, const CardOptions &o, const DarkLevel &dark) {
+    constexpr double spreads = 4.0, drift = 0.1, least = 0.0005;  // of the blocks; shares of the level; of full scale
+    const bool are_codes = dark.form.sample != LENSPROF_SAMPLE_F32;
+    const double highest =
+        dark.brightest + std::max({spreads * dark.spread, drift * std::fabs(dark.brightest), are_codes ? least : 0.0});
+    const auto folder_of = [](const std::string &file) { return std::filesystem::path(file).parent_path(); };
+    for (const std::string &file : files) {
+        const auto is_near = [&](const std::string &other) { return folder_of(other) == folder_of(file); };
+        if (is_folder(file) || std::none_of(o.dark_files.begin(), o.dark_files.end(), is_near)) continue;
+        if (const auto level = dark_level_of(file, o.max_side); level && *level <= highest)
+            throw Failure(LENSPROF_ERROR_ARGUMENT, file + ": is as dark as " + dark.file
+                                                       + ", but is given as a card; repeat " + option_name("dark")
+                                                       + " for each file");
+    }
+}
 
 bool has_dark_name(const std::string &file) {
     static const std::regex words(R"((?:.*[^a-z])?(?:darks?|darkframe|bias|cap|capped|lenscap|covered)(?:[^a-z].*)?)",
