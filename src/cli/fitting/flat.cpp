@@ -211,7 +211,7 @@ int run_one(const FlatCommand &o, const CardSetting &setting, Streams &streams) 
     if (o.json)
         print_json(flat_json(found), streams.out);
     else
-        print_flat(found, streams.out);
+        print_flat(found, streams.verbosity != Verbosity::quiet, streams.out);
     if (found.profile_id && !o.json)
         streams.out << "stored    profile " << found.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(found.key) << "\n";
@@ -307,7 +307,8 @@ int run_lens(const FlatCommand &o, const CardSettings &settings, Streams &stream
     if (o.json)
         print_json(lens_json(cards), streams.out);
     else
-        print_lens(cards, o.store.no_store ? std::string() : store_path(o.store.db), streams.out);
+        print_lens(cards, o.store.no_store ? std::string() : store_path(o.store.db),
+                   streams.verbosity != Verbosity::quiet, streams.out);
     return static_cast<int>(lens_exit_code(cards));
 }
 

@@ -13,7 +13,7 @@ namespace lensprof {
 // The object that `flat --json` prints; docs/json.md describes the schema.
 Json flat_json(const CardFit &found);
 
-void print_flat(const CardFit &found, std::ostream &out);
+void print_flat(const CardFit &found, bool with_notes, std::ostream &out);
 
 // The bytes of the report as a web page.
 std::string flat_page(const CardFit &found, const std::string &title, const std::string &command,

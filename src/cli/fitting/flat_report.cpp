@@ -132,7 +132,7 @@ Json flat_json(const CardFit &report) {
     return json;
 }
 
-void print_flat(const CardFit &report, std::ostream &out) {
+void print_flat(const CardFit &report, bool with_notes, std::ostream &out) {
     const auto &fit = report.fit;
     print_images(report, out);
     print_vignettings(*profile_of(*report.held), out, report.aspect);
@@ -157,7 +157,7 @@ void print_flat(const CardFit &report, std::ostream &out) {
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!fit.usable) out << "NOT USABLE: " << report.verdict.headline() << "\n";
-    print_findings(report.verdict, out);
+    if (with_notes) print_findings(report.verdict, out);
 }
 
 }  // namespace lensprof

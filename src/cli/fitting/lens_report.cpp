@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <regex>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -76,27 +78,55 @@ void print_settings(const LensCards &cards, std::ostream &out) {
     }
 }
 
+// What the texts of findings end with: the error that they leave.
+double last_number(const std::string &text) {
+    const size_t end = text.find_last_of("0123456789");
+    if (end == std::string::npos) return 0.0;
+    const size_t before = text.find_last_not_of("0123456789.", end);
+    return std::strtod(text.c_str() + (before == std::string::npos ? 0 : before + 1), nullptr);
+}
+
 // Lines that several settings or files share are printed once, with the first of them.
 class SharedLines {
 public:
-    void add(const std::string &text, const std::string &item) {
-        const auto same =
-            std::find_if(lines_.begin(), lines_.end(), [&](const Line &line) { return line.text == text; });
-        same == lines_.end() ? lines_.push_back({text, item, 1}) : void(same->count++);
+    void add(const std::string &text, const std::string &item) { add(text, text, item); }
+
+    // Also shared if only numbers differ: the line of the setting with the largest is printed.
+    void add_alike(const std::string &text, const std::string &item) {
+        static const std::regex numbers(R"(\d+(?:\.\d+)?)");
+        add(std::regex_replace(text, numbers, "#"), text, item);
     }
 
     void print(const char *start, std::ostream &out) const {
-        for (const Line &line : lines_)
-            out << start << one_line(line.item)
-                << (line.count > 1 ? " and " + std::to_string(line.count - 1) + " more" : std::string()) << ": "
-                << one_line(line.text) << "\n";
+        for (const Line &line : lines_) {
+            out << start << one_line(line.item);
+            if (line.differs)
+                out << ", the largest of " << counted(line.count, "setting");
+            else if (line.count > 1)
+                out << " and " << line.count - 1 << " more";
+            out << (line.item.empty() ? "" : ": ") << one_line(line.text) << "\n";
+        }
     }
 
 private:
     struct Line {
-        std::string text, item;
-        size_t count;
+        std::string kind, text, item;
+        size_t count = 1;
+        bool differs = false;
     };
+
+    void add(const std::string &kind, const std::string &text, const std::string &item) {
+        const auto same =
+            std::find_if(lines_.begin(), lines_.end(), [&](const Line &line) { return line.kind == kind; });
+        if (same == lines_.end()) {
+            lines_.push_back({kind, text, item});
+            return;
+        }
+        same->count++;
+        same->differs |= same->text != text;
+        if (last_number(text) > last_number(same->text)) same->text = text, same->item = item;
+    }
+
     std::vector<Line> lines_;
 };
 
@@ -109,10 +139,22 @@ bool is_answered(const Finding &finding, const std::optional<LightCheck> &light)
 void print_findings(const LensCards &cards, std::ostream &out) {
     SharedLines lines;
     for (const MeasuredSetting &setting : cards.settings) {
-        for (const Notice &notice : setting.notices.list) lines.add(notice.text, setting.of.label);
+        for (const Notice &notice : setting.notices.list) lines.add_alike(notice.text, setting.of.label);
         if (setting.fit && setting.is_good())
             for (const Finding &finding : setting.fit->verdict.findings)
-                if (!is_answered(finding, cards.light)) lines.add(with_code(finding), setting.of.label);
+                if (!is_answered(finding, cards.light)) lines.add_alike(with_code(finding), setting.of.label);
+    }
+    lines.print("note      ", out);
+}
+
+// They start with the setting, or the camera.
+void print_lens_file_notes(const LensCards &cards, std::ostream &out) {
+    SharedLines lines;
+    for (const std::string &note : cards.lens_file_notes) {
+        const size_t colon = note.find(": ");
+        const std::string item = colon == std::string::npos ? std::string() : note.substr(0, colon),
+                          text = colon == std::string::npos ? note : note.substr(colon + 2);
+        lines.add_alike(text, item);
     }
     lines.print("note      ", out);
 }
@@ -286,9 +328,9 @@ ExitCode lens_exit_code(const LensCards &cards) {
     return cards.left_out.empty() ? ExitCode::done : ExitCode::unreadable;
 }
 
-void print_lens(const LensCards &cards, const std::string &database, std::ostream &out) {
+void print_lens(const LensCards &cards, const std::string &database, bool with_notes, std::ostream &out) {
     print_settings(cards, out);
-    print_findings(cards, out);
+    if (with_notes) print_findings(cards, out);
     if (cards.light)
         out << "light     checked with " << cards.light->pictures << " at "
             << cards.settings[cards.light->setting].of.label << ": " << cards.light->text()
@@ -301,7 +343,7 @@ void print_lens(const LensCards &cards, const std::string &database, std::ostrea
     size_t stored = 0;
     for (const MeasuredSetting &setting : cards.settings) stored += setting.fit && setting.fit->profile_id;
     if (stored) out << "stored    " << counted(stored, "profile") << " in " << database << "\n";
-    for (const std::string &text : cards.lens_file_notes) out << "note      " << one_line(text) << "\n";
+    if (with_notes) print_lens_file_notes(cards, out);
     if (!cards.lens_file.empty())
         out << "written   " << cards.lens_file << ": " << counted(cards.good(), "setting") << off_text(cards) << "\n";
     print_left_out(cards, out);

@@ -78,9 +78,9 @@ void add_bundle(const std::string &path, LensCards cards, const std::string &com
 // 0, 4 if cards must be taken again or there is an obstacle to the file for Lensfun, 3 if files could not be read.
 ExitCode lens_exit_code(const LensCards &cards);
 
-// A line per setting, what is missing, and what became of the result. `database`: where profiles are stored; empty:
-// none.
-void print_lens(const LensCards &cards, const std::string &database, std::ostream &out);
+// A line per setting, what is missing, and what became of the result; notes that differ in numbers only are one line.
+// `database`: where profiles are stored; empty: none.
+void print_lens(const LensCards &cards, const std::string &database, bool with_notes, std::ostream &out);
 
 // The object that `flat --json` prints of several settings; docs/json.md describes the schema.
 Json lens_json(const LensCards &cards);
